@@ -141,7 +141,7 @@ class Deck:
         """
         node, element = self._next_number("NODE"), self._next_number("ELEMENT")
         self.add("NODE", *((node + at, *map(float, place)) for at, place in enumerate(mesh.points)))
-        for count in (3, 4):
+        for count in (3, 4, 6, 8):
             kind = f"CP{'E' if plane == 'strain' else 'S'}{count}"
             rows = [
                 (element + at, *(node + nodes))

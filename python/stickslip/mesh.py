@@ -1,4 +1,4 @@
-"""Meshes of triangles and quadrilaterals: from numpy arrays, meshio or Gmsh."""
+"""Meshes of linear and quadratic triangles and quadrilaterals: from numpy arrays, meshio or Gmsh."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -18,11 +18,17 @@ Integers = NDArray[np.int64]
 FLAT = 1e-9
 """Coordinates z that differ by this part of the mesh's size are the same."""
 
-KINDS = {"triangle": 3, "quad": 4}
+KINDS = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8}
 """Elements of meshio and their nodes."""
 
-GMSH = {2: 3, 3: 4}
-"""Element types of Gmsh and their nodes: triangle, quadrilateral."""
+LINES = ("line", "line3")
+"""Lines of meshio that sides are made of."""
+
+GMSH = {2: 3, 3: 4, 9: 6, 16: 8}
+"""Element types of Gmsh and their nodes: linear and quadratic triangle and quadrilateral."""
+
+GMSH_LINES = {1: 2, 8: 3}
+"""Types of lines of Gmsh and their nodes."""
 
 
 @dataclass
@@ -35,13 +41,13 @@ class Mesh:
     points: Array
     """Coordinates [N, 2]."""
     elements: list[Integers]
-    """Three or four node indices of each element."""
+    """Node indices of each element: three or four corners, and the nodes between them in quadratic ones."""
     element_sets: dict[str, Integers] = field(default_factory=dict)
     """Element indices by name."""
     node_sets: dict[str, Integers] = field(default_factory=dict)
     """Node indices by name."""
     sides: dict[str, Integers] = field(default_factory=dict)
-    """Sides of elements by name: [S, 2] indices of their nodes, in any order. They become surfaces."""
+    """Sides of elements by name: [S, 2] indices of their corners, in any order. They become surfaces."""
 
     def __init__(
         self,
@@ -51,7 +57,7 @@ class Mesh:
         node_sets: Mapping[str, ArrayLike] = {},
         sides: Mapping[str, ArrayLike] = {},
     ) -> None:
-        """`elements` is an array [E, 3] or [E, 4], or a list of elements that may differ."""
+        """`elements` is an array [E, k] with k = 3, 4, 6 or 8 nodes, or a list of elements that may differ."""
         self.points = _plane(np.asarray(points, dtype=np.float64))
         self.elements = [np.asarray(element, dtype=np.int64) for element in elements]
         self.element_sets = {name: _indices(one) for name, one in element_sets.items()}
@@ -59,15 +65,15 @@ class Mesh:
         self.sides = {name: _indices(one).reshape(-1, 2) for name, one in sides.items()}
         self._check()
         self.elements = [
-            element if _area(self.points[element]) > 0.0 else element[::-1]
+            element if _area(self.points[_corners(element)]) > 0.0 else _turned(element)
             for element in self.elements
         ]
 
     def _check(self) -> None:
         """Tells what no deck can be made of."""
         for index, element in enumerate(self.elements):
-            if element.shape not in ((3,), (4,)):
-                raise Fault(f"element {index} has {element.size} nodes: 3 or 4 are needed")
+            if element.shape not in ((3,), (4,), (6,), (8,)):
+                raise Fault(f"element {index} has {element.size} nodes: 3, 4, 6 or 8 are needed")
         count = {"node": len(self.points), "element": len(self.elements)}
         used = np.concatenate([*self.elements, np.empty(0, np.int64)])
         checked = [("node", "the elements", used)]
@@ -84,7 +90,8 @@ class Mesh:
         if self._owner is None:
             self._owner = {}
             for index, element in enumerate(self.elements):
-                for side, ends in enumerate(zip(element, np.roll(element, -1)), start=1):
+                corners = _corners(element)
+                for side, ends in enumerate(zip(corners, np.roll(corners, -1)), start=1):
                     key = frozenset(map(int, ends))
                     self._owner.setdefault(key, []).append((index, side))
         found = []
@@ -100,7 +107,7 @@ class Mesh:
 
     @classmethod
     def from_meshio(cls, mesh: "meshio.Mesh") -> "Mesh":
-        """Triangles and quadrilaterals of a mesh of meshio, with its sets and physical groups.
+        """Triangles and quadrilaterals, linear or quadratic, of a mesh of meshio, with its sets and physical groups.
 
         Sets of lines become sides and, with their nodes, node sets. Without any set of elements
         all of them are the set ALL. Nodes of no element are left out.
@@ -117,11 +124,12 @@ class Mesh:
         elements: list[Integers] = []
         sets: dict[str, list[int]] = {}
         sides: dict[str, list[Integers]] = {}
+        between: dict[str, list[Integers]] = {}
         for at, (kind, data) in enumerate(blocks):
             first = len(elements)
             if kind in KINDS:
                 elements += list(data)
-            elif kind not in ("line", "vertex"):
+            elif kind not in (*LINES, "vertex"):
                 raise Fault(
                     f"the mesh has elements of the type {kind}: {', '.join(KINDS)} are read"
                 )
@@ -129,9 +137,11 @@ class Mesh:
                 if at < len(rows) and rows[at] is not None and len(rows[at]):
                     if kind in KINDS:
                         sets.setdefault(name, []).extend(first + rows[at])
-                    elif kind == "line":
-                        sides.setdefault(name, []).append(data[rows[at]])
-        nodes = {name: np.asarray(rows) for name, rows in mesh.point_sets.items()}
+                    elif kind in LINES:
+                        sides.setdefault(name, []).append(data[rows[at]][:, :2])
+                        between.setdefault(name, []).append(data[rows[at]].ravel())
+        nodes = {name: np.unique(np.concatenate(rows)) for name, rows in between.items()}
+        nodes |= {name: np.asarray(rows) for name, rows in mesh.point_sets.items()}
         lines = {name: np.concatenate(rows) for name, rows in sides.items()}
         return cls._of_used(np.asarray(mesh.points), elements, sets, nodes, lines)
 
@@ -157,7 +167,7 @@ class Mesh:
             for kind, labels, connected in zip(*model.mesh.getElements(2, entity)):
                 if int(kind) not in GMSH:
                     name = model.mesh.getElementProperties(kind)[0]
-                    raise Fault(f"the mesh has elements of the type {name}: linear ones are read")
+                    raise Fault(f"the mesh has elements of the type {name}, which are not read")
                 rows = np.array([index[int(tag)] for tag in connected]).reshape(-1, GMSH[int(kind)])
                 for label, row in zip(labels, rows):
                     if int(label) not in place:
@@ -175,9 +185,12 @@ class Mesh:
             labels, _ = model.mesh.getNodesForPhysicalGroup(dimension, group)
             nodes[name] = np.array([index[int(tag)] for tag in labels])
             if dimension == 1:
-                ends = [model.mesh.getElements(1, int(entity))[2] for entity in entities]
-                flat = [index[int(tag)] for lists in ends for one in lists for tag in one]
-                sides[name] = np.array(flat).reshape(-1, 2)
+                ends: list[list[int]] = []
+                for entity in entities:
+                    for kind, _, connected in zip(*model.mesh.getElements(1, int(entity))):
+                        lines = np.reshape(connected, (-1, GMSH_LINES[int(kind)]))
+                        ends += [[index[int(tag)] for tag in line[:2]] for line in lines]
+                sides[name] = np.array(ends, dtype=np.int64).reshape(-1, 2)
         if not sets:
             add(-1)
         return cls._of_used(np.asarray(coordinates).reshape(-1, 3), elements, sets, nodes, sides)
@@ -224,6 +237,19 @@ def _indices(values: ArrayLike) -> Integers:
     if given.size and not np.issubdtype(given.dtype, np.integer):
         raise Fault(f"indices are whole numbers, not {given.dtype}")
     return given.astype(np.int64)
+
+
+def _corners(element: Integers) -> Integers:
+    """The corners of an element; nodes between them come after."""
+    return element[: len(element) // 2] if len(element) > 4 else element
+
+
+def _turned(element: Integers) -> Integers:
+    """The element with its nodes in the other direction."""
+    if len(element) <= 4:
+        return element[::-1]
+    corners, between = np.split(element, 2)
+    return np.concatenate([corners[::-1], np.roll(between[::-1], -1)])
 
 
 def _area(corners: Array) -> float:

@@ -112,6 +112,11 @@ class Result:
         return [connectivity[a:b] for a, b in zip(offsets[:-1], offsets[1:])]
 
     @cached_property
+    def outlines(self) -> list[Integers]:
+        """Node indices around each element, nodes between corners in their places."""
+        return [np.reshape(cell, (2, -1)).T.ravel() if len(cell) > 4 else cell for cell in self.cells]
+
+    @cached_property
     def rigid(self) -> Integers:
         """Segments of rigid surfaces, [segments, 2] node indices, obstacle on the left."""
         end = self.read("VTKHDF/Offsets")[len(self.cells)]
@@ -129,14 +134,16 @@ class Result:
 
     @cached_property
     def edge_length(self) -> float:
-        """Median length of the edges of the undeformed mesh."""
-        way = [self.coordinates[cell] - self.coordinates[np.roll(cell, -1)] for cell in self.cells]
+        """Median distance of the nodes that follow each other around elements of the undeformed mesh."""
+        pairs = [(self.coordinates[one], np.roll(one, -1)) for one in self.outlines]
+        way = [place - self.coordinates[after] for place, after in pairs]
         return float(np.median(np.linalg.norm(np.concatenate(way), axis=1)))
 
     @cached_property
     def boundary(self) -> Integers:
-        """Edges that belong to one element only, [edges, 2] node indices, body on the left."""
-        edges = {(int(a), int(b)) for cell in self.cells for a, b in zip(cell, np.roll(cell, -1))}
+        """Straight lines between nodes that belong to one element only, [edges, 2] node indices, body on the left."""
+        pairs = (zip(one, np.roll(one, -1)) for one in self.outlines)
+        edges = {(int(a), int(b)) for one in pairs for a, b in one}
         return np.array(sorted(edge for edge in edges if edge[::-1] not in edges))
 
     @cached_property

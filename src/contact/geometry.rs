@@ -244,7 +244,7 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
     model.contacts.iter().map(of_contact).collect()
 }
 
-/// Elements of a mesh, found by the segments of their outlines.
+/// The convex parts of the elements of a mesh, here called elements, found by the segments of their outlines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
     /// Nodes around every element, one element after the other; segments lead from each to the next, the element on
@@ -267,8 +267,10 @@ impl Interior {
     pub fn new(mesh: &Mesh, is_of: impl Fn(&Element) -> bool) -> Self {
         let (mut nodes, mut starts) = (Vec::new(), vec![0]);
         for element in mesh.elements.iter().filter(|element| is_of(element)) {
-            nodes.extend(element.segments().map(|[a, _]| a as u32));
-            starts.push(nodes.len() as u32);
+            for part in element.convex_parts() {
+                nodes.extend(part.iter().map(|&node| node as u32));
+                starts.push(nodes.len() as u32);
+            }
         }
         let of_elements = starts.windows(2).map(|ends| {
             let own = &nodes[ends[0] as usize..ends[1] as usize];
@@ -514,6 +516,43 @@ mod interior_tests {
         let at = |n: usize| mesh.coordinates[n];
         assert!(!inside.contains([0, 1], 9, at) && !inside.joins([0, 1], first, at));
         assert!(inside.contains([first, first + 1], 9, at));
+    }
+
+    #[test]
+    fn a_body_whose_inner_sides_are_curved_does_not_take_in_its_own_nodes() {
+        // two triangles with six nodes each, the node in the middle of their common side to one side or the other
+        for bow in [-0.2, 0.2] {
+            let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+            let middle = [0.5 + bow, 0.5 - bow];
+            let between = [[0.5, 0.0], [1.0, 0.5], middle, [0.5, 1.0], [0.0, 0.5]];
+            let mut mesh = Mesh {
+                coordinates: [&corners[..], &between, &[[0.3, 0.3]]].concat(),
+                ..Mesh::default()
+            };
+            for nodes in [[0, 1, 2, 4, 5, 6], [0, 2, 3, 6, 7, 8]] {
+                mesh.elements.push(Element {
+                    label: 1,
+                    element_type: ElementType::CPS6,
+                    nodes: nodes.as_slice().into(),
+                    section: 0,
+                });
+            }
+            let inside = Interior::new(&mesh, |_| true);
+            let at = |n: usize| mesh.coordinates[n];
+            let skin = [0, 4, 1, 5, 2, 7, 3, 8, 0];
+            for segment in skin.windows(2) {
+                let segment = [segment[0], segment[1]];
+                for node in skin {
+                    assert!(
+                        !inside.takes_in(segment, node, at),
+                        "{bow} {segment:?} {node}"
+                    );
+                    assert!(!inside.contains(segment, node, at));
+                }
+                assert!(inside.contains(segment, 9, at), "{bow} {segment:?}");
+            }
+            assert!(inside.takes_in([0, 4], 9, at) && !inside.takes_in([2, 7], 9, at));
+        }
     }
 
     #[test]

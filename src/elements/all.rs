@@ -8,18 +8,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
-use super::chunk::{BlockTangents, MAX_CHUNK, TangentSweep};
+use super::chunk::{MAX_CHUNK, TangentSweep};
 use super::connector::PlacedConnector;
 use super::damping::ElementDamping;
-use super::element::{AnyChunk, AnyElement};
+use super::element::{AnyChunk, AnyElement, Geometry};
 use super::formulation::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, Increment, MAX_NODES, Motion, TangentPart};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
-use crate::model::{Element, ElementType, Mesh, Model};
+use crate::model::{Element, ElementType, Mesh, Model, Shape};
 
 /// What the elements of one section and type have in common.
 struct Kind {
     law: PlaneLaw,
+    shape: Shape,
     density: f64,
     thickness: f64,
 }
@@ -65,6 +66,8 @@ pub struct Elements {
     pub(super) damped: Vec<(usize, ElementDamping)>,
     /// Springs and dashpots, whose places in lists follow those of the elements.
     connectors: Vec<PlacedConnector>,
+    /// Reference positions of all nodes (length).
+    coordinates: Vec<[f64; 2]>,
     pub(super) dofs: usize,
     pub(super) space: Mutex<Space>,
 }
@@ -74,7 +77,7 @@ pub struct Elements {
 pub(super) struct Space {
     pub(super) forces: Vec<(ElementVector, f64)>,
     pub(super) tangents: Vec<ElementMatrix>,
-    pub(super) block_tangents: Vec<BlockTangents>,
+    pub(super) block_tangents: Vec<f64>,
 }
 
 impl Part {
@@ -107,6 +110,7 @@ impl Elements {
             rigid: Vec::new(),
             damped: Vec::new(),
             connectors: Vec::new(),
+            coordinates: model.mesh.coordinates.clone(),
             dofs: model.dof_count(),
             space: Mutex::default(),
         };
@@ -128,6 +132,7 @@ impl Elements {
             let material = &model.materials[section.material];
             let kind = Kind {
                 law: material.law.in_plane(element_type.plane),
+                shape: element_type.shape,
                 density: material.density,
                 thickness: section.thickness,
             };
@@ -152,7 +157,7 @@ impl Elements {
         for (index, element) in elements.iter().enumerate().filter(|(e, _)| !is_rigid[*e]) {
             let material = &model.materials[model.sections[element.section].material];
             let plane = element.element_type.plane;
-            let damping = ElementDamping::new(|| all.element(index), material, plane);
+            let damping = ElementDamping::new(|rho| all.geometry(index).mass(rho), material, plane);
             all.damped.extend(damping.map(|damping| (index, damping)));
         }
         let placed = |connector| PlacedConnector::new(connector, &model.mesh.coordinates);
@@ -181,11 +186,12 @@ impl Elements {
         self.places[index] = (number, Place::Part(part));
         let element = AnyElement::new(&elements[index], coordinates, kind.thickness);
         let first = self.variable_count();
+        let variables = first..first + element.points() * kind.law.variables();
         self.parts.push(Part {
             index,
             element,
             law: kind.law,
-            variables: first..first + element.points() * kind.law.variables(),
+            variables,
         });
     }
 
@@ -222,8 +228,8 @@ impl Elements {
             Place::Chunk(chunk, place) => {
                 self.chunks[chunk as usize].element(place as usize, self.nodes(element))
             }
-            Place::Part(part) => self.parts[part as usize].element,
-            Place::Rigid(place) => self.rigid[place as usize],
+            Place::Part(part) => self.parts[part as usize].element.clone(),
+            Place::Rigid(place) => self.rigid[place as usize].clone(),
         }
     }
 
@@ -274,12 +280,23 @@ impl Elements {
     /// Share of each node of an element in a uniform force per volume (length^3); entries beyond its
     /// nodes are 0.
     pub fn nodal_volumes(&self, element: usize) -> [f64; MAX_NODES] {
-        self.element(element).nodal_volumes()
+        self.geometry(element).nodal_volumes()
     }
 
     /// Consistent mass of an element per direction, n x n column by column (mass).
     pub fn mass(&self, element: usize) -> Vec<f64> {
-        self.element(element).mass(self.density(element))
+        self.geometry(element).mass(self.density(element))
+    }
+
+    /// Shape and nodes of an element in the reference configuration.
+    fn geometry(&self, element: usize) -> Geometry<'_> {
+        let kind = self.kind(element);
+        Geometry {
+            shape: kind.shape,
+            nodes: self.nodes(element),
+            coordinates: &self.coordinates,
+            thickness: kind.thickness,
+        }
     }
 
     /// Internal variables of all points before the first increment, element by element: zero.
@@ -683,7 +700,7 @@ mod tests {
     }
 
     fn wave(scale: f64, k: f64) -> Vec<f64> {
-        (0..18).map(|i| scale * (k * f64::from(i)).sin()).collect()
+        (0..36).map(|i| scale * (k * f64::from(i)).sin()).collect()
     }
 
     fn models() -> [Model; 3] {
@@ -697,6 +714,43 @@ mod tests {
             model(elastic, ElementType::CPE4),
             model(rubber, ElementType::CPE4),
         ]
+    }
+
+    /// Two quadrilaterals with eight nodes and a triangle with six at their common side, curved.
+    fn quadratic_model(law: Law, quad: ElementType) -> Model {
+        let mut model = model(law, ElementType::CPE4);
+        let mesh = &mut model.mesh;
+        let more = [
+            [0.5, -0.05],
+            [1.15, 0.6],
+            [0.55, 1.05],
+            [-0.1, 0.4],
+            [0.95, 1.5],
+            [0.2, 1.4],
+            [1.5, 0.1],
+            [2.05, 0.65],
+            [1.6, 1.1],
+        ];
+        mesh.coordinates.truncate(9);
+        mesh.coordinates.extend(more);
+        let tri = ElementType {
+            plane: quad.plane,
+            ..ElementType::CPE6
+        };
+        let elements = [
+            (quad, vec![0, 1, 2, 3, 9, 10, 11, 12]),
+            (tri, vec![3, 2, 4, 11, 13, 14]),
+            (quad, vec![1, 5, 6, 2, 15, 16, 17, 10]),
+        ];
+        mesh.elements = elements
+            .map(|(element_type, nodes)| Element {
+                label: 1,
+                element_type,
+                nodes: nodes.into(),
+                section: 0,
+            })
+            .into();
+        model
     }
 
     fn assert_near(one: &ElementResult, other: &ElementResult) {
@@ -723,13 +777,22 @@ mod tests {
 
     #[test]
     fn sweeps_over_blocks_are_those_over_single_elements() {
-        let (u0, u1) = (wave(0.1, 1.3), wave(0.12, 2.9));
+        let (u0, u1) = (wave(0.02, 1.3), wave(0.025, 2.9));
         let between = Motion {
             start: Some(&u0),
             ..Motion::at(&u1, &[])
         };
+        let rubber = models()[2].materials[0].law;
+        let elastic = Law::elastic(100.0, 0.3);
+        let quadratic = [
+            quadratic_model(elastic, ElementType::CPS8),
+            quadratic_model(elastic, ElementType::CPE8R),
+            quadratic_model(rubber, ElementType::CPE8),
+            quadratic_model(rubber, ElementType::CPE8R),
+        ];
         for (model, motion) in models()
             .iter()
+            .chain(&quadratic)
             .flat_map(|m| [(m, between), (m, Motion::at(&u1, &[]))])
         {
             let elements = Elements::new(model);
@@ -770,7 +833,7 @@ mod tests {
                 },
             );
             swept.sort_unstable();
-            assert_eq!(swept, [0, 1, 2, 3]);
+            assert_eq!(swept, Vec::from_iter(0..elements.len()));
         }
     }
 

@@ -6,9 +6,11 @@
 
 use std::array::from_fn;
 
-use nalgebra::{Matrix2, SMatrix};
+use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
+use super::formulation::{
+    ElementResult, Jacobian, Reference, ShapeFunctions, gradients, inverse_jacobian, smaller,
+};
 use crate::materials::lanes::{LANES, Lanes, Positive, SymmetricLanes};
 use crate::materials::{LawInLanes, StrainChange, TangentLanes};
 
@@ -25,6 +27,17 @@ pub struct Block<const N: usize, const P: usize> {
     pub inverse: [TensorLanes; P],
     /// Weights of the points (length^3).
     pub volume: [Lanes; P],
+    /// (dX/dr)^-1 at [`Shape::CORNERS`] (1/length).
+    pub corners: Vec<TensorLanes>,
+}
+
+/// The map of one element from natural coordinates r: all that differs between two elements of a shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Map<const P: usize> {
+    /// That at the integration points.
+    pub points: [Jacobian; P],
+    /// (dX/dr)^-1 at [`Shape::CORNERS`] (1/length).
+    pub corners: Vec<Matrix2<f64>>,
 }
 
 /// Displacements of the nodes at which a block is evaluated (length).
@@ -98,35 +111,44 @@ impl Deformation {
 }
 
 impl<const N: usize, const P: usize> Block<N, P> {
-    /// A block of elements with the given nodes and jacobians.
-    pub fn new(nodes: [[u16; N]; LANES], jacobians: [[Jacobian; P]; LANES]) -> Self {
+    /// A block of elements with the given nodes and maps.
+    pub fn new(nodes: [[u16; N]; LANES], maps: &[Map<P>; LANES]) -> Self {
         let of = |p: usize, value: &dyn Fn(&Jacobian) -> f64| {
-            Lanes(from_fn(|lane| value(&jacobians[lane][p])))
+            Lanes(from_fn(|lane| value(&maps[lane].points[p])))
+        };
+        let corner = |c: usize| {
+            let entry = |i, j| Lanes(from_fn(|lane| maps[lane].corners[c][(i, j)]));
+            from_fn(|i| from_fn(|j| entry(i, j)))
         };
         Block {
             nodes: from_fn(|a| from_fn(|lane| nodes[lane][a])),
             inverse: from_fn(|p| from_fn(|i| from_fn(|j| of(p, &|at| at.inverse[(i, j)])))),
             volume: from_fn(|p| of(p, &|at| at.volume)),
+            corners: (0..maps[0].corners.len()).map(corner).collect(),
         }
     }
 
-    /// The jacobians of one element.
-    pub fn jacobians(&self, lane: usize) -> [Jacobian; P] {
-        from_fn(|p| Jacobian {
-            inverse: Matrix2::from_fn(|i, j| self.inverse[p][i][j].0[lane]),
-            volume: self.volume[p].0[lane],
-        })
+    /// The map of one element.
+    pub fn map(&self, lane: usize) -> Map<P> {
+        let matrix = |of: &TensorLanes| Matrix2::from_fn(|i, j| of[i][j].0[lane]);
+        Map {
+            points: from_fn(|p| Jacobian {
+                inverse: matrix(&self.inverse[p]),
+                volume: self.volume[p].0[lane],
+            }),
+            corners: self.corners.iter().map(matrix).collect(),
+        }
     }
 
     /// Internal force F = int B_L^T S dOmega, eq. (2.5) (force), and whether det F is positive at all
-    /// points.
+    /// points and corners.
     #[inline(always)]
     pub fn force<S: Shape<N, P>>(
         &self,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
-        let mut positive = Positive::default();
+        let mut positive = self.at_corners::<S>(motion);
         let mut q = [[[Lanes::ZERO; 2]; P]; 2];
         let u = motion.derivatives::<S, P>();
         for p in 0..P {
@@ -137,6 +159,30 @@ impl<const N: usize, const P: usize> Block<N, P> {
             [q[0][p], q[1][p]] = times_transposed(&piola, &self.inverse[p]);
         }
         ([S::nodal_sums(&q[0]), S::nodal_sums(&q[1])], positive)
+    }
+
+    /// Whether det F is positive at the corners: of the configuration, and of the end in the energy-momentum form.
+    #[inline(always)]
+    fn at_corners<S: Shape<N, P>>(&self, motion: &BlockMotion<N>) -> Positive {
+        let mut positive = Positive::default();
+        for ([r, s], natural) in self.corners.iter().zip(S::CORNERS) {
+            let gradient = |u: &NodalLanes<N>| {
+                let row = |u: &[Lanes; N]| {
+                    let [dr, ds] = derivative(u, natural);
+                    [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]]
+                };
+                [row(&u[0]), row(&u[1])]
+            };
+            positive = match motion {
+                BlockMotion::At(u) => positive.and(determinant(&gradient(u))),
+                BlockMotion::Between(mid, half) => {
+                    let (h, g) = (gradient(mid), gradient(half));
+                    let end = determinant(&plus(&h, &g));
+                    positive.and(determinant(&h)).and(end)
+                }
+            };
+        }
+        positive
     }
 
     /// Deformation at a point, given natural derivatives; `positive` takes in det F.
@@ -252,19 +298,72 @@ pub trait Shape<const N: usize, const P: usize> {
     /// The shape functions.
     const FUNCTIONS: ShapeFunctions<N, P>;
 
+    /// Natural derivatives dh_a/dr_i at the corners, where det F is looked at beside the points; none for linear
+    /// displacements.
+    const CORNERS: &'static [[[f64; 2]; N]] = &[];
+
     /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at every point.
-    fn derivatives(v: &[Lanes; N]) -> [[Lanes; 2]; P];
+    #[inline(always)]
+    fn derivatives(v: &[Lanes; N]) -> [[Lanes; 2]; P] {
+        let mut derivatives = [[Lanes::ZERO; 2]; P];
+        for p in 0..P {
+            derivatives[p] = derivative(v, &Self::FUNCTIONS.natural[p]);
+        }
+        derivatives
+    }
 
     /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivatives`].
-    fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N];
-
-    /// Consistent mass per density, m_ab = int h_a h_b dOmega (length^3).
-    fn mass(element: &Reference<N, P>) -> SMatrix<f64, N, N>;
-
-    /// The element of thickness `t` between nodes at `x`, column a for node a (length).
-    fn reference(x: &SMatrix<f64, 2, N>, t: f64) -> Reference<N, P> {
-        Self::FUNCTIONS.reference(&Self::FUNCTIONS.jacobians(x, t))
+    #[inline(always)]
+    fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N] {
+        let mut sums = [Lanes::ZERO; N];
+        for p in 0..P {
+            for a in 0..N {
+                let [r, s] = Self::FUNCTIONS.natural[p][a];
+                sums[a] += q[p][0] * r + q[p][1] * s;
+            }
+        }
+        sums
     }
+
+    /// Consistent mass per density of an element of thickness `t` between nodes at `x`, m_ab = int h_a h_b dOmega
+    /// (length^3).
+    fn mass(x: &SMatrix<f64, 2, N>, t: f64) -> SMatrix<f64, N, N>;
+
+    /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
+    fn nodal_volumes(x: &SMatrix<f64, 2, N>, t: f64) -> SVector<f64, N>;
+
+    /// The map to the element of thickness `t` between nodes at `x`, column a for node a (length).
+    fn map(x: &SMatrix<f64, 2, N>, t: f64) -> Map<P> {
+        let corners = Self::CORNERS.iter();
+        Map {
+            points: Self::FUNCTIONS.jacobians(x, t),
+            corners: corners
+                .map(|natural| inverse_jacobian(x, natural).0)
+                .collect(),
+        }
+    }
+
+    /// The element with a map.
+    fn reference(map: &Map<P>) -> Reference<N, P> {
+        let corners = Self::CORNERS.iter().zip(&map.corners);
+        Reference {
+            points: Self::FUNCTIONS.points(&map.points),
+            corners: corners
+                .map(|(natural, inverse)| gradients(natural, inverse))
+                .collect(),
+        }
+    }
+}
+
+/// sum_a v_a dh_a/dr_i.
+#[inline(always)]
+fn derivative<const N: usize>(v: &[Lanes; N], natural: &[[f64; 2]; N]) -> [Lanes; 2] {
+    let mut sum = [Lanes::ZERO; 2];
+    for a in 0..N {
+        sum[0] += v[a] * natural[a][0];
+        sum[1] += v[a] * natural[a][1];
+    }
+    sum
 }
 
 /// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.

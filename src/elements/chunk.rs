@@ -14,16 +14,12 @@ use rayon::prelude::*;
 
 use super::block::{Block, BlockMotion, MatrixLanes, NodalLanes, Shape};
 use super::formulation::{ElementResult, Reference};
-use super::solid::{ElementMatrix, MAX_DOFS, Motion, TangentPart, take_positive_part};
+use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::lanes::{LANES, Lanes, Positive};
 use crate::materials::{LawInLanes, PlaneLaw, in_lanes};
 
 /// Elements of a chunk at most.
 pub const MAX_CHUNK: usize = 1024;
-
-/// Tangents of the elements of a block, D x D column by column each.
-pub type BlockTangents = [ElementMatrix; LANES];
-const NO_TANGENTS: BlockTangents = [[0.0; MAX_DOFS * MAX_DOFS]; LANES];
 
 /// Blocks whose tangents are not worth a second thread.
 const PARALLEL_BLOCKS: usize = 64;
@@ -67,12 +63,12 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         let block = |first: usize| {
             let at = |lane: usize| (first + lane).min(of.len() - 1);
             let places = from_fn(|lane| of[at(lane)].map(|node| place(&nodes, node)));
-            let jacobians = from_fn(|lane| {
-                let corners = SMatrix::from_fn(|i, a| x[of[at(lane)][a]][i]);
+            let maps = from_fn(|lane| {
+                let x = SMatrix::from_fn(|i, a| x[of[at(lane)][a]][i]);
                 let t = if first + lane < of.len() { t } else { 0.0 };
-                S::FUNCTIONS.jacobians(&corners, t)
+                S::map(&x, t)
             });
-            Block::new(places, jacobians)
+            Block::new(places, &maps)
         };
         Chunk {
             blocks: (0..of.len()).step_by(LANES).map(block).collect(),
@@ -87,7 +83,7 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
     /// The element at a place of the chunk.
     pub fn reference(&self, place: usize) -> Reference<N, P> {
         let block = &self.blocks[place / LANES];
-        S::FUNCTIONS.reference(&block.jacobians(place % LANES))
+        S::reference(&block.map(place % LANES))
     }
 
     /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
@@ -129,11 +125,12 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
     }
 
     /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
-    /// D column by column. The tangents of a chunk are made in parallel in `space` where there are threads.
+    /// D column by column. The tangents are made in `space`: those of the whole chunk in parallel where there are
+    /// threads.
     pub fn for_each_tangent(
         &self,
         sweep: TangentSweep<impl Fn(usize) -> bool + Sync>,
-        space: &mut Vec<BlockTangents>,
+        space: &mut Vec<f64>,
         add: &mut impl FnMut(usize, &[f64]),
     ) {
         let elements = |number: usize| {
@@ -141,26 +138,31 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
             &self.elements[first..(first + LANES).min(self.elements.len())]
         };
         let wanted = |number: &usize| elements(*number).iter().any(|&e| (sweep.wanted)(e));
-        let mut add_block = |number: usize, tangents: &BlockTangents| {
-            for (&element, k) in elements(number).iter().zip(tangents) {
-                add(element, &k[..4 * N * N]);
+        let of_block = LANES * 4 * N * N;
+        let mut add_block = |number: usize, tangents: &[f64]| {
+            for (&element, k) in elements(number)
+                .iter()
+                .zip(tangents.chunks_exact(4 * N * N))
+            {
+                add(element, k);
             }
         };
         let (all, TangentSweep { motion, part, .. }) = (0..self.blocks.len(), &sweep);
         if rayon::current_num_threads() > 1 {
-            space.resize(self.blocks.len(), NO_TANGENTS);
-            let pairs = all.clone().into_par_iter().zip(space.par_iter_mut());
+            space.resize(self.blocks.len() * of_block, 0.0);
+            let blocks = space.par_chunks_exact_mut(of_block);
+            let pairs = all.clone().into_par_iter().zip(blocks);
             let pairs = pairs.with_min_len(PARALLEL_BLOCKS);
             pairs
                 .filter(|(number, _)| wanted(number))
                 .for_each(|(number, k)| self.write_tangents(number, *motion, *part, k));
             all.filter(wanted)
-                .for_each(|number| add_block(number, &space[number]));
+                .for_each(|number| add_block(number, &space[number * of_block..][..of_block]));
         } else {
-            let mut k = NO_TANGENTS;
+            space.resize(of_block, 0.0);
             for number in all.filter(wanted) {
-                self.write_tangents(number, *motion, *part, &mut k);
-                add_block(number, &k);
+                self.write_tangents(number, *motion, *part, space);
+                add_block(number, space);
             }
         }
     }
@@ -171,7 +173,7 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         number: usize,
         motion: Motion,
         part: TangentPart,
-        tangents: &mut BlockTangents,
+        tangents: &mut [f64],
     ) {
         let block = &self.blocks[number];
         in_lanes!(&self.law, law => Arch::new().dispatch(Tangents {
@@ -182,8 +184,8 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
             tangents,
         }));
         if part == TangentPart::Positive {
-            for matrix in tangents {
-                take_positive_part(&mut matrix[..4 * N * N], 2 * N);
+            for matrix in tangents.chunks_exact_mut(4 * N * N) {
+                take_positive_part(matrix, 2 * N);
             }
         }
     }
@@ -306,7 +308,8 @@ struct Tangents<'a, const N: usize, const P: usize, S, L> {
     law: &'a L,
     block: &'a Block<N, P>,
     motion: Motion<'a>,
-    tangents: &'a mut BlockTangents,
+    /// Those of its elements, D x D column by column each.
+    tangents: &'a mut [f64],
 }
 
 impl<const N: usize, const P: usize, S, L> WithSimd for Tangents<'_, N, P, S, L>
@@ -326,7 +329,8 @@ where
             None => block.add_tangent::<S>(law, &chunk.at(block, end), &mut k),
             Some(start) => block.add_tangent::<S>(law, &chunk.between(block, [start, end]), &mut k),
         }
-        for (lane, matrix) in self.tangents.iter_mut().enumerate() {
+        let matrices = self.tangents.chunks_exact_mut(4 * N * N);
+        for (lane, matrix) in matrices.enumerate() {
             write_matrix(lane, &k, matrix);
         }
     }
@@ -338,7 +342,7 @@ fn place(nodes: &[usize], node: usize) -> u16 {
 }
 
 /// Writes the symmetric matrix of one element of which the lanes have the entries [a][b] with a <= b.
-fn write_matrix<const N: usize>(lane: usize, k: &MatrixLanes<N>, matrix: &mut ElementMatrix) {
+fn write_matrix<const N: usize>(lane: usize, k: &MatrixLanes<N>, matrix: &mut [f64]) {
     for b in 0..N {
         for a in 0..b + 1 {
             for i in 0..2 {

@@ -14,16 +14,12 @@ pub(super) struct ElementDamping {
 }
 
 impl ElementDamping {
-    /// Damping of the element that `element` makes, of a material, if it has any.
-    pub fn new(
-        element: impl Fn() -> AnyElement,
-        material: &Material,
-        plane: Plane,
-    ) -> Option<Self> {
+    /// Damping of an element of a material, if it has any; `mass` gives its mass with a density.
+    pub fn new(mass: impl Fn(f64) -> Vec<f64>, material: &Material, plane: Plane) -> Option<Self> {
         let Damping { alpha, beta } = material.damping;
         let moduli = material.law.small_strain();
         let viscosity = (beta > 0.0).then(|| Viscosity::new(beta, moduli, plane));
-        let mass = (alpha > 0.0).then(|| element().mass(alpha * material.density));
+        let mass = (alpha > 0.0).then(|| mass(alpha * material.density));
         (viscosity.is_some() || mass.is_some()).then_some(ElementDamping { viscosity, mass })
     }
 

@@ -90,8 +90,11 @@ mod tests {
     use super::*;
     use crate::elements::block::Shape;
     use crate::elements::formulation::{evaluate, internal_force};
-    use crate::elements::shapes::{Quadrilateral, Triangle};
-    use crate::materials::{Committed, Law, Plane, PlaneLaw};
+    use crate::elements::shapes::tests::{QUAD8, TRI6};
+    use crate::elements::shapes::{
+        QuadraticTriangle, Quadrilateral, ReducedSerendipity, Serendipity, Triangle,
+    };
+    use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
     use nalgebra::Matrix2;
 
     /// Plane strain, E = 1000, nu = 0.3.
@@ -109,14 +112,28 @@ mod tests {
 
     fn quad() -> Reference<4, 4> {
         let x = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
-        Quadrilateral::reference(&SMatrix::from_columns(&x.map(|p| p.into())), 0.5)
+        let x = SMatrix::from_columns(&x.map(|p| p.into()));
+        Quadrilateral::reference(&Quadrilateral::map(&x, 0.5))
     }
 
     fn tri() -> Reference<3, 1> {
-        Triangle::reference(
-            &SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into())),
-            0.5,
-        )
+        let x = SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into()));
+        Triangle::reference(&Triangle::map(&x, 0.5))
+    }
+
+    fn tri6() -> Reference<6, 3> {
+        let x = SMatrix::from_columns(&TRI6.map(|p| p.into()));
+        QuadraticTriangle::reference(&QuadraticTriangle::map(&x, 0.5))
+    }
+
+    fn quad8() -> Reference<8, 9> {
+        let x = SMatrix::from_columns(&QUAD8.map(|p| p.into()));
+        Serendipity::reference(&Serendipity::map(&x, 0.5))
+    }
+
+    fn quad8_reduced() -> Reference<8, 4> {
+        let x = SMatrix::from_columns(&QUAD8.map(|p| p.into()));
+        ReducedSerendipity::reference(&ReducedSerendipity::map(&x, 0.5))
     }
 
     /// Some displacements of moderate size, the same for every run.
@@ -149,6 +166,9 @@ mod tests {
     fn tangent_is_the_derivative_of_the_internal_force() {
         check_tangent::<4, 4, 8>(&quad());
         check_tangent::<3, 1, 6>(&tri());
+        check_tangent::<6, 3, 12>(&tri6());
+        check_tangent::<8, 9, 16>(&quad8());
+        check_tangent::<8, 4, 16>(&quad8_reduced());
     }
 
     fn check_gradient<const N: usize, const P: usize>(element: &Reference<N, P>) {
@@ -168,18 +188,63 @@ mod tests {
     fn internal_force_is_the_derivative_of_the_strain_energy() {
         check_gradient(&quad());
         check_gradient(&tri());
+        check_gradient(&tri6());
+        check_gradient(&quad8());
+        check_gradient(&quad8_reduced());
+    }
+
+    fn check_work<const N: usize, const P: usize>(element: &Reference<N, P>, law: &PlaneLaw) {
+        let c = Committed::new(law, &[]);
+        let (u0, u1) = (displacements::<N>(5) * 0.3, displacements::<N>(11) * 0.3);
+        let (force, _) =
+            internal_force::<Displacement, _, _>(element, &c, &Configuration::Between(u0, u1));
+        let work = force.dot(&(u1 - u0));
+        let difference = strain_energy(element, &c, &u1) - strain_energy(element, &c, &u0);
+        assert!((work - difference).abs() < 1e-14 * force.norm());
     }
 
     #[test]
     fn averaged_force_does_exactly_the_work_of_the_strain_energy() {
+        let rubber = Law::NeoHooke(NeoHooke {
+            c10: 200.0,
+            d1: 2e-3,
+        });
+        for law in [plane_strain(), rubber.in_plane(Plane::Strain)] {
+            check_work(&quad(), &law);
+            check_work(&tri6(), &law);
+            check_work(&quad8(), &law);
+            check_work(&quad8_reduced(), &law);
+        }
+    }
+
+    #[test]
+    fn a_corner_inside_out_is_seen_beyond_points_that_are_not() {
+        // corner 2 of a square moves to where its sides fold back, the points being far from it
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let x = SMatrix::<f64, 2, 8>::from_fn(|i, a| match a {
+            0..4 => square[a][i],
+            _ => (square[a - 4][i] + square[(a - 3) % 4][i]) / 2.0,
+        });
+        let element = ReducedSerendipity::reference(&ReducedSerendipity::map(&x, 1.0));
         let law = plane_strain();
-        let (c, element) = (Committed::new(&law, &[]), quad());
-        let (u0, u1) = (displacements::<4>(5), displacements::<4>(11));
-        let (force, _) =
-            internal_force::<Displacement, _, _>(&element, &c, &Configuration::Between(u0, u1));
-        let work = force.dot(&(u1 - u0));
-        let difference = strain_energy(&element, &c, &u1) - strain_energy(&element, &c, &u0);
-        assert!((work - difference).abs() < 1e-14 * force.norm());
+        let c = Committed::new(&law, &[]);
+        let mut u = SMatrix::<f64, 2, 8>::zeros();
+        (u[(0, 2)], u[(1, 2)]) = (-0.28, -0.28);
+        let at = Configuration::At(u);
+        let at_points = (0..4).map(|p| state(&element, p, &c, &at).determinant);
+        assert!(at_points.fold(f64::INFINITY, f64::min) > 0.2);
+        // along both sides: dx/dX = 1 - 3 0.28 = 0.16 in the direction of the side, -3 0.28 across
+        let (_, least) = internal_force::<Displacement, _, _>(&element, &c, &at);
+        assert!(
+            (least - (0.16 * 0.16 - 0.84 * 0.84)).abs() < 1e-14,
+            "{least}"
+        );
+        let between = Configuration::Between(SMatrix::zeros(), u);
+        let (_, least) = internal_force::<Displacement, _, _>(&element, &c, &between);
+        assert!(
+            (least - (0.16 * 0.16 - 0.84 * 0.84)).abs() < 1e-14,
+            "{least}"
+        );
     }
 
     fn check_rotation<const N: usize, const P: usize>(
@@ -206,6 +271,10 @@ mod tests {
         check_rotation(&quad(), &x);
         let x = SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into()));
         check_rotation(&tri(), &x);
+        check_rotation(&tri6(), &SMatrix::from_columns(&TRI6.map(|p| p.into())));
+        let x = SMatrix::from_columns(&QUAD8.map(|p| p.into()));
+        check_rotation(&quad8(), &x);
+        check_rotation(&quad8_reduced(), &x);
     }
 
     #[test]

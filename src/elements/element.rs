@@ -3,16 +3,19 @@
 
 use nalgebra::SMatrix;
 
-use super::block::Shape as _;
-use super::chunk::{BlockTangents, Chunk, TangentSweep};
+use super::chunk::{Chunk, TangentSweep};
 use super::formulation::ElementResult;
-use super::shapes::{Quad4, Quad4MeanDilatation, Quadrilateral, Tri3, Triangle};
-use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, TangentPart};
+use super::shapes::{
+    Quad4, Quad4MeanDilatation, Quad8, Quad8Reduced, QuadraticTriangle, Quadrilateral,
+    ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
+};
+use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
+use super::{block, formulation};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, StressAtPoints};
-use crate::model::{ElementType, Formulation, Mesh, Model, Shape};
+use crate::model::{ElementType, Formulation, Model, Shape};
 
 /// An element of any type.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 #[allow(clippy::large_enum_variant)] // most elements are quadrilaterals: kept in one piece for speed
 pub(super) enum AnyElement {
     /// T3, displacement formulation.
@@ -21,6 +24,12 @@ pub(super) enum AnyElement {
     Quad4(Quad4),
     /// Q4, mean dilatation.
     Quad4MeanDilatation(Quad4MeanDilatation),
+    /// T6, displacement formulation.
+    Tri6(Box<Tri6>),
+    /// Q8, displacement formulation.
+    Quad8(Box<Quad8>),
+    /// Q8, displacement formulation with 2 x 2 points.
+    Quad8Reduced(Box<Quad8Reduced>),
 }
 
 /// Evaluates an expression for the element in an [`AnyElement`], whatever its type.
@@ -30,6 +39,9 @@ macro_rules! with_element {
             AnyElement::Tri3($element) => $value,
             AnyElement::Quad4($element) => $value,
             AnyElement::Quad4MeanDilatation($element) => $value,
+            AnyElement::Tri6($element) => $value,
+            AnyElement::Quad8($element) => $value,
+            AnyElement::Quad8Reduced($element) => $value,
         }
     };
 }
@@ -42,19 +54,20 @@ impl AnyElement {
             shape, formulation, ..
         } = element.element_type;
         match (shape, formulation) {
-            (Shape::Tri3, _) => {
-                let nodes = first(nodes);
-                Self::Tri3(Tri3::new(nodes, Triangle::reference(&corners(nodes, x), t)))
+            (Shape::Tri3, _) => Self::Tri3(solid::<Triangle, _, _, _, _>(nodes, x, t)),
+            (Shape::Quad4, Formulation::MeanDilatation) => {
+                Self::Quad4MeanDilatation(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
             }
-            (Shape::Quad4, formulation) => {
-                let nodes = first(nodes);
-                let reference = Quadrilateral::reference(&corners(nodes, x), t);
-                match formulation {
-                    Formulation::Displacement => Self::Quad4(Quad4::new(nodes, reference)),
-                    Formulation::MeanDilatation => {
-                        Self::Quad4MeanDilatation(Quad4MeanDilatation::new(nodes, reference))
-                    }
-                }
+            (Shape::Quad4, _) => Self::Quad4(solid::<Quadrilateral, _, _, _, _>(nodes, x, t)),
+            (Shape::Tri6, _) => Self::Tri6(Box::new(solid::<QuadraticTriangle, _, _, _, _>(
+                nodes, x, t,
+            ))),
+            (Shape::Quad8, Formulation::Reduced) => {
+                let element = solid::<ReducedSerendipity, _, _, _, _>(nodes, x, t);
+                Self::Quad8Reduced(Box::new(element))
+            }
+            (Shape::Quad8, _) => {
+                Self::Quad8(Box::new(solid::<Serendipity, _, _, _, _>(nodes, x, t)))
             }
         }
     }
@@ -72,26 +85,6 @@ impl AnyElement {
     /// Number of integration points.
     pub fn points(&self) -> usize {
         with_element!(self, element => element.points())
-    }
-
-    /// Share of each node in a uniform force per volume (length^3).
-    pub fn nodal_volumes(&self) -> [f64; MAX_NODES] {
-        with_element!(self, element => element.nodal_volumes())
-    }
-
-    /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), n x n column by column (mass).
-    pub fn mass(&self, density: f64) -> Vec<f64> {
-        match self {
-            Self::Tri3(e) => (Triangle::mass(e.reference()) * density)
-                .as_slice()
-                .to_vec(),
-            Self::Quad4(e) => (Quadrilateral::mass(e.reference()) * density)
-                .as_slice()
-                .to_vec(),
-            Self::Quad4MeanDilatation(e) => (Quadrilateral::mass(e.reference()) * density)
-                .as_slice()
-                .to_vec(),
-        }
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
@@ -135,6 +128,12 @@ pub(super) enum AnyChunk {
     Tri3(Chunk<3, 1, Triangle>),
     /// Q4, displacement formulation.
     Quad4(Chunk<4, 4, Quadrilateral>),
+    /// T6, displacement formulation.
+    Tri6(Chunk<6, 3, QuadraticTriangle>),
+    /// Q8, displacement formulation.
+    Quad8(Chunk<8, 9, Serendipity>),
+    /// Q8, displacement formulation with 2 x 2 points.
+    Quad8Reduced(Chunk<8, 4, ReducedSerendipity>),
 }
 
 /// Evaluates an expression for the chunk in an [`AnyChunk`], whatever its type.
@@ -143,6 +142,9 @@ macro_rules! with_chunk {
         match $any {
             AnyChunk::Tri3($chunk) => $value,
             AnyChunk::Quad4($chunk) => $value,
+            AnyChunk::Tri6($chunk) => $value,
+            AnyChunk::Quad8($chunk) => $value,
+            AnyChunk::Quad8Reduced($chunk) => $value,
         }
     };
 }
@@ -150,35 +152,41 @@ macro_rules! with_chunk {
 impl AnyChunk {
     /// Whether elements of a type and law are swept by blocks.
     pub fn has(element_type: &ElementType, law: &PlaneLaw) -> bool {
-        let triangle = element_type.shape == Shape::Tri3;
-        law.variables() == 0 && (triangle || element_type.formulation == Formulation::Displacement)
+        law.variables() == 0 && element_type.formulation != Formulation::MeanDilatation
     }
 
     /// Elements (indices) of the model of one type, law and thickness `t`.
     pub fn new(model: &Model, elements: &[usize], t: f64, law: PlaneLaw) -> Self {
-        let Mesh {
-            coordinates,
-            elements: all,
-            ..
-        } = &model.mesh;
-        match all[elements[0]].element_type.shape {
-            Shape::Tri3 => {
-                let nodes: Vec<_> = elements.iter().map(|&e| first(&all[e].nodes)).collect();
-                Self::Tri3(Chunk::new(elements.to_vec(), &nodes, coordinates, t, law))
+        let element_type = model.mesh.elements[elements[0]].element_type;
+        match (element_type.shape, element_type.formulation) {
+            (Shape::Tri3, _) => Self::Tri3(chunk(model, elements, t, law)),
+            (Shape::Quad4, _) => Self::Quad4(chunk(model, elements, t, law)),
+            (Shape::Tri6, _) => Self::Tri6(chunk(model, elements, t, law)),
+            (Shape::Quad8, Formulation::Reduced) => {
+                Self::Quad8Reduced(chunk(model, elements, t, law))
             }
-            Shape::Quad4 => {
-                let nodes: Vec<_> = elements.iter().map(|&e| first(&all[e].nodes)).collect();
-                Self::Quad4(Chunk::new(elements.to_vec(), &nodes, coordinates, t, law))
-            }
+            (Shape::Quad8, _) => Self::Quad8(chunk(model, elements, t, law)),
         }
     }
 
     /// The element at a place of the chunk, between its nodes.
     pub fn element(&self, place: usize, nodes: &[usize]) -> AnyElement {
         match self {
-            Self::Tri3(chunk) => AnyElement::Tri3(Tri3::new(first(nodes), chunk.reference(place))),
+            Self::Tri3(chunk) => AnyElement::Tri3(Solid::new(first(nodes), chunk.reference(place))),
             Self::Quad4(chunk) => {
-                AnyElement::Quad4(Quad4::new(first(nodes), chunk.reference(place)))
+                AnyElement::Quad4(Solid::new(first(nodes), chunk.reference(place)))
+            }
+            Self::Tri6(chunk) => {
+                let element = Solid::new(first(nodes), chunk.reference(place));
+                AnyElement::Tri6(Box::new(element))
+            }
+            Self::Quad8(chunk) => {
+                let element = Solid::new(first(nodes), chunk.reference(place));
+                AnyElement::Quad8(Box::new(element))
+            }
+            Self::Quad8Reduced(chunk) => {
+                let element = Solid::new(first(nodes), chunk.reference(place));
+                AnyElement::Quad8Reduced(Box::new(element))
             }
         }
     }
@@ -207,7 +215,7 @@ impl AnyChunk {
     pub fn for_each_tangent(
         &self,
         sweep: TangentSweep<impl Fn(usize) -> bool + Sync>,
-        space: &mut Vec<BlockTangents>,
+        space: &mut Vec<f64>,
         add: &mut impl FnMut(usize, &[f64]),
     ) {
         with_chunk!(self, chunk => chunk.for_each_tangent(sweep, space, add))
@@ -220,8 +228,82 @@ fn first<const N: usize>(nodes: &[usize]) -> [usize; N] {
 }
 
 /// Coordinates of the nodes of an element, column a for node a.
-fn corners<const N: usize>(nodes: [usize; N], x: &[[f64; 2]]) -> SMatrix<f64, 2, N> {
+fn positions<const N: usize>(nodes: &[usize], x: &[[f64; 2]]) -> SMatrix<f64, 2, N> {
     SMatrix::from_fn(|i, a| x[nodes[a]][i])
+}
+
+/// An element of the shape S.
+fn solid<S: block::Shape<N, P>, F, const N: usize, const P: usize, const D: usize>(
+    nodes: &[usize],
+    x: &[[f64; 2]],
+    t: f64,
+) -> Solid<N, P, D, F>
+where
+    F: formulation::Formulation,
+{
+    Solid::new(first(nodes), S::reference(&S::map(&positions(nodes, x), t)))
+}
+
+/// A chunk of elements of the shape S.
+fn chunk<S: block::Shape<N, P> + Sync, const N: usize, const P: usize>(
+    model: &Model,
+    elements: &[usize],
+    t: f64,
+    law: PlaneLaw,
+) -> Chunk<N, P, S> {
+    let mesh = &model.mesh;
+    let nodes = elements.iter().map(|&e| first(&mesh.elements[e].nodes));
+    let nodes: Vec<_> = nodes.collect();
+    Chunk::new(elements.to_vec(), &nodes, &mesh.coordinates, t, law)
+}
+
+/// Shape and nodes of an element in the reference configuration, from which its mass follows.
+#[derive(Clone, Copy)]
+pub(super) struct Geometry<'a> {
+    pub shape: Shape,
+    pub nodes: &'a [usize],
+    /// Positions of all nodes (length).
+    pub coordinates: &'a [[f64; 2]],
+    /// Thickness (length).
+    pub thickness: f64,
+}
+
+impl Geometry<'_> {
+    /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), n x n column by column (mass).
+    pub fn mass(&self, density: f64) -> Vec<f64> {
+        match self.shape {
+            Shape::Tri3 => self.mass_of::<Triangle, _, _>(density),
+            Shape::Quad4 => self.mass_of::<Quadrilateral, _, _>(density),
+            Shape::Tri6 => self.mass_of::<QuadraticTriangle, _, _>(density),
+            Shape::Quad8 => self.mass_of::<Serendipity, _, _>(density),
+        }
+    }
+
+    /// Share of each node in a uniform force per volume (length^3): entries beyond its nodes are 0. Those of the
+    /// corners are negative in Q8 and 0 in T6.
+    pub fn nodal_volumes(&self) -> [f64; MAX_NODES] {
+        match self.shape {
+            Shape::Tri3 => self.shares_of::<Triangle, _, _>(),
+            Shape::Quad4 => self.shares_of::<Quadrilateral, _, _>(),
+            Shape::Tri6 => self.shares_of::<QuadraticTriangle, _, _>(),
+            Shape::Quad8 => self.shares_of::<Serendipity, _, _>(),
+        }
+    }
+
+    fn mass_of<S: block::Shape<N, P>, const N: usize, const P: usize>(
+        &self,
+        density: f64,
+    ) -> Vec<f64> {
+        let x = positions(self.nodes, self.coordinates);
+        (S::mass(&x, self.thickness) * density).as_slice().to_vec()
+    }
+
+    fn shares_of<S: block::Shape<N, P>, const N: usize, const P: usize>(&self) -> [f64; MAX_NODES] {
+        let x = positions(self.nodes, self.coordinates);
+        let mut shares = [0.0; MAX_NODES];
+        shares[..N].copy_from_slice(S::nodal_volumes(&x, self.thickness).as_slice());
+        shares
+    }
 }
 
 /// Volume and consistent mass of an element.
@@ -239,11 +321,16 @@ impl ElementInertia {
         let element = &model.mesh.elements[index];
         let section = &model.sections[element.section];
         let density = model.materials[section.material].density;
-        let any = AnyElement::new(element, &model.mesh.coordinates, section.thickness);
+        let geometry = Geometry {
+            shape: element.element_type.shape,
+            nodes: &element.nodes,
+            coordinates: &model.mesh.coordinates,
+            thickness: section.thickness,
+        };
         ElementInertia {
-            volume: any.nodal_volumes().iter().sum(),
-            nodes: any.nodes().to_vec(),
-            mass: any.mass(density),
+            volume: geometry.nodal_volumes().iter().sum(),
+            nodes: element.nodes.to_vec(),
+            mass: geometry.mass(density),
         }
     }
 

@@ -29,7 +29,7 @@ pub trait Formulation {
 }
 
 /// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
-/// determinant of the deformation gradient.
+/// determinant of the deformation gradient at points and corners.
 #[inline]
 pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
@@ -37,7 +37,7 @@ pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
     configuration: &Configuration<N>,
 ) -> (SMatrix<f64, 2, N>, f64) {
     let mut force = SMatrix::<f64, 2, N>::zeros();
-    let mut determinant = f64::INFINITY;
+    let mut determinant = element.corner_determinant(configuration);
     F::for_each_state(element, material, configuration, |p, state| {
         let point = &element.points[p];
         // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
@@ -152,42 +152,59 @@ pub struct ShapeFunctions<const N: usize, const P: usize> {
     pub values: [[f64; N]; P],
     /// Natural derivatives dh_a/dr_i at every point.
     pub natural: [[[f64; 2]; N]; P],
-    /// Quadrature weight of every point.
-    pub weight: f64,
+    /// Quadrature weights of the points.
+    pub weights: [f64; P],
 }
 
 impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
     /// dX/dr at every point of an element between nodes at `x` (column a for node a), of thickness `t`.
     pub fn jacobians(&self, x: &SMatrix<f64, 2, N>, t: f64) -> [Jacobian; P] {
-        self.natural.map(|natural| {
-            let j: Matrix2<f64> = x * SMatrix::<f64, N, 2>::from_fn(|a, i| natural[a][i]);
-            let det = j.determinant();
+        std::array::from_fn(|p| {
+            let (inverse, det) = inverse_jacobian(x, &self.natural[p]);
             Jacobian {
-                inverse: Matrix2::new(j.m22, -j.m12, -j.m21, j.m11) / det,
-                volume: t * self.weight * det,
+                inverse,
+                volume: t * self.weights[p] * det,
             }
         })
     }
 
-    /// The element with these jacobians, dh/dX = dh/dr (dX/dr)^-1.
-    pub fn reference(&self, jacobians: &[Jacobian; P]) -> Reference<N, P> {
+    /// The integration points with these jacobians, dh/dX = dh/dr (dX/dr)^-1.
+    pub fn points(&self, jacobians: &[Jacobian; P]) -> [Point<N>; P] {
         let point = |p: usize| Point {
             shape: SVector::from(self.values[p]),
-            gradient: SMatrix::<f64, N, 2>::from_fn(|a, i| self.natural[p][a][i])
-                * jacobians[p].inverse,
+            gradient: gradients(&self.natural[p], &jacobians[p].inverse),
             volume: jacobians[p].volume,
         };
-        Reference {
-            points: std::array::from_fn(point),
-        }
+        std::array::from_fn(point)
     }
 }
 
+/// (dX/dr)^-1 and det(dX/dr) at a place with the natural derivatives dh_a/dr_i.
+pub(super) fn inverse_jacobian<const N: usize>(
+    x: &SMatrix<f64, 2, N>,
+    natural: &[[f64; 2]; N],
+) -> (Matrix2<f64>, f64) {
+    let j: Matrix2<f64> = x * SMatrix::<f64, N, 2>::from_fn(|a, i| natural[a][i]);
+    let det = j.determinant();
+    (Matrix2::new(j.m22, -j.m12, -j.m21, j.m11) / det, det)
+}
+
+/// Gradients dh_a/dX = dh_a/dr (dX/dr)^-1, row a.
+pub(super) fn gradients<const N: usize>(
+    natural: &[[f64; 2]; N],
+    inverse: &Matrix2<f64>,
+) -> SMatrix<f64, N, 2> {
+    SMatrix::<f64, N, 2>::from_fn(|a, i| natural[a][i]) * inverse
+}
+
 /// An element with N nodes and P integration points in the reference configuration.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Reference<const N: usize, const P: usize> {
     /// Integration points of stress and internal force.
     pub points: [Point<N>; P],
+    /// Gradients dh_a/dX_i at the corners, where det F may be negative while it is positive at all points; none for
+    /// linear displacements.
+    pub corners: Vec<SMatrix<f64, N, 2>>,
 }
 
 impl<const N: usize, const P: usize> Reference<N, P> {
@@ -196,9 +213,18 @@ impl<const N: usize, const P: usize> Reference<N, P> {
         self.points.iter().map(|p| p.volume).sum()
     }
 
-    /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
-    pub fn nodal_volume(&self) -> SVector<f64, N> {
-        self.points.iter().map(|p| p.shape * p.volume).sum()
+    /// Smallest det F at the corners, infinite without any: of the configuration, and of the end in the
+    /// energy-momentum form.
+    fn corner_determinant(&self, configuration: &Configuration<N>) -> f64 {
+        let at = |u: &SMatrix<f64, 2, N>| {
+            let all = self.corners.iter().map(|g| determinant(&(u * g)));
+            all.fold(f64::INFINITY, |least, det| smaller(det, least))
+        };
+        match configuration {
+            _ if self.corners.is_empty() => f64::INFINITY,
+            Configuration::At(u) => at(u),
+            Configuration::Between(u0, u1) => smaller(at(&((u0 + u1) / 2.0)), at(u1)),
+        }
     }
 }
 

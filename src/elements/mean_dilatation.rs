@@ -247,7 +247,7 @@ mod tests {
     }
 
     fn quad() -> Reference<4, 4> {
-        Quadrilateral::reference(&corners(), 0.5)
+        Quadrilateral::reference(&Quadrilateral::map(&corners(), 0.5))
     }
 
     fn nearly_incompressible() -> PlaneLaw {

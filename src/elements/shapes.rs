@@ -1,11 +1,12 @@
-//! The shapes of elements with their quadrature and mass: the constant-strain triangle T3 and the bilinear isoparametric
-//! quadrilateral Q4, fully integrated. Section 2 of docs/theory.md.
+//! The shapes of elements with their quadrature and mass: the constant-strain triangle T3, the bilinear quadrilateral
+//! Q4, the quadratic triangle T6 and the quadratic quadrilateral Q8 (serendipity), all isoparametric. Section 2 of
+//! docs/theory.md.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 use super::block::Shape;
 use super::displacement::Displacement;
-use super::formulation::{Reference, ShapeFunctions};
+use super::formulation::ShapeFunctions;
 use super::mean_dilatation::MeanDilatation;
 use super::solid::Solid;
 use crate::materials::lanes::Lanes;
@@ -20,7 +21,7 @@ impl Shape<3, 1> for Triangle {
     const FUNCTIONS: ShapeFunctions<3, 1> = ShapeFunctions {
         values: [[1.0 / 3.0; 3]],
         natural: [[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]],
-        weight: 0.5,
+        weights: [0.5],
     };
 
     #[inline(always)]
@@ -34,8 +35,13 @@ impl Shape<3, 1> for Triangle {
     }
 
     /// m_ab = V (1 + delta_ab) / 12
-    fn mass(element: &Reference<3, 1>) -> SMatrix<f64, 3, 3> {
-        (SMatrix::repeat(1.0) + SMatrix::identity()) * (element.volume() / 12.0)
+    fn mass(x: &SMatrix<f64, 2, 3>, t: f64) -> SMatrix<f64, 3, 3> {
+        let [point] = Self::FUNCTIONS.jacobians(x, t);
+        (SMatrix::repeat(1.0) + SMatrix::identity()) * (point.volume / 12.0)
+    }
+
+    fn nodal_volumes(x: &SMatrix<f64, 2, 3>, t: f64) -> SVector<f64, 3> {
+        nodal_volumes(&Self::FUNCTIONS, x, t)
     }
 }
 
@@ -92,12 +98,36 @@ impl Shape<4, 4> for Quadrilateral {
     }
 
     /// Exact at 2 x 2 points, det(dX/dr) being linear.
-    fn mass(element: &Reference<4, 4>) -> SMatrix<f64, 4, 4> {
-        let points = element.points.iter();
-        points
-            .map(|p| p.shape * p.shape.transpose() * p.volume)
-            .sum()
+    fn mass(x: &SMatrix<f64, 2, 4>, t: f64) -> SMatrix<f64, 4, 4> {
+        mass(&Self::FUNCTIONS, x, t)
     }
+
+    fn nodal_volumes(x: &SMatrix<f64, 2, 4>, t: f64) -> SVector<f64, 4> {
+        nodal_volumes(&Self::FUNCTIONS, x, t)
+    }
+}
+
+/// int h_a h_b dOmega by a quadrature (length^3).
+fn mass<const N: usize, const P: usize>(
+    quadrature: &ShapeFunctions<N, P>,
+    x: &SMatrix<f64, 2, N>,
+    t: f64,
+) -> SMatrix<f64, N, N> {
+    let points = quadrature.points(&quadrature.jacobians(x, t));
+    let terms = points.iter();
+    terms
+        .map(|p| p.shape * p.shape.transpose() * p.volume)
+        .sum()
+}
+
+/// int h_a dOmega by a quadrature (length^3).
+fn nodal_volumes<const N: usize, const P: usize>(
+    quadrature: &ShapeFunctions<N, P>,
+    x: &SMatrix<f64, 2, N>,
+    t: f64,
+) -> SVector<f64, N> {
+    let points = quadrature.points(&quadrature.jacobians(x, t));
+    points.iter().map(|p| p.shape * p.volume).sum()
 }
 
 /// Shape functions at the integration points.
@@ -115,12 +145,196 @@ const fn bilinear() -> ShapeFunctions<4, 4> {
     ShapeFunctions {
         values,
         natural,
-        weight: 1.0,
+        weights: [1.0; 4],
+    }
+}
+
+/// T6 in the displacement formulation (CPE6, CPS6).
+pub type Tri6 = Solid<6, 3, 12, Displacement>;
+
+/// The quadratic triangle at three points, which are exact for the strains of straight sides.
+///
+/// ```text
+///   2
+///   | \        h_0 = L (2 L - 1), h_1 = r (2 r - 1), h_2 = s (2 s - 1), L = 1 - r - s
+///   5  4       h_3 = 4 L r,       h_4 = 4 r s,       h_5 = 4 s L
+///   0-3-1
+/// ```
+pub struct QuadraticTriangle;
+
+/// The six points of degree 4 (Dunavant 1985): distance of three from a corner, their weight, and those of the others.
+const DUNAVANT: [f64; 4] = [
+    0.445_948_490_915_964_9,
+    0.223_381_589_678_011_47,
+    0.091_576_213_509_770_74,
+    0.109_951_743_655_321_87,
+];
+
+impl QuadraticTriangle {
+    /// Quadrature of mass and body force.
+    const MASS: ShapeFunctions<6, 6> = {
+        let [a, wa, b, wb] = DUNAVANT;
+        let (c, d) = (1.0 - 2.0 * a, 1.0 - 2.0 * b);
+        let points = [[a, a], [c, a], [a, c], [b, b], [d, b], [b, d]];
+        let [wa, wb] = [wa / 2.0, wb / 2.0];
+        quadratic_triangle(points, [wa, wa, wa, wb, wb, wb])
+    };
+}
+
+impl Shape<6, 3> for QuadraticTriangle {
+    const FUNCTIONS: ShapeFunctions<6, 3> = {
+        let (near, far) = (1.0 / 6.0, 2.0 / 3.0);
+        quadratic_triangle([[near, near], [far, near], [near, far]], [near; 3])
+    };
+
+    const CORNERS: &'static [[[f64; 2]; 6]] =
+        &quadratic_triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [0.0; 3]).natural;
+
+    fn mass(x: &SMatrix<f64, 2, 6>, t: f64) -> SMatrix<f64, 6, 6> {
+        mass(&Self::MASS, x, t)
+    }
+
+    fn nodal_volumes(x: &SMatrix<f64, 2, 6>, t: f64) -> SVector<f64, 6> {
+        nodal_volumes(&Self::MASS, x, t)
+    }
+}
+
+/// Shape functions of T6 at some points.
+const fn quadratic_triangle<const P: usize>(
+    points: [[f64; 2]; P],
+    weights: [f64; P],
+) -> ShapeFunctions<6, P> {
+    let (mut values, mut natural) = ([[0.0; 6]; P], [[[0.0; 2]; 6]; P]);
+    let mut p = 0;
+    while p < P {
+        let [r, s] = points[p];
+        let l = 1.0 - r - s;
+        values[p] = [
+            l * (2.0 * l - 1.0),
+            r * (2.0 * r - 1.0),
+            s * (2.0 * s - 1.0),
+            4.0 * l * r,
+            4.0 * r * s,
+            4.0 * s * l,
+        ];
+        natural[p] = [
+            [1.0 - 4.0 * l, 1.0 - 4.0 * l],
+            [4.0 * r - 1.0, 0.0],
+            [0.0, 4.0 * s - 1.0],
+            [4.0 * (l - r), -4.0 * r],
+            [4.0 * s, 4.0 * r],
+            [-4.0 * s, 4.0 * (l - s)],
+        ];
+        p += 1;
+    }
+    ShapeFunctions {
+        values,
+        natural,
+        weights,
+    }
+}
+
+/// Q8 in the displacement formulation (CPE8, CPS8).
+pub type Quad8 = Solid<8, 9, 16, Displacement>;
+/// Q8 in the displacement formulation with reduced integration (CPE8R, CPS8R).
+pub type Quad8Reduced = Solid<8, 4, 16, Displacement>;
+
+/// The quadratic quadrilateral of the serendipity family at 3 x 3 Gauss points.
+///
+/// ```text
+///  3 - 6 - 2   s     h_a = (1 + r_a r)(1 + s_a s)(r_a r + s_a s - 1)/4   at the corners
+///  7       5   ^     h_a = (1 - r^2)(1 + s_a s)/2                        where r_a = 0
+///  0 - 4 - 1   +> r  h_a = (1 + r_a r)(1 - s^2)/2                        where s_a = 0
+/// ```
+pub struct Serendipity;
+
+/// The quadratic quadrilateral at 2 x 2 Gauss points.
+pub struct ReducedSerendipity;
+
+/// sqrt(3/5), the natural coordinate of the outer of three Gauss points.
+const OUTER: f64 = 0.774_596_669_241_483_4;
+
+impl Shape<8, 9> for Serendipity {
+    const FUNCTIONS: ShapeFunctions<8, 9> = {
+        let (at, of) = ([-OUTER, 0.0, OUTER], [5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0]);
+        let (mut points, mut weights) = ([[0.0; 2]; 9], [0.0; 9]);
+        let mut p = 0;
+        while p < 9 {
+            points[p] = [at[p % 3], at[p / 3]];
+            weights[p] = of[p % 3] * of[p / 3];
+            p += 1;
+        }
+        serendipity(points, weights)
+    };
+
+    const CORNERS: &'static [[[f64; 2]; 8]] = &serendipity(NODES, [0.0; 4]).natural;
+
+    fn mass(x: &SMatrix<f64, 2, 8>, t: f64) -> SMatrix<f64, 8, 8> {
+        mass(&Self::FUNCTIONS, x, t)
+    }
+
+    fn nodal_volumes(x: &SMatrix<f64, 2, 8>, t: f64) -> SVector<f64, 8> {
+        nodal_volumes(&Self::FUNCTIONS, x, t)
+    }
+}
+
+impl Shape<8, 4> for ReducedSerendipity {
+    const FUNCTIONS: ShapeFunctions<8, 4> = {
+        let mut points = NODES;
+        let mut p = 0;
+        while p < 4 {
+            points[p] = [GAUSS * NODES[p][0], GAUSS * NODES[p][1]];
+            p += 1;
+        }
+        serendipity(points, [1.0; 4])
+    };
+
+    const CORNERS: &'static [[[f64; 2]; 8]] = Serendipity::CORNERS;
+
+    fn mass(x: &SMatrix<f64, 2, 8>, t: f64) -> SMatrix<f64, 8, 8> {
+        Serendipity::mass(x, t)
+    }
+
+    fn nodal_volumes(x: &SMatrix<f64, 2, 8>, t: f64) -> SVector<f64, 8> {
+        Serendipity::nodal_volumes(x, t)
+    }
+}
+
+/// Shape functions of Q8 at some points.
+const fn serendipity<const P: usize>(
+    points: [[f64; 2]; P],
+    weights: [f64; P],
+) -> ShapeFunctions<8, P> {
+    let (mut values, mut natural) = ([[0.0; 8]; P], [[[0.0; 2]; 8]; P]);
+    let mut k = 0;
+    while k < 4 * P {
+        let (p, a) = (k / 4, k % 4);
+        let [r, s] = points[p];
+        let [ra, sa] = NODES[a];
+        let (x, y) = (1.0 + ra * r, 1.0 + sa * s);
+        values[p][a] = x * y * (ra * r + sa * s - 1.0) / 4.0;
+        natural[p][a] = [
+            ra * y * (2.0 * ra * r + sa * s) / 4.0,
+            sa * x * (ra * r + 2.0 * sa * s) / 4.0,
+        ];
+        // between corner a and the next: s_a is that of both on sides 0 and 2, r_a on sides 1 and 3
+        let (r2, s2) = (1.0 - r * r, 1.0 - s * s);
+        (values[p][4 + a], natural[p][4 + a]) = if a % 2 == 0 {
+            (r2 * y / 2.0, [-r * y, sa * r2 / 2.0])
+        } else {
+            (x * s2 / 2.0, [ra * s2 / 2.0, -s * x])
+        };
+        k += 1;
+    }
+    ShapeFunctions {
+        values,
+        natural,
+        weights,
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use nalgebra::Matrix2;
 
@@ -129,24 +343,62 @@ mod tests {
         x: SMatrix<f64, 2, N>,
         corners: usize,
     ) {
-        let element = S::reference(&x, 0.25);
-        for p in element.points {
+        let element = S::reference(&S::map(&x, 0.25));
+        let places = element.points.iter().map(|p| &p.gradient);
+        for gradient in places.chain(&element.corners) {
             // sum_a X_a dh_a/dX = I, sum_a dh_a/dX = 0
-            let identity: Matrix2<f64> = x * p.gradient;
-            assert!((identity - Matrix2::identity()).norm() < 1e-14);
-            assert!(p.gradient.row_sum().norm() < 1e-15);
+            let identity: Matrix2<f64> = x * gradient;
+            assert!((identity - Matrix2::identity()).norm() < 1e-13);
+            assert!(gradient.row_sum().norm() < 1e-13);
         }
-        // shoelace formula
+        for p in &element.points {
+            assert!((p.shape.sum() - 1.0).abs() < 1e-15);
+        }
+        assert_eq!(element.corners.is_empty(), N == corners);
+        // shoelace formula, and two thirds of the parallelogram between a side and its curve
         let area: f64 = (0..corners)
             .map(|a| {
                 let (p, q) = (x.column(a), x.column((a + 1) % corners));
-                (p[0] * q[1] - q[0] * p[1]) / 2.0
+                let chord = (p[0] * q[1] - q[0] * p[1]) / 2.0;
+                let bow = if N > corners {
+                    let (c, d) = (q - p, x.column(corners + a) - p);
+                    2.0 / 3.0 * (d[0] * c[1] - d[1] * c[0])
+                } else {
+                    0.0
+                };
+                chord + bow
             })
             .sum();
-        assert!((element.volume() - 0.25 * area).abs() < 1e-15);
-        assert!((S::mass(&element).sum() - 0.25 * area).abs() < 1e-15);
-        assert!((element.nodal_volume().sum() - 0.25 * area).abs() < 1e-15);
+        let mass = S::mass(&x, 0.25);
+        assert!((element.volume() - 0.25 * area).abs() < 1e-14);
+        assert!((mass.sum() - 0.25 * area).abs() < 1e-14);
+        // forces of a uniform acceleration are those of a uniform force per volume
+        assert!((mass.column_sum() - S::nodal_volumes(&x, 0.25)).norm() < 1e-15);
+        let mass = nalgebra::DMatrix::from_column_slice(N, N, mass.as_slice());
+        assert!(mass.symmetric_eigenvalues().min() > 0.0);
     }
+
+    /// Nodes of a distorted quadrilateral, three of whose sides are curved.
+    pub(in crate::elements) const QUAD8: [[f64; 2]; 8] = [
+        [0.0, 0.0],
+        [2.0, 0.3],
+        [1.7, 1.9],
+        [-0.2, 1.2],
+        [1.05, 0.0],
+        [1.8, 1.15],
+        [0.75, 1.55],
+        [0.0, 0.55],
+    ];
+
+    /// Nodes of a triangle with two curved sides.
+    pub(in crate::elements) const TRI6: [[f64; 2]; 6] = [
+        [0.1, 0.0],
+        [2.0, 0.3],
+        [0.7, 1.9],
+        [1.0, 0.1],
+        [1.45, 1.2],
+        [0.4, 0.95],
+    ];
 
     #[test]
     fn linear_fields_volume_and_mass() {
@@ -154,8 +406,72 @@ mod tests {
         check::<Quadrilateral, 4, 4>(SMatrix::from_columns(&quad.map(|p| p.into())), 4);
         let tri = SMatrix::from_columns(&[[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]].map(|p| p.into()));
         check::<Triangle, 3, 1>(tri, 3);
-        let element = Triangle::reference(&tri, 2.0);
         let volume = 1.9 * 1.9 - 0.6 * 0.3;
-        assert!((Triangle::mass(&element)[(0, 0)] - volume / 6.0).abs() < 1e-14);
+        assert!((Triangle::mass(&tri, 2.0)[(0, 0)] - volume / 6.0).abs() < 1e-14);
+        check::<QuadraticTriangle, 6, 3>(SMatrix::from_columns(&TRI6.map(|p| p.into())), 3);
+        let quad = SMatrix::from_columns(&QUAD8.map(|p| p.into()));
+        check::<Serendipity, 8, 9>(quad, 4);
+        check::<ReducedSerendipity, 8, 4>(quad, 4);
+    }
+
+    #[test]
+    fn shares_of_a_square_and_of_a_right_triangle_by_hand() {
+        // corners -1/12, the others 1/3; corners 0, the others 1/3 (Zienkiewicz, The Finite Element Method)
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let between: Vec<[f64; 2]> = (0..4)
+            .map(|i| [0, 1].map(|k| (square[i][k] + square[(i + 1) % 4][k]) / 2.0))
+            .collect();
+        let x = SMatrix::<f64, 2, 8>::from_fn(|i, a| match a {
+            0..4 => square[a][i],
+            _ => between[a - 4][i],
+        });
+        let shares = Serendipity::nodal_volumes(&x, 1.0);
+        for a in 0..8 {
+            let exact = if a < 4 { -1.0 / 12.0 } else { 1.0 / 3.0 };
+            assert!((shares[a] - exact).abs() < 1e-15);
+        }
+        let right = [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [0.5, 0.0],
+            [0.5, 0.5],
+            [0.0, 0.5],
+        ];
+        let shares =
+            QuadraticTriangle::nodal_volumes(&SMatrix::from_columns(&right.map(|p| p.into())), 1.0);
+        for a in 0..6 {
+            let exact = if a < 3 { 0.0 } else { 1.0 / 6.0 };
+            assert!((shares[a] - exact).abs() < 1e-15);
+        }
+        // int (h_3)^2 over the right triangle: 16 int r^2 L^2 = 16 (2! 2!)/(6!) = 4/45
+        let mass = QuadraticTriangle::mass(&SMatrix::from_columns(&right.map(|p| p.into())), 1.0);
+        assert!((mass[(3, 3)] - 4.0 / 45.0).abs() < 1e-15);
+    }
+
+    /// Zero eigenvalues of the tangent of an undeformed element.
+    fn zero_modes<S: Shape<N, P>, const N: usize, const P: usize, const D: usize>(
+        x: SMatrix<f64, 2, N>,
+    ) -> usize {
+        use crate::elements::formulation::{Configuration, Formulation};
+        use crate::materials::{Committed, Law, Plane};
+        let law = Law::elastic(1000.0, 0.3).in_plane(Plane::Strain);
+        let element = S::reference(&S::map(&x, 1.0));
+        let at = Configuration::At(SMatrix::zeros());
+        let k: SMatrix<f64, D, D> =
+            Displacement::tangent::<N, P, D>(&element, &Committed::new(&law, &[]), &at);
+        let k = nalgebra::DMatrix::from_column_slice(D, D, k.as_slice());
+        let values = k.symmetric_eigenvalues();
+        assert!(values.min() > -1e-12 * values.max());
+        values.iter().filter(|v| **v < 1e-10 * values.max()).count()
+    }
+
+    #[test]
+    fn only_rigid_motions_cost_no_energy_and_one_more_with_reduced_integration() {
+        let quad = SMatrix::from_columns(&QUAD8.map(|p| p.into()));
+        assert_eq!(zero_modes::<Serendipity, 8, 9, 16>(quad), 3);
+        assert_eq!(zero_modes::<ReducedSerendipity, 8, 4, 16>(quad), 4);
+        let tri = SMatrix::from_columns(&TRI6.map(|p| p.into()));
+        assert_eq!(zero_modes::<QuadraticTriangle, 6, 3, 12>(tri), 3);
     }
 }

@@ -21,7 +21,7 @@ pub(super) type ElementVector = [f64; MAX_DOFS];
 pub(super) type ElementMatrix = [f64; MAX_DOFS * MAX_DOFS];
 
 /// An element with N nodes, P integration points and D = 2 N dofs in the formulation F.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct Solid<const N: usize, const P: usize, const D: usize, F> {
     /// Node indices, counter-clockwise.
     nodes: [usize; N],
@@ -79,11 +79,6 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         }
     }
 
-    /// Integration points.
-    pub(super) fn reference(&self) -> &Reference<N, P> {
-        &self.reference
-    }
-
     /// Node indices, counter-clockwise.
     pub fn nodes(&self) -> &[usize] {
         &self.nodes
@@ -92,13 +87,6 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     /// Number of integration points.
     pub(super) fn points(&self) -> usize {
         P
-    }
-
-    /// Share of each node in a uniform force per volume (length^3); N entries are used.
-    pub(super) fn nodal_volumes(&self) -> [f64; MAX_NODES] {
-        let mut shares = [0.0; MAX_NODES];
-        shares[..N].copy_from_slice(self.reference.nodal_volume().as_slice());
-        shares
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.

@@ -24,6 +24,10 @@ pub enum Shape {
     Tri3,
     /// Four-node quadrilateral with bilinear displacements.
     Quad4,
+    /// Six-node triangle with quadratic displacements.
+    Tri6,
+    /// Eight-node quadrilateral with quadratic displacements (serendipity).
+    Quad8,
 }
 
 /// How the strains of an element follow from its displacements.
@@ -33,6 +37,8 @@ pub enum Formulation {
     Displacement,
     /// Volume strain of the whole element at every integration point.
     MeanDilatation,
+    /// Strains of the displacements at fewer integration points.
+    Reduced,
 }
 
 /// Nodes and sides of a shape.
@@ -71,12 +77,40 @@ static QUAD4: Topology = Topology {
     vtk_cell: 9,
 };
 
+/// ```text
+///   2
+///   | \
+///   5  4
+///   |   \
+///   0-3-1
+/// ```
+static TRI6: Topology = Topology {
+    nodes: 6,
+    sides: &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],
+    vtk_cell: 22,
+};
+
+/// ```text
+///   3 - 6 - 2
+///   |       |
+///   7       5
+///   |       |
+///   0 - 4 - 1
+/// ```
+static QUAD8: Topology = Topology {
+    nodes: 8,
+    sides: &[&[0, 4, 1], &[1, 5, 2], &[2, 6, 3], &[3, 7, 0]],
+    vtk_cell: 23,
+};
+
 impl Shape {
     /// Nodes, counter-clockwise, and sides.
     pub const fn topology(self) -> &'static Topology {
         match self {
             Shape::Tri3 => &TRI3,
             Shape::Quad4 => &QUAD4,
+            Shape::Tri6 => &TRI6,
+            Shape::Quad8 => &QUAD8,
         }
     }
 }
@@ -91,8 +125,32 @@ impl ElementType {
     /// Quadrilateral in plane stress.
     pub const CPS4: Self = Self::standard(Shape::Quad4, Plane::Stress);
 
+    /// Quadratic triangle in plane strain.
+    pub const CPE6: Self = Self::standard(Shape::Tri6, Plane::Strain);
+    /// Quadratic triangle in plane stress.
+    pub const CPS6: Self = Self::standard(Shape::Tri6, Plane::Stress);
+    /// Quadratic quadrilateral in plane strain.
+    pub const CPE8: Self = Self::standard(Shape::Quad8, Plane::Strain);
+    /// Quadratic quadrilateral in plane stress.
+    pub const CPS8: Self = Self::standard(Shape::Quad8, Plane::Stress);
+    /// Quadratic quadrilateral in plane strain, integrated with 2 x 2 points.
+    pub const CPE8R: Self = Self::CPE8.reduced();
+    /// Quadratic quadrilateral in plane stress, integrated with 2 x 2 points.
+    pub const CPS8R: Self = Self::CPS8.reduced();
+
     /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 4] = [Self::CPE3, Self::CPE4, Self::CPS3, Self::CPS4];
+    pub const NAMED: [Self; 10] = [
+        Self::CPE3,
+        Self::CPE4,
+        Self::CPE6,
+        Self::CPE8,
+        Self::CPE8R,
+        Self::CPS3,
+        Self::CPS4,
+        Self::CPS6,
+        Self::CPS8,
+        Self::CPS8R,
+    ];
 
     /// Most nodes of any of them.
     pub const MOST_NODES: usize = {
@@ -113,19 +171,38 @@ impl ElementType {
         }
     }
 
-    /// The type with this name in upper case, in the displacement formulation.
+    const fn reduced(self) -> Self {
+        ElementType {
+            formulation: Formulation::Reduced,
+            ..self
+        }
+    }
+
+    /// The type with this name in upper case, without mean dilatation.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMED.into_iter().find(|known| known.name() == name)
     }
 
-    /// Name in the deck; the formulation is an option of the section and has no name of its own.
+    /// Name in the deck; mean dilatation is an option of the section and has no name of its own.
     pub fn name(self) -> &'static str {
+        let reduced = self.formulation == Formulation::Reduced;
         match (self.shape, self.plane) {
             (Shape::Tri3, Plane::Strain) => "CPE3",
             (Shape::Quad4, Plane::Strain) => "CPE4",
+            (Shape::Tri6, Plane::Strain) => "CPE6",
+            (Shape::Quad8, Plane::Strain) if reduced => "CPE8R",
+            (Shape::Quad8, Plane::Strain) => "CPE8",
             (Shape::Tri3, Plane::Stress) => "CPS3",
             (Shape::Quad4, Plane::Stress) => "CPS4",
+            (Shape::Tri6, Plane::Stress) => "CPS6",
+            (Shape::Quad8, Plane::Stress) if reduced => "CPS8R",
+            (Shape::Quad8, Plane::Stress) => "CPS8",
         }
+    }
+
+    /// Whether displacements within an element are quadratic: sides have a node between their corners.
+    pub fn is_quadratic(self) -> bool {
+        matches!(self.shape, Shape::Tri6 | Shape::Quad8)
     }
 
     /// Nodes, counter-clockwise, and sides.
@@ -138,7 +215,7 @@ impl fmt::Display for ElementType {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let name = self.name();
         match self.formulation {
-            Formulation::Displacement => write!(f, "{name}"),
+            Formulation::Displacement | Formulation::Reduced => write!(f, "{name}"),
             Formulation::MeanDilatation => write!(f, "{name} with mean dilatation"),
         }
     }

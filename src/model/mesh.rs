@@ -111,6 +111,17 @@ impl Mesh {
         }
     }
 
+    /// Area of an undeformed element (length^2); on sides with a node between their corners the parabola takes two
+    /// thirds of the parallelogram over the chord, of which the outline through the nodes takes half.
+    pub fn area(&self, element: &Element) -> f64 {
+        let of_corners = polygon_area(self.corners(element));
+        if !element.element_type.is_quadratic() {
+            return of_corners;
+        }
+        let outline = element.segments().map(|[node, _]| self.coordinates[node]);
+        of_corners + 4.0 / 3.0 * (polygon_area(outline) - of_corners)
+    }
+
     /// All sides of all elements.
     fn faces(&self) -> impl Iterator<Item = Face> + '_ {
         let elements = self.elements.iter().enumerate();
@@ -242,18 +253,39 @@ impl Element {
 
     /// Whether moving the nodes has taken its convexity or half its area.
     pub fn is_spoiled(&self, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
-        let nodes = self.corners();
-        if nodes.iter().all(|&n| before[n] == after[n]) {
+        if self.nodes.iter().all(|&n| before[n] == after[n]) {
             return false;
         }
-        let count = nodes.len();
-        let corner = |i: usize| {
-            let [p, q, r] = [i, i + 1, i + 2].map(|k| after[nodes[k % count]]);
-            cross(difference(p, q), difference(q, r))
-        };
-        let area = |x: &[[f64; 2]]| polygon_area(nodes.iter().map(|&n| x[n]));
+        let area = |x: &[[f64; 2]]| polygon_area(self.segments().map(|[n, _]| x[n]));
         let small = area(after) < SMALLEST_AREA * area(before);
-        small || (0..count).any(|i| corner(i) <= 0.0)
+        small || (0..self.side_count()).any(|i| self.corner_area(i, |n| after[n]) <= 0.0)
+    }
+
+    /// Product of the directions a, b in which the sides leave corner `i`, the nodes being at `x` (length^2): with
+    /// nodes at the middle of straight sides, twice the area of the triangle of the corner and its neighbours.
+    /// det(dX/dr) at the corner is a multiple of it.
+    ///
+    /// ```text
+    /// a x b;  a = x_next - x_i,  or 4 x_between - 3 x_i - x_next where there is a node between them
+    /// ```
+    pub fn corner_area(&self, i: usize, x: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let count = self.side_count();
+        let leave = |nodes: &mut dyn Iterator<Item = usize>| {
+            let nodes: SideNodes = nodes.collect();
+            let to = |node: usize| difference(x(nodes[0]), x(node));
+            match nodes[..] {
+                [_, between, end] => {
+                    let (between, end) = (to(between), to(end));
+                    [0, 1].map(|k| 4.0 * between[k] - end[k])
+                }
+                _ => to(nodes[nodes.len() - 1]),
+            }
+        };
+        let [out, back] = [i, (i + count - 1) % count].map(|k| self.side(k).into_nodes());
+        cross(
+            leave(&mut out.into_iter()),
+            leave(&mut back.into_iter().rev()),
+        )
     }
 
     /// Side `side`, 0-based: 0 is S1/P1.
@@ -266,6 +298,22 @@ impl Element {
     pub fn side_ends(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         let sides = self.element_type.topology().sides.iter();
         sides.map(|side| [side[0], side[side.len() - 1]].map(|local| self.nodes[local]))
+    }
+
+    /// Nodes of the convex polygons that its outline is cut into, which need not be convex itself: with nodes between
+    /// the corners, a triangle at each corner and what is between these.
+    pub fn convex_parts(&self) -> SmallVec<[Nodes; 1]> {
+        if !self.element_type.is_quadratic() {
+            return [self.nodes.clone()].into_iter().collect();
+        }
+        let count = self.side_count();
+        let (corners, between) = self.nodes.split_at(count);
+        let at_corner = |i: usize| {
+            let nodes = [between[(i + count - 1) % count], corners[i], between[i]];
+            Nodes::from_slice(&nodes)
+        };
+        let parts = (0..count).map(at_corner);
+        parts.chain([Nodes::from_slice(between)]).collect()
     }
 
     /// The straight lines that its outline is made of, counter-clockwise.

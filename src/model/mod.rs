@@ -39,8 +39,6 @@ pub use step::{
 pub(crate) use tie::{NEAR, nearest_of};
 pub use tie::{Tie, TieReach, TiedNode};
 
-use crate::vectors::polygon_area;
-
 /// A whole problem: the content of a deck, checked, with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Model {
@@ -122,7 +120,7 @@ impl Model {
     pub fn element_mass(&self, element: &Element) -> f64 {
         let section = &self.sections[element.section];
         let density = self.materials[section.material].density;
-        density * section.thickness * polygon_area(self.mesh.corners(element))
+        density * section.thickness * self.mesh.area(element)
     }
 
     /// Speed of longitudinal waves in an element (length/time).

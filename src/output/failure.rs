@@ -9,7 +9,6 @@ use crate::dynamics::{
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
 use crate::model::{Model, Procedure, Step};
-use crate::vectors::{cross, difference};
 
 /// Pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
@@ -120,18 +119,12 @@ fn crushed(cause: &Cause, model: &Model, u: &[f64]) -> Option<Crushed> {
     let all = model.mesh.elements.iter().enumerate();
     let at_contact = all.filter(|(_, element)| element.nodes.iter().any(|n| named.contains(n)));
     let corners = at_contact.flat_map(|(index, element)| {
-        let count = element.nodes.len();
-        (0..count).map(move |k| {
-            let corner = [k, (k + 1) % count, (k + count - 1) % count].map(|k| element.nodes[k]);
-            let area = |at: &dyn Fn(usize) -> [f64; 2]| {
-                let [p, q, r] = corner.map(at);
-                cross(difference(p, q), difference(p, r))
-            };
-            let now = area(&|node| position(model, node, u));
-            let part = now / area(&|node| model.mesh.coordinates[node]);
+        (0..element.side_count()).map(move |k| {
+            let now = element.corner_area(k, |node| position(model, node, u));
+            let part = now / element.corner_area(k, |node| model.mesh.coordinates[node]);
             Crushed {
                 element: index,
-                node: corner[0],
+                node: element.nodes[k],
                 part,
             }
         })

@@ -46,18 +46,28 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
     constant(at, "thickness", &[values.len()], &values, THICKNESS)
 }
 
-/// Number of an element type in the file: its place in [`ElementType::NAMED`], or one beyond for mean
-/// dilatation.
+/// Element types in the order of their numbers in the file, which never change.
+const TYPES: [ElementType; 11] = [
+    ElementType::CPE3,
+    ElementType::CPE4,
+    ElementType::CPS3,
+    ElementType::CPS4,
+    ElementType {
+        formulation: Formulation::MeanDilatation,
+        ..ElementType::CPE4
+    },
+    ElementType::CPE6,
+    ElementType::CPS6,
+    ElementType::CPE8,
+    ElementType::CPS8,
+    ElementType::CPE8R,
+    ElementType::CPS8R,
+];
+
+/// Number of an element type in the file: its place in [`TYPES`].
 fn type_code(element_type: ElementType) -> u8 {
-    let standard = ElementType {
-        formulation: Formulation::Displacement,
-        ..element_type
-    };
-    let mut named = ElementType::NAMED.iter();
-    match element_type.formulation {
-        Formulation::MeanDilatation => ElementType::NAMED.len() as u8,
-        _ => named.position(|known| *known == standard).unwrap_or(0) as u8,
-    }
+    let code = TYPES.iter().position(|known| *known == element_type);
+    code.unwrap_or(TYPES.len()) as u8
 }
 
 /// Laws and constants of the materials.
@@ -222,7 +232,7 @@ const LOAD_GROUPS: Meaning = (
 );
 const ELEMENT_TYPES: Meaning = (
     "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4 with mean dilatation",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4 with mean dilatation, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R",
 );
 const MATERIAL: Meaning = (
     "1",

@@ -28,9 +28,6 @@ const FACTORS: usize = 3;
 /// computed.
 const COMPLIANCES: usize = 4;
 
-/// Nodes of an element at most.
-const MOST_NODES: usize = 4;
-
 /// Bytes that a run needs, by what they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemoryNeed {
@@ -115,8 +112,9 @@ fn contact(prepared: &PreparedModel) -> u64 {
 /// Nodes that the elements couple each node with, in increasing order, and itself.
 fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
     let mut counts = vec![1; mesh.node_count()];
-    let nodes = mesh.elements.iter().flat_map(|element| &element.nodes);
-    nodes.for_each(|&node| counts[node] += MOST_NODES);
+    for nodes in mesh.elements.iter().map(|element| &element.nodes) {
+        nodes.iter().for_each(|&node| counts[node] += nodes.len());
+    }
     let mut neighbours: Vec<Vec<usize>> = counts.into_iter().map(Vec::with_capacity).collect();
     for (node, neighbours) in neighbours.iter_mut().enumerate() {
         neighbours.push(node);

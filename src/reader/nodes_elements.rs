@@ -475,10 +475,12 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
     }
     let message = format!("element type {} cannot be used", name.text);
     let error = cx.error(Code::ElementType, name.span, message);
-    let meant = closest(folded, ["CPS3", "CPE3", "CPS4", "CPE4"]);
+    let meant = closest(folded, ElementType::NAMED.map(ElementType::name));
     match reason(folded) {
         Some(reason) => error.help(reason),
-        None => error.suggest(meant).help("use CPS3, CPE3, CPS4 or CPE4"),
+        None => error
+            .suggest(meant)
+            .help("use CPS3, CPE3, CPS4, CPE4, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R"),
     };
     None
 }
@@ -488,19 +490,19 @@ fn reason(folded: &str) -> Option<&'static str> {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
     if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
         Some(
-            "elements with one integration point are not supported: write CPE4 or CPS4; --lenient takes \
-             them as these",
+            "quadrilaterals with one integration point are not supported: write CPE4 or CPS4 (--lenient takes \
+             them as these), or CPE8R or CPS8R with nodes between the corners",
         )
     } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
         Some("write CPE3, CPS3, CPE4 or CPS4: other formulations are not supported")
-    } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) {
-        Some("quadratic elements are not supported: split them into linear ones")
+    } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) && folded.len() > 4 {
+        Some("write CPE6, CPS6, CPE8, CPS8, CPE8R or CPS8R: other formulations are not supported")
     } else if starts(&["CAX"]) {
         Some("axisymmetric elements are not supported")
     } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
         Some("line elements only name sides of plane elements: use T3D2 with two nodes")
     } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
-        Some("the program is plane: use CPS3, CPE3, CPS4 or CPE4")
+        Some("the program is plane: use CPS and CPE elements")
     } else {
         None
     }

@@ -183,11 +183,10 @@ impl Properties {
         let mut locks = vec![false; self.materials.len()];
         for element in &mesh_index.mesh.elements {
             let element_type = element.element_type;
-            if let (Plane::Strain, Formulation::Displacement, Some(material)) = (
-                element_type.plane,
-                element_type.formulation,
-                self.material_of(element),
-            ) {
+            let may_lock = element_type.formulation == Formulation::Displacement
+                && element_type.plane == Plane::Strain
+                && !element_type.is_quadratic();
+            if let Some(material) = self.material_of(element).filter(|_| may_lock) {
                 locks[material] = true;
             }
         }
@@ -203,7 +202,7 @@ impl Properties {
                 cx.warning(Code::Locking, places.poisson, message).help(
                     "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
                      more so the closer nu is to 0.5; CPE4 is not with FORMULATION=MEAN DILATATION \
-                     on its *SOLID SECTION",
+                     on its *SOLID SECTION, nor is CPE8R",
                 );
             }
         }

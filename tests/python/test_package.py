@@ -209,6 +209,8 @@ def test_a_mesh_that_is_none_is_told() -> None:
         Mesh(SQUARES, [[0, 1, 6, 3]])
     with pytest.raises(Fault, match="element 0 has 5 nodes"):
         Mesh(SQUARES, [[0, 1, 2, 4, 3]])
+    six = Mesh([[0, 0], [2, 0], [0, 2], [1, 0], [1, 1], [0, 1]], [[0, 2, 1, 5, 4, 3]])
+    assert list(six.elements[0]) == [1, 2, 0, 4, 5, 3]
     with pytest.raises(Fault, match="not plane"):
         Mesh([[*point, 0.1 * point[0]] for point in SQUARES], quads)
     with pytest.raises(Fault, match="whole numbers"):
@@ -220,7 +222,8 @@ def test_a_mesh_that_is_none_is_told() -> None:
     assert Mesh(SQUARES, quads, sides={"S": [[5, 4], [0, 1]]}).faces("S") == [(1, 3), (0, 1)]
 
 
-def test_gmsh_and_meshio_give_the_same_mesh(tmp_path: Path) -> None:
+@pytest.mark.parametrize("order", [1, 2])
+def test_gmsh_and_meshio_give_the_same_mesh(tmp_path: Path, order: int) -> None:
     gmsh, meshio = pytest.importorskip("gmsh"), pytest.importorskip("meshio")
     gmsh.initialize(interruptible=False)
     try:
@@ -234,21 +237,24 @@ def test_gmsh_and_meshio_give_the_same_mesh(tmp_path: Path) -> None:
         gmsh.model.addPhysicalGroup(2, [2], name="RIGHT")
         gmsh.model.addPhysicalGroup(1, [tag for _, tag in bottom], name="BOTTOM")
         gmsh.option.setNumber("Mesh.MeshSizeMax", 0.4)
+        gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
         gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(order)
         direct = Mesh.from_gmsh(gmsh.model)
         gmsh.write(str(tmp_path / "mesh.msh"))
     finally:
         gmsh.finalize()
     read = Mesh.from_meshio(meshio.read(tmp_path / "mesh.msh"))
     for mesh in (direct, read):
-        assert {len(element) for element in mesh.elements} == {3, 4}
-        assert {len(mesh.elements[at]) for at in mesh.element_sets["LEFT"]} == {3}
+        assert {len(element) for element in mesh.elements} == {3 * order, 4 * order}
+        assert {len(mesh.elements[at]) for at in mesh.element_sets["LEFT"]} == {3 * order}
         floor = mesh.points[mesh.node_sets["BOTTOM"]]
         assert np.all(floor[:, 1] == 0.0) and sorted(floor[:, 0])[:: len(floor) - 1] == [0.0, 2.0]
-        assert len(mesh.faces("BOTTOM")) == len(floor) - 1
+        assert len(mesh.faces("BOTTOM")) * order == len(floor) - 1
 
         def area(name: str, mesh: Mesh = mesh) -> float:
-            corners = [mesh.points[mesh.elements[at]] for at in mesh.element_sets[name]]
+            nodes = [mesh.elements[at] for at in mesh.element_sets[name]]
+            corners = [mesh.points[one[: len(one) // order]] for one in nodes]
             return sum(
                 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
                 for x, y in (corner.T for corner in corners)

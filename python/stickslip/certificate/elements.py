@@ -5,7 +5,6 @@ Equation numbers are those of docs/theory.md. Arrays of tensors at integration p
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +22,23 @@ PATH, PATH_WEIGHTS = np.polynomial.legendre.leggauss(5)
 NEO_HOOKE = 1
 """Law of /model/materials/law other than St. Venant-Kirchhoff."""
 
-KINDS = ((3, False, False), (4, False, False), (3, True, False), (4, True, False), (4, False, True))
-"""Nodes, plane stress and mean dilatation of each of the element types."""
+KINDS = (
+    (3, False, False, False),
+    (4, False, False, False),
+    (3, True, False, False),
+    (4, True, False, False),
+    (4, False, True, False),
+    (6, False, False, False),
+    (6, True, False, False),
+    (8, False, False, False),
+    (8, True, False, False),
+    (8, False, False, True),
+    (8, True, False, True),
+)
+"""Nodes, plane stress, mean dilatation and reduced integration of each of the element types."""
+
+DUNAVANT = ((0.44594849091596489, 0.22338158967801147), (0.09157621350977074, 0.10995174365532187))
+"""Place a of the points (a, a), (1 - 2 a, a) and (a, 1 - 2 a) of a triangle and their weight, of degree 4."""
 
 
 @dataclass
@@ -38,6 +52,8 @@ class Block:
     """dN_a/dX_j at the points [E, G, k, 2]."""
     weight: Array
     """Reference volume of the points [E, G]."""
+    mass: Array
+    """Consistent mass between the nodes of an element [E, k, k], eq. (2.7)."""
     plane_stress: bool
     mean_dilatation: bool
     law: int
@@ -229,17 +245,6 @@ class Block:
         each = np.einsum("eg,egij,egaj->eai", self.weight, f @ stress, self.gradient)
         np.add.at(total, self.nodes, each)
 
-    @cached_property
-    def mass(self) -> Array:
-        """Consistent mass between the nodes of an element [E, k, k], eq. (2.7)."""
-        count = self.nodes.shape[1]
-        if count == 3:
-            each = (np.ones((3, 3)) + np.eye(3)) / 12.0
-            return self.density * self.weight.sum(axis=1)[:, None, None] * each
-        points = CORNERS / np.sqrt(3.0)
-        shape = 0.25 * (1.0 + points[:, :1] * CORNERS[:, 0]) * (1.0 + points[:, 1:] * CORNERS[:, 1])
-        return self.density * np.einsum("eg,ga,gb->eab", self.weight, shape, shape)
-
     def add_mass(self, total: Array, values: Array) -> None:
         """Adds M times nodal values [N, ...]."""
         np.add.at(total, self.nodes, np.einsum("eab,ebi->eai", self.mass, values[self.nodes]))
@@ -258,8 +263,7 @@ class Elements:
 
     def mass(self) -> Array:
         """Mass of each body."""
-        each = [block.density * block.weight.sum(axis=1) for block in self.blocks]
-        return self._of_bodies(each)
+        return self._of_bodies([block.mass.sum(axis=(1, 2)) for block in self.blocks])
 
     def strain_energy(self, u: Array) -> Array:
         """Strain energy of each body."""
@@ -327,15 +331,20 @@ def _blocks(result: Result) -> list[Block]:
     keys = np.stack([types.astype(np.int64), materials], axis=1)
     for kind, material in np.unique(keys[materials >= 0], axis=0):
         elements = np.flatnonzero((types == kind) & (materials == material))
-        count, plane_stress, mean = KINDS[kind]
+        count, plane_stress, mean, reduced = KINDS[kind]
         nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)
-        gradient, area = _gradients(result.coordinates[nodes])
+        place, thick = result.coordinates[nodes], thickness[elements][:, None]
+        gradient, area = _gradients(place, _points(count, reduced))
+        rule = _mass_points(count)
+        shape, _ = _shape(count, rule[0])
+        weight = constants["density"][material] * thick * _gradients(place, rule)[1]
         found.append(
             Block(
                 elements,
                 nodes,
                 gradient,
-                area * thickness[elements][:, None],
+                area * thick,
+                np.einsum("eg,ga,gb->eab", weight, shape, shape),
                 plane_stress,
                 mean,
                 **{name: values[material].item() for name, values in constants.items()},
@@ -344,19 +353,62 @@ def _blocks(result: Result) -> list[Block]:
     return found
 
 
-def _gradients(corners: Array) -> tuple[Array, Array]:
-    """dN_a/dX_j [E, G, k, 2] and the areas of the points [E, G]."""
-    if corners.shape[1] == 3:
-        natural = np.array([[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]])
-        weight = 0.5
-    else:
-        points = CORNERS / np.sqrt(3.0)
-        x, y = points[:, :1], points[:, 1:]
-        along = 0.25 * CORNERS[:, 0] * (1.0 + y * CORNERS[:, 1])
-        up = 0.25 * CORNERS[:, 1] * (1.0 + x * CORNERS[:, 0])
-        natural = np.stack([along, up], axis=2)
-        weight = 1.0
-    jacobian = np.einsum("eai,gar->egir", corners, natural)
+def _points(count: int, reduced: bool) -> tuple[Array, Array]:
+    """Natural coordinates [G, 2] and weights [G] of the points of an element with so many nodes."""
+    if count == 3:
+        return np.full((1, 2), 1.0 / 3.0), np.array([0.5])
+    if count == 6:
+        return np.array([[1.0, 1.0], [4.0, 1.0], [1.0, 4.0]]) / 6.0, np.full(3, 1.0 / 6.0)
+    if count == 4 or reduced:
+        return CORNERS / np.sqrt(3.0), np.ones(4)
+    at, weight = np.polynomial.legendre.leggauss(3)
+    points = np.array([[r, s] for s in at for r in at])
+    return points, np.outer(weight, weight).ravel()
+
+
+def _mass_points(count: int) -> tuple[Array, Array]:
+    """As _points, exact for the mass of elements with straight sides."""
+    if count not in (3, 6):
+        return _points(count, False)
+    points = [p for a, _ in DUNAVANT for p in ((a, a), (1.0 - 2.0 * a, a), (a, 1.0 - 2.0 * a))]
+    return np.array(points), np.repeat([0.5 * weight for _, weight in DUNAVANT], 3)
+
+
+def _shape(count: int, points: Array) -> tuple[Array, Array]:
+    """Shape functions [G, k] and their natural derivatives [G, k, 2] at points [G, 2]."""
+    r, s = points[:, :1], points[:, 1:]
+    if count in (3, 6):
+        corner = np.hstack([1.0 - r - s, r, s])
+        slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
+        if count == 3:
+            return corner, np.broadcast_to(slope, (len(points), 3, 2))
+        after = np.roll(corner, -1, axis=1)
+        value = np.hstack([corner * (2.0 * corner - 1.0), 4.0 * corner * after])
+        mixed = after[..., None] * slope + corner[..., None] * np.roll(slope, -1, axis=0)
+        return value, np.hstack([(4.0 * corner - 1.0)[..., None] * slope, 4.0 * mixed])
+    a, b = CORNERS.T
+    x, y = 1.0 + a * r, 1.0 + b * s
+    if count == 4:
+        return 0.25 * x * y, 0.25 * np.stack([a * y, b * x], axis=2)
+    value = 0.25 * x * y * (a * r + b * s - 1.0)
+    natural = 0.25 * np.stack(
+        [a * y * (2.0 * a * r + b * s), b * x * (a * r + 2.0 * b * s)], axis=2
+    )
+    # between the corners: along the sides 0 and 2, then 1 and 3
+    p, q = 1.0 - r * r, 1.0 - s * s
+    along = np.stack([-r * y, 0.5 * b * p], axis=2)
+    up = np.stack([0.5 * a * q, -s * x], axis=2)
+    is_along = np.array([True, False, True, False])
+    between = np.where(is_along, 0.5 * p * y, 0.5 * q * x)
+    slope = np.where(is_along[:, None], along, up)
+    return np.hstack([value, between]), np.hstack([natural, slope])
+
+
+def _gradients(nodes: Array, rule: tuple[Array, Array]) -> tuple[Array, Array]:
+    """dN_a/dX_j [E, G, k, 2] and the areas of the points [E, G] of a rule for nodes [E, k, 2]."""
+    points, weight = rule
+    _, natural = _shape(nodes.shape[1], points)
+    jacobian = np.einsum("eai,gar->egir", nodes, natural)
     gradient = np.einsum("gar,egrj->egaj", natural, np.linalg.inv(jacobian))
     return gradient, weight * _determinant(jacobian)
 

@@ -101,7 +101,7 @@ def draw_shape(axes: Axes, results: Result, frame: int, colouring: Colouring | N
     position = results.frames[frame].positions
     on_edges = colouring is not None and colouring.field.on_edges
     on_cells = colouring is not None and not on_edges
-    bodies = PolyCollection([position[cell] for cell in results.cells])
+    bodies = PolyCollection([position[cell] for cell in results.outlines])
     bodies.set_linewidth(mesh_line(axes, results))
     bodies.set_edgecolor("#ffffff80" if on_cells else "#b8c0c8")
     bodies.set_facecolor(BACKGROUND)
@@ -188,7 +188,7 @@ def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) ->
 
     def draw(frame: int, select: NDArray[np.bool_], face: object, edge: object) -> None:
         position = results.frames[frame].positions
-        cells = [position[cell] for cell in results.cells if select[cell[0]]]
+        cells = [position[cell] for cell in results.outlines if select[cell[0]]]
         outline = position[[side for side in results.boundary if select[side[0]]]]
         rigid = position[[side for side in results.rigid if select[side[0]]]]
         axes.add_collection(PolyCollection(cells, facecolors=face, linewidths=0))

@@ -9,6 +9,8 @@ struct SlaveFace {
     node: usize,
     segment: Segment,
     thickness: f64,
+    /// Part of the segment that the node has.
+    part: f64,
 }
 
 /// The slave nodes of all contacts with their faces.
@@ -40,11 +42,19 @@ impl SlaveFaces {
         }
         let slave_faces = |face: &Face, counts: &dyn Fn(usize) -> bool| -> Vec<SlaveFace> {
             let thickness = thickness(model, face);
-            let at_nodes = face.segments(mesh).into_iter().flat_map(|segment| {
+            let side = face.of(mesh);
+            let (ends, is_linear) = (side.ends(), side.nodes().len() == 2);
+            let part = |node: usize| match (is_linear, ends.contains(&node)) {
+                (true, _) => 0.5,
+                (false, true) => 1.0 / 3.0,
+                (false, false) => 2.0 / 3.0,
+            };
+            let at_nodes = side.segments().flat_map(|segment| {
                 segment.map(|node| SlaveFace {
                     node,
                     segment,
                     thickness,
+                    part: part(node),
                 })
             });
             at_nodes.filter(|face| counts(face.node)).collect()
@@ -63,10 +73,12 @@ impl SlaveFaces {
     /// Area of a node against a force N on it, with the given positions of nodes.
     ///
     /// ```text
-    /// A = sum over its faces max(-n.N/|N|, 0) t l/2    eq. (9.8)
+    /// A = sum over its segments max(-n.N/|N|, 0) t l w    eq. (9.8)
     /// ```
     ///
-    /// n, l and t are outward normal, current length and thickness of a face.
+    /// n, l and t are outward normal, current length and thickness of a segment, w the part of it that the node has:
+    /// 1/2, and on a side with a node between its corners 1/3 at a corner and 2/3 between, so that the forces of a
+    /// uniform pressure give this pressure.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let from = self.faces.partition_point(|face| face.node < node);
         let own = self.faces[from..]
@@ -80,7 +92,7 @@ impl SlaveFaces {
             let e = [b[0] - a[0], b[1] - a[1]];
             let against = force[1] * e[0] - force[0] * e[1];
             if against > 0.0 {
-                area += face.thickness * against / size / 2.0;
+                area += face.thickness * against / size * face.part;
             }
         }
         area

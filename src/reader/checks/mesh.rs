@@ -7,7 +7,7 @@ use crate::reader::context::Context;
 use crate::reader::materials::MaterialPlaces;
 use crate::reader::mesh_index::MeshIndex;
 use crate::reader::sections::Properties;
-use crate::vectors::{cross, difference, distance, dot, polygon_area};
+use crate::vectors::{cross, difference, distance, dot};
 use std::collections::BTreeSet;
 
 /// Smallest cross product of two sides, relative to the square of the longest side.
@@ -19,6 +19,8 @@ pub(crate) fn mesh(mesh_index: &MeshIndex, at_nodes: &ElementsAtNodes, cx: &mut 
     for index in 0..mesh.elements.len() {
         if !is_convex(index, mesh) {
             shape(index, mesh_index, mesh_index.places[index], cx);
+        } else if mesh.elements[index].element_type.is_quadratic() {
+            nodes_between_corners(index, mesh_index, cx);
         }
         if let Some(first) = same_nodes(index, mesh, at_nodes) {
             let span = mesh_index.places[index];
@@ -119,6 +121,51 @@ fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     cx.error(Code::BadShape, span, fault).help(help);
 }
 
+/// Part of a side at whose ends a node between the corners must not lie: det(dX/dr) vanishes at a corner where the
+/// node is at a quarter of a straight side.
+const NEAR_CORNER: f64 = 0.25;
+
+/// Reports a node between two corners that is not in the middle half of its side, and sides so curved that
+/// det(dX/dr) is not positive at a corner.
+fn nodes_between_corners(index: usize, mesh_index: &MeshIndex, cx: &mut Context) {
+    let mesh = &mesh_index.mesh;
+    let element = &mesh.elements[index];
+    let at = |node: usize| mesh.coordinates[node];
+    let (name, span) = (mesh_index.element_name(index), mesh_index.places[index]);
+    for side in (0..element.side_count()).map(|side| element.side(side)) {
+        let [a, b] = side.ends();
+        let along = difference(at(a), at(b));
+        for &node in side.nodes().iter().filter(|&&node| node != a && node != b) {
+            let part = dot(difference(at(a), at(node)), along) / dot(along, along);
+            if !(part > NEAR_CORNER && part < 1.0 - NEAR_CORNER) {
+                let [node, a, b] = [node, a, b].map(|node| mesh_index.node_name(node));
+                let message = format!(
+                    "node {node} of element {name} is not between its corners {a} and {b}: it lies at {} of the \
+                     way",
+                    (part * 1e3).round() / 1e3
+                );
+                cx.error(Code::BadShape, span, message).help(
+                    "nodes are the corners counter-clockwise, then one between each corner and the next, in the \
+                     middle half of the side",
+                );
+                return;
+            }
+        }
+    }
+    let count = element.side_count();
+    let straight = |i: usize| {
+        let corner = [i, (i + 1) % count, (i + count - 1) % count];
+        let [p, q, r] = corner.map(|k| at(element.nodes[k]));
+        cross(difference(p, q), difference(p, r))
+    };
+    if let Some(i) = (0..count).find(|&i| element.corner_area(i, at) <= FLAT * straight(i)) {
+        let node = mesh_index.node_name(element.nodes[i]);
+        let message = format!("element {name} is folded at node {node}: its sides are too curved");
+        cx.error(Code::BadShape, span, message)
+            .help("mend the mesh");
+    }
+}
+
 /// Reports materials in use and elements whose wave speed, area, stiffness or mass overflows or vanishes:
 /// nothing can be computed with them.
 pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &mut Context) {
@@ -146,7 +193,7 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         let Some(&(density, stiffness)) = of_sections.get(element.section) else {
             continue;
         };
-        let area = polygon_area(mesh_index.mesh.corners(element));
+        let area = mesh_index.mesh.area(element);
         let mass = density * area;
         total += mass;
         if [area, stiffness, mass, total]

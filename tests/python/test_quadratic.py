@@ -1,0 +1,267 @@
+"""CPE6, CPE8, CPE8R and their twins in plane stress against closed forms and published beams."""
+
+from collections.abc import Callable
+from math import cos, pi, sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+from stickslip import Deck, program
+from stickslip.certificate.certify import certify
+from stickslip.certificate.elements import _gradients, _points, _shape
+from stickslip.mesh import Mesh
+from stickslip.result import Array, Result
+
+Place = Callable[[float, float], tuple[float, float]]
+
+
+def grid(kind: str, nx: int, ny: int, place: Place, curved: bool = True) -> Mesh:
+    """The unit square, moved by `place`, in nx x ny quadrilaterals or twice as many triangles.
+
+    Nodes between corners are moved too where sides are `curved`, else they are in the middle.
+    """
+    index: dict[tuple[int, int], int] = {}
+
+    def node(i: int, j: int) -> int:
+        return index.setdefault((i, j), len(index))
+
+    elements = []
+    for j in range(0, 2 * ny, 2):
+        for i in range(0, 2 * nx, 2):
+            a, b, c, d = (node(i + p, j + q) for p, q in ((0, 0), (2, 0), (2, 2), (0, 2)))
+            corners = [[a, b, c, d]] if kind[3] in "48" else [[a, b, c], [a, c, d]]
+            if kind[3] in "34":
+                elements += corners
+                continue
+            s, e, n, w = (node(i + p, j + q) for p, q in ((1, 0), (2, 1), (1, 2), (0, 1)))
+            m = node(i + 1, j + 1) if kind[3] == "6" else 0
+            between = [[s, e, n, w]] if kind[3] == "8" else [[s, e, m], [m, n, w]]
+            elements += [one + other for one, other in zip(corners, between)]
+    points = np.array([place(i / (2 * nx), j / (2 * ny)) for i, j in index])
+    if not curved:
+        for one in elements:
+            corners = one[: len(one) // 2]
+            points[one[len(corners) :]] = (points[corners] + points[np.roll(corners, -1)]) / 2.0
+    all_sides = {name: [] for name in ("BOTTOM", "RIGHT", "TOP", "LEFT")}
+    for i in range(0, 2 * nx, 2):
+        all_sides["BOTTOM"].append([index[i, 0], index[i + 2, 0]])
+        all_sides["TOP"].append([index[i, 2 * ny], index[i + 2, 2 * ny]])
+    for j in range(0, 2 * ny, 2):
+        all_sides["LEFT"].append([index[0, j], index[0, j + 2]])
+        all_sides["RIGHT"].append([index[2 * nx, j], index[2 * nx, j + 2]])
+    at = {
+        "NLEFT": [n for (i, _), n in index.items() if i == 0],
+        "NRIGHT": [n for (i, _), n in index.items() if i == 2 * nx],
+        "NBOTTOM": [n for (_, j), n in index.items() if j == 0],
+    }
+    return Mesh(points, elements, {"BODY": range(len(elements))}, at, all_sides)
+
+
+def body(kind: str, mesh: Mesh, young: float, poisson: float, thickness: float = 1.0) -> Deck:
+    """A deck of one body."""
+    deck = Deck.titled(kind)
+    deck.add_mesh(mesh, plane="strain" if kind[2] == "E" else "stress")
+    for card in deck.find("ELEMENT"):
+        card.head = card.head.replace(kind[:4], kind)
+    deck.elastic("M", young, poisson, 1.0)
+    deck.section("BODY", "M", thickness)
+    return deck
+
+
+def end(result: Result) -> Array:
+    """Displacements of all nodes at the end [N, 2]."""
+    return result.frames[-1]["U"]
+
+
+def bent(tmp_path: Path, kind: str, mesh: Mesh, force: float, *constants: float) -> Array:
+    """Displacements of a body of E, nu, thickness and height held at its left, with a force up along its right end."""
+    young, poisson, thickness, height = constants
+    deck = body(kind, mesh, young, poisson, thickness)
+    deck.extend("*BOUNDARY\nNLEFT, 1, 2\n*STEP, NLGEOM\n*STATIC\n1., 1.\n")
+    deck.add("DSLOAD, FOLLOWER=NO", ("RIGHT", "TRVEC", force / (thickness * height), 0.0, 1.0))
+    return end(solved(tmp_path, deck.extend("*END STEP\n")))
+
+
+def solved(tmp_path: Path, deck: Deck) -> Result:
+    """The result of a deck; its ledger is closed."""
+    path = deck.write(tmp_path / "deck.inp")
+    result = program.run(path, tmp_path, "--threads", "1")
+    energy = result.history.energy
+    assert np.abs(energy.balance).max() < 1e-10 * energy.largest
+    return result
+
+
+LENGTH, DEPTH, FORCE = 10.0, 1.0, 1e-4
+
+
+@pytest.mark.parametrize(
+    ("kind", "poisson", "count", "expected"),
+    [
+        ("CPS8", 0.3, (10, 1), 0.991),
+        ("CPS8R", 0.3, (10, 1), 0.991),
+        ("CPS6", 0.3, (10, 1), 0.991),
+        ("CPE8", 0.3, (20, 2), 0.993),
+        ("CPE8R", 0.3, (20, 2), 0.994),
+        ("CPE8", 0.499, (10, 1), 0.909),
+        ("CPE8R", 0.499, (10, 1), 0.913),
+        ("CPE8", 0.499, (20, 2), 0.953),
+        ("CPE8R", 0.499, (20, 2), 0.957),
+    ],
+)
+def test_a_cantilever_bends_as_timoshenko_says(
+    tmp_path: Path, kind: str, poisson: float, count: tuple[int, int], expected: float
+) -> None:
+    """`expected`: computed before by another program; with nu = 0.499 clamped meshes tend to 0.983."""
+    young, inertia = 1000.0, DEPTH**3 / 12.0
+    mesh = grid(kind, *count, lambda x, y: (LENGTH * x, DEPTH * y))
+    u = bent(tmp_path, kind, mesh, FORCE, young, poisson, 1.0, DEPTH)
+    tip = np.argmin(np.hypot(*(mesh.points - (LENGTH, DEPTH / 2.0)).T))
+    stiff = young / (1.0 - poisson**2) if kind[2] == "E" else young
+    shear = young / (2.0 * (1.0 + poisson)) * DEPTH * 5.0 / 6.0
+    beam = FORCE * (LENGTH**3 / (3.0 * stiff * inertia) + LENGTH / shear)
+    assert u[tip, 1] / beam == pytest.approx(expected, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"),
+    [("CPS8", (0.982, 0.980, 0.899)), ("CPS8R", (0.987, 0.997, 0.967))],
+)
+def test_the_beams_of_macneal_and_harder(
+    tmp_path: Path, kind: str, expected: tuple[float, float, float]
+) -> None:
+    """Tip under shear, by 0.1081: rectangles, parallelograms, trapezoids (MacNeal & Harder 1985)."""
+    for tilt, part in zip((lambda k: 0.0, lambda k: 0.1, lambda k: 0.1 * (-1) ** k), expected):
+
+        def place(x: float, y: float) -> tuple[float, float]:
+            k = round(6.0 * x)
+            return 6.0 * x + (tilt(k) if 0 < k < 6 else 0.0) * (2.0 * y - 1.0), 0.2 * y
+
+        mesh = grid(kind, 6, 1, place, curved=False)
+        u = bent(tmp_path, kind, mesh, 1e-3, 1e7, 0.3, 0.1, 0.2)
+        assert u[mesh.node_sets["NRIGHT"], 1].mean() / 1.081e-4 == pytest.approx(part, abs=0.002)
+
+
+@pytest.mark.parametrize(
+    ("kind", "count", "expected"),
+    [("CPS8", 4, 23.71), ("CPS8R", 4, 23.73), ("CPS8", 16, 23.93), ("CPS8R", 16, 23.94), ("CPS6", 16, 23.93)],
+)
+def test_cook_s_membrane(tmp_path: Path, kind: str, count: int, expected: float) -> None:
+    """Of the middle of the end; 23.96 is the limit of fine meshes (Cook et al., 48 x 44 x 16, E = 1, nu = 1/3, F = 1)."""
+    mesh = grid(kind, count, count, lambda x, y: (48.0 * x, 44.0 * x + y * (44.0 - 28.0 * x)))
+    u = bent(tmp_path, kind, mesh, 1e-4, 1.0, 1.0 / 3.0, 1.0, 16.0)
+    middle = np.argmin(np.hypot(*(mesh.points - (48.0, 52.0)).T))
+    assert u[middle, 1] / 1e-4 == pytest.approx(expected, abs=0.02)
+
+
+def lame(x: Array, young: float, poisson: float, pressure: float) -> Array:
+    """Displacements [N, 2] of a tube between the radii 1 and 2 under a pressure within (Lame), plane strain."""
+    r = np.hypot(*x.T)
+    radial = (1.0 + poisson) * pressure / (3.0 * young) * ((1.0 - 2.0 * poisson) * r + 4.0 / r)
+    return x * (radial / r)[:, None]
+
+
+@pytest.mark.parametrize("kind", ["CPE6", "CPE8", "CPE8R"])
+def test_the_displacements_of_a_tube_are_of_third_order(tmp_path: Path, kind: str) -> None:
+    young, poisson, pressure = 1.0, 0.3, 1e-9
+    errors = []
+    for count in (2, 4, 8):
+
+        def place(x: float, y: float) -> tuple[float, float]:
+            r, angle = 1.0 + y, pi / 2.0 * (1.0 - x)
+            return r * cos(angle), r * sin(angle)
+
+        mesh = grid(kind, 2 * count, count, place)
+        deck = body(kind, mesh, young, poisson)
+        deck.extend("*BOUNDARY\nNLEFT, 1\nNRIGHT, 2\n*STEP, NLGEOM\n*STATIC\n1., 1.\n")
+        deck.add("DSLOAD", ("BOTTOM", "P", pressure)).extend("*END STEP\n")
+        u = end(solved(tmp_path, deck))
+        inner = u[mesh.node_sets["NBOTTOM"]] / lame(np.array([[1.0, 0.0]]), young, poisson, pressure)[0, 0]
+        assert np.hypot(*inner.T) == pytest.approx(1.0, abs=0.02 / count**2)
+        of_nodes = np.array(mesh.elements)
+        rule = _points(of_nodes.shape[1], False)
+        shape, _ = _shape(of_nodes.shape[1], rule[0])
+        area = _gradients(mesh.points[of_nodes], rule)[1]
+        at, found = (np.einsum("ga,eai->egi", shape, v[of_nodes]) for v in (mesh.points, u))
+        exact = lame(at.reshape(-1, 2), young, poisson, pressure).reshape(at.shape)
+        errors.append(np.sqrt((area[..., None] * (found - exact) ** 2).sum()))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders[-1] > 2.85, orders
+
+
+KINDS = ("CPE6", "CPE8", "CPE8R", "CPS6", "CPS8", "CPS8R")
+NEO_HOOKE = "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3\n"
+
+
+def bodies(*kinds: str, rubber: str = "", damping: str = "") -> Deck:
+    """Distorted bodies, one above the other, the second tilted, all exterior faces in contact with friction 0.3."""
+    deck = Deck.titled("bodies")
+    cos_, sin_ = cos(0.15), sin(0.15)
+    places: list[Place] = [
+        lambda x, y: (3.0 * x + 0.03 * sin(9.0 * y + 7.0 * x) * (0.0 < x < 1.0), y - 1.0),
+        lambda x, y: (0.8 + cos_ * 1.2 * x - sin_ * 0.8 * y, 0.02 + sin_ * 1.2 * x + cos_ * 0.8 * y),
+    ]
+    for number, (kind, place) in enumerate(zip(kinds, places)):
+        mesh = grid(kind, 5 - 2 * number, 2, place)
+        name = f"B{number}"
+        rename = {"BODY": name}
+        mesh.element_sets = {rename[k]: v for k, v in mesh.element_sets.items()}
+        mesh.node_sets = {k + name: v for k, v in mesh.node_sets.items()}
+        mesh.sides = {}
+        before = len(deck.find("ELEMENT"))
+        deck.add_mesh(mesh, plane="strain" if kind[2] == "E" else "stress")
+        for card in deck.find("ELEMENT")[before:]:
+            card.head = card.head.replace(kind[:4], kind)
+        law = NEO_HOOKE if name in rubber else "*ELASTIC\n1000., 0.3\n"
+        deck.extend(f"*MATERIAL, NAME=M{name}\n{law}*DENSITY\n1.\n{damping}")
+        deck.section(name, f"M{name}")
+    return deck
+
+
+@pytest.mark.parametrize("scheme", ["ENERGY-MOMENTUM", "SS22"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_free_body_keeps_energy_and_momenta(tmp_path: Path, kind: str, scheme: str) -> None:
+    for rubber, damping in (("", ""), ("B0", ""), ("B0", "*DAMPING, BETA=0.002\n")):
+        if rubber and kind[2] == "S":
+            continue
+        deck = bodies(kind, rubber=rubber, damping=damping)
+        nodes = [(int(row[0]), float(row[1]), float(row[2])) for row in deck.one("NODE").rows]
+        velocities = [(n, 1, 1.0 - 3.0 * y + 4.0 * x * y) for n, x, y in nodes]
+        velocities += [(n, 2, 0.5 + 3.0 * x - 3.0 * y * y) for n, x, y in nodes]
+        deck.add("INITIAL CONDITIONS, TYPE=VELOCITY", *velocities)
+        deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 1.2\n")
+        deck.extend(f"*STICKSLIP, SCHEME={scheme}\n*END STEP\n")
+        history = solved(tmp_path, deck).history
+        energy, momentum = history.energy, history.momentum
+        total = energy.kinetic + energy.strain
+        # at rotations of a third of a radian per increment SS22 keeps linear momentum alone
+        linear, angular = momentum.linear, momentum.angular
+        assert np.abs(linear - linear[0]).max() < 1e-10 * np.abs(linear[0]).max()
+        if scheme == "ENERGY-MOMENTUM":
+            assert np.abs(angular - angular[0]).max() < 1e-10 * np.abs(angular[0])
+            assert np.diff(total).max() < 1e-10 * total[0]
+        if scheme == "ENERGY-MOMENTUM" and not damping:
+            assert np.abs(total - total[0]).max() < 1e-10 * total[0]
+
+
+@pytest.mark.parametrize("scheme", ["ENERGY-MOMENTUM", "SS22"])
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("pair", [("CPE8R", "CPE6"), ("CPE8", "CPE8R"), ("CPE4", "CPE8"), ("CPE6", "CPE3")])
+def test_unlike_bodies_in_contact_never_gain_energy(
+    tmp_path: Path, pair: tuple[str, str], friction: float, scheme: str
+) -> None:
+    settings = [f"SCHEME={scheme}"]
+    if scheme == "ENERGY-MOMENTUM":
+        settings += [
+            f"SCHEME={scheme}, CONTACT MASS=REDISTRIBUTED",
+            f"SCHEME={scheme}, IMPACT TIME=EVENT, LANDING=RETURN",
+        ]
+    for setting in settings:
+        deck = bodies(*pair, rubber="B1").general_contact(friction)
+        deck.support("NBOTTOMB0").velocity("B1", 2.0, -1.0)
+        deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.4\n")
+        deck.extend(f"*STICKSLIP, {setting}\n*DLOAD\n, GRAV, 9.81, 0., -1.\n*END STEP\n")
+        result = solved(tmp_path, deck)
+        energy = result.history.energy
+        total = energy.kinetic + energy.strain - energy.external_work
+        assert np.diff(total).max() < 1e-10 * energy.largest
+        assert certify(result).holds, certify(result).table()
