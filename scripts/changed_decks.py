@@ -164,16 +164,19 @@ def _axis(matrix: Array, direction: int) -> int:
 def _turned_components(rows: list[list[str]], matrix: Array) -> list[list[str]]:
     """Rows of node, direction, value."""
     vectors: dict[str, Array] = {}
+    given: dict[str, Array] = {}
     angles: list[list[str]] = []
     for node, direction, value in rows:
         if direction == ANGLE:
             angles.append([node, direction, repr(float(value) * _hand(matrix))])
         else:
             vectors.setdefault(node, np.zeros(2))[int(direction) - 1] += float(value)
+            given.setdefault(node, np.zeros(2))[int(direction) - 1] = 1.0
     return [
-        [node, str(direction), repr(float(value))]
+        [node, str(direction + 1), repr(float(value))]
         for node, vector in vectors.items()
-        for direction, value in enumerate(matrix @ vector, 1)
+        for direction, value in enumerate(matrix @ vector)
+        if (np.abs(matrix) @ given[node])[direction] > 0.0
     ] + angles
 
 
