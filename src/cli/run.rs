@@ -343,6 +343,7 @@ mod tests {
                 reaction: vec![0.0; 8],
                 contact_force: vec![0.0; 8],
                 tie_force: vec![],
+                hinge_force: Vec::new(),
                 gap: vec![f64::NAN; 4],
                 status: vec![NodeStatus::None; 4],
                 concentrated: vec![0.0; 8],

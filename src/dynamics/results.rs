@@ -87,6 +87,8 @@ pub struct NodalResults {
     pub contact_force: Vec<f64>,
     /// Force of its tie on a tied node, `2 N` entries (force); none where there are no ties.
     pub tie_force: Vec<f64>,
+    /// Force of every hinge on its first node (force); that on its second is its opposite.
+    pub hinge_force: Vec<[f64; 2]>,
     /// Gap of the node to its segment, `N` entries (length); NaN without candidate.
     pub gap: Vec<f64>,
     /// Contact status, `N` entries.

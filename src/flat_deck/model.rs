@@ -65,6 +65,15 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         let name = named(parameter, &body.name);
         lines.card("RIGID BODY", [name, set("REF NODE", label)]);
     }
+    if !model.hinges.is_empty() {
+        lines.card("MPC", []);
+    }
+    for hinge in &model.hinges {
+        let [a, b] = hinge
+            .nodes
+            .map(|node| model.mesh.node_labels[node].to_string());
+        lines.row(["PIN".to_owned(), a, b]);
+    }
     point_elements(model, lines);
     for tie in &model.ties {
         write_tie(tie, model, lines);

@@ -22,6 +22,12 @@ pub enum LinearError {
         /// Residual relative to the terms it is made of.
         residual: f64,
     },
+    /// A bilateral constraint that follows from others.
+    #[error("the hinges ask for more than the bodies between them can do")]
+    Dependent {
+        /// Its number.
+        number: usize,
+    },
     /// A solve without factors.
     #[error("the matrix is not factorised")]
     NotFactorized,

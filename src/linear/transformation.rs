@@ -140,6 +140,17 @@ impl Transformation {
         restricted
     }
 
+    /// T^T v over the unknowns, T of the derivatives.
+    pub fn restrict_derivatives(&self, v: &[f64]) -> Vec<f64> {
+        let mut restricted = vec![0.0; self.unknowns];
+        for (dof, value) in v.iter().enumerate() {
+            for (unknown, c) in self.derivative_row(dof) {
+                restricted[unknown] += c * value;
+            }
+        }
+        restricted
+    }
+
     /// Writes [`Self::restrict`].
     pub fn write_restricted(&self, v: &[f64], restricted: &mut Vec<f64>) {
         restricted.clear();

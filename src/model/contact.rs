@@ -138,6 +138,14 @@ impl Surface {
     }
 }
 
+/// Two nodes at one place that move together and let their bodies turn (`*MPC`, PIN), where at least one of them belongs to
+/// a rigid body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hinge {
+    /// The nodes.
+    pub nodes: [usize; 2],
+}
+
 /// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
 /// The u_k are free or prescribed: none follows others itself.

@@ -21,8 +21,8 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
 pub use contact::{
-    ALL_EXTERIOR, Adjust, Contact, Equation, Interaction, Reach, RigidBody, Surface, SurfaceKind,
-    TurningBody, Wear,
+    ALL_EXTERIOR, Adjust, Contact, Equation, Hinge, Interaction, Reach, RigidBody, Surface,
+    SurfaceKind, TurningBody, Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};
@@ -64,6 +64,8 @@ pub struct Model {
     pub ties: Vec<Tie>,
     /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
     pub equations: Vec<Equation>,
+    /// Hinges between bodies.
+    pub hinges: Vec<Hinge>,
     /// Initial velocity, `2 N` entries (length/time), then those of the bodies that turn, with their
     /// angular velocity (1/time).
     pub initial_velocity: Vec<f64>,

@@ -122,6 +122,10 @@ impl ModelEcho {
             lines.push(label("", &counts.join("  ")));
         }
         lines.extend(rigid_lines(model));
+        for hinge in &model.hinges {
+            let [a, b] = hinge.nodes.map(|node| model.node_name(node));
+            lines.push(label("hinge", &format!("nodes {a} and {b}")));
+        }
         for tie in &model.ties {
             let [slave, master] = [tie.slave, tie.master].map(|k| &model.surfaces[k].name);
             let count = counted(tie.nodes.len(), "node");

@@ -8,6 +8,7 @@ use crate::dynamics::{
 };
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
+use crate::linear::LinearError;
 use crate::model::{Model, Procedure, Step};
 
 /// Pairs of a complementarity problem that the text names.
@@ -192,6 +193,15 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.node_name(node),
             point(position(model, node, u)),
         )),
+        Cause::LinearSolver(LinearError::Dependent { number }) => {
+            let [a, b] = model.hinges.get(number)?.nodes;
+            Some(format!(
+                "hinge    nodes {} and {} at {}",
+                model.node_name(a),
+                model.node_name(b),
+                point(position(model, a, u)),
+            ))
+        }
         _ => None,
     }
 }
@@ -446,6 +456,9 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
             }
             _ => "take smaller increments",
         },
+        Cause::LinearSolver(LinearError::Dependent { .. }) => {
+            "leave out this hinge, or another one or a support that holds the same motion"
+        }
         Cause::NotFinite { .. } => "see whether loads, materials and times are in consistent units",
         Cause::Inverted { .. }
         | Cause::Crossed { .. }

@@ -82,6 +82,7 @@ impl<'m> History<'m> {
         }
         history.create_connectors(&at)?;
         history.create_ties(&at)?;
+        history.create_hinges(&at)?;
         history.create_events(&at)?;
         let surfaces = group(&at, "rigid")?;
         for (k, body) in model.rigid_bodies.iter().enumerate() {
@@ -289,6 +290,33 @@ impl<'m> History<'m> {
             })?;
         }
         Ok(())
+    }
+
+    /// `/history/hinges`: the forces and places of the hinges.
+    fn create_hinges(&mut self, at: &Group) -> hdf5::Result<()> {
+        let Model { hinges, mesh, .. } = self.model;
+        if hinges.is_empty() {
+            return Ok(());
+        }
+        let (at, count) = (group(at, "hinges")?, hinges.len());
+        let labels = hinges.iter().flat_map(|hinge| hinge.nodes);
+        let labels: Vec<i64> = labels.map(|node| mesh.node_labels[node] as i64).collect();
+        let text = ("1", "node numbers of the two nodes of every hinge");
+        constant(&at, "labels", &[count, 2], &labels, text)?;
+        let text = (
+            "force",
+            "force of the hinge on its first node; that on its second is its opposite",
+        );
+        self.add(&at, "force", &[count, 2], text, |r, v| {
+            v.extend(r.nodal.hinge_force.iter().flatten());
+        })?;
+        let text = ("length", "position of the first node");
+        let x = &mesh.coordinates;
+        self.add(&at, "position", &[count, 2], text, move |r, v| {
+            for [node, _] in hinges.iter().map(|hinge| hinge.nodes) {
+                v.extend((0..2).map(|i| x[node][i] + r.state.u[2 * node + i]));
+            }
+        })
     }
 
     /// `/history/impacts`: one row per landing; `/history/returns`: one row per pair and increment in which it

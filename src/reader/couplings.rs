@@ -7,6 +7,7 @@ use super::outline::{CardBlock, Outline};
 use super::rigid_bodies::{Lookup, Rigid};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
+use crate::model::{Hinge, Procedure, Step};
 use crate::vectors::distance;
 use std::collections::BTreeSet;
 
@@ -17,6 +18,8 @@ const AT_ONE_PLACE: f64 = 1e-6;
 pub(crate) enum Link {
     /// Both displacements of a node are those of another.
     Joined { node: usize, to: usize, span: Span },
+    /// Two nodes at one place, each of a rigid body.
+    Hinge { nodes: [usize; 2], span: Span },
     /// Both displacements of a node are the means of those of others.
     Mean {
         node: usize,
@@ -221,13 +224,14 @@ fn mpc(
                     cx,
                 );
             }
-            _ => join([node, to], row.span(), lookup, (bodies, links), cx),
+            _ => join(&key, [node, to], row.span(), lookup, (bodies, links), cx),
         }
     }
 }
 
-/// Joins two nodes: by equations, or on the rigid body that one of them belongs to.
+/// Joins two nodes: by equations, on the rigid body that one of them belongs to, or by a hinge between those of both.
 fn join(
+    kind: &str,
     [node, to]: [usize; 2],
     span: Span,
     lookup: Lookup,
@@ -242,22 +246,76 @@ fn join(
         }
         [Some(body), None] => (body, to),
         [None, Some(body)] => (body, node),
-        [Some(_), Some(_)] => {
-            let message = "both nodes belong to rigid bodies, which cannot be joined yet";
+        [Some(first), Some(second)] if first == second => {
+            let message = format!("both nodes belong to {}", bodies[first].name());
             cx.error(Code::Coupling, span, message)
-                .help("join them by *ELEMENT, TYPE=SPRINGA or a piece of elements that deforms");
+                .help("a hinge joins two bodies");
+            return;
+        }
+        [Some(_), Some(_)] if kind == "TIE" => {
+            let message = "both nodes belong to rigid bodies, which a tie would make one";
+            cx.error(Code::Coupling, span, message).help(
+                "PIN lets them turn about the node; make one rigid body of both if they shall not",
+            );
+            return;
+        }
+        [Some(body), Some(_)] => {
+            if is_at_one_place([node, to], &bodies[body], span, lookup, cx) {
+                let nodes = [node, to];
+                links.push(Link::Hinge { nodes, span });
+            }
             return;
         }
     };
+    if is_at_one_place([node, to], &bodies[body], span, lookup, cx) {
+        bodies[body].add(BTreeSet::from([rider]));
+    }
+}
+
+/// Whether two nodes, one of them of a rigid body, are at one place; reports that they are not.
+fn is_at_one_place(
+    [node, to]: [usize; 2],
+    body: &Rigid,
+    span: Span,
+    lookup: Lookup,
+    cx: &mut Context,
+) -> bool {
     let x = &lookup.mesh_index.mesh.coordinates;
-    let size = bodies[body].nodes().map(|n| distance(x[n], x[rider]));
-    if distance(x[node], x[to]) > AT_ONE_PLACE * size.fold(0.0, f64::max) {
+    let size = body.nodes().map(|n| distance(x[n], x[node]));
+    let is_near = distance(x[node], x[to]) <= AT_ONE_PLACE * size.fold(0.0, f64::max);
+    if !is_near {
         let message = "a node joined to a rigid body must be at the place of the other node";
         cx.error(Code::Coupling, span, message)
             .help("MPC of the type BEAM joins nodes over a distance");
-        return;
     }
-    bodies[body].add(BTreeSet::from([rider]));
+    is_near
+}
+
+/// The hinges among links.
+pub(super) fn hinges(links: &[Link], steps: &[Step], cx: &mut Context) -> Vec<Hinge> {
+    let mut all: Vec<Hinge> = Vec::new();
+    let is_static = steps.iter().any(|step| step.procedure == Procedure::Static);
+    for link in links {
+        let Link::Hinge { nodes, span } = *link else {
+            continue;
+        };
+        if is_static {
+            let message = "a hinge between rigid bodies, which a static step does not know";
+            cx.error(Code::Coupling, span, message)
+                .help("use *DYNAMIC, APPLICATION=QUASI-STATIC");
+        }
+        let [a, b] = nodes;
+        if all
+            .iter()
+            .any(|hinge| hinge.nodes == nodes || hinge.nodes == [b, a])
+        {
+            let message = "these nodes are joined by a hinge already";
+            cx.error(Code::Coupling, span, message)
+                .help("leave this row out");
+        }
+        all.push(Hinge { nodes });
+    }
+    all
 }
 
 /// Reports a node of two rigid bodies, one of them a coupling.

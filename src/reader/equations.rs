@@ -257,6 +257,7 @@ fn of_links(
                     let terms = of.iter().map(|other| (at(other), weight));
                     (at(node), terms.collect(), *span)
                 }
+                Link::Hinge { .. } => continue,
             };
             // a support holds the term that follows: the first that can be eliminated in its place
             let is_taken = |dof: usize| is_prescribed(dof) || solved.contains_key(&dof);

@@ -117,6 +117,7 @@ fn read(cx: &mut Context) -> Model {
     rigid_bodies::check(&rigid_bodies, &bodies, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
+    let hinges = couplings::hinges(&links, &steps.all, cx);
     let model = Model {
         title: title(&outline),
         mesh: mesh_index.mesh,
@@ -132,6 +133,7 @@ fn read(cx: &mut Context) -> Model {
             .into_iter()
             .map(|(equation, _)| equation)
             .collect(),
+        hinges,
         initial_velocity,
         steps: steps.all,
         rigid_bodies: bodies,

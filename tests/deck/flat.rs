@@ -426,6 +426,11 @@ fn couplings() {
         ("*MPC\nBEAM, 13, 99\nBEAM, 14, 99", 2, 0),
         ("*MPC\nPIN, 11, 4\nTIE, 12, 6", 0, 4),
         ("*MPC\nBEAM, NBLOCK, 99\nPIN, 98, 11", 5, 0),
+        (
+            "*MPC\nBEAM, 11, 99\nBEAM, 12, 99\nBEAM, 98, 13\nBEAM, 14, 13\nPIN, 98, 11",
+            4,
+            0,
+        ),
     ] {
         let nodes = ["99, 2., 3.", "98, 1., 1.1"].map(|row| match cards.contains(&row[..2]) {
             true => format!("*NODE\n{row}\n"),

@@ -18,6 +18,7 @@ mod finite;
 mod friction;
 mod friction_laws;
 mod halving;
+mod hinges;
 mod invariants;
 mod landing_return;
 mod lcp_methods;

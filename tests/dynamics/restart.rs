@@ -156,6 +156,7 @@ fn fits_that_shrink() {
 #[test]
 fn bodies_that_turn() {
     check("verification/rigid_bodies/boxes.inp", 200, 41);
+    check("tests/decks/hinges.inp", 120, 23);
 }
 
 #[test]

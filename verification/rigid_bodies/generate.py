@@ -1,4 +1,4 @@
-"""Writes a cam with a follower and a pair of gears: `generate.py [-o FOLDER]`."""
+"""Writes a cam with a follower, a pair of gears and linkages: `generate.py [-o FOLDER]`."""
 
 import sys
 from collections.abc import Sequence
@@ -8,7 +8,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.cards import card, dry, elastic, material, step  # noqa: E402
 from stickslip.deck import write_to_folder  # noqa: E402
 
 Point = tuple[float, float]
@@ -36,6 +36,17 @@ BACKLASH = 0.02
 GEAR_SPEED, TURN = 1.0, 0.5
 MOMENT = 30.0
 GEAR_DENSITY = 1e-3
+
+THICKNESS, GRAVITY = 0.1, 9.81
+HANGING = 0.3, -0.4, 0.1, -0.2, 0.5
+"""Angles of the bars that hang; each has length and mass 1."""
+CHAIN_TIME, FLIGHT = 2.0, (0.3, 0.2)
+
+CRANK, ROD, CRANK_SPEED = 1.0, 3.0, 2 * pi
+SLIDER, PRESS = (1.0, 0.4), 40.0
+"""Width and height of the slider, and the load that presses it on its guide."""
+LIGHT = 1e-3
+"""Density of crank and rod."""
 
 
 def fan(profile: Sequence[Point], centre: Point, first: int, name: str) -> str:
@@ -164,9 +175,128 @@ def gears(flank: int) -> str:
     )
 
 
-def write(folder: Path, sides: int = 500, flank: int = 200) -> None:
-    """Writes the decks into `folder`: `sides` those of the cam, `flank` the pieces of a gear's flank."""
+def bar(first: int, start: Point, angle: float, length: float, name: str, reference: Point) -> str:
+    """A bar along its axis from `first` to `first + 1`, of two elements in its height; `first + 6` is its reference node."""
+    along, across = (cos(angle), sin(angle)), (-sin(angle), cos(angle))
+    points = [(s, t) for t in (0.0, -THICKNESS / 2, THICKNESS / 2) for s in (0.0, length)]
+    rows = [
+        (first + k, *(start[i] + s * along[i] + t * across[i] for i in (0, 1)))
+        for k, (s, t) in enumerate(points)
+    ]
+    elements = [
+        (first, first + 2, first + 3, first + 1, first),
+        (first + 1, first, first + 1, first + 5, first + 4),
+    ]
+    return "".join(
+        [
+            card("NODE", *rows, (first + 6, *reference)),
+            card(f"ELEMENT, TYPE=CPE4, ELSET=E{name}", *elements),
+            card(f"RIGID BODY, ELSET=E{name}, REF NODE={first + 6}"),
+        ]
+    )
+
+
+def chain(angles: Sequence[float], rates: Sequence[float], increments: int, scheme: str) -> str:
+    """Bars on hinges: at rest at the start they hang on the origin under gravity, else they fly."""
+    at: Point = (0.0, 0.0)
+    pieces, velocities = [], []
+    hangs = not rates
+    v = FLIGHT
+    for k, angle in enumerate(angles):
+        middle = (at[0] + cos(angle) / 2, at[1] + sin(angle) / 2)
+        first = 10 * k + 1
+        pieces.append(bar(first, at, angle, 1.0, f"BAR{k + 1}", at if hangs and k == 0 else middle))
+        if not hangs:
+            half = (-rates[k] * sin(angle) / 2, rates[k] * cos(angle) / 2)
+            velocities += [(first + 6, i + 1, v[i] + half[i]) for i in (0, 1)]
+            velocities.append((first + 6, 6, rates[k]))
+            v = (v[0] + 2 * half[0], v[1] + 2 * half[1])
+        at = (at[0] + cos(angle), at[1] + sin(angle))
+    names = [f"EBAR{k + 1}" for k in range(len(angles))]
+    pins = [("PIN", 10 * k + 2, 10 * k + 11) for k in range(len(angles) - 1)]
+    return "".join(
+        [
+            card("HEADING"),
+            "rigid bars on hinges\n",
+            *pieces,
+            elastic(1e5, 0.3, 1 / THICKNESS, *names),
+            card("MPC", *pins),
+            card("BOUNDARY", (7, 1, 2)) if hangs else card("INITIAL CONDITIONS, TYPE=VELOCITY", *velocities),
+            step(
+                CHAIN_TIME / increments,
+                increments,
+                card(f"STICKSLIP, SCHEME={scheme}"),
+                card("DLOAD", *((name, "GRAV", GRAVITY, 0.0, -1.0) for name in names)) if hangs else "",
+                card("OUTPUT, FIELD, NUMBER INTERVAL=20"),
+            ),
+        ]
+    )
+
+
+def box(first: int, corner: Point, size: Point, name: str) -> str:
+    """An element with four nodes from its lower left corner on."""
+    (x, y), (width, height) = corner, size
+    corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+    return card("NODE", *((first + k, *p) for k, p in enumerate(corners))) + card(
+        f"ELEMENT, TYPE=CPE4, ELSET={name}", (first, first, first + 1, first + 2, first + 3)
+    )
+
+
+def slider_crank(friction: float, increments: int) -> str:
+    """A crank that turns at a constant speed, a light rod and a slider of mass 1 that a load presses on a guide."""
+    width, height = SLIDER
+    end = CRANK + ROD
+    heavy = 1 / (width * height)
+    return "".join(
+        [
+            card("HEADING"),
+            "slider-crank driven by its angle\n",
+            bar(1, (0.0, 0.0), 0.0, CRANK, "CRANK", (0.0, 0.0)),
+            bar(11, (CRANK, 0.0), 0.0, ROD, "ROD", (CRANK + ROD / 2, 0.0)),
+            box(21, (end - width / 2, -height / 2), SLIDER, "ESLIDER"),
+            card("NODE", (27, end, 0.0)),
+            card("RIGID BODY, ELSET=ESLIDER, REF NODE=27"),
+            box(31, (-2 * ROD, -height / 2 - 1.0), (4 * ROD, 1.0), "EGUIDE"),
+            card("NSET, NSET=FIXED, GENERATE", (31, 34)),
+            elastic(1e5, 0.3, LIGHT, "ECRANK", "EROD", "EGUIDE"),
+            material("HEAVY", 1e5, 0.3, heavy),
+            card("SOLID SECTION, ELSET=ESLIDER, MATERIAL=HEAVY", (1.0,)),
+            card("MPC", ("PIN", 2, 11), ("PIN", 12, 27)),
+            card("SURFACE, NAME=SLIDER", ("ESLIDER",)),
+            card("SURFACE, NAME=GUIDE", ("EGUIDE", "S3")),
+            dry(friction),
+            card("CONTACT PAIR, INTERACTION=DRY", ("SLIDER", "GUIDE")),
+            card("AMPLITUDE, NAME=TURN", (0.0, 0.0), (1.0, 1.0)),
+            card("BOUNDARY", ("FIXED", 1, 2), (7, 1, 2)),
+            step(
+                1 / increments,
+                increments,
+                card("BOUNDARY, AMPLITUDE=TURN", (7, 6, 6, CRANK_SPEED)),
+                card("CLOAD", (27, 2, -PRESS)),
+                card("OUTPUT, FIELD, NUMBER INTERVAL=20"),
+            ),
+        ]
+    )
+
+
+def write(
+    folder: Path,
+    sides: int = 500,
+    flank: int = 200,
+    parts: int = 400,
+    scheme: str = "ENERGY-MOMENTUM",
+    friction: float = 0.0,
+) -> None:
+    """Writes the decks into `folder`.
+
+    `sides` those of the cam, `flank` the pieces of a gear's flank, `parts` the increments of the linkages, `scheme` that
+    of the chains, `friction` that of the slider.
+    """
     folder.mkdir(parents=True, exist_ok=True)
+    (folder / "hanging_chain.inp").write_text(chain(HANGING[:2], (), parts, scheme))
+    (folder / "hanging_chain_of_five.inp").write_text(chain(HANGING, (), parts, scheme))
+    (folder / "flying_chain.inp").write_text(chain((0.3, 1.4), (2.0, -5.0), parts, scheme))
+    (folder / "slider_crank.inp").write_text(slider_crank(friction, parts))
     (folder / "cam.inp").write_text(cam(sides))
     (folder / "gears.inp").write_text(gears(flank))
 

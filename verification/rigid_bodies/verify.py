@@ -1,4 +1,4 @@
-"""Rigid bodies that turn: pendulum, moment, collision, tumbling square, Painleve's rod, cam, gears."""
+"""Rigid bodies that turn: pendulum, moment, collision, tumbling square, Painleve's rod, cam, gears, linkages."""
 
 import sys
 from pathlib import Path
@@ -76,6 +76,99 @@ def check_gears(verification: runner.Verification) -> None:
     verification.check("work lost between the gears", "gears", float(lost / done))
 
 
+def two_rods(time: float) -> Array:
+    """Angles of two hanging rods at a time, by Runge and Kutta."""
+    inertia = (1 + made.THICKNESS**2) / 12
+
+    def rate(y: Array) -> Array:
+        (first, second), rates = y
+        off = np.cos(first - second) / 2
+        mass = np.array([[inertia + 1.25, off], [off, inertia + 0.25]])
+        turn = np.sin(first - second) / 2
+        load = [
+            -1.5 * made.GRAVITY * np.cos(first) - turn * rates[1] ** 2,
+            -0.5 * made.GRAVITY * np.cos(second) + turn * rates[0] ** 2,
+        ]
+        return np.array([rates, np.linalg.solve(mass, load)])
+
+    y = np.array([made.HANGING[:2], (0.0, 0.0)])
+    count = 5000
+    h = time / count
+    for _ in range(count):
+        k1 = rate(y)
+        k2 = rate(y + h / 2 * k1)
+        k3 = rate(y + h / 2 * k2)
+        k4 = rate(y + h * k3)
+        y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return np.asarray(y[0])
+
+
+def check_chains(verification: runner.Verification) -> None:
+    """Energy and momenta of bars on hinges, and the order of their error."""
+    for name, results in verification.results.items():
+        if "chain" not in name:
+            continue
+        account = results.history.energy
+        total = account["kinetic"] - account["external_work"]
+        error = np.abs(total - total[0]).max() / account.largest
+        verification.check("change of the energy on hinges", name, float(error))
+        if "flying" in name:
+            verification.check("change of the momenta", name, momentum_error(results))
+    exact = two_rods(made.CHAIN_TIME)
+    errors = []
+    for name in ("hanging_chain", "hanging_chain_400", "hanging_chain_800"):
+        results = verification.results[name]
+        angles = [of_body(results, f"EBAR{k}", "angle")[-1] for k in (1, 2)]
+        errors.append(float(np.linalg.norm(np.add(angles, made.HANGING[:2]) - exact)))
+    order = np.log2(errors[-2] / errors[-1])
+    verification.check("order of the error on hinges", "hanging_chain_800", float(order))
+
+
+def check_slider_crank(verification: runner.Verification) -> None:
+    """Position of the slider, torque without friction, and friction work."""
+    radius, rod, speed = made.CRANK, made.ROD, made.CRANK_SPEED
+
+    def motion(theta: Array) -> tuple[Array, Array, Array]:
+        """Angle of the rod, its rate, and the velocity of the slider."""
+        angle = np.arcsin(-radius * np.sin(theta) / rod)
+        rate = -radius * np.cos(theta) * speed / (rod * np.cos(angle))
+        return angle, rate, -radius * np.sin(theta) * speed - rod * np.sin(angle) * rate
+
+    def kinetic(theta: Array) -> Array:
+        """Of rod and slider."""
+        angle, rate, velocity = motion(theta)
+        mass = made.LIGHT * made.THICKNESS * rod
+        x = -radius * np.sin(theta) * speed - rod / 2 * np.sin(angle) * rate
+        y = radius * np.cos(theta) * speed + rod / 2 * np.cos(angle) * rate
+        inertia = mass * (rod**2 + made.THICKNESS**2) / 12
+        return np.asarray((velocity**2 + mass * (x**2 + y**2) + inertia * rate**2) / 2)
+
+    for name in ("slider_crank", "slider_crank_mu03"):
+        results = verification.results[name]
+        theta = speed * results.history.time
+        exact = radius * np.cos(theta) + np.sqrt(rod**2 - (radius * np.sin(theta)) ** 2)
+        error = np.abs(of_body(results, "ESLIDER", "position")[:, 0] - exact).max() / rod
+        verification.check("position of the slider / closed form", name, float(error))
+    results = verification.results["slider_crank"]
+    theta = speed * results.history.time
+    middle, half = (theta[1:] + theta[:-1]) / 2, 1e-5
+    torque = (kinetic(middle + half) - kinetic(middle - half)) / (2 * half)
+    error = np.abs(of_body(results, "ECRANK", "moment")[1:] - torque)[1:].max() / np.abs(torque).max()
+    verification.check("torque of the crank / closed form", "slider_crank", float(error))
+
+    results = verification.results["slider_crank_mu03"]
+    theta = np.linspace(0.0, 2 * np.pi, 100_001)
+    angle, _, velocity = motion(theta)
+    acceleration = np.gradient(velocity, theta) * speed
+    mu, side = 0.3, np.sign(velocity)
+    force = (acceleration + mu * made.PRESS * side) / (np.cos(angle) + mu * side * np.sin(angle))
+    work = np.trapezoid(mu * (made.PRESS - force * np.sin(angle)) * np.abs(velocity), theta) / speed
+    spent = results.history.energy["friction_dissipation"][-1]
+    verification.check(
+        "friction work of the slider / closed form", "slider_crank_mu03", float(spent / work)
+    )
+
+
 def main() -> int:
     """Runs, checks, draws, reports."""
     verification = runner.start(HERE)
@@ -112,6 +205,8 @@ def main() -> int:
 
     check_cam(verification)
     check_gears(verification)
+    check_chains(verification)
+    check_slider_crank(verification)
 
     figure, axes = plt.subplots(figsize=(8, 4))
     for name, body in (("square", "ESQUARE"), ("rod", "NENDS")):

@@ -155,6 +155,8 @@ struct Vectors {
     support_force: Vec<f64>,
     /// r - theta2 K d_p
     load: Vec<f64>,
+    /// d_p with the motion that closes the hinges.
+    closing: Vec<f64>,
     /// Correction dU.
     du: Vec<f64>,
     /// Largest displacement increment after the first pass.
@@ -293,6 +295,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
         let mut free = FreePasses::default();
+        v.equilibrium.hinges.clear();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
         let mut d = match self.guess {
             Some(path) => path.displacement(dt),
@@ -325,15 +328,17 @@ impl<'m> Attempt<'_, 'm> {
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
             let weight = equal_forces.weight(settled);
+            let hinge_forces = self.close_hinges(v)?;
             match self.workspace.pins.are_none() {
                 true => (contact.forces).solve(
-                    [&v.d_p, &v.load],
+                    [&v.closing, &v.load],
                     weight,
                     &mut self.k_star(),
                     &mut v.du,
                 )?,
                 false => self.iterate_pins(&mut contact.forces, weight, &mut free, v)?,
             }
+            self.take_hinge_forces(hinge_forces, v);
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
@@ -554,6 +559,42 @@ impl<'m> Attempt<'_, 'm> {
             let product = (self.workspace).tangent_product(problem, motion, d_p);
             (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = integration.theta2 * k);
         }
+    }
+
+    /// Writes d_p with the motion that closes the gaps of the hinges; gives the forces that make it.
+    ///
+    /// ```text
+    /// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.8)
+    /// ```
+    fn close_hinges(&mut self, v: &mut Vectors) -> Result<Vec<f64>, Cause> {
+        let hinges = &self.problem.hinges;
+        v.closing.clone_from(&v.d_p);
+        if hinges.are_none() {
+            return Ok(Vec::new());
+        }
+        let gaps = sum(&hinges.gaps(&v.u), &hinges.gaps(&v.d_p));
+        let (forces, motion) = self.workspace.k().close(&gaps)?;
+        let both = v.closing.iter_mut().zip(&motion);
+        both.for_each(|(y, m)| *y += m);
+        Ok(forces)
+    }
+
+    /// Adds the forces of a pass to those of the hinges: what closes their gaps, and what the other forces ask of them.
+    fn take_hinge_forces(&mut self, closing: Vec<f64>, v: &mut Vectors) {
+        let hinges = &self.problem.hinges;
+        if hinges.are_none() {
+            return;
+        }
+        let change = sum(&closing, &self.workspace.k().hinge_forces());
+        let Equilibrium {
+            hinges: forces,
+            load,
+            out_of_balance,
+            ..
+        } = &mut v.equilibrium;
+        forces.iter_mut().zip(&change).for_each(|(f, c)| *f += c);
+        hinges.add_forces(&change, load);
+        hinges.add_forces(&change, out_of_balance);
     }
 
     /// Factorises K* anew when the rules say so, else turns its factors with the bodies.

@@ -232,7 +232,8 @@ impl ContactSystem<'_> {
         &self,
         constraints: &[&Constraint],
     ) -> Option<BTreeMap<Scope, Vec<usize>>> {
-        if constraints.len() < LEAST || self.method != LcpMethod::Hybrid {
+        let may_be_parted = self.method == LcpMethod::Hybrid && !self.system.couples_bodies();
+        if constraints.len() < LEAST || !may_be_parted {
             return None;
         }
         let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();

@@ -13,7 +13,7 @@ use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
-    EffectiveStiffness, Equilibrium, Parts, PerBody, StepProblem, check_finite,
+    EffectiveStiffness, Equilibrium, Hinges, Parts, PerBody, StepProblem, check_finite,
 };
 use crate::lcp::ContactState;
 use crate::linear::larger;
@@ -219,6 +219,19 @@ impl<'a> Scales<'a> {
         bodies.map(of_body).fold(round_off, larger)
     }
 
+    /// Whether the hinges of an iterate are closed as far as pairs in contact must be.
+    pub fn closes_hinges(&self, hinges: &Hinges, u: &[f64]) -> bool {
+        let of_node = |node: usize| {
+            let body = self.parts.of_nodes()[node];
+            larger(self.tolerance * self.increment[body], self.resolution[body])
+        };
+        let nodes = hinges.nodes();
+        nodes.zip(hinges.gaps(u).chunks(2)).all(|([a, b], gap)| {
+            let most = larger(of_node(a), of_node(b));
+            gap.iter().all(|gap| gap.abs() <= most)
+        })
+    }
+
     /// The node with the largest relative residual, if there is any; `residual` over the unknowns, whose
     /// dofs are given, with its largest value of every part.
     pub fn worst(
@@ -348,7 +361,7 @@ impl Pass<'_> {
         Scales::new(parts, force, diagonals, lengths, problem.settings.tolerance)
     }
 
-    /// The largest coordinate of the nodes of closed constraints with every body.
+    /// The largest coordinate of the nodes of closed constraints and hinges with every body.
     fn contact_positions(&self, problem: &StepProblem) -> PerBody {
         let [u, ..] = self.displacements;
         let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];
@@ -360,6 +373,11 @@ impl Pass<'_> {
                 let position = &mut positions[problem.parts.of_nodes()[node]];
                 *position = larger(*position, most);
             }
+        }
+        for node in problem.hinges.nodes().flatten() {
+            let position = &mut positions[problem.parts.of_nodes()[node]];
+            let at = problem.position(u, node).map(f64::abs);
+            *position = at.into_iter().fold(*position, larger);
         }
         positions
     }
@@ -450,7 +468,10 @@ impl<'a> Iterate<'a> {
             true => scales.stagnant(),
             false => scales.strict(),
         };
-        if !scales.converged(&errors) || !scales.obeys_contact_law(self.contact, settled) {
+        if !scales.converged(&errors)
+            || !scales.obeys_contact_law(self.contact, settled)
+            || !scales.closes_hinges(&problem.hinges, self.displacements[0])
+        {
             return Ok(None);
         }
         Ok(Some(scales.report(&errors, self.contact).residual))

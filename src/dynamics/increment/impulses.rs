@@ -12,7 +12,7 @@ use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSystem, Guess, Response};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey, Rows};
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace};
+use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace, sum};
 use crate::lcp::ContactState;
 use crate::linear::larger;
 
@@ -35,7 +35,7 @@ pub(crate) struct Impulses {
     of_iterate: Vec<Constraint>,
     /// Whether the impulses are those of the rows of the iterate, as an increment may end with.
     are_exact: bool,
-    /// J = Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
+    /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
     resultant: Vec<f64>,
     /// The pairs that stuck in the last pass, with their normal forces; increasing.
     sticking: Vec<(ConstraintKey, f64)>,
@@ -69,7 +69,7 @@ impl Impulses {
         self.forces.acting()
     }
 
-    /// J = Bn^T Phi + Bt^T Psi over all dofs; empty where nothing strikes.
+    /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
     pub fn resultant(&self) -> &[f64] {
         &self.resultant
     }
@@ -123,10 +123,14 @@ impl Impulses {
             return Ok(());
         }
         self.are_exact = true;
+        let v0 = match self.of_iterate.is_empty() {
+            true => Cow::Borrowed(start.v.as_slice()),
+            false => agreeing(problem, workspace, start)?,
+        };
         let system = mass_system(problem, workspace);
         let states = (self.of_iterate.iter()).map(|c| self.state(c, &start.v, dt));
         let states = states.collect();
-        let closed = held_impulses(&self.of_iterate, held, states, &start.v, dt, system)?;
+        let closed = held_impulses(&self.of_iterate, held, states, &v0, dt, system)?;
         self.forces.relinearize(&mut self.of_iterate);
         self.forces.closed = closed;
         match self.forces.closed.is_empty() {
@@ -137,8 +141,32 @@ impl Impulses {
                 let nothing = vec![0.0; start.v.len()];
                 let turning = &problem.unknowns.turning;
                 turning.hand_over([&start.u, &nothing], false, &mut self.resultant);
+                self.add_hinges(problem, workspace, start)?;
             }
         }
+        Ok(())
+    }
+
+    /// Adds the impulses C^T Lambda by which the hinges answer those of contact, by the arms of the start.
+    fn add_hinges(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        start: &State,
+    ) -> Result<(), Cause> {
+        if problem.hinges.are_none() {
+            return Ok(());
+        }
+        let nothing = vec![0.0; start.v.len()];
+        let mut mass = mass_system(problem, workspace);
+        mass.respond(&nothing, &self.resultant)?;
+        let answer = mass.system.hinge_forces();
+        let mut of_hinges = nothing.clone();
+        problem.hinges.add_forces(&answer, &mut of_hinges);
+        let turning = &problem.unknowns.turning;
+        turning.hand_over([&start.u, &nothing], false, &mut of_hinges);
+        let both = self.resultant.iter_mut().zip(&of_hinges);
+        both.for_each(|(j, of_hinges)| *j += of_hinges);
         Ok(())
     }
 
@@ -263,6 +291,24 @@ impl Impulses {
 fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
     let mut nodes = constraint.nodes();
     !nodes.any(|node| problem.redistribution.is_massless(node))
+}
+
+/// The velocity that impulses of contact see in the place of V0: what agrees with the hinges, eq. (11.9). The rest of V0
+/// does no work with them, so that they bring no energy in.
+fn agreeing<'a>(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    start: &'a State,
+) -> Result<Cow<'a, [f64]>, Cause> {
+    if problem.hinges.are_none() {
+        return Ok(Cow::Borrowed(&start.v));
+    }
+    let mut mass = workspace.m();
+    if !mass.is_factorized() {
+        mass.factorize()?;
+    }
+    let (_, change) = mass.close(&problem.hinges.gaps(&start.v))?;
+    Ok(Cow::Owned(sum(&start.v, &change)))
 }
 
 /// M with its complementarity problems.

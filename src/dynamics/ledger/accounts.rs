@@ -101,6 +101,7 @@ impl Accounts {
                 concentrated: vec![0.0; dofs],
                 contact_force: vec![0.0; dofs],
                 tie_force: tie_forces(problem.model, |_| 0.0),
+                hinge_force: vec![[0.0; 2]; problem.model.hinges.len()],
                 gap: vec![f64::NAN; nodes],
                 status: vec![NodeStatus::None; nodes],
                 pressure: self.faces.start.clone(),

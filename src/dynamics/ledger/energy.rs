@@ -191,7 +191,8 @@ impl Ledger {
 
         // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1), with
         // what equations pass on to them
-        e.external_work += dot(d, load);
+        // without that of hinges, which is none
+        e.external_work += dot(d, load) - dot(&solved.equilibrium.hinges, &problem.hinges.gaps(d));
         let contact = &forces.resultant(d.len());
         let handed_over = |force: &Vec<f64>, keeps_driven| {
             let mut force = force.clone();

@@ -31,6 +31,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         load,
         internal,
         inertia,
+        hinges,
         ..
     } = &solved.equilibrium;
     // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
@@ -48,6 +49,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         reaction,
         contact_force,
         tie_force,
+        hinge_force: hinges.chunks(2).map(|force| [force[0], force[1]]).collect(),
         gap: vec![f64::NAN; dofs / 2],
         status: vec![NodeStatus::None; dofs / 2],
         friction: FrictionResults {

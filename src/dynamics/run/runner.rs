@@ -23,7 +23,7 @@ use crate::dynamics::step::{
     ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, Workspace,
 };
 use crate::elements::{Motion, most_strained};
-use crate::linear::largest;
+use crate::linear::{LinearError, largest};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
@@ -381,7 +381,10 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
         let is_static = |procedure: Procedure| procedure == Procedure::Static;
         if place.number > 1 && is_static(self.procedure) != is_static(step.procedure) {
-            self.begin_motion(problem, workspace, place);
+            if let Err(error) = self.begin_motion(problem, workspace, place) {
+                let increments = self.summary.increments;
+                return Ok(Some(failure_at_start(error.into(), increments, place)));
+            }
             self.ledger.change_procedure(problem, &self.state);
         }
         self.procedure = step.procedure;
@@ -696,19 +699,26 @@ impl<'m, 'o> Runner<'m, 'o> {
 
     /// Velocity of supports and equations, and acceleration, at the start of a dynamic step that is not the
     /// continuation of another; at rest at that of a static one.
-    fn begin_motion(&mut self, problem: &StepProblem, workspace: &mut Workspace, place: StepPlace) {
+    fn begin_motion(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        place: StepPlace,
+    ) -> Result<(), LinearError> {
         if !problem.integration.has_rates {
             self.state.v.fill(0.0);
             self.state.a.fill(0.0);
-            return;
+            return Ok(());
         }
         let now = place.time_point(0.0);
         let State { u, v, .. } = &mut self.state;
         problem.unknowns.prescribe_velocity(now, u, v);
         problem.follow_donors(&mut self.state.v);
+        workspace.start_hinges(problem, &mut self.state)?;
         let dofs = self.state.u.len();
         let contact = (self.ledger.end.as_ref()).map_or(vec![0.0; dofs], |end| end.contact(dofs));
         self.state.a = workspace.start_acceleration(problem, &self.state, &contact, now);
+        Ok(())
     }
 
     /// Completes the start state (velocity of supports and equations, acceleration; at rest in a static step) and
@@ -719,7 +729,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         workspace: &mut Workspace,
         place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
-        self.begin_motion(problem, workspace, place);
+        if let Err(error) = self.begin_motion(problem, workspace, place) {
+            return Ok(Some(failure_at_start(error.into(), 0, place)));
+        }
         self.ledger = Ledger::new(problem, &self.state);
         if let Some(failure) = start_failure(&self.state, &self.ledger, place) {
             return Ok(Some(failure));

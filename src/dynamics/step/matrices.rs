@@ -9,9 +9,11 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use super::bodies::BodyAngles;
+use super::hinges::Hinges;
 use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
-use super::pins::{Pins, Softening, pin_columns};
+use super::pins::{Pins, pin_columns, soften};
+use super::rank_update::RankUpdate;
 use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
@@ -37,8 +39,10 @@ pub(crate) struct FactoredMatrix {
     pub space: DelassusSpace,
     /// Memory of its solves.
     pub vectors: SolveVectors,
-    /// What its inverse differs by from that of its factors.
-    softening: Option<Softening>,
+    /// What its inverse differs by from that of its factors: by softened pins, or by closed hinges.
+    update: Option<RankUpdate>,
+    /// Hinges that its solutions keep closed.
+    hinges: Hinges,
 }
 
 /// Vectors of a solve in parts, used again by the next.
@@ -76,7 +80,8 @@ impl FactoredMatrix {
             kept: BTreeMap::new(),
             space: DelassusSpace::default(),
             vectors: SolveVectors::default(),
-            softening: None,
+            update: None,
+            hinges: Hinges::default(),
         }
     }
 
@@ -87,7 +92,7 @@ impl FactoredMatrix {
 
     /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
-        self.softening = None;
+        self.update = None;
         self.compliance.renew(self.solver.groups());
         self.solver.factorize()
     }
@@ -98,9 +103,10 @@ impl FactoredMatrix {
             solver,
             compliance,
             kept,
-            softening,
+            update,
             space: _,
             vectors: _,
+            hinges: _,
         } = self;
         solver.carry(archive)?;
         compliance.carry(archive, solver)?;
@@ -112,7 +118,15 @@ impl FactoredMatrix {
         for scope in scopes {
             kept.entry(scope).or_default().carry(archive)?;
         }
-        archive.carry(softening)
+        archive.carry(update)
+    }
+
+    /// The rows of T of bodies that turn, which are to change.
+    fn map_mut(&mut self) -> &mut Transformation {
+        if !self.hinges.are_none() {
+            self.update = None;
+        }
+        self.compliance.map_mut()
     }
 
     /// Solves for the columns of the compliance that `constraints` need.
@@ -223,8 +237,10 @@ impl EffectiveStiffness {
         let mass = unknown_mass(&masses(problem), unknowns);
         let massless = diagonal_of_massless(problem, &mass);
         let [of_k, of_m] = two_linear_solvers(settings.solver);
-        let k = FactoredMatrix::new(of_k, mass.zeros(), &unknowns.map);
+        let mut k = FactoredMatrix::new(of_k, mass.zeros(), &unknowns.map);
         let mut m = FactoredMatrix::new(of_m, mass, &unknowns.map);
+        k.hinges = problem.hinges.clone();
+        m.hinges = problem.hinges.clone();
         m.solver.add_blocks(massless);
         EffectiveStiffness {
             k,
@@ -263,7 +279,7 @@ impl EffectiveStiffness {
     /// Sets the rows of T of bodies that turn in K* to those of the increment `d` from `u0`.
     pub fn write_rows(&mut self, problem: &StepProblem, increment: [&[f64]; 2]) {
         let turning = &problem.unknowns.turning;
-        turning.write_rows(increment, self.k.compliance.map_mut());
+        turning.write_rows(increment, self.k.map_mut());
     }
 
     /// Sets the rows of T of bodies that turn in M to those of the start of an increment, and M with them where it
@@ -273,7 +289,7 @@ impl EffectiveStiffness {
         if turning.is_empty() {
             return;
         }
-        let map = self.m.compliance.map_mut();
+        let map = self.m.map_mut();
         turning.write_rows([u0, &vec![0.0; u0.len()]], map);
         if turning.turn_mass() {
             let mass = self.m.solver.matrix_mut();
@@ -342,6 +358,9 @@ impl EffectiveStiffness {
     /// Turns the factors of K* with the bodies, to the configuration of a motion (docs/numerics.md, Turned factors).
     pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
         let angles = self.angles.since_assembly(problem, motion);
+        if !self.k.hinges.are_none() {
+            self.k.update = None;
+        }
         (self.k.compliance).turn(&angles, problem.parts.of_nodes());
     }
 
@@ -432,7 +451,7 @@ impl<'a> System<'a> {
         constraints: &[&Constraint],
     ) -> Result<Vec<f64>, LinearError> {
         let map = &problem.unknowns.map;
-        self.matrix.softening = None;
+        self.matrix.update = None;
         let columns = pin_columns(pins, map, |b| self.solve(b))?;
         let none = vec![[0.0; 2]; constraints.len()];
         let lcp = self.frictional_lcp(&Scope::All, constraints, &none)?;
@@ -441,10 +460,48 @@ impl<'a> System<'a> {
         self.take_back(lcp);
         let dofs = problem.model.dof_count();
         let both = (map, problem.parts);
-        let softening = Softening::new(pins, both, [a, part], columns, &compliances, dofs);
-        let stiffness = softening.stiffness.clone();
-        self.matrix.softening = Some(softening);
+        let (update, stiffness) = soften(pins, both, [a, part], columns, &compliances, dofs);
+        self.matrix.update = Some(update);
         Ok(stiffness)
+    }
+
+    /// Makes solutions keep the hinges closed, with T of the iterate.
+    fn hold(&mut self) -> Result<(), LinearError> {
+        let Self { matrix, meter } = self;
+        let FactoredMatrix {
+            solver,
+            compliance,
+            update,
+            hinges,
+            ..
+        } = &mut **matrix;
+        if hinges.are_none() || update.is_some() {
+            return Ok(());
+        }
+        let at = (compliance.map(), compliance.rotation());
+        let dofs = at.0.rows().count();
+        let columns = || hinges.hold(at, dofs, |b| solver.solve(b));
+        *update = Some(meter.time(|t| &mut t.solve, columns)?);
+        Ok(())
+    }
+
+    /// Whether bodies that no pair lies between act on each other.
+    pub fn couples_bodies(&self) -> bool {
+        !self.matrix.hinges.are_none()
+    }
+
+    /// Forces of the hinges, and the motion that they make over all dofs, by which the gaps `gaps` of the hinges close.
+    pub fn close(&mut self, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
+        self.hold()?;
+        let update = self.matrix.update.as_ref();
+        Ok(update.map_or((Vec::new(), Vec::new()), |update| update.answer(gaps)))
+    }
+
+    /// Forces of the hinges in the last solve.
+    pub fn hinge_forces(&self) -> Vec<f64> {
+        let update = self.matrix.update.as_ref();
+        let parts = update.map_or(Vec::new(), RankUpdate::parts);
+        parts.into_iter().map(|part| -part).collect()
     }
 
     /// The solution for the right-hand side `b`, over the unknowns.
@@ -465,12 +522,13 @@ impl<'a> System<'a> {
 
     /// Begins the response to the forces `f`, in parts.
     pub fn begin(&mut self, f: &[f64]) -> Result<(), LinearError> {
+        self.hold()?;
         let Self { matrix, meter } = self;
         let FactoredMatrix {
             solver,
             compliance,
             vectors,
-            softening,
+            update,
             ..
         } = &mut **matrix;
         let SolveVectors { forces, .. } = vectors;
@@ -484,8 +542,8 @@ impl<'a> System<'a> {
                 rotation.turn_back(forces);
                 map.write_restricted(forces, b);
             }
-            if let Some(softening) = softening {
-                softening.begin(b);
+            if let Some(update) = update {
+                update.begin(b);
             }
         };
         meter.time(|t| &mut t.solve, || solver.begin(write))
@@ -495,8 +553,8 @@ impl<'a> System<'a> {
     pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
-        if let Some(softening) = &matrix.softening {
-            softening.correct(unknowns, values);
+        if let Some(update) = &matrix.update {
+            update.correct(unknowns, values);
         }
     }
 
@@ -504,8 +562,8 @@ impl<'a> System<'a> {
     pub fn add(&mut self, b: &[(usize, f64)]) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.add(b));
-        if let Some(softening) = &mut matrix.softening {
-            softening.add(b);
+        if let Some(update) = &mut matrix.update {
+            update.add(b);
         }
     }
 
@@ -516,13 +574,13 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             solver,
             compliance,
-            softening,
+            update,
             ..
         } = &mut **matrix;
         let (map, rotation) = (compliance.map(), compliance.rotation());
         let write = |q: &[f64]| {
-            let softened = softening.as_ref().map(|softening| softening.corrected(q));
-            let q = softened.as_deref().unwrap_or(q);
+            let corrected = update.as_ref().map(|update| update.corrected(q));
+            let q = corrected.as_deref().unwrap_or(q);
             if rotation.is_identity() {
                 map.write_sum(start, q, response);
             } else {
@@ -574,19 +632,20 @@ impl<'a> System<'a> {
         constraints: &[&Constraint],
         constant_terms: &[[f64; 2]],
     ) -> Result<FrictionalLcp, LinearError> {
+        self.hold()?;
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.prepare(scope, constraints))?;
         let FactoredMatrix {
             compliance,
             space,
-            softening,
+            update,
             ..
         } = &mut **matrix;
         let pose = || {
             let all = (&*compliance, scope);
             let mut problem = frictional_lcp(constraints, all, constant_terms, space);
-            if let Some(softening) = softening {
-                softening.soften(constraints, &mut problem.q);
+            if let Some(update) = update {
+                update.change(constraints, &mut problem.q);
             }
             problem
         };

@@ -4,6 +4,7 @@
 mod bodies;
 mod fits;
 mod friction;
+mod hinges;
 mod integration;
 mod loads;
 mod mass;
@@ -11,6 +12,7 @@ mod matrices;
 mod meter;
 mod parts;
 mod pins;
+mod rank_update;
 mod slave_faces;
 mod step_problem;
 mod turning;
@@ -18,6 +20,7 @@ mod unknowns;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
+pub(crate) use hinges::Hinges;
 pub(crate) use loads::{Interval, StepPlace, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use matrices::{

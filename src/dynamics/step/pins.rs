@@ -5,10 +5,11 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::bodies::{Hold, holds};
 use super::parts::Parts;
+use super::rank_update::{Columns, RankUpdate};
 use super::step_problem::StepProblem;
 use crate::contact::Constraint;
 use crate::dynamics::results::{Cause, Unbalanced};
-use crate::linear::{LinearError, Transformation, larger, largest};
+use crate::linear::{LinearError, Rotation, Transformation, larger, largest};
 use crate::model::Equation;
 use std::collections::BTreeSet;
 
@@ -342,145 +343,61 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
-/// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins,
+/// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins, `a` in K_r, with the columns of V over
+/// the unknowns; and their stiffness a' in K'. `compliances` are Qnn of some pairs.
 ///
 /// ```text
 /// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1/(a' - a) + S^T V)^-1            eq. (12.4)
+/// q = max (Qnn_jj - a |(Gn V)_j|²),  z = max |a (Gn V)_j|²,  a' = z/(100 q)          eq. (12.3)
 /// ```
-#[derive(serde::Serialize, serde::Deserialize)]
-pub(crate) struct Softening {
-    /// Columns of V over the unknowns.
+pub(crate) fn soften(
+    pins: &Pins,
+    (map, parts): (&Transformation, &Parts),
+    [a, part]: [f64; 2],
     columns: Vec<Vec<f64>>,
-    /// C.
-    c: DMatrix<f64>,
-    /// V^T b of the solve that is under way.
-    projected: Vec<f64>,
-    /// Stiffness a' of the pins (force/length).
-    pub stiffness: Vec<f64>,
-    /// Columns of V over all dofs.
-    of_dofs: Vec<Vec<f64>>,
-}
-
-impl Softening {
-    /// That of pins of the stiffness `a` whose columns of V are given; `compliances` are Qnn of some pairs.
-    ///
-    /// ```text
-    /// q = max (Qnn_jj - a |(Gn V)_j|²),  z = max |a (Gn V)_j|²,  a' = z/(100 q)     eq. (12.3)
-    /// ```
-    pub fn new(
-        pins: &Pins,
-        (map, parts): (&Transformation, &Parts),
-        [a, part]: [f64; 2],
-        columns: Vec<Vec<f64>>,
-        compliances: &[(&Constraint, f64)],
-        dofs: usize,
-    ) -> Self {
-        let expand = |column: &Vec<f64>| {
-            let mut all = vec![0.0; dofs];
-            map.add(column, &mut all);
-            all
+    compliances: &[(&Constraint, f64)],
+    dofs: usize,
+) -> (RankUpdate, Vec<f64>) {
+    let unturned = Rotation::default();
+    let v = Columns::motions(columns, (map, &unturned), dofs);
+    let bodies: Vec<usize> = pins.bodies().collect();
+    let soft = |body: usize| {
+        let (mut q, mut z) = (0.0_f64, 0.0_f64);
+        for (constraint, compliance) in compliances {
+            if constraint
+                .nodes()
+                .all(|node| parts.of_nodes()[node] != body)
+            {
+                continue;
+            }
+            let of_body = v
+                .of_dofs
+                .iter()
+                .zip(&bodies)
+                .filter(|(_, other)| **other == body);
+            let seen: f64 = of_body.map(|(v, _)| constraint.gap_change(v).powi(2)).sum();
+            q = q.max(compliance - a * seen);
+            z = z.max(a * a * seen);
+        }
+        match q > 0.0 {
+            true => (part * z / (SOFT * q)).clamp(SOFTEST * a, STIFFEST * a),
+            false => SOFTEST * a,
+        }
+    };
+    let stiffness: Vec<f64> = bodies.iter().map(|&body| soft(body)).collect();
+    let unknown = |dof: usize| map.row(dof).first().map_or(0, |term| term.0);
+    let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
+    let m = unknowns.len();
+    let mut c = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
+    for (k, soft) in stiffness.iter().enumerate() {
+        let difference = match soft - a {
+            0.0 => -f64::EPSILON * a,
+            difference => difference,
         };
-        let of_dofs: Vec<Vec<f64>> = columns.iter().map(expand).collect();
-        let bodies: Vec<usize> = pins.bodies().collect();
-        let soft = |body: usize| {
-            let (mut q, mut z) = (0.0_f64, 0.0_f64);
-            for (constraint, compliance) in compliances {
-                if constraint
-                    .nodes()
-                    .all(|node| parts.of_nodes()[node] != body)
-                {
-                    continue;
-                }
-                let of_body = of_dofs
-                    .iter()
-                    .zip(&bodies)
-                    .filter(|(_, other)| **other == body);
-                let seen: f64 = of_body.map(|(v, _)| constraint.gap_change(v).powi(2)).sum();
-                q = q.max(compliance - a * seen);
-                z = z.max(a * a * seen);
-            }
-            match q > 0.0 {
-                true => (part * z / (SOFT * q)).clamp(SOFTEST * a, STIFFEST * a),
-                false => SOFTEST * a,
-            }
-        };
-        let stiffness: Vec<f64> = bodies.iter().map(|&body| soft(body)).collect();
-        let unknown = |dof: usize| map.row(dof).first().map_or(0, |term| term.0);
-        let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
-        let m = columns.len();
-        let mut c = DMatrix::from_fn(m, m, |i, k| columns[k][unknowns[i]]);
-        for (k, soft) in stiffness.iter().enumerate() {
-            let difference = match soft - a {
-                0.0 => -f64::EPSILON * a,
-                difference => difference,
-            };
-            c[(k, k)] += 1.0 / difference;
-        }
-        let c = c.try_inverse().unwrap_or_else(|| DMatrix::zeros(m, m));
-        Softening {
-            columns,
-            c,
-            projected: vec![0.0; m],
-            stiffness,
-            of_dofs,
-        }
+        c[(k, k)] += 1.0 / difference;
     }
-
-    /// A right-hand side over the unknowns begins.
-    pub fn begin(&mut self, b: &[f64]) {
-        for (projected, column) in self.projected.iter_mut().zip(&self.columns) {
-            *projected = column.iter().zip(b).map(|(v, b)| v * b).sum();
-        }
-    }
-
-    /// Adds to the right-hand side (unknown, value).
-    pub fn add(&mut self, b: &[(usize, f64)]) {
-        for (projected, column) in self.projected.iter_mut().zip(&self.columns) {
-            *projected += b.iter().map(|&(at, value)| column[at] * value).sum::<f64>();
-        }
-    }
-
-    /// C V^T b
-    fn parts(&self) -> Vec<f64> {
-        let m = self.projected.len();
-        let row = |i: usize| (0..m).map(|k| self.c[(i, k)] * self.projected[k]).sum();
-        (0..m).map(row).collect()
-    }
-
-    /// Makes K_r^-1 b at some unknowns W b.
-    pub fn correct(&self, unknowns: &[usize], values: &mut [f64]) {
-        for (part, column) in self.parts().iter().zip(&self.columns) {
-            for (&at, value) in unknowns.iter().zip(values.iter_mut()) {
-                *value -= part * column[at];
-            }
-        }
-    }
-
-    /// W b for K_r^-1 b over all unknowns.
-    pub fn corrected(&self, solution: &[f64]) -> Vec<f64> {
-        let mut solution = solution.to_vec();
-        for (part, column) in self.parts().iter().zip(&self.columns) {
-            for (value, v) in solution.iter_mut().zip(column) {
-                *value -= part * v;
-            }
-        }
-        solution
-    }
-
-    /// Makes G K_r^-1 B^T of some constraints G W B^T.
-    pub fn soften(&self, constraints: &[&Constraint], q: &mut DMatrix<f64>) {
-        let (n, m) = (constraints.len(), self.columns.len());
-        type Row = fn(&Constraint, &[f64]) -> f64;
-        let seen = |normal: Row, tangential: Row| {
-            DMatrix::from_fn(2 * n, m, |i, k| match i < n {
-                true => normal(constraints[i], &self.of_dofs[k]),
-                false => tangential(constraints[i - n], &self.of_dofs[k]),
-            })
-        };
-        let g = seen(Constraint::gap_change, Constraint::slip_change);
-        let b = seen(Constraint::normal_motion, Constraint::tangential_motion);
-        *q -= g * &self.c * b.transpose();
-    }
+    let c = c.try_inverse().unwrap_or_else(|| DMatrix::zeros(m, m));
+    (RankUpdate::new([v.clone(), v], c), stiffness)
 }
 
 /// Adds the stiffness of all pins to the forces of a pass: a' p at the pinned dofs.

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::fits::Fits;
 use super::friction::Frictions;
+use super::hinges::Hinges;
 use super::integration::Integration;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
@@ -44,6 +45,7 @@ pub(crate) struct StepProblem<'m> {
     pub parts_of_unknowns: Vec<Run>,
     pub loads: Loads<'m>,
     pub fits: Fits<'m>,
+    pub hinges: Hinges,
 }
 
 /// Velocity at the start of an increment.
@@ -59,7 +61,9 @@ pub(crate) struct StartVelocity<'a> {
 pub(crate) struct Equilibrium {
     /// Displacement U_theta.
     pub u_theta: Vec<f64>,
-    /// Load R_theta.
+    /// Forces lambda of the hinges.
+    pub hinges: Vec<f64>,
+    /// Load R_theta, with the forces C^T lambda of the hinges.
     pub load: Vec<f64>,
     /// Internal force F_theta, with that of damping.
     pub internal: Vec<f64>,
@@ -123,6 +127,7 @@ impl<'m> StepProblem<'m> {
             integration: Integration::new(step),
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
             unknowns,
+            hinges: Hinges::new(&model.hinges),
             loads: Loads::new(model, step, redistribution),
             fits: Fits::new(model, step, overlaps, |contact| {
                 discretization.contacts[contact].slaves.len()
@@ -289,6 +294,7 @@ impl StepProblem<'_> {
         equilibrium.resize(u.len());
         let Equilibrium {
             u_theta,
+            hinges,
             load,
             internal,
             ..
@@ -305,7 +311,11 @@ impl StepProblem<'_> {
             let theta1 = self.integration.theta1;
             (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
             self.unknowns.turning.scale_moments(d, load);
+        } else if !self.hinges.are_none() {
+            load.fill(0.0);
         }
+        hinges.resize(self.hinges.count(), 0.0);
+        self.hinges.add_forces(hinges, load);
         Ok(())
     }
 

@@ -199,6 +199,30 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.contact, write);
     }
 
+    /// Makes the velocities at the start of a motion those of bodies with hinges: impulses of the hinges act there once.
+    ///
+    /// ```text
+    /// V <- V - M^-1 C^T (C M^-1 C^T)^-1 C V      eq. (11.9)
+    /// ```
+    ///
+    /// # Errors
+    /// [`LinearError::Dependent`] with a hinge that other ones make superfluous.
+    pub fn start_hinges(
+        &mut self,
+        problem: &StepProblem,
+        start: &mut State,
+    ) -> Result<(), LinearError> {
+        if problem.hinges.are_none() {
+            return Ok(());
+        }
+        self.stiffness.start(problem, &start.u);
+        let mut mass = self.m();
+        mass.factorize()?;
+        let (_, change) = mass.close(&problem.hinges.gaps(&start.v))?;
+        start.v.iter_mut().zip(&change).for_each(|(v, c)| *v += c);
+        Ok(())
+    }
+
     /// Acceleration at the start of a motion, M A = R + B^T P - F, the supports being at rest; forces on nodes
     /// without mass go to those that carry it.
     pub fn start_acceleration(
@@ -219,12 +243,10 @@ impl<'m> Workspace<'m> {
         let mut r = sum(&difference(&load, &internal), contact);
         problem.redistribution.hand_on(&mut r);
         self.stiffness.start(problem, &start.u);
-        let map = self.stiffness.m.map().clone();
-        let r = map.restrict(&r);
         let mut mass = self.m();
         // The acceleration only improves the estimate of the first landings.
-        if let Ok(acceleration) = mass.factorize().and_then(|()| mass.solve(&r)) {
-            map.add(&acceleration, &mut a);
+        if let Ok(acceleration) = mass.factorize().and_then(|()| mass.respond(&r)) {
+            a = acceleration;
             problem.follow_donors(&mut a);
         }
         a

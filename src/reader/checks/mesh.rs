@@ -269,7 +269,7 @@ fn floor(x: f64) -> f64 {
     if cut > x { cut - 1.0 } else { cut }
 }
 
-/// Sets of nodes that contacts and equations act on.
+/// Sets of nodes that contacts, equations and hinges act on.
 struct Joined(Vec<BTreeSet<usize>>);
 
 impl Joined {
@@ -283,7 +283,8 @@ impl Joined {
         });
         let dofs = model.equations.iter().flat_map(Equation::dofs);
         let of_equations: BTreeSet<usize> = dofs.map(|dof| dof / 2).collect();
-        Joined(of_contact.chain([of_equations]).collect())
+        let of_hinges = model.hinges.iter().map(|hinge| hinge.nodes.into());
+        Joined(of_contact.chain([of_equations]).chain(of_hinges).collect())
     }
 
     fn contains(&self, pair: [usize; 2]) -> bool {

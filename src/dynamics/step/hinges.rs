@@ -1,0 +1,113 @@
+//! Hinges between bodies: nodes at one place, whose forces keep them there. Section 11 of docs/theory.md, Hinges.
+
+use nalgebra::DMatrix;
+
+use super::rank_update::{Columns, RankUpdate};
+use crate::linear::{LinearError, Rotation, Transformation};
+use crate::model::Hinge;
+
+/// Least eigenvalue of the compliances of hinges, each in units of its own, below which some of them say the same: light
+/// bodies between heavy ones are far above.
+const INDEPENDENT: f64 = 1e-12;
+
+/// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.6), first along x, then along y of each.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Hinges {
+    /// Dofs of every row.
+    rows: Vec<[usize; 2]>,
+}
+
+impl Hinges {
+    /// Those of a model.
+    pub fn new(all: &[Hinge]) -> Self {
+        let rows = |hinge: &Hinge| [0, 1].map(|i| hinge.nodes.map(|node| 2 * node + i));
+        Hinges {
+            rows: all.iter().flat_map(rows).collect(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn are_none(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Number of rows.
+    pub fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Nodes that they join.
+    pub fn nodes(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.rows
+            .iter()
+            .step_by(2)
+            .map(|row| row.map(|dof| dof / 2))
+    }
+
+    /// C u
+    pub fn gaps(&self, u: &[f64]) -> Vec<f64> {
+        self.rows.iter().map(|&[a, b]| u[a] - u[b]).collect()
+    }
+
+    /// Adds C^T lambda to a force over all dofs.
+    pub fn add_forces(&self, lambda: &[f64], force: &mut [f64]) {
+        for (&[a, b], lambda) in self.rows.iter().zip(lambda) {
+            force[a] += lambda;
+            force[b] -= lambda;
+        }
+    }
+
+    /// What makes solutions with a matrix keep the gaps, from its solver and T and R of its iterate:
+    ///
+    /// ```text
+    /// W = A^-1 - V S^-1 Y^T,  V = A^-1 T_m^T C^T,  Y = A^-1 T_1^T C^T,  S = C T_1 V      eq. (11.7)
+    /// ```
+    ///
+    /// # Errors
+    /// [`LinearError::Dependent`] with the number of a hinge that other ones make superfluous.
+    pub fn hold(
+        &self,
+        (map, rotation): (&Transformation, &Rotation),
+        dofs: usize,
+        mut solve: impl FnMut(&[f64]) -> Result<Vec<f64>, LinearError>,
+    ) -> Result<RankUpdate, LinearError> {
+        let mut columns = [Vec::new(), Vec::new()];
+        for row in 0..self.rows.len() {
+            let mut lambda = vec![0.0; self.rows.len()];
+            lambda[row] = 1.0;
+            let mut force = vec![0.0; dofs];
+            self.add_forces(&lambda, &mut force);
+            rotation.turn_back(&mut force);
+            columns[0].push(solve(&map.restrict(&force))?);
+            columns[1].push(solve(&map.restrict_derivatives(&force))?);
+        }
+        let [of_forces, of_motions] = columns;
+        let v = Columns::motions(of_forces, (map, rotation), dofs);
+        let y = Columns::works(of_motions, (map, rotation));
+        let gaps: Vec<Vec<f64>> = v.of_dofs.iter().map(|column| self.gaps(column)).collect();
+        let m = self.rows.len();
+        let s = DMatrix::from_fn(m, m, |i, k| gaps[k][i]);
+        let inverse = self.inverse(s)?;
+        Ok(RankUpdate::new([v, y], inverse))
+    }
+
+    /// S^-1, if no row follows from the others.
+    fn inverse(&self, s: DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
+        let m = s.nrows();
+        let size: Vec<f64> = (0..m).map(|i| s[(i, i)].abs().sqrt()).collect();
+        if let Some(row) = size.iter().position(|size| *size == 0.0) {
+            return Err(LinearError::Dependent { number: row / 2 });
+        }
+        let scaled = DMatrix::from_fn(m, m, |i, k| {
+            (s[(i, k)] + s[(k, i)]) / 2.0 / (size[i] * size[k])
+        });
+        let eigen = scaled.symmetric_eigen();
+        let least = eigen.eigenvalues.imin();
+        if eigen.eigenvalues[least] <= INDEPENDENT {
+            let row = eigen.eigenvectors.column(least).iamax();
+            return Err(LinearError::Dependent { number: row / 2 });
+        }
+        s.try_inverse()
+            .ok_or(LinearError::NotFinite("the inverse of a hinge"))
+    }
+}

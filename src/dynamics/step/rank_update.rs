@@ -1,0 +1,154 @@
+//! Inverses that differ from that of the factors of a matrix by few columns: K* with softened pins, section 4 of
+//! docs/theory.md, Static steps; matrices whose solutions keep hinges closed, section 11, Hinges.
+
+use nalgebra::DMatrix;
+
+use crate::contact::Constraint;
+use crate::linear::{Rotation, Transformation};
+
+/// W b = A^-1 b - V C Y^T b for the inverse A^-1 of the factors.
+#[derive(serde::Serialize, serde::Deserialize)]
+pub(crate) struct RankUpdate {
+    /// Columns of V and of Y.
+    columns: [Columns; 2],
+    /// C.
+    c: DMatrix<f64>,
+    /// Y^T b of the solve that is under way.
+    projected: Vec<f64>,
+}
+
+/// Columns of an update.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Columns {
+    /// Over the unknowns.
+    pub of_unknowns: Vec<Vec<f64>>,
+    /// Over all dofs.
+    pub of_dofs: Vec<Vec<f64>>,
+}
+
+impl Columns {
+    /// Motions: R T of columns over the unknowns, T of the derivatives.
+    pub fn motions(
+        of_unknowns: Vec<Vec<f64>>,
+        (map, rotation): (&Transformation, &Rotation),
+        dofs: usize,
+    ) -> Self {
+        let expand = |column: &Vec<f64>| {
+            let mut all = vec![0.0; dofs];
+            map.add(column, &mut all);
+            rotation.turn(&mut all);
+            all
+        };
+        Columns {
+            of_dofs: of_unknowns.iter().map(expand).collect(),
+            of_unknowns,
+        }
+    }
+
+    /// What forces over the dofs do: R T of columns over the unknowns, T of the force rows.
+    pub fn works(
+        of_unknowns: Vec<Vec<f64>>,
+        (map, rotation): (&Transformation, &Rotation),
+    ) -> Self {
+        let expand = |column: &Vec<f64>| {
+            let value = |row: &[(usize, f64)]| row.iter().map(|&(at, c)| c * column[at]).sum();
+            let mut all: Vec<f64> = map.rows().map(value).collect();
+            rotation.turn(&mut all);
+            all
+        };
+        Columns {
+            of_dofs: of_unknowns.iter().map(expand).collect(),
+            of_unknowns,
+        }
+    }
+}
+
+impl RankUpdate {
+    /// That with the columns V and Y, and C.
+    pub fn new(columns: [Columns; 2], c: DMatrix<f64>) -> Self {
+        RankUpdate {
+            columns,
+            projected: vec![0.0; c.nrows()],
+            c,
+        }
+    }
+
+    /// A right-hand side over the unknowns begins.
+    pub fn begin(&mut self, b: &[f64]) {
+        for (projected, column) in self.projected.iter_mut().zip(&self.columns[1].of_unknowns) {
+            *projected = column.iter().zip(b).map(|(y, b)| y * b).sum();
+        }
+    }
+
+    /// Adds to the right-hand side (unknown, value).
+    pub fn add(&mut self, b: &[(usize, f64)]) {
+        for (projected, column) in self.projected.iter_mut().zip(&self.columns[1].of_unknowns) {
+            *projected += b.iter().map(|&(at, value)| column[at] * value).sum::<f64>();
+        }
+    }
+
+    /// C p
+    fn weighted(&self, p: &[f64]) -> Vec<f64> {
+        let row = |i: usize| (0..p.len()).map(|k| self.c[(i, k)] * p[k]).sum();
+        (0..p.len()).map(row).collect()
+    }
+
+    /// C Y^T b
+    pub fn parts(&self) -> Vec<f64> {
+        self.weighted(&self.projected)
+    }
+
+    /// -C p and V (-C p) over all dofs.
+    pub fn answer(&self, p: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let parts: Vec<f64> = self.weighted(p).iter().map(|part| -part).collect();
+        let columns = &self.columns[0].of_dofs;
+        let mut motion = vec![0.0; columns.first().map_or(0, Vec::len)];
+        for (part, column) in parts.iter().zip(columns) {
+            motion
+                .iter_mut()
+                .zip(column)
+                .for_each(|(m, v)| *m += part * v);
+        }
+        (parts, motion)
+    }
+
+    /// Makes A^-1 b at some unknowns W b.
+    pub fn correct(&self, unknowns: &[usize], values: &mut [f64]) {
+        for (part, column) in self.parts().iter().zip(&self.columns[0].of_unknowns) {
+            for (&at, value) in unknowns.iter().zip(values.iter_mut()) {
+                *value -= part * column[at];
+            }
+        }
+    }
+
+    /// W b for A^-1 b over all unknowns.
+    pub fn corrected(&self, solution: &[f64]) -> Vec<f64> {
+        let mut solution = solution.to_vec();
+        for (part, column) in self.parts().iter().zip(&self.columns[0].of_unknowns) {
+            for (value, v) in solution.iter_mut().zip(column) {
+                *value -= part * v;
+            }
+        }
+        solution
+    }
+
+    /// Makes G A^-1 B^T of some constraints G W B^T.
+    pub fn change(&self, constraints: &[&Constraint], q: &mut DMatrix<f64>) {
+        let (n, m) = (constraints.len(), self.c.nrows());
+        type Row = fn(&Constraint, &[f64]) -> f64;
+        let [motions, works] = self.columns.each_ref();
+        let seen = |normal: Row, tangential: Row, columns: &Columns| {
+            DMatrix::from_fn(2 * n, m, |i, k| match i < n {
+                true => normal(constraints[i], &columns.of_dofs[k]),
+                false => tangential(constraints[i - n], &columns.of_dofs[k]),
+            })
+        };
+        let g = seen(Constraint::gap_change, Constraint::slip_change, motions);
+        let b = seen(
+            Constraint::normal_motion,
+            Constraint::tangential_motion,
+            works,
+        );
+        *q -= g * &self.c * b.transpose();
+    }
+}
