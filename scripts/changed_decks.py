@@ -579,6 +579,7 @@ def renumbered(deck: Deck, seed: int = 1) -> tuple[Deck, dict[str, str], dict[st
         names, end = {
             "NODE": (nodes, 1),
             "NSET": (nodes, None),
+            "MPC": (nodes, None),
             "ELSET": (elements, None),
             "CLOAD": (nodes, 1),
             "KINEMATICCOUPLING": (nodes, 1),

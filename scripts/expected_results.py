@@ -52,6 +52,9 @@ HANDED = re.compile(r"\w*(tangential\w*|angle|angular|angular_velocity|moment)")
 OF_CONSISTENT_MASS = ("ELKE", "consistent_angular")
 """What a boost changes by momenta of the consistent mass, which no history has."""
 
+BETWEEN_NODES = ("history/ties", "history/hinges")
+"""Groups whose labels are two nodes."""
+
 OF_FORCES = ("history/contact", "history/ties")
 """Groups whose moments are about the origin."""
 
@@ -429,7 +432,7 @@ def _in_order(
         return wanted, actual[:, order.bodies]
     group, _, own = name.rpartition("/")
     labels = f"{group}/labels"
-    if labels in old.data and not group.startswith("history/ties"):
+    if labels in old.data and not group.startswith(BETWEEN_NODES):
         map_ = change.nodes if group.startswith("history/nodes") else change.elements
         return wanted, actual[:, _places(old[labels], new[labels], map_, 0, 0)]
     return wanted, actual
