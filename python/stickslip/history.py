@@ -235,14 +235,21 @@ class RigidSurfaces(Named[Rigid]):
 
 
 class Solver(Group):
-    """Counters and errors of the solver [I]."""
+    """Counters of the solver [I]."""
 
     passes: Integers
     pivots: Integers
     factorizations: Integers
-    residual: Array
-    penetration: Array
     converged: NDArray[np.uint8]
+
+
+class Certificate(Group):
+    """What the run has checked in every increment [I]; the attribute `bound` of a dataset is its bound."""
+
+    residual: Array
+    """Force residual of the last pass, part of the largest force."""
+    balance: Array
+    """Energy balance, part of the largest energy."""
 
 
 class Impacts(Group):
@@ -273,6 +280,7 @@ class History(Group):
     elements: ElementSets
     rigid: RigidSurfaces
     solver: Solver
+    certificate: Certificate
     impacts: Impacts
 
     _groups = {
@@ -284,6 +292,7 @@ class History(Group):
         "elements": ElementSets,
         "rigid": RigidSurfaces,
         "solver": Solver,
+        "certificate": Certificate,
         "impacts": Impacts,
     }
 

@@ -732,7 +732,7 @@ const ELEMENT: [Entry<ElementResult>; 5] = [
 ];
 
 #[rustfmt::skip]
-const SOLVER: [Entry<SolverCounts>; 14] = [
+const SOLVER: [Entry<SolverCounts>; 9] = [
     ("passes", "1", "predictor and corrector passes", Count(|s| s.passes)),
     ("lcps", "1", "complementarity problems solved", Count(|s| s.lcps)),
     ("lcp_size", "1", "largest number of pairs in one of them", Count(|s| s.lcp_size)),
@@ -741,15 +741,5 @@ const SOLVER: [Entry<SolverCounts>; 14] = [
     ("gauss_seidel_sweeps", "1", "sweeps of the Gauss-Seidel method", Count(|s| s.gauss_seidel_sweeps)),
     ("lemke_calls", "1", "calls of Lemke's method", Count(|s| s.lemke_calls)),
     ("factorizations", "1", "factorisations of the effective matrix", Count(|s| s.factorizations)),
-    ("residual", "1", "relative force residual of the last pass", Real(|s| s.residual)),
-    ("overlap", "1",
-     "largest overlap of an open pair at the end, in lengths of its segment", Real(|s| s.violation.overlap)),
-    ("gap_violation", "1",
-     "largest gap of a closed pair at the end, in lengths of its segment", Real(|s| s.violation.gap)),
-    ("slip_violation", "1",
-     "largest slip of a sticking pair in the increment, in lengths of its segment", Real(|s| s.violation.slip)),
-    ("penetration", "1",
-     "largest penetration at the end, of an open pair or of edges that cross, in lengths of the edge",
-     Real(|s| s.violation.penetration)),
     ("converged", "1", "1 when the increment converged, else 0", Flag(|s| s.converged)),
 ];

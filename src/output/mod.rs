@@ -5,7 +5,9 @@
 //! `run_record`, `space`), `JOB.sta` (`status`), `JOB.log` and the screen (`console`).
 //! `docs/output.md` describes them. [`picture`] draws a model that is not run.
 
+mod balance;
 mod canvas;
+mod checks;
 mod column;
 mod console;
 mod echo;

@@ -7,6 +7,7 @@ use std::{fs, io};
 
 use hdf5::{File, FileBuilder};
 
+use super::checks::{self, Checks};
 use super::column::Columns;
 use super::error::{at, io_error};
 use super::fields;
@@ -32,6 +33,7 @@ pub(super) struct ResultFile<'m> {
     file: File,
     fields: Columns<'m, Frame>,
     history: Columns<'m, IncrementReport>,
+    checks: Columns<'m, Checks>,
     record: RecordWriter,
     space: Space,
     pace: Pace,
@@ -63,11 +65,12 @@ impl<'m> ResultFile<'m> {
             super::model_data::write(&file.group("model")?, model)?;
             let fields = fields::create(&file, model)?;
             let history = History::create(&file, model)?;
+            let checks = checks::create(&file.group("history")?, model)?;
             let record = RecordWriter::create(&file, record)?;
             file.flush()?;
-            Ok((fields, history, record))
+            Ok((fields, history, checks, record))
         };
-        let (fields, history, record) = parts().map_err(io_error).map_err(at(path))?;
+        let (fields, history, checks, record) = parts().map_err(io_error).map_err(at(path))?;
         let mut result = ResultFile {
             path: path.to_owned(),
             space: Space::new(draft).map_err(at(path))?,
@@ -76,6 +79,7 @@ impl<'m> ResultFile<'m> {
             frame_time: 0.0,
             fields,
             history,
+            checks,
             record,
             file,
             is_broken: false,
@@ -84,9 +88,10 @@ impl<'m> ResultFile<'m> {
         Ok(result)
     }
 
-    /// Appends the history row of an increment, which waits in memory.
-    pub fn history(&mut self, report: &IncrementReport) {
+    /// Appends the history row of an increment and of its checks, which wait in memory.
+    pub fn history(&mut self, report: &IncrementReport, checks: &Checks) {
         self.history.push(report);
+        self.checks.push(checks);
     }
 
     /// Appends a frame, which waits in memory.
@@ -111,7 +116,11 @@ impl<'m> ResultFile<'m> {
     /// Carries how far the file is written, after [`Self::write_through`]; what is read is copied from the `earlier`
     /// file.
     pub fn carry(&mut self, archive: &mut Archive, earlier: Option<&Path>) -> io::Result<()> {
-        let mut written = [self.fields.written(), self.history.written()];
+        let mut written = [
+            self.fields.written(),
+            self.history.written(),
+            self.checks.written(),
+        ];
         archive.carry(&mut written).map_err(io::Error::other)?;
         archive.carry(&mut self.frames).map_err(io::Error::other)?;
         archive
@@ -120,10 +129,11 @@ impl<'m> ResultFile<'m> {
         let Some(earlier) = earlier else {
             return Ok(());
         };
-        let [fields, history] = &written;
+        let [fields, history, checks] = &written;
         let copied = File::open(earlier).and_then(|file| {
             self.fields.copy(&file, fields)?;
-            self.history.copy(&file, history)
+            self.history.copy(&file, history)?;
+            self.checks.copy(&file, checks)
         });
         copied.map_err(io_error).map_err(at(earlier))?;
         self.write_through()
@@ -148,7 +158,9 @@ impl<'m> ResultFile<'m> {
     /// Writes what waits in memory: the numbers of frames and rows, by which readers go, after everything
     /// else.
     pub fn write(&mut self) -> io::Result<()> {
-        let written = (self.fields.flush()).and_then(|()| self.history.flush());
+        let written = (self.fields.flush())
+            .and_then(|()| self.history.flush())
+            .and_then(|()| self.checks.flush());
         self.checked(written)?;
         self.flush()?;
         let counted = (self.fields.note_counts()).and_then(|()| self.history.note_counts());
@@ -212,12 +224,13 @@ impl<'m> ResultFile<'m> {
     fn let_wait(&mut self, bytes: usize) {
         self.fields.let_wait(bytes);
         self.history.let_wait(bytes / FRAMES_TO_HISTORY);
+        self.checks.let_wait(bytes / FRAMES_TO_HISTORY);
     }
 
     /// Reserves disk space for all that may wait: a file that the library has written only in part is
     /// lost as a whole.
     fn room(&mut self) -> io::Result<()> {
-        let growth = self.fields.growth() + self.history.growth();
+        let growth = self.fields.growth() + self.history.growth() + self.checks.growth();
         self.space.ensure(growth).map_err(at(&self.path))
     }
 

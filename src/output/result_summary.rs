@@ -6,14 +6,14 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{Dataset, FileBuilder, Group, H5Type};
 use thiserror::Error;
 
+use super::checks::{self, CHECKS, Check};
 use super::column::ROWS;
 use super::error::{FileError, regular_file};
 use super::format::{bytes, counted, general, label, scientific, wrap};
 use super::model_group::BodyTimes;
-use super::monitor::error_line;
 use super::run_record::UNFINISHED;
 use super::warnings::{Findings, Losses, Touches, never_closed, part};
-use crate::dynamics::{ContactViolation, Energy, Touch};
+use crate::dynamics::{Energy, Touch};
 use crate::linear::{larger, largest};
 
 /// Why a result file could not be read.
@@ -74,15 +74,10 @@ pub struct ResultSummary {
     unrecorded: Vec<&'static str>,
     /// Largest energy or external work of the history.
     pub largest_energy: f64,
-    /// Largest absolute balance of the history.
-    pub worst_balance: f64,
-    /// Largest relative force residual of the history.
-    pub residual: f64,
+    /// The checks with their largest values.
+    checks: Vec<(&'static Check, f64)>,
     /// Where the energy has gone.
     losses: Losses,
-    /// How far the pairs were from the contact law at most; none without contact, and of a file from
-    /// before there was this history.
-    pub violation: Option<ContactViolation>,
     /// Warnings about the run, in lines of the screen.
     pub warnings: Vec<String>,
 }
@@ -133,12 +128,18 @@ impl ResultSummary {
             energy,
             unrecorded,
             largest_energy,
-            worst_balance: largest(&balance),
-            residual: largest(&column::<f64>(&history, "solver/residual")?),
+            checks: read_checks(&history)?,
             losses,
-            violation: read_violation(&history)?,
             warnings: findings.lines(),
         })
+    }
+
+    /// Largest value of a check of every increment, a dataset of `/history/certificate`.
+    pub fn check(&self, name: &str) -> Option<f64> {
+        let mut checks = self.checks.iter();
+        checks
+            .find(|(check, _)| check.name == name)
+            .map(|(_, value)| *value)
     }
 
     /// The summary as text.
@@ -161,7 +162,7 @@ impl ResultSummary {
         lines.extend(self.progress());
         lines.extend(self.contact_lines());
         lines.extend(self.energy_lines());
-        lines.push(error_line(self.residual, self.violation));
+        lines.extend(checks::line(&self.checks));
         lines.extend(self.warnings.iter().cloned());
         lines
     }
@@ -221,8 +222,6 @@ impl ResultSummary {
         });
         let pieces: Vec<String> = told.collect();
         let mut lines = wrap("energy", &pieces);
-        let part = scientific(part(self.worst_balance, self.largest_energy), 1);
-        lines.push(label("", &format!("balance {part} of the largest energy")));
         lines.extend(self.losses.lines());
         lines
     }
@@ -340,22 +339,12 @@ fn read_handovers(at: &Group) -> hdf5::Result<f64> {
     Ok(at.member_names()?.into_iter().map(last).sum())
 }
 
-/// How far the pairs were from the contact law at most, where the file has contacts and says it.
-fn read_violation(history: &Group) -> hdf5::Result<Option<ContactViolation>> {
-    let solver = history.group("solver")?;
-    if history.group("contact")?.member_names()?.is_empty() || !solver.link_exists("overlap") {
-        return Ok(None);
-    }
-    let most = |name| column::<f64>(&solver, name).map(|values| largest(&values));
-    Ok(Some(ContactViolation {
-        overlap: most("overlap")?,
-        gap: most("gap_violation")?,
-        slip: most("slip_violation")?,
-        penetration: match solver.link_exists("penetration") {
-            true => most("penetration")?,
-            false => f64::NAN,
-        },
-    }))
+/// The checks that the file has, with their largest values.
+fn read_checks(history: &Group) -> hdf5::Result<Vec<(&'static Check, f64)>> {
+    let at = history.group("certificate")?;
+    let made = CHECKS.iter().filter(|check| at.link_exists(check.name));
+    made.map(|check| Ok((check, largest(&column(&at, check.name)?))))
+        .collect()
 }
 
 /// Names of the contacts without normal force and without impact in the whole run.

@@ -8,7 +8,7 @@ use crate::dynamics::{Energy, Touch};
 use crate::model::ALL_EXTERIOR;
 
 /// Energy balance, relative to the largest energy, above which a run is warned about.
-const BALANCE: f64 = 1e-8;
+pub(crate) const BALANCE: f64 = 1e-8;
 /// Number of increments in the transit time of the shortest edge beyond which the errors of the mesh
 /// dominate.
 const MANY: f64 = 100.0;

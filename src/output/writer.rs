@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
 use std::{fs, io};
 
+use super::checks::Checks;
 use super::console::{Console, Log, Verbosity};
 use super::error::{OutputError, at};
 use super::failure::{cutback_advice, cutback_lines, failure_lines};
@@ -15,7 +16,7 @@ use super::format::{bytes, counted, scientific, wrap};
 use super::frames::{Frame, FrameSchedule};
 use super::job::Claim;
 use super::model_group::check_names;
-use super::monitor::{Monitor, Remarks, error_line, lcp_lines, timing_lines};
+use super::monitor::{Monitor, Remarks, lcp_lines, timing_lines};
 use super::restart::{Checkpoint, Origin};
 use super::result_file::ResultFile;
 use super::run_record::RunRecord;
@@ -125,7 +126,8 @@ impl<'a> ResultWriter<'a> {
         report.state = self.last.state.clone();
         report.nodal = self.last.nodal.clone();
         report.elements = Arc::clone(&self.last.elements);
-        self.result.history(&report);
+        let checks = Checks::new(&report, &self.monitor.balance);
+        self.result.history(&report, &checks);
         self.result.frame(&mut self.last);
         self.is_last_written = true;
         self.result.write()?;
@@ -287,7 +289,7 @@ impl<'a> ResultWriter<'a> {
     fn record_increment(&mut self, report: &IncrementReport) -> io::Result<()> {
         let remarks = self.monitor.add(report);
         self.print_remarks(report, &remarks)?;
-        self.result.history(report);
+        self.result.history(report, &remarks.checks);
         self.last.set(report);
         self.numbers = report.numbers();
         let is_frame = self.schedule.is_due(report);
@@ -412,9 +414,6 @@ impl<'a> ResultWriter<'a> {
         self.console.lines(timing_lines(summary, output, total))?;
         self.console.lines(self.monitor.lines(self.model))?;
         let solver = &summary.solver;
-        let has_contact = !self.model.contacts.is_empty();
-        let violation = has_contact.then_some(solver.violation);
-        (self.console).line(&error_line(solver.residual, violation))?;
         self.console.lines(lcp_lines(solver))?;
         self.console.lines(self.monitor.warnings(self.model))?;
         let (name, size) = self.result.name_and_size();

@@ -223,7 +223,7 @@ fn info_describes_a_result_file() {
         "1 step   10 increments   time 1   6 frames from 0 to 1",
         "exit status 0",
         "BOTTOM_TOP_2, largest normal force 20",
-        "balance 1.0e-12 of the largest energy",
+        "energy balance 1.0e-12",
     ] {
         assert!(out.contains(text), "{text}\n{out}");
     }

@@ -13,6 +13,8 @@ from conftest import ROOT, Job
 from decks import CANTILEVERS, parse, shortened
 from stickslip.certificate.certify import Certificate, certify
 from stickslip.certificate.check import Check
+from stickslip.certificate.histories import OWN
+from stickslip.certificate.own import own_checks, write_table
 from stickslip.deck import Deck
 from stickslip.errors import Fault
 from stickslip.result import Result
@@ -119,10 +121,10 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     "the time": (add("history/time", 1e-6), "time"),
     "an increment": (add("history/dt", 1e-6), "time"),
     "a pass": (add("history/solver/converged", -1.0), "time"),
-    "a residual": (add("history/solver/residual", 1e5), "law"),
-    "an overlap": (add("history/solver/overlap", 1e-6), "law"),
-    "a gap of the solver": (add("history/solver/gap_violation", 1e9), "law"),
-    "a slip of the solver": (add("history/solver/slip_violation", 1e9), "law"),
+    "a residual": (add("history/certificate/residual", 1e5), "law"),
+    "an overlap": (add("history/certificate/overlap", 1e-6), "law"),
+    "a gap of the solver": (add("history/certificate/gap", 1e9), "law"),
+    "a slip of the solver": (add("history/certificate/slip", 1e9), "law"),
     "a density": (add("model/materials/density", 1e-6), "mass"),
     "a mass": (add("model/bodies/mass", 1e-6), "mass"),
     "a modulus": (add("model/materials/young", 1e-6), "stresses"),
@@ -182,6 +184,30 @@ def test_a_result_holds(result: Path) -> None:
     assert told["equilibrium"].shown()[0] < 1e-11 and told["equilibrium"].count > 1000
 
 
+def test_the_run_keeps_its_checks_in_one_table(result: Path, tmp_path: Path) -> None:
+    with Result(result) as read:
+        checks = {check.name.rpartition("/")[2]: check for check in own_checks(read)}
+        # two bodies, one of which is clamped: no momentum is kept
+        assert {*checks} == {*OWN, "penetration"} - {"momentum"}
+        bounds = {name: check.bound for name, check in checks.items() if name != "penetration"}
+        assert bounds == {name: OWN[name] for name in bounds}
+        assert np.isnan(checks["penetration"].bound)
+        for name in ("cone", "impulse_cone"):
+            of_contacts = [contact[f"{name}_violation"] for contact in read.contact.values()]
+            assert (checks[name].values == np.max(of_contacts, axis=0)).all()
+        energy = read.history.energy
+        accounts = [np.abs(energy[name]) for name in ("kinetic", "strain", "external_work")]
+        largest = np.maximum.accumulate(np.max(accounts, axis=0))
+        assert np.allclose(
+            checks["balance"].values * largest, np.abs(energy.balance), rtol=1e-14, atol=0.0
+        )
+        write_table(read, tmp_path / "own.csv")
+        increments = len(largest)
+    rows = (tmp_path / "own.csv").read_text().splitlines()
+    assert len(rows) == increments + 1
+    assert rows[0].startswith("increment,time,certificate/")
+
+
 @pytest.mark.parametrize("what", SPOILED)
 def test_a_spoiled_file_fails(result: Path, tmp_path: Path, what: str) -> None:
     spoil, check = SPOILED[what]
@@ -211,10 +237,10 @@ def test_edges_that_cross_beyond_what_is_recorded_fail(job: Job, tmp_path: Path)
     certificate = certify(path)
     assert certificate.holds, certificate.table()
     with Result(path) as result:
-        assert result.history.solver.penetration.max() > 1e-3
+        assert result.history.certificate.penetration.max() > 1e-3
 
     def forget(file: h5py.File) -> None:
-        file["history/solver/penetration"][...] = 0.0
+        file["history/certificate/penetration"][...] = 0.0
 
     assert broken(spoiled(path, tmp_path, forget)) == ["crossing"]
 

@@ -209,7 +209,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 79] = [
+const PER_INCREMENT: [&str; 82] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -275,6 +275,14 @@ const PER_INCREMENT: [&str; 79] = [
     "/history/contact/BOTTOM_TOP_2/cone_violation",
     "/history/contact/BOTTOM_TOP_2/impulse_cone_violation",
     "/history/contact/BOTTOM_TOP_2/handover_work",
+    "/history/certificate/residual",
+    "/history/certificate/overlap",
+    "/history/certificate/gap",
+    "/history/certificate/slip",
+    "/history/certificate/penetration",
+    "/history/certificate/cone",
+    "/history/certificate/impulse_cone",
+    "/history/certificate/balance",
     "/history/solver/passes",
     "/history/solver/lcps",
     "/history/solver/lcp_size",
@@ -283,11 +291,6 @@ const PER_INCREMENT: [&str; 79] = [
     "/history/solver/gauss_seidel_sweeps",
     "/history/solver/lemke_calls",
     "/history/solver/factorizations",
-    "/history/solver/residual",
-    "/history/solver/overlap",
-    "/history/solver/gap_violation",
-    "/history/solver/slip_violation",
-    "/history/solver/penetration",
     "/history/solver/converged",
 ];
 

@@ -10,10 +10,14 @@ EPS = float(np.finfo(np.float64).eps)
 OWN = {
     "residual": 1e-8,
     "overlap": 1e-8,
-    "gap_violation": 1e-8,
-    "slip_violation": 1e-8,
+    "gap": 1e-8,
+    "slip": 1e-8,
+    "cone": 1e-9,
+    "impulse_cone": 1e-9,
+    "balance": 1e-8,
+    "momentum": 1e-9,
 }
-"""Errors of the contact law that the program has measured itself, with their bounds."""
+"""What the program has measured itself, with bounds."""
 
 SUMS = ("normal_work", "friction_dissipation", "landing_return", "release_loss")
 """Accounts of the contacts; those of the whole model have other names in part."""
@@ -65,8 +69,8 @@ def _time(result: Result, check: Check) -> None:
 def _own(result: Result, checks: Checks) -> None:
     """What the program has measured in every increment."""
     for name, bound in OWN.items():
-        if f"solver/{name}" in result.histories:
-            checks["law"].add(result.history.solver[name], bound, f"{name}, increment {{}}")
+        if name in result.history.certificate:
+            checks["law"].add(result.history.certificate[name], bound, f"{name}, increment {{}}")
 
 
 def _ledger(result: Result, checks: Checks) -> None:

@@ -36,7 +36,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             checks[name].skip(str(fault).partition(": ")[2])
         return
     obstacles = profiles(result)
-    recorded = result.history["time"], result.history.solver["penetration"]
+    recorded = result.history["time"], result.history.certificate["penetration"]
     gone: Gone = frozenset()
     before = result.frames[0].positions
     fits = Fits(result)

@@ -410,8 +410,8 @@ def _checks(result: Result) -> list[dict[str, Any]]:
             {
                 "name": check.name,
                 "text": check.text,
-                "of": check.contact,
                 "largest": float(abs(check.values[row])),
+                "bound": None if np.isnan(check.bound) else check.bound,
                 "increment": row,
                 "time": float(time[row]),
             }

@@ -102,7 +102,7 @@ function solverChart(page) {
     {
       name: "checks",
       make: async () => {
-        const wanted = present(page, checks).map((name) => ({ name, label: name.startsWith("energy") ? "energy balance" : words(name), each: size }));
+        const wanted = present(page, checks).map((name) => ({ name, label: words(name), each: size }));
         return { ...(await curves(page, wanted)), axis: "error", log: true };
       },
     },

@@ -249,13 +249,12 @@ class Page {
 
   checkTable() {
     const { checks } = this.result;
-    const head = ["check", "largest", "increment", "time"].map((text) => make("th", { scope: "col" }, text));
+    const head = ["check", "largest", "bound", "increment", "time"].map((text) => make("th", { scope: "col" }, text));
     const rows = checks.map((check) => {
-      const name = check.of ? `${check.of}: ${check.text}` : check.text;
       const go = () => this.player.go(this.result.nearestFrame(check.time));
       const time = make("button", { type: "button", class: "link", onclick: go, title: "show this time" }, number(check.time));
       const where = check.largest > 0 ? [String(check.increment), time] : ["–", "–"];
-      return make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, check.largest > 0 ? check.largest.toExponential(1) : "0"), ...where.map((each) => make("td", {}, each)));
+      return make("tr", {}, make("th", { scope: "row" }, check.text), make("td", {}, check.largest > 0 ? check.largest.toExponential(1) : "0"), make("td", {}, check.bound?.toExponential(0) ?? "–"), ...where.map((each) => make("td", {}, each)));
     });
     const { certificate } = this.result;
     byId("checks").append(make("p", { class: "note" }, `Certificate, recomputed from the file: ${certificate}.`));

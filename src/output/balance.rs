@@ -1,0 +1,163 @@
+//! The energy balance of a run, the energy that contact puts in, and the momentum of a model without forces from outside,
+//! increment by increment. Sections 7 and 9 of docs/theory.md.
+
+use super::warnings::{Losses, part};
+use crate::dynamics::{Energy, IncrementReport, Momentum};
+use crate::linear::larger;
+use crate::model::{Connector, Equation, Model};
+
+/// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Balance {
+    /// Largest energy or external work so far.
+    pub largest: f64,
+    /// Largest absolute balance so far.
+    worst: f64,
+    /// The last energies.
+    last: Energy,
+    /// Normal work of nodes that took the place of others so far.
+    handover_work: f64,
+    contact_energy: ContactEnergy,
+    /// Momentum at the start of a model without external forces.
+    start: Option<Momentum>,
+    /// Mass of all bodies.
+    mass: f64,
+    /// Largest sqrt(2 M T) so far, which the linear momenta of all bodies do not exceed.
+    momentum: f64,
+    /// Largest change of the linear momentum so far, what mass-proportional damping took put back.
+    drift: f64,
+    free: bool,
+}
+
+/// Increments in which the normal contact forces did positive work: with energy-momentum contact
+/// those that a pair enters with a negative gap.
+#[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct ContactEnergy {
+    /// Number of these increments.
+    pub count: usize,
+    /// The energy that contact put in.
+    pub energy: f64,
+}
+
+impl Balance {
+    /// The balance of a model's run.
+    pub fn new(model: &Model) -> Self {
+        let free = model.equations.iter().all(keeps_momentum)
+            && model.connectors.iter().all(Connector::has_no_resultant)
+            && model.steps.iter().all(|step| {
+                step.supports.is_empty()
+                    && step.point_loads.is_empty()
+                    && step.body_forces.is_empty()
+                    && step.pressures.is_empty()
+                    && step.tractions.is_empty()
+            });
+        let elements = model.mesh.elements.iter();
+        let bodies = model.turning_bodies().flat_map(|(_, body)| &body.masses);
+        let of_points: f64 = bodies.map(|(_, mass)| mass).sum();
+        Balance {
+            free,
+            mass: of_points + elements.map(|e| model.element_mass(e)).sum::<f64>(),
+            ..Balance::default()
+        }
+    }
+
+    /// Enters an increment; returns the energy that contact put in, if it did.
+    pub fn add(&mut self, report: &IncrementReport) -> Option<f64> {
+        let Energy {
+            kinetic,
+            strain,
+            external_work,
+            balance,
+            ..
+        } = report.energy;
+        for energy in [kinetic, strain, external_work] {
+            self.largest = larger(self.largest, energy.abs());
+        }
+        self.worst = larger(self.worst, balance.abs());
+        if self.free {
+            let most = (2.0 * self.mass * kinetic).sqrt();
+            self.momentum = larger(self.momentum, most);
+            self.add_momentum(report.momentum);
+        }
+        self.last = report.energy;
+        self.handover_work = report.contacts.iter().map(|c| c.handover_work).sum();
+        if let Some(added) = report.contact_energy {
+            self.contact_energy.count += 1;
+            self.contact_energy.energy += added;
+        }
+        report.contact_energy
+    }
+
+    /// The increments in which contact put energy in.
+    pub fn contact_energy(&self) -> ContactEnergy {
+        self.contact_energy
+    }
+
+    fn add_momentum(&mut self, momentum: Momentum) {
+        let [dx, dy] = momentum.damped_linear;
+        let [x, y] = [momentum.linear[0] + dx, momentum.linear[1] + dy];
+        let [x0, y0] = self.start.get_or_insert(momentum).linear;
+        self.drift = larger(self.drift, (x - x0).hypot(y - y0));
+    }
+
+    /// `balance` as a part of the largest energy so far.
+    pub fn relative(&self, balance: f64) -> f64 {
+        part(balance, self.largest)
+    }
+
+    /// The worst balance so far as a part of the largest energy.
+    pub fn worst(&self) -> f64 {
+        part(self.worst, self.largest)
+    }
+
+    /// Where the energy has gone so far.
+    pub fn losses(&self) -> Losses {
+        Losses::new(&self.last, self.handover_work, self.largest)
+    }
+
+    /// Whether no forces act from outside.
+    pub fn is_free(&self) -> bool {
+        self.free
+    }
+
+    /// The change of a free model's linear momentum as a part of the largest momenta of its bodies.
+    pub fn momentum_drift(&self) -> Option<f64> {
+        self.free.then(|| part(self.drift, self.momentum))
+    }
+}
+
+/// Whether the forces of an equation have no resultant: the sum of its coefficients is zero for
+/// each direction.
+fn keeps_momentum(equation: &Equation) -> bool {
+    let own = [(equation.dof, -1.0)];
+    let terms = own.iter().chain(&equation.terms);
+    let mut sums = [[0.0; 2]; 2];
+    for &(dof, c) in terms {
+        let [sum, size] = &mut sums[dof % 2];
+        (*sum, *size) = (*sum + c, *size + f64::abs(c));
+    }
+    sums.iter()
+        .all(|[sum, size]| sum.abs() <= Equation::ROUND_OFF * size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_balance_that_is_no_number_is_the_worst() {
+        let report = |balance| IncrementReport {
+            energy: Energy {
+                kinetic: 1.0,
+                balance,
+                ..Energy::default()
+            },
+            ..IncrementReport::default()
+        };
+        let mut balance = Balance::default();
+        for value in [1e-3, f64::NAN, 1e-9] {
+            balance.add(&report(value));
+        }
+        assert!(balance.worst().is_nan());
+    }
+}

@@ -1,0 +1,210 @@
+//! What a run checks in every increment, each beside its bound: the table `/history/certificate`, and the line on the
+//! screen with the largest of all increments. Sections 4, 8 and 9 of docs/theory.md.
+
+use hdf5::Group;
+
+use super::balance::Balance;
+use super::column::{Columns, Layout, Mostly, group, set_attribute};
+use super::format::{scientific, wrap};
+use super::warnings::BALANCE;
+use crate::dynamics::{ContactResultant, IncrementReport};
+use crate::linear::larger;
+use crate::model::Model;
+
+/// A quantity that is zero but for round-off and for what the passes leave.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Check {
+    /// Its dataset.
+    pub name: &'static str,
+    text: &'static str,
+    /// Largest value that counts as none; NaN where nothing holds it down.
+    bound: f64,
+    of: Of,
+}
+
+/// Models that a check is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    All,
+    WithContact,
+    /// Without forces from outside.
+    Free,
+}
+
+/// Largest residual, overlap, gap and slip of increments that have converged: a thousand times what the passes leave.
+const LAW: f64 = 1e-8;
+/// Force outside of the cone that is round-off.
+const CONE: f64 = 1e-9;
+/// Change of the momentum that is round-off.
+const MOMENTUM: f64 = 1e-9;
+/// Penetration that is told: less is round-off of positions.
+const SHOWN_PENETRATION: f64 = 1e-9;
+
+#[rustfmt::skip]
+pub(crate) const CHECKS: [Check; 9] = [
+    Check { name: "residual", bound: LAW, of: Of::All,
+        text: "force residual of the last pass, part of the largest force" },
+    Check { name: "overlap", bound: LAW, of: Of::WithContact,
+        text: "largest overlap of an open pair at the end, in lengths of its segment" },
+    Check { name: "gap", bound: LAW, of: Of::WithContact,
+        text: "largest gap of a closed pair at the end, in lengths of its segment" },
+    Check { name: "slip", bound: LAW, of: Of::WithContact,
+        text: "largest slip of a sticking pair in the increment, in lengths of its segment" },
+    Check { name: PENETRATION, bound: f64::NAN, of: Of::WithContact,
+        text: "largest penetration at the end, of an open pair or of edges that cross, in lengths of the edge" },
+    Check { name: "cone", bound: CONE, of: Of::WithContact,
+        text: "force of a pair outside of Coulomb's cone, part of the largest normal force of its contact" },
+    Check { name: "impulse_cone", bound: CONE, of: Of::WithContact,
+        text: "the same of the total impulses of the pairs in the increment" },
+    Check { name: "balance", bound: BALANCE, of: Of::All,
+        text: "energy balance, part of the largest energy so far" },
+    Check { name: "momentum", bound: MOMENTUM, of: Of::Free,
+        text: "change of the linear momentum since the start, part of the largest so far; without forces from outside" },
+];
+
+const PENETRATION: &str = "penetration";
+
+/// Values of [`CHECKS`], those of which the model has none being zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Checks([f64; CHECKS.len()]);
+
+impl Checks {
+    /// Those of an increment, whose energies `balance` knows.
+    pub fn new(report: &IncrementReport, balance: &Balance) -> Self {
+        let most =
+            |of: fn(&ContactResultant) -> f64| report.contacts.iter().map(of).fold(0.0, larger);
+        let violation = report.solver.violation;
+        Checks([
+            report.solver.residual,
+            violation.overlap,
+            violation.gap,
+            violation.slip,
+            violation.penetration,
+            most(|contact| contact.cone_violation),
+            most(|contact| contact.impulse_cone_violation),
+            balance.relative(report.energy.balance.abs()),
+            balance.momentum_drift().unwrap_or(0.0),
+        ])
+    }
+
+    /// Takes in those of another increment.
+    pub fn enter(&mut self, others: Checks) {
+        for (most, value) in self.0.iter_mut().zip(others.0) {
+            *most = larger(*most, value);
+        }
+    }
+
+    /// Those that are made of the model, with their values.
+    pub fn of(&self, model: &Model) -> Vec<(&'static Check, f64)> {
+        let made = CHECKS.iter().zip(self.0);
+        made.filter(|(check, _)| check.is_made_of(model)).collect()
+    }
+}
+
+impl Check {
+    fn is_made_of(&self, model: &Model) -> bool {
+        match self.of {
+            Of::All => true,
+            Of::WithContact => !model.contacts.is_empty(),
+            Of::Free => Balance::new(model).is_free(),
+        }
+    }
+
+    fn fails(&self, value: f64) -> bool {
+        !self.bound.is_nan() && (value.is_nan() || value > self.bound)
+    }
+
+    fn words(&self) -> String {
+        match self.name {
+            "balance" => "energy balance".to_owned(),
+            name => name.replace('_', " "),
+        }
+    }
+
+    /// The check in the line; none of a penetration that is round-off.
+    fn told(&self, value: f64) -> Option<String> {
+        let shown = scientific(value, 1);
+        match (self.name, self.fails(value)) {
+            (PENETRATION, _) if value <= SHOWN_PENETRATION => None,
+            (PENETRATION, _) => Some(format!("edges cross by {shown} of an edge")),
+            (_, true) => Some(format!(
+                "{} {shown} above {}",
+                self.words(),
+                scientific(self.bound, 0)
+            )),
+            (_, false) => Some(format!("{} {shown}", self.words())),
+        }
+    }
+}
+
+/// Creates `/history/certificate`; the attribute `bound` of each dataset is its bound.
+pub(crate) fn create<'m>(history: &Group, model: &Model) -> hdf5::Result<Columns<'m, Checks>> {
+    let at = group(history, "certificate")?;
+    let mut columns = Columns::new();
+    for (k, check) in CHECKS
+        .iter()
+        .enumerate()
+        .filter(|(_, check)| check.is_made_of(model))
+    {
+        let layout = Layout::one_by_one::<f64>(&[], Mostly::Varied);
+        columns.add(
+            &at,
+            check.name,
+            layout,
+            ("1", check.text),
+            move |checks: &Checks, values| {
+                values.push(checks.0[k]);
+            },
+        )?;
+        let dataset = at.dataset(check.name)?;
+        set_attribute(&dataset, "bound", check.bound)?;
+    }
+    Ok(columns)
+}
+
+/// The line about a run, given the largest values of its checks.
+pub(crate) fn line(checks: &[(&Check, f64)]) -> Vec<String> {
+    let failed = checks
+        .iter()
+        .filter(|(check, value)| check.fails(*value))
+        .count();
+    let verdict = match failed {
+        0 => "all hold".to_owned(),
+        failed => format!("{failed} of {} fail", checks.len()),
+    };
+    let told = checks
+        .iter()
+        .filter_map(|(check, value)| check.told(*value));
+    wrap(
+        "checks",
+        &[verdict].into_iter().chain(told).collect::<Vec<_>>(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The line of checks with one value.
+    fn with(name: &str, value: f64) -> String {
+        let of = |check: &'static Check| (check, if check.name == name { value } else { 0.0 });
+        line(&CHECKS.iter().map(of).collect::<Vec<_>>()).join("\n")
+    }
+
+    #[test]
+    fn what_is_above_its_bound_fails() {
+        assert!(with("gap", 9e-9).starts_with("checks   all hold   residual 0.0e+00   overlap"));
+        assert!(with("gap", 9e-9).contains("gap 9.0e-09\n"));
+        assert!(with("gap", 1.1e-8).starts_with("checks   1 of 9 fail"));
+        assert!(with("gap", 1.1e-8).contains("gap 1.1e-08 above 1e-08"));
+        assert!(with("balance", f64::NAN).contains("energy balance nan above 1e-08"));
+    }
+
+    #[test]
+    fn edges_that_cross_are_told_but_nothing_holds_them_down() {
+        assert!(!with("penetration", 1e-10).contains("cross"));
+        let told = with("penetration", 3.71e-5);
+        assert!(told.starts_with("checks   all hold"));
+        assert!(told.contains("edges cross by 3.7e-05 of an edge"));
+    }
+}
