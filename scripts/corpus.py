@@ -1,5 +1,6 @@
 """Checks every deck of a folder within bounds of time and memory and makes a table of what becomes of
-them: models, and messages by the code and the keyword of the first error."""
+them: models, and messages by the code and the keyword of the first error. Models are run, and their
+displacements compared with the results of CalculiX beside the deck."""
 
 import argparse
 import collections
@@ -9,13 +10,22 @@ import re
 import resource
 import subprocess
 import sys
+import tempfile
 import time
+
+import numpy as np
+from stickslip.deck import Deck
+from stickslip.result import Result
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "reliability.md"
 SECONDS = 20
 MEGABYTES = 1024
+# Loads of the second comparison, beside those of the deck.
+SMALL = 1e-4
 # Line of a message: `error[D201]: ...`, and its place two lines below.
+# Heading of a table of displacements in a result of CalculiX.
+TABLE = re.compile(r"^ displacements \(vx,vy,vz\) for set \S+ and time +(\S+)$")
 ERROR = re.compile(r"^error\[(D\d+)\]: (.*)$", re.MULTILINE)
 PLACE = re.compile(r"^ *--> .+:(\d+):\d+$", re.MULTILINE)
 
@@ -65,6 +75,75 @@ def table(found):
     return lines
 
 
+def displacements(path):
+    """Tables of a result of CalculiX: time, and displacements by node number."""
+    tables = []
+    for line in path.read_text().splitlines():
+        heading = TABLE.match(line)
+        fields = line.split()
+        if heading:
+            tables.append((float(heading[1]), {}))
+        elif tables and len(fields) == 4 and fields[0].isdigit():
+            tables[-1][1][int(fields[0])] = [float(value) for value in fields[1:3]]
+        elif fields:
+            tables.append((0.0, {}))
+    return [table for table in tables if table[1]]
+
+
+def scaled(deck, folder):
+    """A deck whose loads and prescribed motions are SMALL times those of another."""
+    read = Deck.read(deck)
+    for keyword, field in (("CLOAD", 2), ("DLOAD", 2), ("BOUNDARY", 3)):
+        for card in read.find(keyword):
+            for row in card.rows:
+                if len(row) > field:
+                    row[field] = repr(float(row[field]) * SMALL)
+    path = folder / f"{deck.stem}_small.inp"
+    path.write_text(read.text())
+    return path
+
+
+def difference(program, deck, tables, scale):
+    """Increments of a model that CalculiX has solved too, and the largest difference of its
+    displacements, divided by `scale`, as a part of the largest one; or how it ends."""
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            done = subprocess.run([program, "run", deck, "-o", folder], capture_output=True,
+                                  timeout=SECONDS, preexec_fn=bound, check=False)
+        except subprocess.TimeoutExpired:
+            return "", f"no end after {SECONDS} s"
+        if done.returncode:
+            return "", f"exit {done.returncode}"
+        largest = worst = 0.0
+        with Result(f"{folder}/{deck.stem}.vtkhdf") as result:
+            increments = len(result.history.time) - 1
+            index = {int(label): k for k, label in enumerate(result.read("model/node_labels"))}
+            for when, nodes in tables:
+                moved = result.frame(when)["U"] / scale
+                own = np.array([moved[index[node], :2] for node in nodes])
+                other = np.array([*nodes.values()])
+                largest = max(largest, np.abs(other).max())
+                worst = max(worst, np.abs(own - other).max())
+    return str(increments), f"{worst / largest:.1e}" if tables else "no displacements printed"
+
+
+def compared(program, decks):
+    """Lines about the models, each beside the result of CalculiX."""
+    lines = ["", "The models, run unchanged: the largest difference of their displacements from those of "
+             "CalculiX, as a part of the largest. CalculiX takes displacements for small; the last column "
+             f"has loads of {SMALL:g} times these.", "",
+             "| deck | increments | difference | small loads |", "|---|---|---|---|"]
+    for deck in decks:
+        reference = deck.with_suffix(".dat.ref")
+        tables = displacements(reference) if reference.exists() else []
+        increments, whole = difference(program, deck, tables, 1.0)
+        with tempfile.TemporaryDirectory() as folder:
+            small = scaled(deck, pathlib.Path(folder))
+            lines.append(f"| {deck.stem} | {increments} | {whole} | "
+                         f"{difference(program, small, tables, SMALL)[1] if tables else ''} |")
+    return lines if decks else []
+
+
 def report(package, results, lenient):
     """The section of the page."""
     ends = [end for end, _ in results]
@@ -100,6 +179,8 @@ def main():
     results = [check(options.program, deck) for deck in decks]
     lenient = [check(options.program, deck, ["--lenient"]) for deck in decks]
     text = report(" ".join(package.split("_")[:2]), results, lenient)
+    models = [deck for deck, (end, _) in zip(decks, results) if end[0] == "model"]
+    text = "\n".join([text, *compared(options.program, models)])
     print(text)
     faults = [(deck, end) for runs in (results, lenient) for deck, (end, _) in zip(decks, runs)
               if end[0] == "fault"]

@@ -17,6 +17,8 @@ pub(crate) struct MaterialPlaces {
     pub poisson: Span,
     /// Mass-proportional damping.
     pub damping: Span,
+    /// Whether the deck gives no density.
+    pub has_no_density: bool,
 }
 
 /// A material as far as the deck gives it.
@@ -27,6 +29,9 @@ struct Draft {
     density: Constant<f64>,
     damping: Damping,
 }
+
+/// Density where none is given: static steps use none, and masses are volumes.
+const NO_DENSITY: f64 = 1.0;
 
 /// The materials of a deck before their sections are known.
 pub(super) struct Drafts {
@@ -51,29 +56,31 @@ impl Drafts {
         Drafts { names, all }
     }
 
-    /// Reports constants that a material in use lacks.
-    pub fn report_incomplete(&self, sections: &[Section], cx: &mut Context) {
+    /// Reports materials in use without elasticity.
+    pub fn report_without_law(&self, sections: &[Section], cx: &mut Context) {
         if cx.may_lack_cards() {
             return;
         }
         for (index, draft) in self.all.iter().enumerate() {
             if sections.iter().any(|section| section.material == index) {
-                draft.report_incomplete(cx);
+                draft.report_without_law(cx);
             }
         }
     }
 
-    /// The materials, with unknown constants as zero, which a model without errors never has in use, and
-    /// their places.
+    /// The materials and their places. Unknown constants of the law are zero, which a model without errors never has in
+    /// use; a density that is not given is [`NO_DENSITY`].
     pub fn complete(self, cx: &mut Context) -> (Vec<Material>, Vec<MaterialPlaces>) {
         let complete = self.all.into_iter().map(|draft| {
             let material = Material {
                 name: draft.name,
                 law: draft.law.given().unwrap_or(Law::elastic(0.0, 0.0)),
-                density: draft.density.given().unwrap_or(0.0),
+                density: draft.density.given().unwrap_or(NO_DENSITY),
                 damping: draft.damping,
             };
-            hint_at_units(&material, draft.places.material, cx);
+            if !draft.places.has_no_density {
+                hint_at_units(&material, draft.places.material, cx);
+            }
             (material, draft.places)
         });
         complete.unzip()
@@ -88,8 +95,9 @@ fn draft(
     cx: &mut Context,
 ) -> Draft {
     let material = block.head.span;
-    let density = block.parts_of("DENSITY");
-    cx.only_once(&density);
+    let densities = block.parts_of("DENSITY");
+    cx.only_once(&densities);
+    let density = constant(&densities, density_row, cx);
     let own = damping(&block.parts_of("DAMPING"), cx);
     let (damping, damping_place) = own.or(general).unwrap_or((Damping::default(), material));
     Draft {
@@ -98,9 +106,10 @@ fn draft(
             material,
             poisson: poisson_span(block).unwrap_or(material),
             damping: damping_place,
+            has_no_density: density == Constant::Missing,
         },
         law: law(block, cx),
-        density: constant(&density, density_row, cx),
+        density,
         damping,
     }
 }
@@ -115,18 +124,11 @@ fn density_row(row: Line, cx: &mut Context) -> Option<f64> {
 }
 
 impl Draft {
-    fn report_incomplete(&self, cx: &mut Context) {
-        let missing = match (
-            self.law == Constant::Missing,
-            self.density == Constant::Missing,
-        ) {
-            (true, true) => "*ELASTIC and *DENSITY",
-            (true, false) => "*ELASTIC",
-            (false, true) => "*DENSITY",
-            (false, false) => return,
-        };
-        let message = format!("material {} lacks {missing}", self.name);
-        cx.error(Code::IncompleteMaterial, self.places.material, message);
+    fn report_without_law(&self, cx: &mut Context) {
+        if self.law == Constant::Missing {
+            let message = format!("material {} lacks *ELASTIC or *HYPERELASTIC", self.name);
+            cx.error(Code::IncompleteMaterial, self.places.material, message);
+        }
     }
 }
 

@@ -110,6 +110,7 @@ fn read(cx: &mut Context) -> Model {
     };
     let connectors = connectors::read(&outline, targets, cx);
     let mut steps = steps::read(&outline, targets, (&surfaces, &contacts), guide, cx);
+    checks::density(&properties, mesh, &steps.all, cx);
     let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     let all = &mut steps.all;
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);

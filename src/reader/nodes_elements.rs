@@ -89,7 +89,9 @@ impl MeshReading {
     /// Reads the node of any row; returns its number.
     fn node(&mut self, row: Line, cx: &mut Context) -> Option<u64> {
         let fields: SmallVec<[Text; 4]> = row.fields().collect();
-        row.at_most(4, cx.d);
+        // a normal of shells may follow an empty z; after a z, a fifth field is a decimal comma
+        let has_empty_z = fields.get(3).is_some_and(|z| z.is_empty());
+        row.at_most(if has_empty_z { 7 } else { 4 }, cx.d);
         let number = row.required(0, "the node number", cx.d)?;
         let label = self.mesh_index.nodes.label(number, cx)?;
         let known = self.mesh_index.nodes.get(label);

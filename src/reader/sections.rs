@@ -38,7 +38,7 @@ pub(super) fn read(
         complete &= properties.assign(section, card, mesh_index, sets, cx);
     }
     report_without_section(complete, mesh_index, cx);
-    drafts.report_incomplete(&properties.sections, cx);
+    drafts.report_without_law(&properties.sections, cx);
     (properties.materials, properties.places) = drafts.complete(cx);
     properties.report_plane_stress(mesh_index, cx);
     properties.report_locking(mesh_index, cx);

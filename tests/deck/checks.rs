@@ -50,6 +50,29 @@ fn increments_suit_the_waves_of_the_material() {
     assert!(found("1.e-3, 0.02") && found("4.e4, 1.e5"));
 }
 
+#[test]
+fn a_normal_may_follow_an_empty_z() {
+    let codes = |row: &str| codes(&square("3, 1., 1.", row));
+    assert!(!codes("3, 1., 1., , 0.").contains(&Code::ExtraField));
+    assert!(!codes("3, 1., 1., , 0., 0., 1.").contains(&Code::ExtraField));
+    assert!(codes("3, 1., 1., , 0., 0., 1., 0.").contains(&Code::ExtraField));
+    assert!(codes("3, 1., 1., 0., 1.").contains(&Code::ExtraField));
+}
+
+#[test]
+fn static_steps_without_weight_need_no_density() {
+    let bare = SQUARE.replace("*DENSITY\n1.\n", "");
+    let is_static = bare.replace("*DYNAMIC", "*STATIC");
+    let found = |deck: &str| codes(&Source::Text(deck.to_owned()));
+    assert!(found(&bare).contains(&Code::IncompleteMaterial));
+    assert!(found(&is_static).contains(&Code::NoDensity));
+    assert!(!found(&is_static).contains(&Code::IncompleteMaterial));
+    let weighed = is_static.replace("*END STEP", "*DLOAD\nBODY, GRAV, 9.81, 0., -1.\n*END STEP");
+    assert!(found(&weighed).contains(&Code::IncompleteMaterial));
+    let moved = format!("{is_static}*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*END STEP\n");
+    assert!(found(&moved).contains(&Code::IncompleteMaterial));
+}
+
 /// The square without its load.
 fn unloaded() -> String {
     SQUARE.replacen("3, 2, 4.", "3, 2, 0.", 1)

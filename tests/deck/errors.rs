@@ -181,6 +181,11 @@ fn faulty(code: Code) -> Source {
         ),
         IncompleteMaterial => square("*DENSITY\n1.\n", ""),
         MaterialRange => square("1000., 0.3", "1000., 0.5"),
+        NoDensity => Source::Text(
+            SQUARE
+                .replace("*DENSITY\n1.\n", "")
+                .replace("*DYNAMIC", "*STATIC"),
+        ),
         NoSection => square("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n", ""),
         TwoSections => model("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER"),
         Locking => Source::Text(SQUARE.replace("CPS4", "CPE4").replace("0.3", "0.495")),

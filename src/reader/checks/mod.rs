@@ -8,5 +8,5 @@ mod overlap;
 
 pub(super) use amplitudes::amplitudes;
 pub(super) use mesh::{coincident_nodes, magnitudes, mesh};
-pub(super) use model::{braked_flight, fixed_slaves, motion, proportion, thickness};
+pub(super) use model::{braked_flight, density, fixed_slaves, motion, proportion, thickness};
 pub(super) use overlap::overlap;

@@ -1,5 +1,5 @@
 //! Whether the model makes sense as a whole: increments and duration against the time that waves take,
-//! something that moves, damping of bodies in free flight, slaves that contact cannot move, and the
+//! something that moves, densities, damping of bodies in free flight, slaves that contact cannot move, and the
 //! thickness of both sides of a contact.
 
 use crate::diagnostics::Code;
@@ -10,6 +10,7 @@ use crate::model::{
 use crate::reader::context::Context;
 use crate::reader::materials::MaterialPlaces;
 use crate::reader::outline::StepCards;
+use crate::reader::sections::Properties;
 use std::collections::BTreeSet;
 
 /// Sides that waves cross in one increment, above which the increment cannot be meant: implicit
@@ -94,6 +95,48 @@ fn has_cause(step: &Step) -> bool {
 
 fn acts<T>(loads: &[Load<T>]) -> bool {
     loads.iter().any(|load| load.magnitude != 0.0)
+}
+
+/// Reports materials in use without density: an error where a step moves masses or weighs them, a note in static steps.
+pub(crate) fn density(properties: &Properties, mesh: &Mesh, steps: &[Step], cx: &mut Context) {
+    if cx.may_lack_cards() {
+        return;
+    }
+    let weighed = |material: usize, step: &Step| {
+        let mut forces = step.body_forces.iter().map(|load| &load.at);
+        forces.any(|force| {
+            let section = properties
+                .sections
+                .get(mesh.elements[force.element].section);
+            force.per_mass && section.is_some_and(|section| section.material == material)
+        })
+    };
+    let materials = properties.materials.iter().zip(&properties.places);
+    for (index, (material, places)) in materials.enumerate() {
+        let is_used = properties
+            .sections
+            .iter()
+            .any(|section| section.material == index);
+        if !is_used || !places.has_no_density {
+            continue;
+        }
+        let is_moved = |step: &Step| step.procedure != Procedure::Static;
+        let name = &material.name;
+        if steps.is_empty()
+            || steps
+                .iter()
+                .any(|step| is_moved(step) || weighed(index, step))
+        {
+            let message = format!("material {name} lacks *DENSITY");
+            cx.error(Code::IncompleteMaterial, places.material, message)
+                .help("static steps without gravity need none");
+        } else {
+            let message =
+                format!("material {name} has no density: masses in the results are volumes");
+            cx.d.note(Code::NoDensity, places.material, message)
+                .help("static steps do not use them");
+        }
+    }
 }
 
 /// Warns where mass-proportional damping takes momentum from bodies that have no support in a step.
