@@ -2,7 +2,7 @@
 //! amplitudes, contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{DeckWriter, name, named, number, set};
-use crate::materials::{Law, NeoHooke, SaintVenantKirchhoff};
+use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
     Element, Equation, Face, ForceCurve, Formulation, Friction, FrictionLaw, Interaction, Material,
@@ -451,6 +451,23 @@ fn write_law(law: &Law, lines: &mut DeckWriter) {
         Law::NeoHooke(NeoHooke { c10, d1 }) => {
             lines.card("HYPERELASTIC", ["NEO HOOKE".to_owned()]);
             lines.row([c10, d1].map(number));
+        }
+        Law::Polynomial(Polynomial {
+            shape: [c10, c20, c30],
+            c01,
+            d,
+        }) => {
+            let mooney_rivlin = c01 != 0.0;
+            let form = if mooney_rivlin {
+                "MOONEY-RIVLIN"
+            } else {
+                "YEOH"
+            };
+            lines.card("HYPERELASTIC", [form.to_owned()]);
+            match mooney_rivlin {
+                true => lines.row([c10, c01, d[0]].map(number)),
+                false => lines.row([c10, c20, c30, d[0], d[1], d[2]].map(number)),
+            }
         }
         #[cfg(test)]
         Law::Yielding(_) => {}

@@ -10,8 +10,8 @@ use smallvec::SmallVec;
 #[cfg(test)]
 use super::yielding::Yielding;
 use super::{
-    Across, ConstitutiveLaw, NeoHooke, Plane, PlaneSaintVenantKirchhoff, SaintVenantKirchhoff,
-    SmallStrainModuli, Strains, StressAtPoints,
+    Across, ConstitutiveLaw, NeoHooke, Plane, PlanePolynomial, PlaneSaintVenantKirchhoff,
+    Polynomial, SaintVenantKirchhoff, SmallStrainModuli, Strains, StressAtPoints,
 };
 
 /// Law of a material with the constants of the deck.
@@ -21,6 +21,8 @@ pub enum Law {
     SaintVenantKirchhoff(SaintVenantKirchhoff),
     /// `*HYPERELASTIC, NEO HOOKE`
     NeoHooke(NeoHooke),
+    /// `*HYPERELASTIC` of other forms.
+    Polynomial(Polynomial),
     /// A law with internal variables.
     #[cfg(test)]
     Yielding(Yielding),
@@ -37,6 +39,7 @@ impl Law {
         match self {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
             Law::NeoHooke(law) => law.small_strain(),
+            Law::Polynomial(law) => law.small_strain(),
             #[cfg(test)]
             Law::Yielding(law) => law.small_strain(),
         }
@@ -47,27 +50,18 @@ impl Law {
         matches!(self, Law::SaintVenantKirchhoff(_))
     }
 
-    /// Whether the law can be used in plane stress.
-    pub fn has_plane_stress(&self) -> bool {
-        match self {
-            Law::SaintVenantKirchhoff(_) => true,
-            Law::NeoHooke(_) => false,
-            #[cfg(test)]
-            Law::Yielding(_) => false,
-        }
-    }
-
-    /// The law in the plane, which must not be [`Plane::Stress`] without [`Self::has_plane_stress`].
+    /// The law in the plane.
     pub fn in_plane(&self, plane: Plane) -> PlaneLaw {
-        debug_assert!(
-            plane == Plane::Strain || self.has_plane_stress(),
-            "this material is for plane strain only"
-        );
-        match self {
+        let polynomial = |law| PlaneLaw::Polynomial(PlanePolynomial { law, plane });
+        match *self {
             Law::SaintVenantKirchhoff(law) => PlaneLaw::SaintVenantKirchhoff(law.in_plane(plane)),
-            Law::NeoHooke(law) => PlaneLaw::NeoHooke(*law),
+            Law::NeoHooke(law) => match plane {
+                Plane::Strain => PlaneLaw::NeoHooke(law),
+                Plane::Stress => polynomial(law.into()),
+            },
+            Law::Polynomial(law) => polynomial(law),
             #[cfg(test)]
-            Law::Yielding(law) => PlaneLaw::Yielding(*law),
+            Law::Yielding(law) => PlaneLaw::Yielding(law),
         }
     }
 }
@@ -79,6 +73,8 @@ pub enum PlaneLaw {
     SaintVenantKirchhoff(PlaneSaintVenantKirchhoff),
     /// In plane strain.
     NeoHooke(NeoHooke),
+    /// In plane stress or plane strain.
+    Polynomial(PlanePolynomial),
     /// A law with internal variables.
     #[cfg(test)]
     Yielding(Yielding),
@@ -90,6 +86,7 @@ macro_rules! of_each {
         match $self {
             PlaneLaw::SaintVenantKirchhoff($law) => $value,
             PlaneLaw::NeoHooke($law) => $value,
+            PlaneLaw::Polynomial($law) => $value,
             #[cfg(test)]
             PlaneLaw::Yielding($law) => $value,
         }

@@ -13,6 +13,7 @@ pub mod lanes;
 mod law;
 mod neo_hooke;
 mod plane;
+mod polynomial;
 mod saint_venant_kirchhoff;
 mod viscosity;
 #[cfg(test)]
@@ -25,5 +26,6 @@ pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
 pub use law::{Committed, Law, PlaneLaw};
 pub use neo_hooke::NeoHooke;
 pub use plane::{Plane, SmallStrainModuli};
+pub use polynomial::{PlanePolynomial, Polynomial};
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
 pub use viscosity::Viscosity;

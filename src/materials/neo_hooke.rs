@@ -76,6 +76,15 @@ fn cofactor(m: &Matrix2<f64>) -> Matrix2<f64> {
 }
 
 impl NeoHooke {
+    /// The material with Young's modulus (force/length^2) and Poisson's ratio at small strains: C10 = mu/2, D1 = 2/K,
+    /// mu = E/(2 (1 + nu)), K = E/(3 (1 - 2 nu)).
+    pub fn of_small_strain(SmallStrainModuli { young, poisson }: SmallStrainModuli) -> Self {
+        NeoHooke {
+            c10: young / (4.0 * (1.0 + poisson)),
+            d1: 6.0 * (1.0 - 2.0 * poisson) / young,
+        }
+    }
+
     /// mu = 2 C10 and K = 2/D1, E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(2 (3 K + mu)).
     pub fn small_strain(&self) -> SmallStrainModuli {
         let (mu, k) = (2.0 * self.c10, 2.0 / self.d1);

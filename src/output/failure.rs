@@ -52,7 +52,7 @@ pub(crate) fn failure_lines(
         lines.extend(crushed_lines(element, node, part, model));
         hints = inversion_hint(element, model);
     }
-    lines.extend(hints.iter().map(|&line| line.to_owned()));
+    lines.extend(hints);
     if crushed.is_none()
         && let Some(advice) = advice(failure, model)
     {
@@ -88,13 +88,13 @@ fn worst_line(worst: &Worst, model: &Model) -> String {
 }
 
 /// Likely reasons of the cause.
-fn hint(cause: &Cause, model: &Model) -> &'static [&'static str] {
+fn hint(cause: &Cause, model: &Model) -> Vec<String> {
     match *cause {
         Cause::Inverted { element, .. } => inversion_hint(element, model),
         Cause::Crossed {
             prescribed: true, ..
-        } => &["         both sides are prescribed: they are driven into each other"],
-        _ => &[],
+        } => vec!["         both sides are prescribed: they are driven into each other".to_owned()],
+        _ => Vec::new(),
     }
 }
 
@@ -429,7 +429,7 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
         Cause::Indefinite { node } => match is_for_small_strains_at(*node, model) {
             true => {
                 "take smaller increments, in which inertia holds the body, or a smaller load; for \
-                 large compression *HYPERELASTIC, NEO HOOKE in plane strain"
+                 large compression *ELASTIC, TYPE=NEO HOOKE with the same constants"
             }
             false => "take smaller increments, in which inertia holds the body, or a smaller load",
         },

@@ -8,7 +8,7 @@ use hdf5::Group;
 
 use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
-use crate::materials::Law;
+use crate::materials::{Law, Polynomial};
 use crate::model::{
     ElementType, Formulation, Material, Model, Procedure, Scheme, Segment, Step, Variation,
 };
@@ -75,6 +75,17 @@ fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
     let all = &model.materials;
     let laws: Vec<u8> = all.iter().map(|material| law_code(&material.law)).collect();
     constant(at, "law", &[laws.len()], &laws, LAW)?;
+    let hyperelastic = all.iter().map(|material| hyperelastic(&material.law));
+    let (shapes, compressibilities): (Vec<[f64; 4]>, Vec<[f64; 3]>) = hyperelastic.unzip();
+    constant(at, "shape", &[all.len(), 4], shapes.as_flattened(), SHAPE)?;
+    let values = compressibilities.as_flattened();
+    constant(
+        at,
+        "compressibility",
+        &[all.len(), 3],
+        values,
+        COMPRESSIBILITY,
+    )?;
     let column = |name, meaning, of: fn(&Material) -> f64| {
         let values: Vec<f64> = all.iter().map(of).collect();
         constant(at, name, &[values.len()], &values, meaning)
@@ -86,10 +97,22 @@ fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
     column("beta", BETA, |m| m.damping.beta)
 }
 
+/// C10, C20, C30, C01, and D1, D2, D3 of a hyperelastic law.
+fn hyperelastic(law: &Law) -> ([f64; 4], [f64; 3]) {
+    let Polynomial { shape, c01, d } = match *law {
+        Law::NeoHooke(law) => law.into(),
+        Law::Polynomial(law) => law,
+        _ => Polynomial::default(),
+    };
+    let [c10, c20, c30] = shape;
+    ([c10, c20, c30, c01], d)
+}
+
 fn law_code(law: &Law) -> u8 {
     match law {
         Law::SaintVenantKirchhoff(_) => 0,
         Law::NeoHooke(_) => 1,
+        Law::Polynomial(_) => 2,
         #[cfg(test)]
         Law::Yielding(_) => u8::MAX,
     }
@@ -239,7 +262,18 @@ const MATERIAL: Meaning = (
     "index of the material in /model/materials, -1 for none",
 );
 const THICKNESS: Meaning = ("length", "thickness of each element");
-const LAW: Meaning = ("1", "0 St. Venant-Kirchhoff, 1 neo-Hooke");
+const LAW: Meaning = (
+    "1",
+    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another hyperelastic law",
+);
+const SHAPE: Meaning = (
+    "force/length^2",
+    "C10, C20, C30 and C01 of a hyperelastic law, else zero",
+);
+const COMPRESSIBILITY: Meaning = (
+    "length^2/force",
+    "D1, D2, D3 of a hyperelastic law, else zero; zero for no term",
+);
 const YOUNG: Meaning = ("force/length^2", "Young's modulus at small strains");
 const POISSON: Meaning = ("1", "Poisson's ratio at small strains");
 const DENSITY: Meaning = ("mass/length^3", "density of the undeformed material");

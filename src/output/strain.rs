@@ -1,21 +1,15 @@
 //! The largest principal strain of a run, compared with the range of the material law.
 
-use super::format::scientific;
+use super::format::{general, scientific};
 use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::IncrementReport;
 use crate::elements::Strained;
+use crate::materials::NeoHooke;
 
 use crate::model::Model;
 
 /// Principal strain above which a St. Venant-Kirchhoff material is inaccurate.
 pub(crate) const LARGE: f64 = 0.2;
-
-/// Why an element of a St. Venant-Kirchhoff material may turn inside out.
-const SOFTENING: [&str; 3] = [
-    "material St. Venant-Kirchhoff gives way at 58 % of its length (strain -1/3):",
-    "         beyond that shorter increments do not help; use smaller loads, or in",
-    "         plane strain a material for large strains (*HYPERELASTIC, NEO HOOKE)",
-];
 
 /// Why an element of a material for large strains may turn inside out.
 const CRUSHED: [&str; 2] = [
@@ -24,11 +18,19 @@ const CRUSHED: [&str; 2] = [
 ];
 
 /// Likely reasons for an element that turned inside out.
-pub(crate) fn inversion_hint(element: usize, model: &Model) -> &'static [&'static str] {
-    match model.is_for_small_strains(element) {
-        true => &SOFTENING,
-        false => &CRUSHED,
+pub(crate) fn inversion_hint(element: usize, model: &Model) -> Vec<String> {
+    if !model.is_for_small_strains(element) {
+        return CRUSHED.map(str::to_owned).into();
     }
+    let material = &model.materials[model.sections[model.mesh.elements[element].section].material];
+    let NeoHooke { c10, d1 } = NeoHooke::of_small_strain(material.law.small_strain());
+    let (c10, d1) = (general(c10, 4), general(d1, 4));
+    vec![
+        "material St. Venant-Kirchhoff gives way at 58 % of its length (strain -1/3):".to_owned(),
+        "         beyond that shorter increments do not help; use smaller loads, or a".to_owned(),
+        "         material for large strains: *ELASTIC, TYPE=NEO HOOKE with the same".to_owned(),
+        format!("         constants, or *HYPERELASTIC, NEO HOOKE with {c10}, {d1}"),
+    ]
 }
 
 /// The elements whose law is meant for small strains.
@@ -131,7 +133,7 @@ pub(crate) fn warning_lines(
         "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and".to_owned(),
         "         too soft in compression: take its forces for a guess, or use a material"
             .to_owned(),
-        "         for large strains (*HYPERELASTIC, NEO HOOKE) or smaller loads".to_owned(),
+        "         for large strains (*ELASTIC, TYPE=NEO HOOKE) or smaller loads".to_owned(),
     ]
 }
 
@@ -208,9 +210,11 @@ mod tests {
         assert!(of(0).contains("St. Venant-Kirchhoff") && of(0).contains("NEO HOOKE"));
         assert!(!of(1).contains("Kirchhoff") && of(1).contains("use smaller loads"));
         let warned = warning_lines(Strained::default(), &report(1, [0.3, 0.0]), &model());
-        assert!(warned.join("\n").contains("*HYPERELASTIC, NEO HOOKE"));
-        let lines = warned.iter().map(String::as_str);
-        let lines = lines.chain(SOFTENING).chain(CRUSHED);
+        assert!(warned.join("\n").contains("*ELASTIC, TYPE=NEO HOOKE"));
+        let hints = [0, 1].map(|element| inversion_hint(element, &model()));
+        let lines = warned.iter().chain(hints.iter().flatten());
         lines.for_each(|line| assert!(line.len() <= 80, "{line}"));
+        // mu = 1/2.6, K = 1/1.2
+        assert!(of(0).ends_with("with 0.1923, 2.4"), "{}", of(0));
     }
 }

@@ -3,9 +3,9 @@
 use super::context::Context;
 use super::names::Names;
 use super::outline::{CardBlock, Outline};
-use crate::deck::{Card, Line};
+use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
-use crate::materials::{Law, NeoHooke, Plane};
+use crate::materials::{Law, NeoHooke, Plane, Polynomial, SmallStrainModuli};
 use crate::model::{Damping, Material, Section};
 
 /// Places of a material for messages.
@@ -154,6 +154,9 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
         return Constant::Missing;
     };
     let law = match first.keyword.name {
+        "ELASTIC" if first.choice("TYPE") == Some("NEO HOOKE") => {
+            constant(&[first], elastic_neo_hooke_row, cx)
+        }
         "ELASTIC" => constant(&[first], elastic_row, cx),
         _ => hyperelastic(first, cx),
     };
@@ -196,19 +199,33 @@ fn elastic_row(row: Line, cx: &mut Context) -> Option<Law> {
     Some(Law::elastic(young?, poisson?))
 }
 
-/// The law of `*HYPERELASTIC`, which must say NEO HOOKE. What a faulty keyword line gives is not
-/// looked at.
+/// `E, nu[, T]` of the neo-Hookean material with these moduli at small strains.
+fn elastic_neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
+    let SmallStrainModuli { young, poisson } = elastic_row(row, cx)?.small_strain();
+    let law = NeoHooke::of_small_strain(SmallStrainModuli { young, poisson });
+    Some(Law::NeoHooke(law))
+}
+
+/// The law of `*HYPERELASTIC`, by its form. What a faulty keyword line gives is not looked at.
 fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
     if card.faulty {
         return Constant::Wrong;
     }
-    if !card.has("NEO HOOKE") {
-        let message = "*HYPERELASTIC needs the parameter NEO HOOKE";
-        cx.error(Code::MissingParameter, card.span, message)
-            .help("its data line is C10, D1 with C10 = mu/2, D1 = 2/K of small strains");
-        return Constant::Wrong;
-    }
-    constant(&[card], neo_hooke_row, cx)
+    let forms = ["NEO HOOKE", "MOONEY-RIVLIN", "YEOH"];
+    let given: Vec<&str> = forms.into_iter().filter(|form| card.has(form)).collect();
+    let read = match given[..] {
+        ["NEO HOOKE"] => neo_hooke_row,
+        ["MOONEY-RIVLIN"] => mooney_rivlin_row,
+        ["YEOH"] => yeoh_row,
+        _ => {
+            let message = "*HYPERELASTIC needs one of NEO HOOKE, MOONEY-RIVLIN and YEOH";
+            cx.error(Code::MissingParameter, card.span, message).help(
+                "the data line of NEO HOOKE is C10, D1 with C10 = mu/2, D1 = 2/K of small strains",
+            );
+            return Constant::Wrong;
+        }
+    };
+    constant(&[card], read, cx)
 }
 
 /// `C10, D1[, T]`
@@ -216,19 +233,71 @@ fn neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let c10 = row.required(0, "C10", cx.d);
     temperature(row, 2, cx)?;
-    let rule = "C10 must be positive";
-    let c10 = c10?.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)?;
-    let d1 = row.real_or(1, 0.0, cx.d)?;
-    if d1 <= 0.0 {
-        report_d1(d1, row, cx);
-        return None;
-    }
+    let c10 = positive_c10(c10?, cx)?;
+    let d1 = d1(row, 1, cx)?;
     Some(Law::NeoHooke(NeoHooke { c10, d1 }))
 }
 
+/// `C10, C01, D1[, T]`
+fn mooney_rivlin_row(row: Line, cx: &mut Context) -> Option<Law> {
+    row.at_most(4, cx.d);
+    let c10 = row.required(0, "C10", cx.d)?;
+    let c01 = row.required(1, "C01", cx.d)?;
+    temperature(row, 3, cx)?;
+    let (first, second) = (c10.real(cx.d)?, c01.real(cx.d)?);
+    if first + second <= 0.0 {
+        let message = "C10 + C01, half the shear modulus, must be positive";
+        cx.error(Code::MaterialRange, c10.span, message);
+        return None;
+    }
+    let d1 = d1(row, 2, cx)?;
+    Some(Law::Polynomial(Polynomial {
+        shape: [first, 0.0, 0.0],
+        c01: second,
+        d: [d1, 0.0, 0.0],
+    }))
+}
+
+/// `C10, C20, C30, D1, D2, D3[, T]`: all but C10 and D1 may be zero, for no such term.
+fn yeoh_row(row: Line, cx: &mut Context) -> Option<Law> {
+    row.at_most(7, cx.d);
+    let c10 = row.required(0, "C10", cx.d);
+    temperature(row, 6, cx)?;
+    let c10 = positive_c10(c10?, cx)?;
+    let [c20, c30] = [row.real_or(1, 0.0, cx.d)?, row.real_or(2, 0.0, cx.d)?];
+    let d1 = d1(row, 3, cx)?;
+    let mut other = |index: usize| {
+        let rule = "D2 and D3 must not be negative; 0 is none";
+        let field = row.get(index).filter(|field| !field.text.is_empty());
+        field.map_or(Some(0.0), |field| {
+            field.real_that(|d| d >= 0.0, rule, Code::MaterialRange, cx.d)
+        })
+    };
+    Some(Law::Polynomial(Polynomial {
+        shape: [c10, c20, c30],
+        c01: 0.0,
+        d: [d1, other(4)?, other(5)?],
+    }))
+}
+
+fn positive_c10(c10: Text, cx: &mut Context) -> Option<f64> {
+    let rule = "C10 must be positive";
+    c10.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)
+}
+
+/// D1 in field `index`.
+fn d1(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
+    let d1 = row.real_or(index, 0.0, cx.d)?;
+    if d1 <= 0.0 {
+        report_d1(d1, row, index, cx);
+        return None;
+    }
+    Some(d1)
+}
+
 /// Reports a D1 that is missing, zero or negative.
-fn report_d1(d1: f64, row: Line, cx: &mut Context) {
-    let given = row.get(1).filter(|field| !field.text.is_empty());
+fn report_d1(d1: f64, row: Line, index: usize, cx: &mut Context) {
+    let given = row.get(index).filter(|field| !field.text.is_empty());
     let (code, span, message) = match given {
         None => (
             Code::MissingField,
@@ -248,7 +317,8 @@ fn report_d1(d1: f64, row: Line, cx: &mut Context) {
     };
     cx.error(code, span, message).help(
         "D1 = 2/K with the bulk modulus K, which must be finite; where it is not known, K = 20 mu \
-         (D1 = 0.05/C10) is usual for rubber",
+         (D1 = 0.05/C10 of NEO HOOKE) is usual for rubber; K = 10000 mu (D1 = 1.E-4/C10) is all but \
+         incompressible and needs CPE8R, or CPE4 with FORMULATION=MEAN DILATATION",
     );
 }
 

@@ -40,7 +40,6 @@ pub(super) fn read(
     report_without_section(complete, mesh_index, cx);
     drafts.report_without_law(&properties.sections, cx);
     (properties.materials, properties.places) = drafts.complete(cx);
-    properties.report_plane_stress(mesh_index, cx);
     properties.report_locking(mesh_index, cx);
     properties
 }
@@ -155,26 +154,6 @@ impl Properties {
     /// Material (index) of an element.
     fn material_of(&self, element: &Element) -> Option<usize> {
         Some(self.sections.get(element.section)?.material)
-    }
-
-    /// Reports materials in plane stress elements that are for plane strain only.
-    fn report_plane_stress(&self, mesh_index: &MeshIndex, cx: &mut Context) {
-        for (index, element) in mesh_index.mesh.elements.iter().enumerate() {
-            if element.element_type.plane == Plane::Strain {
-                continue;
-            }
-            let material = self.material_of(element).map(|m| &self.materials[m]);
-            if let Some(material) = material.filter(|material| !material.law.has_plane_stress()) {
-                let message = format!(
-                    "element {} is in plane stress, material {} is for plane strain only",
-                    mesh_index.element_name(index),
-                    material.name
-                );
-                cx.error(Code::PlaneStrainOnly, mesh_index.places[index], message)
-                    .help("take CPE elements, or *ELASTIC");
-                return;
-            }
-        }
     }
 
     /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in

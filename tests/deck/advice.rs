@@ -47,7 +47,15 @@ fn texts_of_laws<const N: usize>(cards: [&str; N]) -> String {
 fn forms_of_hyperelasticity() {
     let texts = texts_of_laws([
         "*HYPERELASTIC\n200., 2.E-3",
-        "*HYPERELASTIC, YEOH\n200., 2.E-3",
+        "*HYPERELASTIC, YEOH, MOONEY-RIVLIN\n200., 2.E-3",
+        "*HYPERELASTIC, YEOH\n200., 0., 0., 2.E-3, -1.",
+        "*HYPERELASTIC, YEOH\n-200., 0., 0., 2.E-3",
+        "*HYPERELASTIC, YEOH\n200., 0., 0.",
+        "*HYPERELASTIC, MOONEY-RIVLIN\n200., -200., 2.E-3",
+        "*HYPERELASTIC, MOONEY-RIVLIN\n200., , 2.E-3",
+        "*HYPERELASTIC, MOONEY-RIVLIN\n200., 10., 0.",
+        "*HYPERELASTIC, OGDEN\n200., 2.E-3",
+        "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.5",
         "*HYPERELASTIC, POLYNOMIAL, N=2\n200., 2.E-3",
         "*HYPERELASTIC, NEO HOOKE, TEST DATA INPUT\n200., 2.E-3",
         "*HYPERELASTIC, NEO HOOKE, POISSON=0.45\n200.",

@@ -194,10 +194,6 @@ fn faulty(code: Code) -> Source {
             "ELSET=EBLOCK, MATERIAL=STEEL\n2.",
         ),
         SurfaceUse => shared("SBOT, STOP", "SBOT, SBOT"),
-        PlaneStrainOnly => square(
-            "*ELASTIC\n1000., 0.3",
-            "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3",
-        ),
         BrakedFlight => shared("*DENSITY", "*DAMPING, ALPHA=2.\n*DENSITY"),
         FrictionRange => shared("0.3, 2.1E5", "-0.3"),
         GeneralContact => shared("*CONTACT PAIR", &format!("{GENERAL}*CONTACT PAIR")),

@@ -465,6 +465,14 @@ fn materials_of_every_kind() {
         "*ELASTIC\n1000., 0.3",
         "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3",
     );
+    round_trip(read(&rubber));
+    for law in [
+        "*HYPERELASTIC, MOONEY-RIVLIN\n150., 50., 3.E-3",
+        "*HYPERELASTIC, YEOH\n150., -7., 0.3, 3.E-3, 0., 7.E-3",
+        "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.3",
+    ] {
+        round_trip(read(&SQUARE.replace("*ELASTIC\n1000., 0.3", law)));
+    }
     let mean = rubber.replace("CPS4", "CPE4");
     round_trip(read(&mean.replace(
         "MATERIAL=RUBBER\n",

@@ -135,6 +135,8 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/element_materials", vec![E]),
         ("/model/thickness", vec![E]),
         ("/model/materials/law", vec![1]),
+        ("/model/materials/shape", vec![1, 4]),
+        ("/model/materials/compressibility", vec![1, 3]),
         ("/model/materials/young", vec![1]),
         ("/model/materials/poisson", vec![1]),
         ("/model/materials/density", vec![1]),

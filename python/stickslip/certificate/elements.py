@@ -5,6 +5,7 @@ Equation numbers are those of docs/theory.md. Arrays of tensors at integration p
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +20,14 @@ CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 PATH, PATH_WEIGHTS = np.polynomial.legendre.leggauss(5)
 """Gauss points on the way from the start to the end of an increment."""
 
-NEO_HOOKE = 1
-"""Law of /model/materials/law other than St. Venant-Kirchhoff."""
+SAINT_VENANT_KIRCHHOFF, NEO_HOOKE = 0, 1
+"""Laws of /model/materials/law; all others are polynomials of the invariants."""
+
+COMPLEX_STEP = 1e-170
+"""Imaginary part of a stretch, by which the derivative of a stress is told; its square is zero."""
+
+MOST_STEPS = 60
+"""Steps of Newton's method for the stretch across."""
 
 KINDS = (
     (3, False, False, False),
@@ -62,6 +69,10 @@ class Block:
     density: float
     alpha: float
     beta: float
+    shape: Array
+    """C10, C20, C30, C01."""
+    compressibility: Array
+    """D1, D2, D3; zero for no term."""
 
     # Constants of the material.
 
@@ -109,8 +120,13 @@ class Block:
         return 0.5 * (h + turned + turned @ h)
 
     def energy_density(self, e: Array) -> Array:
-        """W(E), eqs (2.13) and (2.14)."""
+        """W(E), eqs (2.13), (2.14) and (2.23)."""
         trace, determinant = _trace(e), _determinant(e)
+        if self.is_polynomial:
+            _, _, x, y, grown = self.invariants(e, self.across(e))
+            c10, c20, c30, c01 = self.shape
+            volume = sum(k * grown ** (2 * i) for i, k in enumerate(self.stiffnesses, 1))
+            return c10 * x + c20 * x**2 + c30 * x**3 + c01 * y + volume
         if self.law != NEO_HOOKE:
             return 0.5 * self.lame * trace**2 + self.shear * np.einsum("egij,egij->eg", e, e)
         t, q = 2.0 * trace, 4.0 * determinant
@@ -120,8 +136,10 @@ class Block:
         return 0.5 * self.shear * shape + 0.5 * self.bulk * jump**2
 
     def stress(self, e: Array) -> Array:
-        """S(E), eqs (2.13), (2.15) and (2.16)."""
+        """S(E), eqs (2.13), (2.15), (2.16) and (2.24)."""
         trace = _trace(e)
+        if self.is_polynomial:
+            return self.polynomial_stress(e, self.across(e))[0]
         if self.law != NEO_HOOKE:
             return self.lame * _identity(trace) + 2.0 * self.shear * e
         t, q = 2.0 * trace, 4.0 * _determinant(e)
@@ -133,11 +151,78 @@ class Block:
         cofactor = _identity(np.ones_like(t)) + 2.0 * _cofactor(e)
         return deviator[..., None, None] * shape + pressure[..., None, None] * cofactor
 
+    # Polynomials of the invariants.
+
+    @property
+    def is_polynomial(self) -> bool:
+        """Whether the law is one of eq. (2.23), as a neo-Hookean one in plane stress is."""
+        return self.law > NEO_HOOKE or (self.law == NEO_HOOKE and self.plane_stress)
+
+    @property
+    def stiffnesses(self) -> list[float]:
+        """1/D1, 1/D2, 1/D3."""
+        return [1.0 / d if d > 0.0 else 0.0 for d in self.compressibility]
+
+    def invariants(self, e: Array, z: Any) -> tuple[Any, ...]:
+        """(i, m, n, s), b, x, y and J - 1 of eq. (2.24) from E in the plane and z = 2 E_33."""
+        t, q = 2.0 * _trace(e), 4.0 * _determinant(e)
+        i, m, n = t + z, q + z * t, z * q
+        s = i + m + n
+        b = np.expm1(np.log1p(s) / 3.0)
+        x = (b**2 * (b + 3.0) - m - n) / (1.0 + b)
+        y = (b**2 * (2.0 * b + 3.0) - m - 2.0 * n) / (1.0 + b) ** 2
+        return (i, m, n, s), b, x, y, np.expm1(np.log1p(s) / 2.0)
+
+    def polynomial_stress(self, e: Array, z: Any) -> tuple[Any, Any]:
+        """S in the plane and S_33, eq. (2.24)."""
+        (i, m, n, s), b, x, _, grown = self.invariants(e, z)
+        c10, c20, c30, c01 = self.shape
+        of_x = 2.0 * (c10 + 2.0 * c20 * x + 3.0 * c30 * x**2) / ((1.0 + b) * (1.0 + s))
+        of_y = 2.0 * c01 / ((1.0 + b) ** 2 * (1.0 + s))
+        terms = enumerate(self.stiffnesses, 1)
+        p = sum(2.0 * k * power * grown ** (2 * power - 1) for power, k in terms) / (1.0 + grown)
+        t, q = 2.0 * _trace(e), 4.0 * _determinant(e)
+        one = _identity(np.ones(e.shape[:2]))
+
+        def assemble(g: Any, identity: Any, cof_g: Any, cof_c: Any, wide: Any) -> Any:
+            """One part of S from those of G, I, cof G and cof C."""
+            first = g + wide(m + n) * identity - cof_g - wide(i / 3.0) * cof_c
+            second = g - wide(i) * identity - 2.0 * cof_g
+            second = second + wide(s) * (wide(2.0 + i) * identity - g)
+            second = second - wide(2.0 / 3.0 * (2.0 * i + m)) * cof_c
+            return wide(of_x) * first + wide(of_y) * second + wide(p) * cof_c
+
+        cofactor = 2.0 * _cofactor(e)
+        in_plane = assemble(
+            2.0 * e,
+            one,
+            np.asarray(z)[..., None, None] * cofactor,
+            np.asarray(1.0 + z)[..., None, None] * (one + cofactor),
+            lambda value: np.asarray(value)[..., None, None],
+        )
+        return in_plane, assemble(z, 1.0, q, 1.0 + t + q, lambda value: value)
+
+    def across(self, e: Array) -> Array:
+        """2 E_33: zero in plane strain, and with S_33 = 0 in plane stress, eq. (2.25)."""
+        trace = _trace(e)
+        if not self.plane_stress:
+            return np.zeros_like(trace)
+        squared = 2.0 * trace + 4.0 * _determinant(e)
+        stretch = -self.poisson / (1.0 - self.poisson) * 0.5 * np.log1p(squared)
+        for _ in range(MOST_STEPS):
+            z = np.expm1(2.0 * (stretch + 1j * COMPLEX_STEP))
+            slope = self.polynomial_stress(e, z)[1] * (1.0 + z)
+            step = slope.real / (slope.imag / COMPLEX_STEP)
+            stretch = stretch - step
+            if (np.abs(step) <= 4.0 * np.finfo(np.float64).eps * np.abs(stretch)).all():
+                break
+        return np.expm1(2.0 * stretch)
+
     def discrete_gradient(self, e0: Array, e1: Array) -> Array:
         """S_m of eq. (4.8); W1 - W0 is the integral of S along the way."""
         middle, change = 0.5 * (e0 + e1), e1 - e0
         stress = self.stress(middle)
-        if self.law != NEO_HOOKE:
+        if self.law == SAINT_VENANT_KIRCHHOFF:
             return stress
         square = np.einsum("egij,egij->eg", change, change)
         f = np.zeros_like(square)
@@ -210,7 +295,9 @@ class Block:
         f = _identity(np.ones(h.shape[:2])) + h
         e = self.strain(h)
         j = _determinant(f)
-        if self.plane_stress:
+        if self.plane_stress and self.is_polynomial:
+            j = j * np.sqrt(1.0 + self.across(e))
+        elif self.plane_stress:
             across = -self.poisson / (1.0 - self.poisson) * _trace(e)
             j = j * np.sqrt(1.0 + 2.0 * across)
         cauchy = f @ stress @ f.swapaxes(2, 3) / j[..., None, None]
@@ -325,7 +412,7 @@ def _blocks(result: Result) -> list[Block]:
     thickness = result.read("model/thickness")
     constants = {
         name: result.read(f"model/materials/{name}")
-        for name in ("law", "young", "poisson", "density", "alpha", "beta")
+        for name in ("law", "young", "poisson", "density", "alpha", "beta", "shape", "compressibility")
     }
     found = []
     keys = np.stack([types.astype(np.int64), materials], axis=1)
@@ -347,7 +434,10 @@ def _blocks(result: Result) -> list[Block]:
                 np.einsum("eg,ga,gb->eab", weight, shape, shape),
                 plane_stress,
                 mean,
-                **{name: values[material].item() for name, values in constants.items()},
+                **{
+                    name: values[material] if values.ndim > 1 else values[material].item()
+                    for name, values in constants.items()
+                },
             )
         )
     return found

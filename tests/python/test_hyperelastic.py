@@ -1,0 +1,124 @@
+"""Hyperelastic materials in plane strain and plane stress against closed forms, in flight and in contact."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bodies import (
+    NEO_HOOKE,
+    SCHEMES,
+    bodies,
+    body,
+    end,
+    grid,
+    keeps_energy_and_momenta,
+    solved,
+)
+from stickslip.certificate.certify import certify
+from stickslip.deck import Deck
+
+LAWS = {
+    "neo-Hooke": NEO_HOOKE,
+    "elastic neo-Hooke": "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.3",
+    "Mooney-Rivlin": "*HYPERELASTIC, MOONEY-RIVLIN\n150., 50., 2.E-3",
+    "Yeoh": "*HYPERELASTIC, YEOH\n200., -20., 5., 2.E-3, 1.E-2, 3.E-2",
+}
+KINDS = ("CPE3", "CPE4", "CPE6", "CPE8", "CPE8R", "CPS3", "CPS4", "CPS6", "CPS8", "CPS8R")
+
+
+def with_law(deck: Deck, law: str) -> Deck:
+    """The deck with another law."""
+    card, row = law.split("\n")
+    for old in deck.find("ELASTIC"):
+        old.keyword, old.head, old.rows = card[1:].split(",")[0], card, [row.split(", ")]
+    return deck
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_free_body_keeps_energy_and_momenta(
+    tmp_path: Path, kind: str, law: str, scheme: str
+) -> None:
+    damping = "*DAMPING, BETA=0.002\n" if kind[3] == "4" else ""
+    deck = bodies(kind, laws=(LAWS[law],), damping=damping)
+    keeps_energy_and_momenta(tmp_path, deck, scheme, damping)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("pair", [("CPS4", "CPS8R"), ("CPE4", "CPE6"), ("CPS3", "CPS4"), ("CPE8", "CPE3")])
+def test_unlike_bodies_in_contact_never_gain_energy(
+    tmp_path: Path, pair: tuple[str, str], friction: float, scheme: str
+) -> None:
+    settings = [f"SCHEME={scheme}"]
+    if scheme == "ENERGY-MOMENTUM":
+        settings.append(f"SCHEME={scheme}, IMPACT TIME=EVENT, LANDING=RETURN")
+    for setting in settings:
+        laws = (LAWS["Yeoh"], LAWS["Mooney-Rivlin"])
+        deck = bodies(*pair, laws=laws).general_contact(friction)
+        deck.support("NBOTTOMB0").velocity("B1", 2.0, -1.0)
+        deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.4\n")
+        deck.extend(f"*STICKSLIP, {setting}\n*DLOAD\n, GRAV, 9.81, 0., -1.\n*END STEP\n")
+        result = solved(tmp_path, deck)
+        energy = result.history.energy
+        total = energy.kinetic + energy.strain - energy.external_work
+        if scheme == "ENERGY-MOMENTUM":
+            assert np.diff(total).max() < 1e-10 * energy.largest
+        assert certify(result).holds, certify(result).table()
+
+
+def tension(tmp_path: Path, law: str, stretch: float, width: float | None = None) -> float:
+    """Nominal stress of a square of CPS4 with a stretch, and with its width kept or free."""
+    deck = with_law(body("CPS4", grid("CPS4", 2, 2, lambda x, y: (x, y)), 1.0, 0.3), law)
+    deck.extend("*BOUNDARY\nNLEFT, 1\nNBOTTOM, 2\n")
+    top = "" if width is None else f"NTOP, 2, 2, {width - 1.0!r}\n"
+    deck.extend("*STEP, NLGEOM\n*STATIC\n0.1, 1.\n")
+    deck.extend(f"*BOUNDARY\nNRIGHT, 1, 1, {stretch - 1.0!r}\n{top}")
+    deck.extend("*NODE PRINT, NSET=NRIGHT, TOTALS=ONLY\nRF\n*END STEP\n")
+    return float(solved(tmp_path, deck).history.nodes.NRIGHT["sum/RF"][-1, 0])
+
+
+@pytest.mark.parametrize("stretch", [0.5, 0.8, 1.5, 3.0])
+@pytest.mark.parametrize("law", ["neo-Hooke", "Mooney-Rivlin", "Yeoh"])
+def test_tension_of_a_nearly_incompressible_sheet(tmp_path: Path, law: str, stretch: float) -> None:
+    """Beside the closed form of an incompressible one, 2 (w' + C01/l) (l - 1/l^2) of a strip.
+
+    K/mu = 1e4 leaves 2e-3 of the force of Yeoh's material, which is four times stiffer at a stretch of 3; 1e6 leaves 2e-5.
+    """
+    c10, c01, c20, c30 = {
+        "neo-Hooke": (200.0, 0.0, 0.0, 0.0),
+        "Mooney-Rivlin": (150.0, 50.0, 0.0, 0.0),
+        "Yeoh": (200.0, 0.0, -20.0, 5.0),
+    }[law]
+    ratio, part = (1e6, 5e-5) if stretch == 3.0 else (1e4, 5e-4)
+    d1 = 2.0 / (ratio * 400.0)
+    row = {
+        "neo-Hooke": f"*HYPERELASTIC, NEO HOOKE\n{c10}, {d1!r}",
+        "Mooney-Rivlin": f"*HYPERELASTIC, MOONEY-RIVLIN\n{c10}, {c01}, {d1!r}",
+        "Yeoh": f"*HYPERELASTIC, YEOH\n{c10}, {c20}, {c30}, {d1!r}, 0., 0.",
+    }[law]
+
+    def slope(x: float) -> float:
+        return c10 + 2.0 * c20 * x + 3.0 * c30 * x * x
+
+    x = stretch**2 + 2.0 / stretch - 3.0
+    strip = 2.0 * (slope(x) + c01 / stretch) * (stretch - stretch**-2)
+    assert tension(tmp_path, row, stretch) == pytest.approx(strip, rel=part)
+    if stretch in (0.8, 1.5):
+        x = 2.0 * stretch**2 + stretch**-4 - 3.0
+        both = 2.0 * (slope(x) + c01 * stretch**2) * (stretch - stretch**-5)
+        assert tension(tmp_path, row, stretch, stretch) == pytest.approx(both, rel=part)
+
+
+def test_young_and_poisson_give_the_neo_hookean_material(tmp_path: Path) -> None:
+    """E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(6 K + 2 mu): the same motion for C10, D1."""
+    k, mu = 1000.0, 400.0
+    young, poisson = 9.0 * k * mu / (3.0 * k + mu), (3.0 * k - 2.0 * mu) / (6.0 * k + 2.0 * mu)
+    ends = []
+    for law in (NEO_HOOKE, f"*ELASTIC, TYPE=NEO HOOKE\n{young!r}, {poisson!r}"):
+        deck = bodies("CPS4", laws=(law,)).support("NBOTTOMB0")
+        deck.extend("*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*DLOAD\n, GRAV, 60., 0., -1.\n*END STEP\n")
+        ends.append(end(solved(tmp_path, deck)))
+    assert np.abs(ends[0]).max() > 0.02
+    assert np.abs(ends[1] - ends[0]).max() < 1e-10 * np.abs(ends[0]).max()
