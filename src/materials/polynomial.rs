@@ -241,6 +241,29 @@ impl Polynomial {
             + cof * (p / v.j)
     }
 
+    /// S_33 and C_3333, the components across of stress and tangent (force/length^2).
+    fn across(&self, e: &Symmetric) -> [f64; 2] {
+        let v = Invariants::new(e);
+        let q = v.g.x * v.g.y - v.g.w * v.g.w;
+        let (cof, square) = (1.0 + v.g.x + v.g.y + q, 1.0 + v.s);
+        let [of_x, of_xx] = self.of_shape(v.x());
+        let [p, stiff] = self.of_volume(v.grown);
+        let first = v.g.z + v.m + v.n - q - cof * (v.i / 3.0);
+        let second = v.g.z - v.i - q * 2.0 + (2.0 + v.i - v.g.z) * v.s
+            - cof * (2.0 / 3.0 * (2.0 * v.i + v.m));
+        let of_y = self.c01 / (v.a * v.a);
+        let stress = 2.0 * (first * of_x / v.a + second * of_y) / square + cof * (p / v.j);
+        let inverse = cof / square;
+        let (i1, i2) = (3.0 + v.i, 3.0 + 2.0 * v.i + v.m);
+        let slope = (1.0 - inverse * (i1 / 3.0)) / v.a;
+        let first = inverse * (inverse * i1 * 4.0 / 9.0 - 2.0 / 3.0);
+        let b = 2.0 + v.i - v.g.z;
+        let second = inverse * (inverse * i2 * 10.0 / 9.0 - b * 4.0 / 3.0);
+        let tangent = 4.0 * (of_xx * slope * slope + of_x / v.a * first + of_y * second)
+            + inverse * inverse * v.j * (stiff * v.j - p);
+        [stress, tangent]
+    }
+
     /// C = 4 d²W/dC², on strains (11, 22, 33, 2*12) (force/length^2):
     ///
     /// ```text
@@ -308,21 +331,24 @@ impl PlanePolynomial {
     /// A step that does not lower |W'| is halved. It starts at the stretch of linear elasticity in ln det F.
     fn strain_across(&self, e: &Matrix2<f64>) -> f64 {
         let at = |l: f64| Vector4::new(e.m11, e.m22, (2.0 * l).exp_m1() / 2.0, e.m12);
-        let slope = |l: f64| self.law.stress(&at(l)).z * (2.0 * l).exp();
+        // W' and W''
+        let slopes = |l: f64| {
+            let ([s33, c3333], c33) = (self.law.across(&at(l)), (2.0 * l).exp());
+            [s33 * c33, (c3333 * c33 + 2.0 * s33) * c33]
+        };
         let nu = self.law.small_strain().poisson;
         let squared = 2.0 * e.trace() + 4.0 * e.determinant();
         let mut l = -nu / (1.0 - nu) * squared.ln_1p() / 2.0;
-        let mut w1 = slope(l);
+        let [mut w1, mut w2] = slopes(l);
         for _ in 0..MOST_STEPS {
-            let c33 = (2.0 * l).exp();
-            let w2 = self.law.tangent(&at(l))[(2, 2)] * c33 * c33 + 2.0 * w1;
             let mut step = -w1 / w2.abs();
-            let mut next = slope(l + step);
-            while next.abs() > w1.abs() && step.abs() > ROUND_OFF * (l.abs() + e.norm()) {
+            let mut next = slopes(l + step);
+            while next[0].abs() > w1.abs() && step.abs() > ROUND_OFF * (l.abs() + e.norm()) {
                 step /= 2.0;
-                next = slope(l + step);
+                next = slopes(l + step);
             }
-            (l, w1) = (l + step, next);
+            l += step;
+            [w1, w2] = next;
             // what is no number is not far either
             let is_far = step.abs() > ROUND_OFF * (l.abs() + e.norm());
             if !is_far {
