@@ -250,7 +250,7 @@ codes! {
         "Take the element out of one of the sets."
     Locking "D405" "A nearly incompressible material in plane strain locks."
         "Elements with few displacements cannot keep their volume and bend: they are too stiff."
-        "Use CPE8R, or CPE4 with FORMULATION=MEAN DILATATION under *SOLID SECTION."
+        "Use CPE4H or CPE8R."
     ThicknessMismatch "D406" "The two sides of a contact differ in thickness."
         "The force on one side acts on another area than that on the other."
         "Give both sections the same thickness, unless it is meant."

@@ -5,8 +5,8 @@ use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
-    Element, Equation, Face, ForceCurve, Formulation, Friction, FrictionLaw, Interaction, Material,
-    Mesh, Model, Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
+    Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material, Mesh, Model,
+    Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -486,19 +486,11 @@ fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Dec
         .collect();
     let set_name = set_of(&members, model).map(str::to_owned);
     let set_name = set_name.unwrap_or_else(|| new_set(index, &members, model, lines));
-    let is_mean = |&element: &usize| {
-        model.mesh.elements[element].element_type.formulation == Formulation::MeanDilatation
-    };
-    let formulation = match members.iter().any(is_mean) {
-        true => "MEAN DILATATION",
-        false => "DISPLACEMENT",
-    };
     lines.card(
         "SOLID SECTION",
         [
             named("ELSET", &set_name),
             named("MATERIAL", &model.materials[material].name),
-            set("FORMULATION", formulation),
         ],
     );
     lines.row([number(thickness)]);

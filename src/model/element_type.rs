@@ -124,6 +124,11 @@ impl ElementType {
     pub const CPE4: Self = Self::standard(Shape::Quad4, Plane::Strain);
     /// Quadrilateral in plane stress.
     pub const CPS4: Self = Self::standard(Shape::Quad4, Plane::Stress);
+    /// Quadrilateral in plane strain with mean dilatation.
+    pub const CPE4H: Self = ElementType {
+        formulation: Formulation::MeanDilatation,
+        ..Self::CPE4
+    };
 
     /// Quadratic triangle in plane strain.
     pub const CPE6: Self = Self::standard(Shape::Tri6, Plane::Strain);
@@ -139,9 +144,10 @@ impl ElementType {
     pub const CPS8R: Self = Self::CPS8.reduced();
 
     /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 10] = [
+    pub const NAMED: [Self; 11] = [
         Self::CPE3,
         Self::CPE4,
+        Self::CPE4H,
         Self::CPE6,
         Self::CPE8,
         Self::CPE8R,
@@ -178,16 +184,18 @@ impl ElementType {
         }
     }
 
-    /// The type with this name in upper case, without mean dilatation.
+    /// The type with this name in upper case.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMED.into_iter().find(|known| known.name() == name)
     }
 
-    /// Name in the deck; mean dilatation is an option of the section and has no name of its own.
+    /// Name in the deck.
     pub fn name(self) -> &'static str {
         let reduced = self.formulation == Formulation::Reduced;
+        let mean = self.formulation == Formulation::MeanDilatation;
         match (self.shape, self.plane) {
             (Shape::Tri3, Plane::Strain) => "CPE3",
+            (Shape::Quad4, Plane::Strain) if mean => "CPE4H",
             (Shape::Quad4, Plane::Strain) => "CPE4",
             (Shape::Tri6, Plane::Strain) => "CPE6",
             (Shape::Quad8, Plane::Strain) if reduced => "CPE8R",
@@ -213,11 +221,7 @@ impl ElementType {
 
 impl fmt::Display for ElementType {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let name = self.name();
-        match self.formulation {
-            Formulation::Displacement | Formulation::Reduced => write!(f, "{name}"),
-            Formulation::MeanDilatation => write!(f, "{name} with mean dilatation"),
-        }
+        write!(f, "{}", self.name())
     }
 }
 

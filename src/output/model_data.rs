@@ -9,9 +9,7 @@ use hdf5::Group;
 use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
 use crate::materials::{Law, Polynomial};
-use crate::model::{
-    ElementType, Formulation, Material, Model, Procedure, Scheme, Segment, Step, Variation,
-};
+use crate::model::{ElementType, Material, Model, Procedure, Scheme, Segment, Step, Variation};
 
 /// Writes the datasets and groups into `/model`.
 pub(super) fn write(at: &Group, model: &Model) -> hdf5::Result<()> {
@@ -52,10 +50,7 @@ const TYPES: [ElementType; 11] = [
     ElementType::CPE4,
     ElementType::CPS3,
     ElementType::CPS4,
-    ElementType {
-        formulation: Formulation::MeanDilatation,
-        ..ElementType::CPE4
-    },
+    ElementType::CPE4H,
     ElementType::CPE6,
     ElementType::CPS6,
     ElementType::CPE8,
@@ -255,7 +250,7 @@ const LOAD_GROUPS: Meaning = (
 );
 const ELEMENT_TYPES: Meaning = (
     "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4 with mean dilatation, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R",
 );
 const MATERIAL: Meaning = (
     "1",

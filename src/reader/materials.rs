@@ -318,7 +318,7 @@ fn report_d1(d1: f64, row: Line, index: usize, cx: &mut Context) {
     cx.error(code, span, message).help(
         "D1 = 2/K with the bulk modulus K, which must be finite; where it is not known, K = 20 mu \
          (D1 = 0.05/C10 of NEO HOOKE) is usual for rubber; K = 10000 mu (D1 = 1.E-4/C10) is all but \
-         incompressible and needs CPE8R, or CPE4 with FORMULATION=MEAN DILATATION",
+         incompressible and needs CPE4H or CPE8R",
     );
 }
 

@@ -84,8 +84,10 @@ impl Properties {
         };
         let elements = sets.elements_of(set, mesh_index, cx);
         let complete = section.is_some() && cx.errors() == errors;
-        if card.choice("FORMULATION") == Some("MEAN DILATATION") {
-            set_mean_dilatation(&elements, card, mesh_index, cx);
+        match card.choice("FORMULATION") {
+            Some("MEAN DILATATION") => set_mean_dilatation(&elements, card, mesh_index, cx),
+            Some("DISPLACEMENT") => report_mean_dilatation(&elements, card, mesh_index, cx),
+            _ => {}
         }
         let index = self.sections.len();
         self.sections.extend(section);
@@ -126,6 +128,22 @@ fn set_mean_dilatation(
                 .help("give other elements a section of their own with FORMULATION=DISPLACEMENT");
             return;
         }
+    }
+}
+
+/// Reports elements that have mean dilatation by their type where the section says otherwise.
+fn report_mean_dilatation(
+    elements: &[usize],
+    card: &Card,
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) {
+    let has = |&&index: &&usize| mesh_index.mesh.elements[index].element_type == ElementType::CPE4H;
+    if let Some(&index) = elements.iter().find(has) {
+        let label = mesh_index.element_name(index);
+        let message = format!("element {label} is CPE4H, which has mean dilatation");
+        cx.error(Code::ElementType, card.span_of("FORMULATION"), message)
+            .help("write CPE4 for strains of the displacements, or leave FORMULATION out");
     }
 }
 
@@ -180,8 +198,8 @@ impl Properties {
                 );
                 cx.warning(Code::Locking, places.poisson, message).help(
                     "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
-                     more so the closer nu is to 0.5; CPE4 is not with FORMULATION=MEAN DILATATION \
-                     on its *SOLID SECTION, nor is CPE8R",
+                     more so the closer nu is to 0.5; CPE4H (CPE4 with mean dilatation) and CPE8R \
+                     are not",
                 );
             }
         }

@@ -479,4 +479,5 @@ fn materials_of_every_kind() {
         "MATERIAL=RUBBER, FORMULATION=MEAN DILATATION\n",
     )));
     round_trip(read(&mean));
+    round_trip(read(&rubber.replace("CPS4", "CPE4H")));
 }

@@ -1041,25 +1041,44 @@ fn mean_dilatation_is_an_option_of_the_section() {
         };
         assert_eq!(model.mesh.elements[0].element_type, expected);
     }
-    // nothing locks with it
-    let soft = text("CPE4", "MEAN DILATATION").replace("0.3", "0.499");
-    assert_eq!(read(&soft).1, "");
+    // it is the type CPE4H
+    let named = SQUARE.replace("CPS4", "CPE4H");
+    for text in [
+        text("CPE4", "MEAN DILATATION"),
+        text("CPE4H", "MEAN DILATATION"),
+        named,
+    ] {
+        // nothing locks with it
+        let (model, messages) = read(&text.replace("0.3", "0.499"));
+        assert_eq!(messages, "");
+        assert_eq!(model.mesh.elements[0].element_type, ElementType::CPE4H);
+    }
 }
 
 #[test]
-fn mean_dilatation_is_for_plane_strain_quadrilaterals() {
-    let text = SQUARE.replace(
-        "*SOLID SECTION,",
-        "*SOLID SECTION, FORMULATION=MEAN DILATATION,",
-    );
-    let (mut sources, mut d) = (Sources::default(), Diagnostics::default());
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    assert!(reader::build(&deck, &mut d).is_none());
-    let found = d.render(&sources, false);
-    assert!(
-        found.contains("MEAN DILATATION is for CPE4: element 7 is CPS4"),
-        "{found}"
-    );
+fn a_section_and_its_element_types_agree_on_mean_dilatation() {
+    for (kind, formulation, expected) in [
+        (
+            "CPS4",
+            "MEAN DILATATION",
+            "MEAN DILATATION is for CPE4: element 7 is CPS4",
+        ),
+        (
+            "CPE4H",
+            "DISPLACEMENT",
+            "element 7 is CPE4H, which has mean dilatation",
+        ),
+    ] {
+        let section = format!("*SOLID SECTION, FORMULATION={formulation},");
+        let text = SQUARE
+            .replace("CPS4", kind)
+            .replace("*SOLID SECTION,", &section);
+        let (mut sources, mut d) = (Sources::default(), Diagnostics::default());
+        let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+        assert!(reader::build(&deck, &mut d).is_none());
+        let found = d.render(&sources, false);
+        assert!(found.contains(expected), "{found}");
+    }
 }
 
 /// Line elements along boundary curves as a mesh generator writes them: before the plane ones, with
