@@ -211,14 +211,15 @@ fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
     if card.faulty {
         return Constant::Wrong;
     }
-    let forms = ["NEO HOOKE", "MOONEY-RIVLIN", "YEOH"];
+    let forms = ["NEO HOOKE", "MOONEY-RIVLIN", "YEOH", "POLYNOMIAL"];
     let given: Vec<&str> = forms.into_iter().filter(|form| card.has(form)).collect();
     let read = match given[..] {
         ["NEO HOOKE"] => neo_hooke_row,
-        ["MOONEY-RIVLIN"] => mooney_rivlin_row,
         ["YEOH"] => yeoh_row,
+        [] | ["POLYNOMIAL" | "MOONEY-RIVLIN"] => mooney_rivlin_row,
         _ => {
-            let message = "*HYPERELASTIC needs one of NEO HOOKE, MOONEY-RIVLIN and YEOH";
+            let message =
+                "*HYPERELASTIC has one form: NEO HOOKE, MOONEY-RIVLIN, YEOH or POLYNOMIAL";
             cx.error(Code::MissingParameter, card.span, message).help(
                 "the data line of NEO HOOKE is C10, D1 with C10 = mu/2, D1 = 2/K of small strains",
             );
@@ -234,7 +235,7 @@ fn neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     let c10 = row.required(0, "C10", cx.d);
     temperature(row, 2, cx)?;
     let c10 = positive_c10(c10?, cx)?;
-    let d1 = d1(row, 1, cx)?;
+    let d1 = d1(row, 1, c10, cx)?;
     Some(Law::NeoHooke(NeoHooke { c10, d1 }))
 }
 
@@ -250,7 +251,7 @@ fn mooney_rivlin_row(row: Line, cx: &mut Context) -> Option<Law> {
         cx.error(Code::MaterialRange, c10.span, message);
         return None;
     }
-    let d1 = d1(row, 2, cx)?;
+    let d1 = d1(row, 2, first + second, cx)?;
     Some(Law::Polynomial(Polynomial {
         shape: [first, 0.0, 0.0],
         c01: second,
@@ -265,7 +266,7 @@ fn yeoh_row(row: Line, cx: &mut Context) -> Option<Law> {
     temperature(row, 6, cx)?;
     let c10 = positive_c10(c10?, cx)?;
     let [c20, c30] = [row.real_or(1, 0.0, cx.d)?, row.real_or(2, 0.0, cx.d)?];
-    let d1 = d1(row, 3, cx)?;
+    let d1 = d1(row, 3, c10, cx)?;
     let mut other = |index: usize| {
         let rule = "D2 and D3 must not be negative; 0 is none";
         let field = row.get(index).filter(|field| !field.text.is_empty());
@@ -285,42 +286,42 @@ fn positive_c10(c10: Text, cx: &mut Context) -> Option<f64> {
     c10.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)
 }
 
-/// D1 in field `index`.
-fn d1(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
-    let d1 = row.real_or(index, 0.0, cx.d)?;
-    if d1 <= 0.0 {
-        report_d1(d1, row, index, cx);
+/// K/mu of a material with D1 = 0. In plane stress its force is that of an incompressible one to 5e-5 at stretches from
+/// 0.5 to 1.5.
+const NEARLY_INCOMPRESSIBLE: f64 = 1e4;
+
+/// D1 in field `index` of a material of the shear modulus mu = 2 c; zero stands for K = 1e4 mu:
+///
+/// ```text
+/// D1 = 2/K = 1/(1e4 c)
+/// ```
+fn d1(row: Line, index: usize, c: f64, cx: &mut Context) -> Option<f64> {
+    let Some(field) = row.get(index).filter(|field| !field.text.is_empty()) else {
+        let message = "D1 is missing: the material would be incompressible";
+        cx.error(Code::MissingField, row.span(), message).help(BULK);
+        return None;
+    };
+    let d1 = field.real(cx.d)?;
+    if d1 == 0.0 {
+        let message = "D1 = 0: the bulk modulus is 10000 shear moduli";
+        cx.d.note(Code::Incompressible, field.span, message).help(
+            "in plane strain this needs CPE4H or CPE8R; K = 20 mu (D1 = 0.05/C10 of NEO HOOKE) is usual for rubber",
+        );
+        return Some(1.0 / (NEARLY_INCOMPRESSIBLE * c));
+    }
+    if d1 < 0.0 {
+        let message = format!("D1 must not be negative, found {}", field.text);
+        cx.error(Code::MaterialRange, field.span, message)
+            .help(BULK);
         return None;
     }
     Some(d1)
 }
 
-/// Reports a D1 that is missing, zero or negative.
-fn report_d1(d1: f64, row: Line, index: usize, cx: &mut Context) {
-    let given = row.get(index).filter(|field| !field.text.is_empty());
-    let (code, span, message) = match given {
-        None => (
-            Code::MissingField,
-            row.span(),
-            "D1 is missing: the material would be incompressible".to_owned(),
-        ),
-        Some(field) if d1 == 0.0 => (
-            Code::MaterialRange,
-            field.span,
-            "D1 = 0 makes the material incompressible".to_owned(),
-        ),
-        Some(field) => (
-            Code::MaterialRange,
-            field.span,
-            format!("D1 must be positive, found {}", field.text),
-        ),
-    };
-    cx.error(code, span, message).help(
-        "D1 = 2/K with the bulk modulus K, which must be finite; where it is not known, K = 20 mu \
-         (D1 = 0.05/C10 of NEO HOOKE) is usual for rubber; K = 10000 mu (D1 = 1.E-4/C10) is all but \
-         incompressible and needs CPE4H or CPE8R",
-    );
-}
+/// What D1 is.
+const BULK: &str = "D1 = 2/K with the bulk modulus K; where it is not known, K = 20 mu (D1 = 0.05/C10 of NEO HOOKE) is \
+                    usual for rubber; D1 = 0 stands for K = 10000 mu, which is all but incompressible and needs CPE4H or \
+                    CPE8R in plane strain";
 
 /// The damping that a card gives which may appear once, with the place of the part in proportion to the mass.
 fn damping(cards: &[&Card], cx: &mut Context) -> Option<(Damping, Span)> {

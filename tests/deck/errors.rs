@@ -186,6 +186,7 @@ fn faulty(code: Code) -> Source {
                 .replace("*DENSITY\n1.\n", "")
                 .replace("*DYNAMIC", "*STATIC"),
         ),
+        Incompressible => square("*ELASTIC\n1000., 0.3", "*HYPERELASTIC\n150., 50., 0."),
         NoSection => square("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n0.5\n", ""),
         TwoSections => model("*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER"),
         Locking => Source::Text(SQUARE.replace("CPS4", "CPE4").replace("0.3", "0.495")),

@@ -1,5 +1,6 @@
 """Hyperelastic materials in plane strain and plane stress against closed forms, in flight and in contact."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -68,9 +69,11 @@ def test_unlike_bodies_in_contact_never_gain_energy(
         assert certify(result).holds, certify(result).table()
 
 
-def tension(tmp_path: Path, law: str, stretch: float, width: float | None = None) -> float:
-    """Nominal stress of a square of CPS4 with a stretch, and with its width kept or free."""
-    deck = with_law(body("CPS4", grid("CPS4", 2, 2, lambda x, y: (x, y)), 1.0, 0.3), law)
+def tension(
+    tmp_path: Path, law: str, stretch: float, width: float | None = None, kind: str = "CPS4"
+) -> float:
+    """Nominal stress of a square with a stretch, and with its width kept or free."""
+    deck = with_law(body(kind, grid(kind, 2, 2, lambda x, y: (x, y)), 1.0, 0.3), law)
     deck.extend("*BOUNDARY\nNLEFT, 1\nNBOTTOM, 2\n")
     top = "" if width is None else f"NTOP, 2, 2, {width - 1.0!r}\n"
     deck.extend("*STEP, NLGEOM\n*STATIC\n0.1, 1.\n")
@@ -109,6 +112,24 @@ def test_tension_of_a_nearly_incompressible_sheet(tmp_path: Path, law: str, stre
         x = 2.0 * stretch**2 + stretch**-4 - 3.0
         both = 2.0 * (slope(x) + c01 * stretch**2) * (stretch - stretch**-5)
         assert tension(tmp_path, row, stretch, stretch) == pytest.approx(both, rel=part)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        "*HYPERELASTIC\n150., 50., {d1}",
+        "*HYPERELASTIC, POLYNOMIAL, N=1\n150., 50., {d1}",
+        "*HYPERELASTIC, NEO HOOKE\n200., {d1}",
+        "*HYPERELASTIC, YEOH\n200., 0., 0., {d1}",
+    ],
+)
+def test_d1_of_zero_is_all_but_incompressible(tmp_path: Path, law: str) -> None:
+    """D1 = 0 is D1 = 2/(1e4 mu); in plane strain the nominal stress is mu (l - l^-3) with mu = 2 (C10 + C01)."""
+    of_zero, given = (law.format(d1=d1) for d1 in ("0.", "5.E-7"))
+    for kind, stretch in itertools.product(("CPE4H", "CPE8R"), (0.7, 1.4)):
+        force = tension(tmp_path, of_zero, stretch, kind=kind)
+        assert force == pytest.approx(400.0 * (stretch - stretch**-3), rel=3e-4)
+    assert tension(tmp_path, of_zero, 1.4) == pytest.approx(tension(tmp_path, given, 1.4), rel=1e-12)
 
 
 def test_young_and_poisson_give_the_neo_hookean_material(tmp_path: Path) -> None:
