@@ -206,6 +206,14 @@ class ElementSet(Group):
     """Cauchy stress xx yy xy [I, k, 3]."""
     MISES: Array
     """Von Mises stress [I, k]."""
+    SP1: Array
+    """Smallest principal stress [I, k]."""
+    SP2: Array
+    """Middle principal stress [I, k]."""
+    SP3: Array
+    """Largest principal stress [I, k]."""
+    PRESS: Array
+    """Pressure [I, k]."""
     E: Array
     """Green-Lagrange strain xx yy xy [I, k, 3]."""
     sum: Group

@@ -381,6 +381,25 @@ impl ElementResult {
         }
     }
 
+    /// Pressure of the mean stresses, -(sxx + syy + szz)/3 (force/length^2).
+    pub fn pressure(&self) -> f64 {
+        let [xx, yy, _] = self.stress;
+        -(xx + yy + self.across) / 3.0
+    }
+
+    /// Principal values of the mean stresses, the smallest first (force/length^2): szz and
+    ///
+    /// ```text
+    /// (sxx + syy)/2 -+ sqrt((sxx - syy)²/4 + sxy²)
+    /// ```
+    pub fn principal_stresses(&self) -> [f64; 3] {
+        let [xx, yy, xy] = self.stress;
+        let (mean, half) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
+        let mut values = [mean - half, mean + half, self.across];
+        values.sort_by(f64::total_cmp);
+        values
+    }
+
     /// Von Mises stress of the mean stresses, zz included (force/length^2):
     ///
     /// ```text
@@ -464,6 +483,21 @@ mod tests {
             means.von_mises(),
             (xx * xx - xx * yy + yy * yy).sqrt()
         ));
+    }
+
+    #[test]
+    fn principal_stresses_and_pressure_by_hand() {
+        let means = |stress, across| ElementResult {
+            stress,
+            across,
+            ..ElementResult::default()
+        };
+        // (5 + 1)/2 -+ 5/2 sqrt(...) with half difference 2 and shear 1.5: 3 -+ 2.5
+        let result = means([5.0, 1.0, 1.5], 2.0);
+        assert_eq!(result.principal_stresses(), [0.5, 2.0, 5.5]);
+        assert!((result.pressure() + 8.0 / 3.0).abs() < 1e-15);
+        let shear = means([0.0, 0.0, -4.0], -7.0);
+        assert_eq!(shear.principal_stresses(), [-7.0, -4.0, 4.0]);
     }
 
     #[test]

@@ -377,6 +377,8 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
     let of_elements = [
         (asked.energy_density, "ENER"),
         (asked.logarithmic_strain, "LE"),
+        (asked.principal_stress, "SP"),
+        (asked.pressure, "PRESS"),
     ];
     let of_elements = of_elements.iter().filter(|(is_asked, _)| *is_asked);
     let names: Vec<String> = of_elements.map(|(_, name)| (*name).to_owned()).collect();

@@ -33,6 +33,10 @@ pub struct RequestedFields {
     pub energy_density: bool,
     /// Logarithmic strain (`LE`).
     pub logarithmic_strain: bool,
+    /// Principal stresses (`SP`).
+    pub principal_stress: bool,
+    /// Pressure (`PRESS`).
+    pub pressure: bool,
 }
 
 /// A set in the history: sums over the set, and means over nodes, are always written.

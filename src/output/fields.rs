@@ -171,9 +171,18 @@ impl<'m> FieldGroup<'m> {
                 v.extend(repeat_n(f64::NAN, lines));
             })?;
         }
+        let asked = &model.sets.fields;
+        let principal = PRINCIPAL.iter().filter(|_| asked.principal_stress);
+        let pressure = PRESSURE.iter().filter(|_| asked.pressure);
+        for &(name, meaning, of) in principal.chain(pressure) {
+            self.add(name, SCALAR, varied, meaning, move |frame, v| {
+                v.extend(frame.elements.iter().map(of));
+                v.extend(repeat_n(f64::NAN, lines));
+            })?;
+        }
         let elements = &model.mesh.elements;
         let gradients = elements.iter().map(|e| MeanGradient::new(&model.mesh, e));
-        if model.sets.fields.energy_density {
+        if asked.energy_density {
             let thickness = elements.iter().map(|e| model.sections[e.section].thickness);
             let volumes = gradients
                 .clone()
@@ -186,7 +195,7 @@ impl<'m> FieldGroup<'m> {
                 v.extend(repeat_n(f64::NAN, lines));
             })?;
         }
-        if model.sets.fields.logarithmic_strain {
+        if asked.logarithmic_strain {
             let gradients: Vec<MeanGradient> = gradients.collect();
             self.add(
                 "LE",
@@ -364,6 +373,20 @@ const TENSORS: [ElementField<[f64; 3]>; 2] =
 const SCALARS: [ElementField<f64>; 2] = [
     ("S33", ACROSS, |e| e.across),
     ("MISES", VON_MISES, ElementResult::von_mises),
+];
+
+/// Fields that a deck has to ask for.
+#[rustfmt::skip]
+const PRINCIPAL: [ElementField<f64>; 3] = [
+    ("SP1", ("force/length^2", "smallest principal value of S and S33"), |e| e.principal_stresses()[0]),
+    ("SP2", ("force/length^2", "middle principal value of S and S33"), |e| e.principal_stresses()[1]),
+    ("SP3", ("force/length^2", "largest principal value of S and S33"), |e| e.principal_stresses()[2]),
+];
+
+/// A field that a deck has to ask for.
+#[rustfmt::skip]
+const PRESSURE: [ElementField<f64>; 1] = [
+    ("PRESS", ("force/length^2", "pressure -(xx + yy + zz)/3 of S and S33"), ElementResult::pressure),
 ];
 
 #[cfg(test)]

@@ -723,11 +723,15 @@ const MEANS_OF_NODES: [VectorEntry; 3] = [
 ];
 
 #[rustfmt::skip]
-const ELEMENT: [Entry<ElementResult>; 5] = [
+const ELEMENT: [Entry<ElementResult>; 9] = [
     ("S", STRESS.0, STRESS.1, Tensor(|e| e.stress)),
     ("E", STRAIN.0, STRAIN.1, Tensor(|e| e.strain)),
     ("S33", ACROSS.0, ACROSS.1, Real(|e| e.across)),
     ("MISES", "force/length^2", "von Mises stress of the mean stresses", Real(ElementResult::von_mises)),
+    ("SP1", "force/length^2", "smallest principal value of the mean stresses", Real(|e| e.principal_stresses()[0])),
+    ("SP2", "force/length^2", "middle principal value of the mean stresses", Real(|e| e.principal_stresses()[1])),
+    ("SP3", "force/length^2", "largest principal value of the mean stresses", Real(|e| e.principal_stresses()[2])),
+    ("PRESS", "force/length^2", "pressure -(xx + yy + zz)/3 of the mean stresses", Real(ElementResult::pressure)),
     ("ELSE", "energy", "strain energy of the element", Real(|e| e.energy)),
 ];
 

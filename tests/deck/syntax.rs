@@ -388,15 +388,20 @@ fn fields_on_request() {
                 asked.concentrated_load,
                 asked.energy_density,
                 asked.logarithmic_strain,
+                asked.principal_stress,
+                asked.pressure,
             ]
         })
     };
     let elements = "*OUTPUT, FIELD\n*ELEMENT OUTPUT\nS, ENER, LE\n";
-    assert_eq!(fields(elements), Some([false, true, true]));
-    assert_eq!(fields("*NODE FILE\nU, CF"), Some([true, false, false]));
-    assert_eq!(fields("*CONTACT FILE\nCF"), Some([false; 3]));
+    assert_eq!(fields(elements), Some([false, true, true, false, false]));
+    let principal = "*EL FILE\nSP2, PRESS\n";
+    assert_eq!(fields(principal), Some([false, false, false, true, true]));
+    let loads = Some([true, false, false, false, false]);
+    assert_eq!(fields("*NODE FILE\nU, CF"), loads);
+    assert_eq!(fields("*CONTACT FILE\nCF"), Some([false; 5]));
     let history = "*OUTPUT, HISTORY\n*ELEMENT OUTPUT, ELSET=BODY\nLE";
-    assert_eq!(fields(history), Some([false; 3]));
+    assert_eq!(fields(history), Some([false; 5]));
     for unwritten in ["*CONTACT FILE\nCSHEAR1", "*CONTACT PRINT\nCAREA"] {
         let found = faults("*END STEP", &format!("{unwritten}\n*END STEP"));
         assert_eq!(found, [Code::IgnoredVariable]);

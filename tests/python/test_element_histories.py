@@ -44,9 +44,11 @@ S, E, ENER, ELSE, ELKE, EVOL
 *NODE FILE
 CF
 *EL FILE
-ENER, LE
+ENER, LE, SP, PRESS
 *END STEP
 """
+
+STRESSES = ("SP1", "SP2", "SP3", "PRESS")
 
 
 def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
@@ -55,7 +57,7 @@ def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
         group = file["history/elements/BODY"]
         total = {name: data[:] for name, data in group["sum"].items()}
         body = {name: group[name][:] for name in group if name != "sum"}
-        fields = {name: file["VTKHDF/CellData"][name][:] for name in ("ENER", "LE")}
+        fields = {name: file["VTKHDF/CellData"][name][:] for name in ("ENER", "LE", *STRESSES)}
         loads = file["VTKHDF/PointData/CF"][:]
     assert body["labels"] == [7]
     assert np.allclose(body["EVOL"], [1.0], rtol=1e-14)
@@ -63,6 +65,10 @@ def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
     assert np.allclose(body["S"][-1, 0], cauchy, rtol=1e-12, atol=1e-12)
     assert np.allclose(body["S33"][-1], 8.8 / 1.2, rtol=1e-12)
     assert np.allclose(body["MISES"][-1], cauchy[0] - cauchy[1], rtol=1e-12)
+    principal = np.sort([cauchy[0], cauchy[1], 8.8 / 1.2])
+    for name, value in zip(STRESSES, [*principal, -principal.sum() / 3.0], strict=True):
+        assert np.allclose(body[name][-1], value, rtol=1e-12), name
+        assert np.allclose(fields[name][-1], value, rtol=1e-12), name
     assert np.allclose(body["E"][-1, 0], [0.22, 0.0, 0.0], rtol=1e-12, atol=1e-13)
     # lambda tr(E)^2/2 + mu E:E
     density = 60.0 * 0.22**2

@@ -50,6 +50,8 @@ pub fn model() -> Model {
                 concentrated_load: true,
                 energy_density: true,
                 logarithmic_strain: true,
+                principal_stress: true,
+                pressure: true,
             },
             monitored: vec![12, 1],
             instances: Vec::new(),

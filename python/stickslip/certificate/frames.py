@@ -250,9 +250,19 @@ class Frames:
             + 3.0 * stress[:, 2] ** 2
         )
         size = float(np.abs(stress[elastic]).max(initial=0.0))
-        error = np.abs(mises - frame["MISES"])[elastic]
+        mean = (stress[:, 0] + stress[:, 1]) / 2.0
+        half = np.hypot((stress[:, 0] - stress[:, 1]) / 2.0, stress[:, 2])
+        principal = np.sort([mean - half, mean + half, across], axis=0)
         bound = (STRESS * size + 4.0 * moduli * noise)[elastic]
-        self.checks["stresses"].add(error, bound, f"MISES of {place}")
+        derived = zip(
+            ("MISES", "SP1", "SP2", "SP3", "PRESS"),
+            (mises, *principal, -(2.0 * mean + across) / 3.0),
+            strict=True,
+        )
+        for name, values in derived:
+            if name in self.result.frames.fields:
+                error = np.abs(values - frame[name])[elastic]
+                self.checks["stresses"].add(error, bound, f"{name} of {place}")
 
     def _actions(self, frame: Frame, increment: Increment) -> None:
         """Contact forces of a frame have no resultant and no moment."""
