@@ -192,7 +192,7 @@ codes! {
         "Names are compared without case, and without blanks."
         "Rename one of the two."
     ElementType "D308" "An element type that cannot be used."
-        "Elements are CPE3, CPE4, CPE6, CPE8 or CPE8R in plane strain, CPS3, CPS4, CPS6, CPS8 or CPS8R in plane stress."
+        "Elements are CPE3, CPE4, CPE4I, CPE4H, CPE6, CPE8 or CPE8R in plane strain, CPS3, CPS4, CPS4I, CPS6, CPS8 or CPS8R in plane stress."
         "Mesh with one of these; --lenient reads CPE4R and CPS4R as CPE4 and CPS4."
     BadShape "D309" "An element is clockwise, degenerate or not convex."
         "Its nodes are listed in the wrong order, or two of them coincide."

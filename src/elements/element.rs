@@ -6,8 +6,8 @@ use nalgebra::SMatrix;
 use super::chunk::{Chunk, TangentSweep};
 use super::formulation::ElementResult;
 use super::shapes::{
-    Quad4, Quad4MeanDilatation, Quad8, Quad8Reduced, QuadraticTriangle, Quadrilateral,
-    ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
+    Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad8, Quad8Reduced, QuadraticTriangle,
+    Quadrilateral, ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
 };
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
 use super::{block, formulation};
@@ -24,6 +24,8 @@ pub(super) enum AnyElement {
     Quad4(Quad4),
     /// Q4, mean dilatation.
     Quad4MeanDilatation(Quad4MeanDilatation),
+    /// Q4, enhanced strains.
+    Quad4Enhanced(Quad4Enhanced),
     /// T6, displacement formulation.
     Tri6(Box<Tri6>),
     /// Q8, displacement formulation.
@@ -39,6 +41,7 @@ macro_rules! with_element {
             AnyElement::Tri3($element) => $value,
             AnyElement::Quad4($element) => $value,
             AnyElement::Quad4MeanDilatation($element) => $value,
+            AnyElement::Quad4Enhanced($element) => $value,
             AnyElement::Tri6($element) => $value,
             AnyElement::Quad8($element) => $value,
             AnyElement::Quad8Reduced($element) => $value,
@@ -57,6 +60,9 @@ impl AnyElement {
             (Shape::Tri3, _) => Self::Tri3(solid::<Triangle, _, _, _, _>(nodes, x, t)),
             (Shape::Quad4, Formulation::MeanDilatation) => {
                 Self::Quad4MeanDilatation(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
+            }
+            (Shape::Quad4, Formulation::Enhanced) => {
+                Self::Quad4Enhanced(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
             }
             (Shape::Quad4, _) => Self::Quad4(solid::<Quadrilateral, _, _, _, _>(nodes, x, t)),
             (Shape::Tri6, _) => Self::Tri6(Box::new(solid::<QuadraticTriangle, _, _, _, _>(
@@ -152,7 +158,8 @@ macro_rules! with_chunk {
 impl AnyChunk {
     /// Whether elements of a type and law are swept by blocks.
     pub fn has(element_type: &ElementType, law: &PlaneLaw) -> bool {
-        law.variables() == 0 && element_type.formulation != Formulation::MeanDilatation
+        let by_element = [Formulation::MeanDilatation, Formulation::Enhanced];
+        law.variables() == 0 && !by_element.contains(&element_type.formulation)
     }
 
     /// Elements (indices) of the model of one type, law and thickness `t`.

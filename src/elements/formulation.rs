@@ -20,6 +20,19 @@ pub trait Formulation {
         visit: impl FnMut(usize, &PointState),
     );
 
+    /// Force int B_L^T S dOmega of a point, 2 x N (force): B_L^T S of node a is F S dh_a/dX, the first
+    /// Piola-Kirchhoff stress times the gradient.
+    #[inline(always)]
+    fn force_of_point<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        p: usize,
+        state: &PointState,
+        _configuration: &Configuration<N>,
+    ) -> SMatrix<f64, 2, N> {
+        let point = &element.points[p];
+        state.f() * state.s * point.gradient.transpose() * point.volume
+    }
+
     /// Tangent K = dF/du, D x D (force/length); symmetric.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
@@ -39,9 +52,7 @@ pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
     let mut force = SMatrix::<f64, 2, N>::zeros();
     let mut determinant = element.corner_determinant(configuration);
     F::for_each_state(element, material, configuration, |p, state| {
-        let point = &element.points[p];
-        // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
-        force += state.f() * state.s * point.gradient.transpose() * point.volume;
+        force += F::force_of_point(element, p, state, configuration);
         determinant = smaller(determinant, state.determinant);
     });
     (force, determinant)

@@ -10,6 +10,7 @@ mod connector;
 mod damping;
 mod displacement;
 mod element;
+mod enhanced_strain;
 mod formulation;
 mod mean_dilatation;
 mod mean_gradient;

@@ -6,6 +6,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::block::Shape;
 use super::displacement::Displacement;
+use super::enhanced_strain::EnhancedStrain;
 use super::formulation::ShapeFunctions;
 use super::mean_dilatation::MeanDilatation;
 use super::solid::Solid;
@@ -49,6 +50,8 @@ impl Shape<3, 1> for Triangle {
 pub type Quad4 = Solid<4, 4, 8, Displacement>;
 /// Q4 with mean dilatation (CPE4 with `FORMULATION=MEAN DILATATION`).
 pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
+/// Q4 with enhanced strains (CPE4I, CPS4I).
+pub type Quad4Enhanced = Solid<4, 4, 8, EnhancedStrain>;
 
 /// Natural coordinates of the nodes.
 ///

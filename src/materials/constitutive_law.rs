@@ -68,4 +68,9 @@ pub trait StressAtPoints {
 
     /// Tangent of [`Self::stress`] at a point, as [`ConstitutiveLaw::tangent`] (force/length^2).
     fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64>;
+
+    /// Whether the stress is that of a change of the strains, without a stored energy.
+    fn is_viscous(&self) -> bool {
+        false
+    }
 }

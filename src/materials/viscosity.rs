@@ -83,6 +83,10 @@ impl StressAtPoints for Viscosity {
         let (g, inverse) = Self::halfway(e0, e1);
         product(&g) * (2.0 * self.shape * inverse) + dyad(&g) * (2.0 * self.volume * inverse)
     }
+
+    fn is_viscous(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]

@@ -37,6 +37,8 @@ pub enum Formulation {
     Displacement,
     /// Volume strain of the whole element at every integration point.
     MeanDilatation,
+    /// Strains of the displacements and strains of the element that make its stored energy least.
+    Enhanced,
     /// Strains of the displacements at fewer integration points.
     Reduced,
 }
@@ -130,6 +132,10 @@ impl ElementType {
         ..Self::CPE4
     };
 
+    /// Quadrilateral in plane strain with enhanced strains.
+    pub const CPE4I: Self = Self::CPE4.enhanced();
+    /// Quadrilateral in plane stress with enhanced strains.
+    pub const CPS4I: Self = Self::CPS4.enhanced();
     /// Quadratic triangle in plane strain.
     pub const CPE6: Self = Self::standard(Shape::Tri6, Plane::Strain);
     /// Quadratic triangle in plane stress.
@@ -144,15 +150,17 @@ impl ElementType {
     pub const CPS8R: Self = Self::CPS8.reduced();
 
     /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 11] = [
+    pub const NAMED: [Self; 13] = [
         Self::CPE3,
         Self::CPE4,
         Self::CPE4H,
+        Self::CPE4I,
         Self::CPE6,
         Self::CPE8,
         Self::CPE8R,
         Self::CPS3,
         Self::CPS4,
+        Self::CPS4I,
         Self::CPS6,
         Self::CPS8,
         Self::CPS8R,
@@ -177,6 +185,13 @@ impl ElementType {
         }
     }
 
+    const fn enhanced(self) -> Self {
+        ElementType {
+            formulation: Formulation::Enhanced,
+            ..self
+        }
+    }
+
     const fn reduced(self) -> Self {
         ElementType {
             formulation: Formulation::Reduced,
@@ -193,14 +208,17 @@ impl ElementType {
     pub fn name(self) -> &'static str {
         let reduced = self.formulation == Formulation::Reduced;
         let mean = self.formulation == Formulation::MeanDilatation;
+        let enhanced = self.formulation == Formulation::Enhanced;
         match (self.shape, self.plane) {
             (Shape::Tri3, Plane::Strain) => "CPE3",
             (Shape::Quad4, Plane::Strain) if mean => "CPE4H",
+            (Shape::Quad4, Plane::Strain) if enhanced => "CPE4I",
             (Shape::Quad4, Plane::Strain) => "CPE4",
             (Shape::Tri6, Plane::Strain) => "CPE6",
             (Shape::Quad8, Plane::Strain) if reduced => "CPE8R",
             (Shape::Quad8, Plane::Strain) => "CPE8",
             (Shape::Tri3, Plane::Stress) => "CPS3",
+            (Shape::Quad4, Plane::Stress) if enhanced => "CPS4I",
             (Shape::Quad4, Plane::Stress) => "CPS4",
             (Shape::Tri6, Plane::Stress) => "CPS6",
             (Shape::Quad8, Plane::Stress) if reduced => "CPS8R",

@@ -44,25 +44,27 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
     constant(at, "thickness", &[values.len()], &values, THICKNESS)
 }
 
-/// Element types in the order of their numbers in the file, which never change.
-const TYPES: [ElementType; 11] = [
-    ElementType::CPE3,
-    ElementType::CPE4,
-    ElementType::CPS3,
-    ElementType::CPS4,
-    ElementType::CPE4H,
-    ElementType::CPE6,
-    ElementType::CPS6,
-    ElementType::CPE8,
-    ElementType::CPS8,
-    ElementType::CPE8R,
-    ElementType::CPS8R,
+/// Element types and their numbers in the file, which never change.
+const TYPES: [(ElementType, u8); 13] = [
+    (ElementType::CPE3, 0),
+    (ElementType::CPE4, 1),
+    (ElementType::CPS3, 2),
+    (ElementType::CPS4, 3),
+    (ElementType::CPE4H, 4),
+    (ElementType::CPE6, 5),
+    (ElementType::CPS6, 6),
+    (ElementType::CPE8, 7),
+    (ElementType::CPS8, 8),
+    (ElementType::CPE8R, 9),
+    (ElementType::CPS8R, 10),
+    (ElementType::CPE4I, 16),
+    (ElementType::CPS4I, 17),
 ];
 
-/// Number of an element type in the file: its place in [`TYPES`].
+/// Number of an element type in the file: as in [`TYPES`].
 fn type_code(element_type: ElementType) -> u8 {
-    let code = TYPES.iter().position(|known| *known == element_type);
-    code.unwrap_or(TYPES.len()) as u8
+    let found = TYPES.iter().find(|(known, _)| *known == element_type);
+    found.map_or(u8::MAX, |(_, number)| *number)
 }
 
 /// Laws and constants of the materials.
@@ -250,7 +252,7 @@ const LOAD_GROUPS: Meaning = (
 );
 const ELEMENT_TYPES: Meaning = (
     "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 16 CPE4I, 17 CPS4I",
 );
 const MATERIAL: Meaning = (
     "1",

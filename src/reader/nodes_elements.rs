@@ -482,7 +482,7 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
         Some(reason) => error.help(reason),
         None => error
             .suggest(meant)
-            .help("use CPS3, CPE3, CPS4, CPE4, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R"),
+            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R"),
     };
     None
 }
@@ -492,11 +492,13 @@ fn reason(folded: &str) -> Option<&'static str> {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
     if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
         Some(
-            "quadrilaterals with one integration point are not supported: write CPE4 or CPS4 (--lenient takes \
-             them as these), or CPE8R or CPS8R with nodes between the corners",
+            "quadrilaterals with one integration point are not supported: write CPE4I or CPS4I, CPE4 or CPS4 \
+             (--lenient takes them as these), or CPE8R or CPS8R with nodes between the corners",
         )
     } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
-        Some("write CPE3, CPS3, CPE4, CPE4H or CPS4: other formulations are not supported")
+        Some(
+            "write CPE3, CPS3, CPE4, CPE4I, CPE4H, CPS4 or CPS4I: other formulations are not supported",
+        )
     } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) && folded.len() > 4 {
         Some("write CPE6, CPS6, CPE8, CPS8, CPE8R or CPS8R: other formulations are not supported")
     } else if starts(&["CAX"]) {

@@ -121,7 +121,9 @@ fn set_mean_dilatation(
         let element_type = &mut mesh_index.mesh.elements[index].element_type;
         if *element_type == ElementType::CPE4 {
             element_type.formulation = Formulation::MeanDilatation;
-        } else if element_type.formulation == Formulation::Displacement {
+        } else if [Formulation::Displacement, Formulation::Enhanced]
+            .contains(&element_type.formulation)
+        {
             let (name, label) = (element_type.name(), mesh_index.element_name(index));
             let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
             cx.error(Code::ElementType, card.span_of("FORMULATION"), message)

@@ -44,6 +44,9 @@ KINDS = (
 )
 """Nodes, plane stress, mean dilatation and reduced integration of each of the element types."""
 
+ENHANCED = {16: (4, False, False, False), 17: (4, True, False, False)}
+"""The same of the element types with enhanced strains."""
+
 DUNAVANT = ((0.44594849091596489, 0.22338158967801147), (0.09157621350977074, 0.10995174365532187))
 """Place a of the points (a, a), (1 - 2 a, a) and (a, 1 - 2 a) of a triangle and their weight, of degree 4."""
 
@@ -288,17 +291,26 @@ class Block:
             self.weight * self.energy_density(self.enhanced(self.displacement_gradient(u)))
         ).sum(axis=1)
 
+    def stress_of(self, u: Array) -> Array:
+        """S at the displacements, the one that does work on their strains."""
+        h = self.displacement_gradient(u)
+        return self.effective(self.stress(self.enhanced(h)), h, h)
+
+    def thickness_strain(self, u: Array) -> Array:
+        """The strains that the thickness follows in plane stress."""
+        return self.strain(self.displacement_gradient(u))
+
     def means(self, u: Array) -> tuple[Array, Array]:
         """Cauchy stress, eq. (2.8), and Green-Lagrange strain of the elements [E, 3] as xx yy xy."""
         h = self.displacement_gradient(u)
-        stress = self.effective(self.stress(self.enhanced(h)), h, h)
+        stress = self.stress_of(u)
         f = _identity(np.ones(h.shape[:2])) + h
         e = self.strain(h)
         j = _determinant(f)
         if self.plane_stress and self.is_polynomial:
-            j = j * np.sqrt(1.0 + self.across(e))
+            j = j * np.sqrt(1.0 + self.across(self.thickness_strain(u)))
         elif self.plane_stress:
-            across = -self.poisson / (1.0 - self.poisson) * _trace(e)
+            across = -self.poisson / (1.0 - self.poisson) * _trace(self.thickness_strain(u))
             j = j * np.sqrt(1.0 + 2.0 * across)
         cauchy = f @ stress @ f.swapaxes(2, 3) / j[..., None, None]
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
@@ -414,11 +426,14 @@ def _blocks(result: Result) -> list[Block]:
         name: result.read(f"model/materials/{name}")
         for name in ("law", "young", "poisson", "density", "alpha", "beta", "shape", "compressibility")
     }
+    from stickslip.certificate.enhanced import EnhancedBlock
+
     found = []
     keys = np.stack([types.astype(np.int64), materials], axis=1)
     for kind, material in np.unique(keys[materials >= 0], axis=0):
         elements = np.flatnonzero((types == kind) & (materials == material))
-        count, plane_stress, mean, reduced = KINDS[kind]
+        of_kind = EnhancedBlock if kind in ENHANCED else Block
+        count, plane_stress, mean, reduced = ENHANCED[kind] if kind in ENHANCED else KINDS[kind]
         nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)
         place, thick = result.coordinates[nodes], thickness[elements][:, None]
         gradient, area = _gradients(place, _points(count, reduced))
@@ -426,7 +441,7 @@ def _blocks(result: Result) -> list[Block]:
         shape, _ = _shape(count, rule[0])
         weight = constants["density"][material] * thick * _gradients(place, rule)[1]
         found.append(
-            Block(
+            of_kind(
                 elements,
                 nodes,
                 gradient,

@@ -1,0 +1,546 @@
+//! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990), which bends without locking: four
+//! strains of the element beside those of the displacements make its stored energy least. They are no state: they
+//! follow from the displacements by Newton's method in the element, eq. (2.28). Section 2 of docs/theory.md.
+//!
+//! # Derivation
+//!
+//! A potential Phi(E) of the displacement strains of all points, in which everything local has been made least, has a
+//! discrete gradient as a stored energy has (eq. 4.8), with sums over the element in place of one point:
+//!
+//! ```text
+//! S_g = S_g(E_m) + f/(sum v dE:dE) dE_g,   f = Phi(E1) - Phi(E0) - sum v S(E_m):dE
+//! ```
+//!
+//! E is quadratic in the displacements, so that B(U_m) d = dE and d.F = Phi(E1) - Phi(E0) exactly. Because Phi is least
+//! in alpha, errors of the local solution enter f squared.
+
+use nalgebra::{
+    Matrix2, Matrix3, Matrix4, SMatrix, SVector, SymmetricEigen, Vector2, Vector3, Vector4,
+};
+
+use super::formulation::{
+    Configuration, Formulation, PointState, Reference, add_geometric, determinant,
+    displacement_gradient, green_lagrange, smaller, strain_displacement,
+};
+use crate::materials::{Strains, StressAtPoints};
+
+/// Strains of the displacements and four of the element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnhancedStrain;
+
+/// Steps of the local solution, and halvings of a step.
+const MOST_STEPS: usize = 60;
+/// Step at which the local solution ends as part of the strains: its own square is round-off.
+const LAST_STEP: f64 = 1e-8;
+/// Part of the slope by which a step has to lower the energy.
+const DESCENT: f64 = 1e-4;
+
+/// The pattern (1, -1, 1, -1) of the nodes.
+fn alternating(a: usize) -> f64 {
+    [1.0, -1.0][a % 2]
+}
+
+/// Natural signs r_a, s_a of a node, and of the integration point next to it.
+fn signs(a: usize) -> [f64; 2] {
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]][a % 4]
+}
+
+/// Hourglass pattern and strains of an element, in the reference configuration.
+struct Modes<const N: usize, const P: usize> {
+    /// gamma of eq. (2.26), so that q = sum gamma_a u_a.
+    gamma: SVector<f64, N>,
+    /// grad h of h = r s at every point (1/length).
+    slope: [Vector2<f64>; P],
+    /// The four strains M at every point.
+    strains: [[Matrix2<f64>; 4]; P],
+}
+
+impl<const N: usize, const P: usize> Modes<N, P> {
+    /// Those of an element, from its gradients g at the points:
+    ///
+    /// ```text
+    /// b = sum v g/V,  grad h = sum +-1 g,  g = b + gamma grad h,  dxi/dX = 4 n^T b,  n_a = (r_a, s_a)/4
+    /// ```
+    fn new(element: &Reference<N, P>) -> Self {
+        let (points, volume) = (&element.points, element.volume());
+        let mut b = SMatrix::<f64, N, 2>::zeros();
+        for point in points {
+            b += point.gradient * (point.volume / volume);
+        }
+        let pattern = SVector::<f64, N>::from_fn(|a, _| alternating(a));
+        let natural = SMatrix::<f64, N, 2>::from_fn(|a, i| signs(a)[i]);
+        let slope = points.each_ref().map(|p| p.gradient.transpose() * pattern);
+        let (mut gamma, mut squares) = (SVector::<f64, N>::zeros(), 0.0);
+        for (point, slope) in points.iter().zip(&slope) {
+            gamma += (point.gradient - b) * slope;
+            squares += slope.norm_squared();
+        }
+        let inverse: Matrix2<f64> = natural.transpose() * b;
+        let mut strains: [[Matrix2<f64>; 4]; P] = std::array::from_fn(|p| {
+            let ([r, s], shrunk) = (signs(p), volume / points[p].volume);
+            let shapes = [(r, 0.0, 0.0), (0.0, s, 0.0), (0.0, 0.0, r), (0.0, 0.0, s)];
+            shapes.map(|(xx, yy, xy)| {
+                inverse.transpose() * Matrix2::new(xx, xy, xy, yy) * inverse * shrunk
+            })
+        });
+        for k in 0..4 {
+            let squares = points.iter().zip(&strains);
+            let mean = squares
+                .map(|(p, m)| p.volume * m[k].norm_squared())
+                .sum::<f64>()
+                / volume;
+            strains.iter_mut().for_each(|m| m[k] /= mean.sqrt());
+        }
+        Modes {
+            gamma: gamma / squares,
+            slope,
+            strains,
+        }
+    }
+
+    /// Strains of the displacements at all points, eq. (2.27).
+    fn compatible(&self, element: &Reference<N, P>, u: &SMatrix<f64, 2, N>) -> [Matrix2<f64>; P] {
+        let half = (u * self.gamma).norm_squared() / 2.0;
+        std::array::from_fn(|p| {
+            let e = green_lagrange(&displacement_gradient(&element.points[p], u));
+            e - self.slope[p] * self.slope[p].transpose() * half
+        })
+    }
+
+    /// Strains of all points with the element's own.
+    fn enhanced(&self, compatible: &[Matrix2<f64>; P], alpha: &Vector4<f64>) -> [Matrix2<f64>; P] {
+        std::array::from_fn(|p| compatible[p] + self.strain(p, alpha))
+    }
+
+    fn strain(&self, p: usize, alpha: &Vector4<f64>) -> Matrix2<f64> {
+        let terms = self.strains[p].iter().zip(alpha.iter());
+        terms.map(|(m, a)| m * *a).sum()
+    }
+
+    /// sum v M:S
+    fn work(&self, element: &Reference<N, P>, s: impl Fn(usize) -> Matrix2<f64>) -> Vector4<f64> {
+        let mut work = Vector4::zeros();
+        for (p, point) in element.points.iter().enumerate() {
+            let s = s(p) * point.volume;
+            work += Vector4::from_fn(|k, _| self.strains[p][k].dot(&s));
+        }
+        work
+    }
+
+    /// Columns (xx, yy, 2 xy) of the strains of a point.
+    fn columns(&self, p: usize) -> SMatrix<f64, 3, 4> {
+        let m = &self.strains[p];
+        SMatrix::from_fn(|i, k| [m[k].m11, m[k].m22, 2.0 * m[k].m12][i])
+    }
+
+    /// K_aa = sum v M C M
+    fn stiffness(
+        &self,
+        element: &Reference<N, P>,
+        c: impl Fn(usize) -> Matrix3<f64>,
+    ) -> Matrix4<f64> {
+        let mut k = Matrix4::zeros();
+        for (p, point) in element.points.iter().enumerate() {
+            let m = self.columns(p);
+            k += m.transpose() * (c(p) * m) * point.volume;
+        }
+        k
+    }
+
+    /// Strains at which the energy is least with those of the displacements, eq. (2.28): Newton's method with a line
+    /// search, the eigenvalues of K_aa taken positive. NaN where it does not converge.
+    fn least(
+        &self,
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        compatible: &[Matrix2<f64>; P],
+    ) -> [Matrix2<f64>; P] {
+        let last = LAST_STEP * largest(compatible) + f64::EPSILON;
+        let mut alpha = Vector4::zeros();
+        for _ in 0..MOST_STEPS {
+            let e = self.enhanced(compatible, &alpha);
+            let slope = self.work(element, |p| material.stress(p, &Strains::At(e[p])));
+            let k = self.stiffness(element, |p| material.tangent(p, &Strains::At(e[p])));
+            let Some(step) = descent(k, &slope) else {
+                break;
+            };
+            if step.amax() <= last {
+                return self.enhanced(compatible, &(alpha + step));
+            }
+            let change = |t: f64| {
+                let next = self.enhanced(compatible, &(alpha + step * t));
+                energy_change(element, material, &e, &next)
+            };
+            let wanted = DESCENT * slope.dot(&step);
+            let lengths = (0..MOST_STEPS).map(|halvings| 0.5_f64.powi(halvings as i32));
+            let mut lengths = lengths.filter(|&t| change(t) <= t * wanted);
+            let Some(length) = lengths.next() else {
+                break;
+            };
+            alpha += step * length;
+        }
+        [Matrix2::from_element(f64::NAN); P]
+    }
+
+    /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own,
+    /// from the strains of the displacements of start and end. NaN where Newton's method does not converge.
+    fn of_rates(
+        &self,
+        element: &Reference<N, P>,
+        viscosity: &impl StressAtPoints,
+        [e0, e1]: &[[Matrix2<f64>; P]; 2],
+    ) -> [Matrix2<f64>; P] {
+        let change: [Matrix2<f64>; P] = std::array::from_fn(|p| e1[p] - e0[p]);
+        let last = LAST_STEP * largest(&change) + f64::EPSILON * largest(e1) + f64::MIN_POSITIVE;
+        let mut alpha = Vector4::zeros();
+        for _ in 0..MOST_STEPS {
+            let e = self.enhanced(e1, &alpha);
+            let strains = |p: usize| Strains::Between(e0[p], e[p]);
+            let slope = self.work(element, |p| viscosity.stress(p, &strains(p)));
+            let k = self.stiffness(element, |p| viscosity.tangent(p, &strains(p)) / 2.0);
+            let Some(step) = descent(k, &slope) else {
+                break;
+            };
+            alpha += step;
+            if step.amax() <= last {
+                return self.enhanced(e1, &alpha);
+            }
+        }
+        [Matrix2::from_element(f64::NAN); P]
+    }
+}
+
+/// Largest component of strains.
+fn largest(e: &[Matrix2<f64>]) -> f64 {
+    e.iter().fold(0.0, |most, e| most.max(e.amax()))
+}
+
+/// -|K|^-1 g, where |K| has the eigenvalues of K without their signs; none where they are zero or no numbers.
+fn descent(k: Matrix4<f64>, g: &Vector4<f64>) -> Option<Vector4<f64>> {
+    let step = match k.cholesky() {
+        Some(factor) => -factor.solve(g),
+        None => {
+            let pairs = SymmetricEigen::try_new(k, f64::EPSILON, 1000)?;
+            let (v, values) = (pairs.eigenvectors, pairs.eigenvalues);
+            let along = v.transpose() * g;
+            -(v * along.zip_map(&values, |g, value| g / value.abs()))
+        }
+    };
+    step.iter().all(|x| x.is_finite()).then_some(step)
+}
+
+/// sum v (W(E1) - W(E0)), with a round-off that is relative to the change of the strains.
+fn energy_change<const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &impl StressAtPoints,
+    e0: &[Matrix2<f64>; P],
+    e1: &[Matrix2<f64>; P],
+) -> f64 {
+    let points = element.points.iter().enumerate();
+    let terms = points.map(|(p, point)| {
+        let s = material.stress(p, &Strains::Between(e0[p], e1[p]));
+        s.dot(&(e1[p] - e0[p])) * point.volume
+    });
+    terms.sum()
+}
+
+/// What a configuration gives at all points.
+struct States<const P: usize> {
+    states: [PointState; P],
+    /// Strains at which the material has its tangent.
+    tangent_at: [Strains; P],
+}
+
+/// Strains and stresses of all points, eq. (2.29) between two configurations.
+fn states<const N: usize, const P: usize>(
+    modes: &Modes<N, P>,
+    element: &Reference<N, P>,
+    material: &impl StressAtPoints,
+    configuration: &Configuration<N>,
+) -> States<P> {
+    let u = match configuration {
+        Configuration::At(u) => [u, u],
+        Configuration::Between(u0, u1) => [u0, u1],
+    };
+    let compatible = u.map(|u| modes.compatible(element, u));
+    let least = |e: &[Matrix2<f64>; P]| modes.least(element, material, e);
+    let (strains, tangent_at): ([Strains; P], [Strains; P]);
+    let mut s: [Matrix2<f64>; P];
+    match configuration {
+        Configuration::At(_) => {
+            strains = least(&compatible[1]).map(Strains::At);
+            tangent_at = strains;
+            s = std::array::from_fn(|p| material.stress(p, &strains[p]));
+        }
+        Configuration::Between(..) if material.is_viscous() => {
+            let end = modes.of_rates(element, material, &compatible);
+            strains = std::array::from_fn(|p| Strains::Between(compatible[0][p], end[p]));
+            tangent_at = strains;
+            s = std::array::from_fn(|p| material.stress(p, &strains[p]));
+        }
+        Configuration::Between(..) => {
+            let [c0, c1] = &compatible;
+            let [e0, e1] = [least(c0), least(c1)];
+            let middle = least(&std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0));
+            strains = std::array::from_fn(|p| Strains::Between(e0[p], e1[p]));
+            tangent_at = middle.map(Strains::At);
+            s = std::array::from_fn(|p| material.stress(p, &tangent_at[p]));
+            let (mut f, mut squares) = (energy_change(element, material, &e0, &e1), 0.0);
+            for (p, point) in element.points.iter().enumerate() {
+                let change = c1[p] - c0[p];
+                f -= s[p].dot(&change) * point.volume;
+                squares += change.norm_squared() * point.volume;
+            }
+            if (squares / element.volume()).sqrt() > f64::EPSILON {
+                for p in 0..P {
+                    s[p] += (c1[p] - c0[p]) * (f / squares);
+                }
+            }
+        }
+    }
+    let states = std::array::from_fn(|p| {
+        let point = &element.points[p];
+        let [h0, h1] = u.map(|u| displacement_gradient(point, u));
+        let h = (h0 + h1) / 2.0;
+        let own = Matrix2::identity() + strains[p].end() * 2.0;
+        let least = smaller(determinant(&h), determinant(&h1));
+        PointState {
+            h,
+            strains: strains[p],
+            material_determinant: own.determinant().sqrt(),
+            s: s[p],
+            determinant: if s[p].m11.is_nan() { f64::NAN } else { least },
+        }
+    });
+    States { states, tangent_at }
+}
+
+/// q of a configuration, eq. (2.26) (length).
+fn hourglass<const N: usize, const P: usize>(
+    modes: &Modes<N, P>,
+    configuration: &Configuration<N>,
+) -> Vector2<f64> {
+    match configuration {
+        Configuration::At(u) => u * modes.gamma,
+        Configuration::Between(u0, u1) => (u0 + u1) / 2.0 * modes.gamma,
+    }
+}
+
+impl Formulation for EnhancedStrain {
+    fn for_each_state<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+        mut visit: impl FnMut(usize, &PointState),
+    ) {
+        let states = states(&Modes::new(element), element, material, configuration);
+        for (p, state) in states.states.iter().enumerate() {
+            visit(p, state);
+        }
+    }
+
+    /// F S grad h_a - (grad h . S grad h) gamma_a q: the strain of eq. (2.27) has no |q|^2.
+    fn force_of_point<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        p: usize,
+        state: &PointState,
+        configuration: &Configuration<N>,
+    ) -> SMatrix<f64, 2, N> {
+        let (modes, point) = (Modes::new(element), &element.points[p]);
+        let slope = modes.slope[p];
+        let q = hourglass(&modes, configuration) * slope.dot(&(state.s * slope));
+        (state.f() * state.s * point.gradient.transpose() - q * modes.gamma.transpose())
+            * point.volume
+    }
+
+    /// K = sum v B^T C B - K_ua K_aa^-1 K_au and the part of the stress, eq. (2.30), at E_m in the energy-momentum form.
+    fn tangent<const N: usize, const P: usize, const D: usize>(
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+    ) -> SMatrix<f64, D, D> {
+        let modes = Modes::new(element);
+        let States { states, tangent_at } = states(&modes, element, material, configuration);
+        let q = hourglass(&modes, configuration);
+        let along_q = SMatrix::<f64, 1, D>::from_fn(|_, j| q[j % 2] * modes.gamma[j / 2]);
+        let c: [Matrix3<f64>; P] = std::array::from_fn(|p| material.tangent(p, &tangent_at[p]));
+        let mut k = SMatrix::<f64, D, D>::zeros();
+        let mut mixed = SMatrix::<f64, D, 4>::zeros();
+        for (p, point) in element.points.iter().enumerate() {
+            let (slope, state) = (modes.slope[p], &states[p]);
+            let (x, y) = (slope.x, slope.y);
+            let b = strain_displacement::<N, D>(point, &state.f())
+                - Vector3::new(x * x, y * y, 2.0 * x * y) * along_q;
+            k += b.transpose() * (c[p] * b) * point.volume;
+            mixed += b.transpose() * (c[p] * modes.columns(p)) * point.volume;
+            add_geometric(&mut k, point, &state.s);
+            let stress = slope.dot(&(state.s * slope)) * point.volume;
+            for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {
+                for i in 0..2 {
+                    k[(2 * a + i, 2 * b + i)] -= stress * modes.gamma[a] * modes.gamma[b];
+                }
+            }
+        }
+        match modes.stiffness(element, |p| c[p]).try_inverse() {
+            Some(inverse) => k - mixed * inverse * mixed.transpose(),
+            None => k,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::block::Shape;
+    use crate::elements::formulation::{evaluate, internal_force};
+    use crate::elements::shapes::Quadrilateral;
+    use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
+
+    const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
+
+    fn corners() -> SMatrix<f64, 2, 4> {
+        SMatrix::from_columns(&CORNERS.map(|p| p.into()))
+    }
+
+    fn quad() -> Reference<4, 4> {
+        Quadrilateral::reference(&Quadrilateral::map(&corners(), 0.5))
+    }
+
+    /// All laws and planes.
+    fn laws() -> Vec<PlaneLaw> {
+        let rubber = NeoHooke {
+            c10: 200.0,
+            d1: 2e-3,
+        };
+        let laws = [Law::elastic(1000.0, 0.3), Law::NeoHooke(rubber)];
+        let planes = [Plane::Strain, Plane::Stress];
+        let all = laws
+            .iter()
+            .flat_map(|law| planes.map(|plane| law.in_plane(plane)));
+        all.collect()
+    }
+
+    /// Some displacements of moderate size, the same for every run.
+    fn displacements(seed: usize) -> SMatrix<f64, 2, 4> {
+        SMatrix::from_fn(|i, a| (((seed + 7 * a + 3 * i) * 37) % 23) as f64 / 100.0 - 0.11)
+    }
+
+    fn force(law: &PlaneLaw, configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
+        internal_force::<EnhancedStrain, 4, 4>(&quad(), &Committed::new(law, &[]), configuration).0
+    }
+
+    fn energy(law: &PlaneLaw, u: &SMatrix<f64, 2, 4>) -> f64 {
+        evaluate::<EnhancedStrain, 4, 4>(&quad(), &Committed::new(law, &[]), u).energy
+    }
+
+    /// Difference quotient of a function of the displacements by the dof j.
+    fn quotient<T>(f: impl Fn(SMatrix<f64, 2, 4>) -> T, j: usize) -> T
+    where
+        T: std::ops::Sub<Output = T> + std::ops::Div<f64, Output = T>,
+    {
+        let (u, h) = (displacements(5), 1e-6);
+        let mut du = SMatrix::<f64, 2, 4>::zeros();
+        du[j] = h;
+        (f(u + du) - f(u - du)) / (2.0 * h)
+    }
+
+    #[test]
+    fn force_and_tangent_are_derivatives_of_the_energy() {
+        for law in laws() {
+            let at = Configuration::At(displacements(5));
+            let (found, material) = (force(&law, &at), Committed::new(&law, &[]));
+            let k = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &at);
+            for j in 0..8 {
+                let slope = quotient(|u| energy(&law, &u), j);
+                assert!((found[j] - slope).abs() < 1e-7 * found.norm(), "{j}");
+                let column = quotient(|u| force(&law, &Configuration::At(u)), j);
+                for i in 0..8 {
+                    assert!((k[(i, j)] - column[i]).abs() < 1e-7 * k.norm(), "({i},{j})");
+                }
+            }
+            assert!((k - k.transpose()).norm() < 1e-13 * k.norm());
+        }
+    }
+
+    #[test]
+    fn the_energy_momentum_force_does_exactly_the_work_of_the_strain_energy() {
+        for law in laws() {
+            for size in [1.0, 1e-3, 1e-6] {
+                let u0 = displacements(5);
+                let u1 = u0 + displacements(11) * size;
+                let force = force(&law, &Configuration::Between(u0, u1));
+                let (work, change) = (force.dot(&(u1 - u0)), energy(&law, &u1) - energy(&law, &u0));
+                assert!((work - change).abs() < 1e-13 * energy(&law, &u1), "{size}");
+                let x = corners() + (u0 + u1) / 2.0;
+                let moments = (0..4).map(|a| x[(0, a)] * force[(1, a)] - x[(1, a)] * force[(0, a)]);
+                assert!(force.column_sum().norm() < 1e-13 * force.norm());
+                assert!(moments.sum::<f64>().abs() < 1e-13 * force.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn only_rigid_motions_have_no_stiffness() {
+        for law in laws() {
+            let at = Configuration::At(SMatrix::zeros());
+            let material = Committed::new(&law, &[]);
+            let k = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &at);
+            let values = k.symmetric_eigenvalues();
+            let zero = values.iter().filter(|v| v.abs() < 1e-12 * k.norm());
+            assert_eq!(zero.count(), 3, "{values}");
+            assert!(values.iter().all(|&v| v > -1e-12 * k.norm()));
+        }
+    }
+
+    #[test]
+    fn homogeneous_deformation_is_exact() {
+        // patch test of a distorted element: the strains of the element stay zero
+        use crate::elements::displacement::Displacement;
+        let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * corners();
+        for law in laws() {
+            let material = Committed::new(&law, &[]);
+            let found = evaluate::<EnhancedStrain, 4, 4>(&quad(), &material, &u);
+            let exact = evaluate::<Displacement, 4, 4>(&quad(), &material, &u);
+            assert!((found.energy - exact.energy).abs() < 1e-13 * exact.energy);
+            for (a, b) in found.stress.iter().zip(exact.stress) {
+                assert!((a - b).abs() < 1e-12 * exact.von_mises());
+            }
+            let at = Configuration::At(u);
+            let exact = internal_force::<Displacement, 4, 4>(&quad(), &material, &at).0;
+            assert!((force(&law, &at) - exact).norm() < 1e-12 * exact.norm());
+        }
+    }
+
+    #[test]
+    fn rigid_rotation_gives_no_internal_force() {
+        for law in laws() {
+            for degrees in (0..=360).step_by(15) {
+                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+                let u = Matrix2::new(cos, -sin, sin, cos) * corners() - corners();
+                let force = force(&law, &Configuration::At(u));
+                assert!(force.amax() < 1e-11 * 1000.0, "{degrees}: {}", force.amax());
+            }
+        }
+    }
+
+    #[test]
+    fn a_block_compressed_to_a_fifth_stays_stable() {
+        // uniaxial, neo-Hooke: no eigenvalue of the tangent but the rotation's is negative in the hourglass pattern
+        let law = laws()[2];
+        let material = Committed::new(&law, &[]);
+        let x = SMatrix::from_columns(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]].map(|p| p.into()));
+        let square = Quadrilateral::reference(&Quadrilateral::map(&x, 1.0));
+        for percent in (20..=95).step_by(5) {
+            let u = Matrix2::new(0.0, 0.0, 0.0, f64::from(percent) / 100.0 - 1.0) * x;
+            let at = Configuration::At(u);
+            let k = EnhancedStrain::tangent::<4, 4, 8>(&square, &material, &at);
+            for i in 0..2 {
+                let mode = SVector::<f64, 8>::from_fn(|j, _| match j % 2 == i {
+                    true => alternating(j / 2),
+                    false => 0.0,
+                });
+                assert!(mode.dot(&(k * mode)) > 0.0, "{percent} {i}");
+            }
+        }
+    }
+}
