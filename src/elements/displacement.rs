@@ -89,7 +89,7 @@ fn state<const N: usize, const P: usize>(
 mod tests {
     use super::*;
     use crate::elements::block::Shape;
-    use crate::elements::formulation::{evaluate, internal_force};
+    use crate::elements::formulation::evaluate;
     use crate::elements::shapes::tests::{QUAD8, TRI6};
     use crate::elements::shapes::{
         QuadraticTriangle, Quadrilateral, ReducedSerendipity, Serendipity, Triangle,
@@ -150,10 +150,8 @@ mod tests {
         for j in 0..D {
             let mut du = SMatrix::<f64, 2, N>::zeros();
             du[j] = h;
-            let plus =
-                internal_force::<Displacement, _, _>(element, &c, &Configuration::At(u + du)).0;
-            let minus =
-                internal_force::<Displacement, _, _>(element, &c, &Configuration::At(u - du)).0;
+            let plus = Displacement::internal_force(element, &c, &Configuration::At(u + du)).0;
+            let minus = Displacement::internal_force(element, &c, &Configuration::At(u - du)).0;
             let column = (plus - minus) / (2.0 * h);
             for i in 0..D {
                 assert!((k[(i, j)] - column[i]).abs() < 1e-7 * k.norm(), "({i},{j})");
@@ -174,7 +172,7 @@ mod tests {
     fn check_gradient<const N: usize, const P: usize>(element: &Reference<N, P>) {
         let law = plane_strain();
         let (c, u, h) = (Committed::new(&law, &[]), displacements::<N>(5), 1e-6);
-        let force = internal_force::<Displacement, _, _>(element, &c, &Configuration::At(u)).0;
+        let force = Displacement::internal_force(element, &c, &Configuration::At(u)).0;
         for j in 0..2 * N {
             let mut du = SMatrix::<f64, 2, N>::zeros();
             du[j] = h;
@@ -196,8 +194,7 @@ mod tests {
     fn check_work<const N: usize, const P: usize>(element: &Reference<N, P>, law: &PlaneLaw) {
         let c = Committed::new(law, &[]);
         let (u0, u1) = (displacements::<N>(5) * 0.3, displacements::<N>(11) * 0.3);
-        let (force, _) =
-            internal_force::<Displacement, _, _>(element, &c, &Configuration::Between(u0, u1));
+        let (force, _) = Displacement::internal_force(element, &c, &Configuration::Between(u0, u1));
         let work = force.dot(&(u1 - u0));
         let difference = strain_energy(element, &c, &u1) - strain_energy(element, &c, &u0);
         assert!((work - difference).abs() < 1e-14 * force.norm());
@@ -234,13 +231,13 @@ mod tests {
         let at_points = (0..4).map(|p| state(&element, p, &c, &at).determinant);
         assert!(at_points.fold(f64::INFINITY, f64::min) > 0.2);
         // along both sides: dx/dX = 1 - 3 0.28 = 0.16 in the direction of the side, -3 0.28 across
-        let (_, least) = internal_force::<Displacement, _, _>(&element, &c, &at);
+        let (_, least) = Displacement::internal_force(&element, &c, &at);
         assert!(
             (least - (0.16 * 0.16 - 0.84 * 0.84)).abs() < 1e-14,
             "{least}"
         );
         let between = Configuration::Between(SMatrix::zeros(), u);
-        let (_, least) = internal_force::<Displacement, _, _>(&element, &c, &between);
+        let (_, least) = Displacement::internal_force(&element, &c, &between);
         assert!(
             (least - (0.16 * 0.16 - 0.84 * 0.84)).abs() < 1e-14,
             "{least}"
@@ -256,8 +253,7 @@ mod tests {
         for degrees in (0..=360).step_by(15) {
             let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
             let u = Matrix2::new(cos, -sin, sin, cos) * x - x;
-            let (force, det) =
-                internal_force::<Displacement, _, _>(element, &c, &Configuration::At(u));
+            let (force, det) = Displacement::internal_force(element, &c, &Configuration::At(u));
             assert!(force.amax() < 1e-12 * 1000.0, "{degrees}: {}", force.amax());
             assert!((det - 1.0).abs() < 1e-14);
         }

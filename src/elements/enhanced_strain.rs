@@ -339,18 +339,24 @@ impl Formulation for EnhancedStrain {
         }
     }
 
-    /// F S grad h_a - (grad h . S grad h) gamma_a q: the strain of eq. (2.27) has no |q|^2.
-    fn force_of_point<const N: usize, const P: usize>(
+    /// sum v (F S grad h_a - (grad h . S grad h) gamma_a q): the strain of eq. (2.27) has no |q|^2.
+    fn internal_force<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        p: usize,
-        state: &PointState,
+        material: &impl StressAtPoints,
         configuration: &Configuration<N>,
-    ) -> SMatrix<f64, 2, N> {
-        let (modes, point) = (Modes::new(element), &element.points[p]);
-        let slope = modes.slope[p];
-        let q = hourglass(&modes, configuration) * slope.dot(&(state.s * slope));
-        (state.f() * state.s * point.gradient.transpose() - q * modes.gamma.transpose())
-            * point.volume
+    ) -> (SMatrix<f64, 2, N>, f64) {
+        let modes = Modes::new(element);
+        let q = hourglass(&modes, configuration);
+        let (mut force, mut determinant) = (SMatrix::<f64, 2, N>::zeros(), f64::INFINITY);
+        let states = states(&modes, element, material, configuration).states;
+        for ((point, state), slope) in element.points.iter().zip(&states).zip(&modes.slope) {
+            let along_q = q * slope.dot(&(state.s * slope));
+            force += (state.f() * state.s * point.gradient.transpose()
+                - along_q * modes.gamma.transpose())
+                * point.volume;
+            determinant = smaller(determinant, state.determinant);
+        }
+        (force, determinant)
     }
 
     /// K = sum v B^T C B - K_ua K_aa^-1 K_au and the part of the stress, eq. (2.30), at E_m in the energy-momentum form.
@@ -392,7 +398,7 @@ impl Formulation for EnhancedStrain {
 mod tests {
     use super::*;
     use crate::elements::block::Shape;
-    use crate::elements::formulation::{evaluate, internal_force};
+    use crate::elements::formulation::evaluate;
     use crate::elements::shapes::Quadrilateral;
     use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
 
@@ -426,7 +432,7 @@ mod tests {
     }
 
     fn force(law: &PlaneLaw, configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
-        internal_force::<EnhancedStrain, 4, 4>(&quad(), &Committed::new(law, &[]), configuration).0
+        EnhancedStrain::internal_force::<4, 4>(&quad(), &Committed::new(law, &[]), configuration).0
     }
 
     fn energy(law: &PlaneLaw, u: &SMatrix<f64, 2, 4>) -> f64 {
@@ -506,7 +512,7 @@ mod tests {
                 assert!((a - b).abs() < 1e-12 * exact.von_mises());
             }
             let at = Configuration::At(u);
-            let exact = internal_force::<Displacement, 4, 4>(&quad(), &material, &at).0;
+            let exact = Displacement::internal_force::<4, 4>(&quad(), &material, &at).0;
             assert!((force(&law, &at) - exact).norm() < 1e-12 * exact.norm());
         }
     }

@@ -20,17 +20,23 @@ pub trait Formulation {
         visit: impl FnMut(usize, &PointState),
     );
 
-    /// Force int B_L^T S dOmega of a point, 2 x N (force): B_L^T S of node a is F S dh_a/dX, the first
-    /// Piola-Kirchhoff stress times the gradient.
-    #[inline(always)]
-    fn force_of_point<const N: usize, const P: usize>(
+    /// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
+    /// determinant of the deformation gradient at points and corners.
+    #[inline]
+    fn internal_force<const N: usize, const P: usize>(
         element: &Reference<N, P>,
-        p: usize,
-        state: &PointState,
-        _configuration: &Configuration<N>,
-    ) -> SMatrix<f64, 2, N> {
-        let point = &element.points[p];
-        state.f() * state.s * point.gradient.transpose() * point.volume
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+    ) -> (SMatrix<f64, 2, N>, f64) {
+        let mut force = SMatrix::<f64, 2, N>::zeros();
+        let mut determinant = element.corner_determinant(configuration);
+        Self::for_each_state(element, material, configuration, |p, state| {
+            let point = &element.points[p];
+            // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
+            force += state.f() * state.s * point.gradient.transpose() * point.volume;
+            determinant = smaller(determinant, state.determinant);
+        });
+        (force, determinant)
     }
 
     /// Tangent K = dF/du, D x D (force/length); symmetric.
@@ -39,23 +45,6 @@ pub trait Formulation {
         material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D>;
-}
-
-/// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
-/// determinant of the deformation gradient at points and corners.
-#[inline]
-pub fn internal_force<F: Formulation, const N: usize, const P: usize>(
-    element: &Reference<N, P>,
-    material: &impl StressAtPoints,
-    configuration: &Configuration<N>,
-) -> (SMatrix<f64, 2, N>, f64) {
-    let mut force = SMatrix::<f64, 2, N>::zeros();
-    let mut determinant = element.corner_determinant(configuration);
-    F::for_each_state(element, material, configuration, |p, state| {
-        force += F::force_of_point(element, p, state, configuration);
-        determinant = smaller(determinant, state.determinant);
-    });
-    (force, determinant)
 }
 
 /// Work of the stress on the strains between two configurations, int S:(E1 - E0) dOmega (force length).

@@ -236,7 +236,7 @@ fn add_second_of_volume<const N: usize, const D: usize>(
 mod tests {
     use super::*;
     use crate::elements::block::Shape;
-    use crate::elements::formulation::{evaluate, internal_force};
+    use crate::elements::formulation::evaluate;
     use crate::elements::shapes::Quadrilateral;
     use crate::materials::{Committed, Law, Plane, PlaneLaw};
 
@@ -260,7 +260,7 @@ mod tests {
     }
 
     fn force(configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
-        internal_force::<MeanDilatation, 4, 4>(
+        MeanDilatation::internal_force::<4, 4>(
             &quad(),
             &Committed::new(&nearly_incompressible(), &[]),
             configuration,

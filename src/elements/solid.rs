@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
 use super::formulation::{
-    Configuration, ElementResult, Formulation, Reference, evaluate, internal_force, update, work,
+    Configuration, ElementResult, Formulation, Reference, evaluate, update, work,
 };
 use crate::materials::{Committed, StressAtPoints};
 use crate::model::ElementType;
@@ -98,7 +98,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
         let mut result = [0.0; MAX_DOFS];
         let configuration = self.configuration(motion);
         let (force, determinant) =
-            internal_force::<F, N, P>(&self.reference, material, &configuration);
+            F::internal_force::<N, P>(&self.reference, material, &configuration);
         result[..D].copy_from_slice(force.as_slice());
         (result, determinant)
     }
