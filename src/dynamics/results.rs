@@ -148,6 +148,17 @@ pub struct Energy {
     pub balance: f64,
 }
 
+impl BodyResult {
+    /// Leaves out what is zero in a body of revolution: all but what is along its axis.
+    pub(super) fn keep_to_axis(&mut self) {
+        self.center[0] = 0.0;
+        self.velocity[0] = 0.0;
+        self.angular_velocity = 0.0;
+        self.contact_force[0] = 0.0;
+        self.contact_moment = 0.0;
+    }
+}
+
 /// Momentum of all bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Momentum {

@@ -15,14 +15,14 @@ use super::element::{AnyChunk, AnyElement, Geometry};
 use super::formulation::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, Increment, MAX_NODES, Motion, TangentPart};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
-use crate::model::{Element, ElementType, Mesh, Model, Shape};
+use crate::model::{Element, ElementType, Model, Shape, Thickness};
 
 /// What the elements of one section and type have in common.
 struct Kind {
     law: PlaneLaw,
     shape: Shape,
     density: f64,
-    thickness: f64,
+    thickness: Thickness,
 }
 
 /// An element that is swept on its own: in another formulation than that of the displacements, or with
@@ -134,11 +134,11 @@ impl Elements {
                 law: material.law.in_plane(element_type.plane),
                 shape: element_type.shape,
                 density: material.density,
-                thickness: section.thickness,
+                thickness: Thickness::new(element_type, section.thickness),
             };
             of_kind.retain(|&element| {
                 if is_rigid[element] {
-                    all.enter_rigid(model, &kind, element);
+                    all.enter_rigid(model, element);
                 }
                 !is_rigid[element]
             });
@@ -171,20 +171,15 @@ impl Elements {
         for (place, &element) in elements.iter().enumerate() {
             self.places[element] = (number, Place::Chunk(chunk, place as u32));
         }
-        let chunk = AnyChunk::new(model, elements, kind.thickness, kind.law);
+        let chunk = AnyChunk::new(model, elements, kind.law);
         self.chunks.push(chunk);
     }
 
     /// Takes in an element of the next kind that is swept on its own.
     fn enter_part(&mut self, model: &Model, kind: &Kind, index: usize) {
-        let Mesh {
-            coordinates,
-            elements,
-            ..
-        } = &model.mesh;
         let (number, part) = (self.kinds.len() as u32, self.parts.len() as u32);
         self.places[index] = (number, Place::Part(part));
-        let element = AnyElement::new(&elements[index], coordinates, kind.thickness);
+        let element = AnyElement::new(model, index);
         let first = self.variable_count();
         let variables = first..first + element.points() * kind.law.variables();
         self.parts.push(Part {
@@ -196,15 +191,10 @@ impl Elements {
     }
 
     /// Takes in an element of the next kind that has no strain.
-    fn enter_rigid(&mut self, model: &Model, kind: &Kind, index: usize) {
+    fn enter_rigid(&mut self, model: &Model, index: usize) {
         let (number, place) = (self.kinds.len() as u32, self.rigid.len() as u32);
         self.places[index] = (number, Place::Rigid(place));
-        let Mesh {
-            coordinates,
-            elements,
-            ..
-        } = &model.mesh;
-        let element = AnyElement::new(&elements[index], coordinates, kind.thickness);
+        let element = AnyElement::new(model, index);
         self.rigid.push(element);
     }
 
@@ -272,8 +262,8 @@ impl Elements {
         self.kind(element).density
     }
 
-    /// Thickness of an element (length).
-    pub fn thickness(&self, element: usize) -> f64 {
+    /// Thickness of an element.
+    pub fn thickness(&self, element: usize) -> Thickness {
         self.kind(element).thickness
     }
 

@@ -2,17 +2,19 @@
 //! element. A shape has one file with its quadrature and mass. Section 2 of docs/theory.md.
 
 use nalgebra::SMatrix;
+use smallvec::SmallVec;
 
 use super::chunk::{Chunk, TangentSweep};
 use super::formulation::ElementResult;
+use super::ring::{self, Ring};
 use super::shapes::{
     Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad8, Quad8Reduced, QuadraticTriangle,
     Quadrilateral, ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
 };
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
 use super::{block, formulation};
-use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, StressAtPoints};
-use crate::model::{ElementType, Formulation, Model, Shape};
+use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, RingStressAtPoints, StressAtPoints};
+use crate::model::{ElementType, Formulation, Model, Shape, Thickness};
 
 /// An element of any type.
 #[derive(Clone)]
@@ -32,6 +34,8 @@ pub(super) enum AnyElement {
     Quad8(Box<Quad8>),
     /// Q8, displacement formulation with 2 x 2 points.
     Quad8Reduced(Box<Quad8Reduced>),
+    /// A ring of any of these shapes.
+    Ring(Box<Ring>),
 }
 
 /// Evaluates an expression for the element in an [`AnyElement`], whatever its type.
@@ -45,13 +49,19 @@ macro_rules! with_element {
             AnyElement::Tri6($element) => $value,
             AnyElement::Quad8($element) => $value,
             AnyElement::Quad8Reduced($element) => $value,
+            AnyElement::Ring($element) => $value,
         }
     };
 }
 
 impl AnyElement {
-    /// The element of the model between nodes at the coordinates `x`, of thickness `t`.
-    pub fn new(element: &crate::model::Element, x: &[[f64; 2]], t: f64) -> Self {
+    /// An element (index) of a model.
+    pub fn new(model: &Model, index: usize) -> Self {
+        let (element, x) = (&model.mesh.elements[index], &model.mesh.coordinates);
+        let t = model.sections[element.section].thickness;
+        if element.element_type.is_ring() {
+            return Self::Ring(Box::new(Ring::new(element, x)));
+        }
         let nodes = &element.nodes;
         let ElementType {
             shape, formulation, ..
@@ -94,14 +104,18 @@ impl AnyElement {
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
-    pub fn force(&self, material: &impl StressAtPoints, motion: Motion) -> (ElementVector, f64) {
+    pub fn force(
+        &self,
+        material: &(impl StressAtPoints + RingStressAtPoints),
+        motion: Motion,
+    ) -> (ElementVector, f64) {
         with_element!(self, element => element.force(material, motion))
     }
 
     /// Tangent, or its positive part.
     pub fn tangent(
         &self,
-        material: &impl StressAtPoints,
+        material: &(impl StressAtPoints + RingStressAtPoints),
         motion: Motion,
         part: TangentPart,
     ) -> ElementMatrix {
@@ -112,7 +126,11 @@ impl AnyElement {
     }
 
     /// Work of the stress on the strains of a motion from its start to its end (force length).
-    pub fn work(&self, material: &impl StressAtPoints, motion: Motion) -> f64 {
+    pub fn work(
+        &self,
+        material: &(impl StressAtPoints + RingStressAtPoints),
+        motion: Motion,
+    ) -> f64 {
         with_element!(self, element => element.work(material, motion))
     }
 
@@ -159,12 +177,15 @@ impl AnyChunk {
     /// Whether elements of a type and law are swept by blocks.
     pub fn has(element_type: &ElementType, law: &PlaneLaw) -> bool {
         let by_element = [Formulation::MeanDilatation, Formulation::Enhanced];
-        law.variables() == 0 && !by_element.contains(&element_type.formulation)
+        law.variables() == 0
+            && !by_element.contains(&element_type.formulation)
+            && !element_type.is_ring()
     }
 
-    /// Elements (indices) of the model of one type, law and thickness `t`.
-    pub fn new(model: &Model, elements: &[usize], t: f64, law: PlaneLaw) -> Self {
-        let element_type = model.mesh.elements[elements[0]].element_type;
+    /// Elements (indices) of the model of one type and section, and their law.
+    pub fn new(model: &Model, elements: &[usize], law: PlaneLaw) -> Self {
+        let first = &model.mesh.elements[elements[0]];
+        let (element_type, t) = (first.element_type, model.sections[first.section].thickness);
         match (element_type.shape, element_type.formulation) {
             (Shape::Tri3, _) => Self::Tri3(chunk(model, elements, t, law)),
             (Shape::Quad4, _) => Self::Quad4(chunk(model, elements, t, law)),
@@ -271,44 +292,61 @@ pub(super) struct Geometry<'a> {
     pub nodes: &'a [usize],
     /// Positions of all nodes (length).
     pub coordinates: &'a [[f64; 2]],
-    /// Thickness (length).
-    pub thickness: f64,
+    pub thickness: Thickness,
 }
 
 impl Geometry<'_> {
     /// Consistent mass per direction, int rho h_a h_b dOmega, eq. (2.7), n x n column by column (mass).
     pub fn mass(&self, density: f64) -> Vec<f64> {
+        let Thickness::Of(t) = self.thickness else {
+            return ring::mass(self.shape, &self.own_coordinates(), density);
+        };
         match self.shape {
-            Shape::Tri3 => self.mass_of::<Triangle, _, _>(density),
-            Shape::Quad4 => self.mass_of::<Quadrilateral, _, _>(density),
-            Shape::Tri6 => self.mass_of::<QuadraticTriangle, _, _>(density),
-            Shape::Quad8 => self.mass_of::<Serendipity, _, _>(density),
+            Shape::Tri3 => self.mass_of::<Triangle, _, _>(density, t),
+            Shape::Quad4 => self.mass_of::<Quadrilateral, _, _>(density, t),
+            Shape::Tri6 => self.mass_of::<QuadraticTriangle, _, _>(density, t),
+            Shape::Quad8 => self.mass_of::<Serendipity, _, _>(density, t),
         }
+    }
+
+    /// Coordinates of its nodes (length).
+    fn own_coordinates(&self) -> SmallVec<[[f64; 2]; MAX_NODES]> {
+        self.nodes
+            .iter()
+            .map(|&node| self.coordinates[node])
+            .collect()
     }
 
     /// Share of each node in a uniform force per volume (length^3): entries beyond its nodes are 0. Those of the
     /// corners are negative in Q8 and 0 in T6.
     pub fn nodal_volumes(&self) -> [f64; MAX_NODES] {
+        let Thickness::Of(t) = self.thickness else {
+            return ring::nodal_volumes(self.shape, &self.own_coordinates());
+        };
         match self.shape {
-            Shape::Tri3 => self.shares_of::<Triangle, _, _>(),
-            Shape::Quad4 => self.shares_of::<Quadrilateral, _, _>(),
-            Shape::Tri6 => self.shares_of::<QuadraticTriangle, _, _>(),
-            Shape::Quad8 => self.shares_of::<Serendipity, _, _>(),
+            Shape::Tri3 => self.shares_of::<Triangle, _, _>(t),
+            Shape::Quad4 => self.shares_of::<Quadrilateral, _, _>(t),
+            Shape::Tri6 => self.shares_of::<QuadraticTriangle, _, _>(t),
+            Shape::Quad8 => self.shares_of::<Serendipity, _, _>(t),
         }
     }
 
     fn mass_of<S: block::Shape<N, P>, const N: usize, const P: usize>(
         &self,
         density: f64,
+        t: f64,
     ) -> Vec<f64> {
         let x = positions(self.nodes, self.coordinates);
-        (S::mass(&x, self.thickness) * density).as_slice().to_vec()
+        (S::mass(&x, t) * density).as_slice().to_vec()
     }
 
-    fn shares_of<S: block::Shape<N, P>, const N: usize, const P: usize>(&self) -> [f64; MAX_NODES] {
+    fn shares_of<S: block::Shape<N, P>, const N: usize, const P: usize>(
+        &self,
+        t: f64,
+    ) -> [f64; MAX_NODES] {
         let x = positions(self.nodes, self.coordinates);
         let mut shares = [0.0; MAX_NODES];
-        shares[..N].copy_from_slice(S::nodal_volumes(&x, self.thickness).as_slice());
+        shares[..N].copy_from_slice(S::nodal_volumes(&x, t).as_slice());
         shares
     }
 }
@@ -332,7 +370,7 @@ impl ElementInertia {
             shape: element.element_type.shape,
             nodes: &element.nodes,
             coordinates: &model.mesh.coordinates,
-            thickness: section.thickness,
+            thickness: model.thickness(element),
         };
         ElementInertia {
             volume: geometry.nodal_volumes().iter().sum(),

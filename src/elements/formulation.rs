@@ -327,10 +327,16 @@ pub fn most_strained(results: &[ElementResult]) -> Strained {
 /// Strain energy per volume, stress and strain at one integration point.
 #[derive(Clone, Copy, Default)]
 pub(super) struct PointResult {
-    energy: f64,
-    sigma: Matrix2<f64>,
-    across: f64,
-    strain: Matrix2<f64>,
+    /// Strain energy per volume (force/length^2).
+    pub energy: f64,
+    /// Cauchy stress in the plane (force/length^2).
+    pub sigma: Matrix2<f64>,
+    /// Cauchy stress across (force/length^2).
+    pub across: f64,
+    /// Green-Lagrange strain in the plane.
+    pub strain: Matrix2<f64>,
+    /// Green-Lagrange strain across where it counts for the largest strain, as in a body of revolution.
+    pub strain_across: f64,
 }
 
 impl PointResult {
@@ -343,10 +349,11 @@ impl PointResult {
             sigma: f * state.s * f.transpose() / (state.determinant * stretch),
             across: stress * stretch / state.material_determinant,
             strain: green_lagrange(&state.h),
+            strain_across: 0.0,
         }
     }
 
-    /// Largest absolute principal value of the strain in the plane.
+    /// Largest absolute principal value of the strain in the plane and of that across.
     ///
     /// ```text
     /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
@@ -354,7 +361,7 @@ impl PointResult {
     fn principal_strain(&self) -> f64 {
         let e = &self.strain;
         let (mean, half) = ((e.m11 + e.m22) / 2.0, (e.m11 - e.m22) / 2.0);
-        mean.abs() + half.hypot(e.m12)
+        -smaller(-(mean.abs() + half.hypot(e.m12)), -self.strain_across.abs())
     }
 }
 

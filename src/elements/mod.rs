@@ -1,4 +1,4 @@
-//! Plane total-Lagrangian elements: mass, internal force and tangent as pure functions.
+//! Total-Lagrangian elements of the plane and of bodies of revolution: mass, internal force and tangent as pure functions.
 //!
 //! Displacements and forces of an element with N nodes are 2 x N matrices, column a belonging to
 //! node a. Element matrices have D = 2 N rows, row 2 a + i belonging to direction i of node a.
@@ -14,6 +14,7 @@ mod enhanced_strain;
 mod formulation;
 mod mean_dilatation;
 mod mean_gradient;
+mod ring;
 mod shapes;
 mod solid;
 

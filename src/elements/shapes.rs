@@ -74,7 +74,7 @@ const FAR: f64 = (1.0 - GAUSS) / 4.0;
 pub struct Quadrilateral;
 
 impl Shape<4, 4> for Quadrilateral {
-    const FUNCTIONS: ShapeFunctions<4, 4> = bilinear();
+    const FUNCTIONS: ShapeFunctions<4, 4> = bilinear(BY_FOUR, [1.0; 4]);
 
     /// dv/dr depends on s alone and dv/ds on r alone: both follow from the differences along the edges.
     #[inline(always)]
@@ -133,13 +133,27 @@ fn nodal_volumes<const N: usize, const P: usize>(
     points.iter().map(|p| p.shape * p.volume).sum()
 }
 
-/// Shape functions at the integration points.
-const fn bilinear() -> ShapeFunctions<4, 4> {
-    let (mut values, mut natural) = ([[0.0; 4]; 4], [[[0.0; 2]; 4]; 4]);
+/// The 2 x 2 Gauss points.
+const BY_FOUR: [[f64; 2]; 4] = {
+    let mut points = NODES;
+    let mut p = 0;
+    while p < 4 {
+        points[p] = [GAUSS * NODES[p][0], GAUSS * NODES[p][1]];
+        p += 1;
+    }
+    points
+};
+
+/// Shape functions of Q4 at some points.
+const fn bilinear<const P: usize>(
+    points: [[f64; 2]; P],
+    weights: [f64; P],
+) -> ShapeFunctions<4, P> {
+    let (mut values, mut natural) = ([[0.0; 4]; P], [[[0.0; 2]; 4]; P]);
     let mut k = 0;
-    while k < 16 {
+    while k < 4 * P {
         let (p, a) = (k / 4, k % 4);
-        let [r, s] = [GAUSS * NODES[p][0], GAUSS * NODES[p][1]];
+        let [r, s] = points[p];
         let [ra, sa] = NODES[a];
         values[p][a] = (1.0 + ra * r) * (1.0 + sa * s) / 4.0;
         natural[p][a] = [ra * (1.0 + sa * s) / 4.0, sa * (1.0 + ra * r) / 4.0];
@@ -148,7 +162,7 @@ const fn bilinear() -> ShapeFunctions<4, 4> {
     ShapeFunctions {
         values,
         natural,
-        weights: [1.0; 4],
+        weights,
     }
 }
 
@@ -173,15 +187,42 @@ const DUNAVANT: [f64; 4] = [
     0.109_951_743_655_321_87,
 ];
 
+/// These points and their weights.
+const DEGREE_4: ([[f64; 2]; 6], [f64; 6]) = {
+    let [a, wa, b, wb] = DUNAVANT;
+    let (c, d) = (1.0 - 2.0 * a, 1.0 - 2.0 * b);
+    let points = [[a, a], [c, a], [a, c], [b, b], [d, b], [b, d]];
+    let [wa, wb] = [wa / 2.0, wb / 2.0];
+    (points, [wa, wa, wa, wb, wb, wb])
+};
+
 impl QuadraticTriangle {
     /// Quadrature of mass and body force.
-    const MASS: ShapeFunctions<6, 6> = {
-        let [a, wa, b, wb] = DUNAVANT;
-        let (c, d) = (1.0 - 2.0 * a, 1.0 - 2.0 * b);
-        let points = [[a, a], [c, a], [a, c], [b, b], [d, b], [b, d]];
-        let [wa, wb] = [wa / 2.0, wb / 2.0];
-        quadratic_triangle(points, [wa, wa, wa, wb, wb, wb])
+    pub(super) const MASS: ShapeFunctions<6, 6> = quadratic_triangle(DEGREE_4.0, DEGREE_4.1);
+}
+
+impl Triangle {
+    /// Quadrature of mass and body force of a ring, whose radius adds a degree.
+    pub(super) const RING_MASS: ShapeFunctions<3, 6> = {
+        let (points, weights) = DEGREE_4;
+        let mut values = [[0.0; 3]; 6];
+        let mut p = 0;
+        while p < 6 {
+            let [r, s] = points[p];
+            values[p] = [1.0 - r - s, r, s];
+            p += 1;
+        }
+        ShapeFunctions {
+            values,
+            natural: [Self::FUNCTIONS.natural[0]; 6],
+            weights,
+        }
     };
+}
+
+impl Quadrilateral {
+    /// Quadrature of mass and body force of a ring, whose radius adds a degree.
+    pub(super) const RING_MASS: ShapeFunctions<4, 9> = bilinear(DEGREE_5.0, DEGREE_5.1);
 }
 
 impl Shape<6, 3> for QuadraticTriangle {
@@ -257,18 +298,21 @@ pub struct ReducedSerendipity;
 /// sqrt(3/5), the natural coordinate of the outer of three Gauss points.
 const OUTER: f64 = 0.774_596_669_241_483_4;
 
+/// The 3 x 3 Gauss points and their weights, exact up to degree 5 in r and in s.
+const DEGREE_5: ([[f64; 2]; 9], [f64; 9]) = {
+    let (at, of) = ([-OUTER, 0.0, OUTER], [5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0]);
+    let (mut points, mut weights) = ([[0.0; 2]; 9], [0.0; 9]);
+    let mut p = 0;
+    while p < 9 {
+        points[p] = [at[p % 3], at[p / 3]];
+        weights[p] = of[p % 3] * of[p / 3];
+        p += 1;
+    }
+    (points, weights)
+};
+
 impl Shape<8, 9> for Serendipity {
-    const FUNCTIONS: ShapeFunctions<8, 9> = {
-        let (at, of) = ([-OUTER, 0.0, OUTER], [5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0]);
-        let (mut points, mut weights) = ([[0.0; 2]; 9], [0.0; 9]);
-        let mut p = 0;
-        while p < 9 {
-            points[p] = [at[p % 3], at[p / 3]];
-            weights[p] = of[p % 3] * of[p / 3];
-            p += 1;
-        }
-        serendipity(points, weights)
-    };
+    const FUNCTIONS: ShapeFunctions<8, 9> = serendipity(DEGREE_5.0, DEGREE_5.1);
 
     const CORNERS: &'static [[[f64; 2]; 8]] = &serendipity(NODES, [0.0; 4]).natural;
 
@@ -282,15 +326,7 @@ impl Shape<8, 9> for Serendipity {
 }
 
 impl Shape<8, 4> for ReducedSerendipity {
-    const FUNCTIONS: ShapeFunctions<8, 4> = {
-        let mut points = NODES;
-        let mut p = 0;
-        while p < 4 {
-            points[p] = [GAUSS * NODES[p][0], GAUSS * NODES[p][1]];
-            p += 1;
-        }
-        serendipity(points, [1.0; 4])
-    };
+    const FUNCTIONS: ShapeFunctions<8, 4> = serendipity(BY_FOUR, [1.0; 4]);
 
     const CORNERS: &'static [[[f64; 2]; 8]] = Serendipity::CORNERS;
 

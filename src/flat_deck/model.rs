@@ -493,7 +493,10 @@ fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Dec
             named("MATERIAL", &model.materials[material].name),
         ],
     );
-    lines.row([number(thickness)]);
+    let is_ring = |&element: &usize| model.mesh.elements[element].element_type.is_ring();
+    if !members.iter().any(is_ring) {
+        lines.row([number(thickness)]);
+    }
 }
 
 /// Writes a set of the elements of a section, which no set of the model holds.

@@ -4,16 +4,16 @@ use nalgebra::{Matrix2, Matrix3};
 
 /// Green-Lagrange strains at which a material is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Strains {
+pub enum Strains<E = Matrix2<f64>> {
     /// One strain.
-    At(Matrix2<f64>),
+    At(E),
     /// Those of start and end of an increment, in the energy-momentum form.
-    Between(Matrix2<f64>, Matrix2<f64>),
+    Between(E, E),
 }
 
-impl Strains {
+impl<E> Strains<E> {
     /// The strain at the end.
-    pub fn end(&self) -> &Matrix2<f64> {
+    pub fn end(&self) -> &E {
         match self {
             Strains::At(e) | Strains::Between(_, e) => e,
         }

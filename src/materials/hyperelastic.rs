@@ -23,11 +23,11 @@ use super::{Across, ConstitutiveLaw, Strains};
 
 /// Norm of dE up to which f is dropped. It changes the energy by a part of about |dE| of itself or
 /// less, which is round-off here.
-const NO_CHANGE: f64 = f64::EPSILON;
+pub const NO_CHANGE: f64 = f64::EPSILON;
 
 /// Norm of dE up to which the tangent is that of S(E_m): the rest is a part of about |dE| of it, and
 /// would carry a round-off of about eps/|dE|.
-const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
+pub const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
 
 /// An elastic material in the plane: its stored energy is a function of the strain, and all there is.
 pub trait Hyperelastic {

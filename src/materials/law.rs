@@ -4,14 +4,15 @@
 
 use std::ops::Range;
 
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::{Matrix2, Matrix3, Matrix4};
 use smallvec::SmallVec;
 
 #[cfg(test)]
 use super::yielding::Yielding;
 use super::{
     Across, ConstitutiveLaw, NeoHooke, Plane, PlanePolynomial, PlaneSaintVenantKirchhoff,
-    Polynomial, SaintVenantKirchhoff, SmallStrainModuli, Strains, StressAtPoints,
+    Polynomial, RingStressAtPoints, SaintVenantKirchhoff, SmallStrainModuli, Strains,
+    StressAtPoints, Symmetric,
 };
 
 /// Law of a material with the constants of the deck.
@@ -56,7 +57,7 @@ impl Law {
         match *self {
             Law::SaintVenantKirchhoff(law) => PlaneLaw::SaintVenantKirchhoff(law.in_plane(plane)),
             Law::NeoHooke(law) => match plane {
-                Plane::Strain => PlaneLaw::NeoHooke(law),
+                Plane::Strain | Plane::Revolution => PlaneLaw::NeoHooke(law),
                 Plane::Stress => polynomial(law.into()),
             },
             Law::Polynomial(law) => polynomial(law),
@@ -78,6 +79,19 @@ pub enum PlaneLaw {
     /// A law with internal variables.
     #[cfg(test)]
     Yielding(Yielding),
+}
+
+impl PlaneLaw {
+    /// The law in all components of the strain of a ring.
+    fn of_ring(&self) -> &dyn super::RingLaw {
+        match self {
+            PlaneLaw::SaintVenantKirchhoff(law) => law,
+            PlaneLaw::NeoHooke(law) => law,
+            PlaneLaw::Polynomial(PlanePolynomial { law, .. }) => law,
+            #[cfg(test)]
+            PlaneLaw::Yielding(law) => law,
+        }
+    }
 }
 
 /// The same function of the law that it is.
@@ -179,6 +193,37 @@ impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
     #[inline]
     fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64> {
         self.law.tangent(strains, self.at(point))
+    }
+}
+
+impl Committed<'_> {
+    /// Stored energy W(E, z) of a point of a ring per volume (force/length^2).
+    pub fn ring_energy(&self, point: usize, e: &Symmetric) -> f64 {
+        self.law.of_ring().stored_energy(e, self.at(point))
+    }
+
+    /// As [`Self::update`] at a point of a ring.
+    pub fn ring_update(
+        &self,
+        point: usize,
+        strains: &Strains<Symmetric>,
+        updated: &mut [f64],
+    ) -> f64 {
+        let (law, z0) = (self.law.of_ring(), self.at(point));
+        law.stress(strains, z0, &mut updated[self.of_point(point)]);
+        law.dissipation(strains, z0)
+    }
+}
+
+impl RingStressAtPoints for Committed<'_> {
+    fn ring_stress(&self, point: usize, strains: &Strains<Symmetric>) -> Symmetric {
+        let z0 = self.at(point);
+        let mut z1: SmallVec<[f64; 8]> = SmallVec::from_slice(z0);
+        self.law.of_ring().stress(strains, z0, &mut z1)
+    }
+
+    fn ring_tangent(&self, point: usize, strains: &Strains<Symmetric>) -> Matrix4<f64> {
+        self.law.of_ring().tangent(strains, self.at(point))
     }
 }
 

@@ -5,7 +5,8 @@
 //! A deformation gradient F enters through E = (F^T F - I)/2 alone, so that every material is
 //! objective; det F > 0 is checked by the elements. Symmetric tensors of the plane are 2 x 2
 //! matrices; tangents act on strains in Voigt order (E_xx, E_yy, 2 E_xy). A [`Law`] has the constants
-//! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements.
+//! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements; in bodies of revolution it has the
+//! components of a [`Symmetric`] tensor.
 
 mod constitutive_law;
 mod hyperelastic;
@@ -15,6 +16,9 @@ mod neo_hooke;
 mod plane;
 mod polynomial;
 mod saint_venant_kirchhoff;
+mod solid;
+mod solid_laws;
+mod symmetric;
 mod viscosity;
 #[cfg(test)]
 pub(crate) mod yielding;
@@ -28,4 +32,6 @@ pub use neo_hooke::NeoHooke;
 pub use plane::{Plane, SmallStrainModuli};
 pub use polynomial::{PlanePolynomial, Polynomial};
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
+pub use solid::{RingLaw, RingStressAtPoints, SolidHyperelastic};
+pub use symmetric::{Symmetric, contract};
 pub use viscosity::Viscosity;

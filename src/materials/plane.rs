@@ -10,6 +10,8 @@ pub enum Plane {
     Stress,
     /// No strain across the thickness (CPE elements).
     Strain,
+    /// A body of revolution around the axis x = 0, which moves without torsion (CAX elements).
+    Revolution,
 }
 
 /// Moduli of the linear elastic material that a law is near its reference state.

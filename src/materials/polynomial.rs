@@ -4,10 +4,8 @@
 
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector4};
 
-use super::{Across, Hyperelastic, NeoHooke, Plane, SmallStrainModuli};
-
-/// Components 11, 22, 33, 12 of a symmetric tensor whose 13 and 23 are zero.
-type Symmetric = Vector4<f64>;
+use super::symmetric::{IDENTITY, Symmetric, both, cofactor, contract, dyad, product};
+use super::{Across, Hyperelastic, NeoHooke, Plane, SmallStrainModuli, SolidHyperelastic};
 
 /// Hyperelastic material, `*HYPERELASTIC`; a Neo-Hookean one in plane stress too.
 ///
@@ -65,52 +63,6 @@ struct Invariants {
     a: f64,
     /// b = a - 1 = s/(a² + a + 1).
     b: f64,
-}
-
-/// I in the components of a symmetric tensor.
-const IDENTITY: Symmetric = Vector4::new(1.0, 1.0, 1.0, 0.0);
-
-/// A:B of two symmetric tensors.
-fn contract(a: &Symmetric, b: &Symmetric) -> f64 {
-    a.dot(b) + a.w * b.w
-}
-
-/// Cofactor tensor of a symmetric one: det(A) A^-1.
-fn cofactor(m: &Symmetric) -> Symmetric {
-    Vector4::new(m.y * m.z, m.x * m.z, m.x * m.y - m.w * m.w, -m.w * m.z)
-}
-
-/// A x A: E -> (A:E) A, on strains (11, 22, 33, 2*12).
-fn dyad(a: &Symmetric, b: &Symmetric) -> Matrix4<f64> {
-    a * b.transpose()
-}
-
-/// A x B + B x A.
-fn both(a: &Symmetric, b: &Symmetric) -> Matrix4<f64> {
-    dyad(a, b) + dyad(b, a)
-}
-
-/// A o A: E -> A E A, on strains (11, 22, 33, 2*12).
-fn product(a: &Symmetric) -> Matrix4<f64> {
-    let (x, y, z, w) = (a.x, a.y, a.z, a.w);
-    Matrix4::new(
-        x * x,
-        w * w,
-        0.0,
-        x * w,
-        w * w,
-        y * y,
-        0.0,
-        y * w,
-        0.0,
-        0.0,
-        z * z,
-        0.0,
-        x * w,
-        y * w,
-        0.0,
-        (x * y + w * w) / 2.0,
-    )
 }
 
 impl Invariants {
@@ -186,6 +138,31 @@ impl Polynomial {
         ]
     }
 
+    /// S_33 and C_3333, the components across of stress and tangent (force/length^2).
+    fn across(&self, e: &Symmetric) -> [f64; 2] {
+        let v = Invariants::new(e);
+        let q = v.g.x * v.g.y - v.g.w * v.g.w;
+        let (cof, square) = (1.0 + v.g.x + v.g.y + q, 1.0 + v.s);
+        let [of_x, of_xx] = self.of_shape(v.x());
+        let [p, stiff] = self.of_volume(v.grown);
+        let first = v.g.z + v.m + v.n - q - cof * (v.i / 3.0);
+        let second = v.g.z - v.i - q * 2.0 + (2.0 + v.i - v.g.z) * v.s
+            - cof * (2.0 / 3.0 * (2.0 * v.i + v.m));
+        let of_y = self.c01 / (v.a * v.a);
+        let stress = 2.0 * (first * of_x / v.a + second * of_y) / square + cof * (p / v.j);
+        let inverse = cof / square;
+        let (i1, i2) = (3.0 + v.i, 3.0 + 2.0 * v.i + v.m);
+        let slope = (1.0 - inverse * (i1 / 3.0)) / v.a;
+        let first = inverse * (inverse * i1 * 4.0 / 9.0 - 2.0 / 3.0);
+        let b = 2.0 + v.i - v.g.z;
+        let second = inverse * (inverse * i2 * 10.0 / 9.0 - b * 4.0 / 3.0);
+        let tangent = 4.0 * (of_xx * slope * slope + of_x / v.a * first + of_y * second)
+            + inverse * inverse * v.j * (stiff * v.j - p);
+        [stress, tangent]
+    }
+}
+
+impl SolidHyperelastic for Polynomial {
     /// W = w(x) + C01 y + U(J), eq. (2.23) (force/length^2).
     fn energy(&self, e: &Symmetric) -> f64 {
         let v = Invariants::new(e);
@@ -241,29 +218,6 @@ impl Polynomial {
             + cof * (p / v.j)
     }
 
-    /// S_33 and C_3333, the components across of stress and tangent (force/length^2).
-    fn across(&self, e: &Symmetric) -> [f64; 2] {
-        let v = Invariants::new(e);
-        let q = v.g.x * v.g.y - v.g.w * v.g.w;
-        let (cof, square) = (1.0 + v.g.x + v.g.y + q, 1.0 + v.s);
-        let [of_x, of_xx] = self.of_shape(v.x());
-        let [p, stiff] = self.of_volume(v.grown);
-        let first = v.g.z + v.m + v.n - q - cof * (v.i / 3.0);
-        let second = v.g.z - v.i - q * 2.0 + (2.0 + v.i - v.g.z) * v.s
-            - cof * (2.0 / 3.0 * (2.0 * v.i + v.m));
-        let of_y = self.c01 / (v.a * v.a);
-        let stress = 2.0 * (first * of_x / v.a + second * of_y) / square + cof * (p / v.j);
-        let inverse = cof / square;
-        let (i1, i2) = (3.0 + v.i, 3.0 + 2.0 * v.i + v.m);
-        let slope = (1.0 - inverse * (i1 / 3.0)) / v.a;
-        let first = inverse * (inverse * i1 * 4.0 / 9.0 - 2.0 / 3.0);
-        let b = 2.0 + v.i - v.g.z;
-        let second = inverse * (inverse * i2 * 10.0 / 9.0 - b * 4.0 / 3.0);
-        let tangent = 4.0 * (of_xx * slope * slope + of_x / v.a * first + of_y * second)
-            + inverse * inverse * v.j * (stiff * v.j - p);
-        [stress, tangent]
-    }
-
     /// C = 4 d²W/dC², on strains (11, 22, 33, 2*12) (force/length^2):
     ///
     /// ```text
@@ -316,7 +270,7 @@ impl PlanePolynomial {
     /// The strain with its component across.
     fn complete(&self, e: &Matrix2<f64>) -> Symmetric {
         let across = match self.plane {
-            Plane::Strain => 0.0,
+            Plane::Strain | Plane::Revolution => 0.0,
             Plane::Stress => self.strain_across(e),
         };
         Vector4::new(e.m11, e.m22, across, e.m12)
@@ -379,7 +333,7 @@ impl Hyperelastic for PlanePolynomial {
         let e = self.complete(e);
         let s = self.law.stress(&e);
         in_plane(&match self.plane {
-            Plane::Strain => s,
+            Plane::Strain | Plane::Revolution => s,
             Plane::Stress => {
                 let across = self.law.tangent(&e).column(2).into_owned();
                 s - across * (s.z / across.z)
@@ -391,7 +345,7 @@ impl Hyperelastic for PlanePolynomial {
         let c = self.law.tangent(&self.complete(e));
         const PLANE: [usize; 3] = [0, 1, 3];
         let condensed = match self.plane {
-            Plane::Strain => 0.0,
+            Plane::Strain | Plane::Revolution => 0.0,
             Plane::Stress => 1.0 / c[(2, 2)],
         };
         Matrix3::from_fn(|i, j| {
@@ -405,7 +359,7 @@ impl Hyperelastic for PlanePolynomial {
         Across {
             stretch: (1.0 + 2.0 * strain.z).sqrt(),
             stress: match self.plane {
-                Plane::Strain => self.law.stress(&strain).z,
+                Plane::Strain | Plane::Revolution => self.law.stress(&strain).z,
                 Plane::Stress => 0.0,
             },
         }

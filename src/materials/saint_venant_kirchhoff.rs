@@ -23,7 +23,7 @@ pub struct SaintVenantKirchhoff {
     pub poisson: f64,
 }
 
-/// St. Venant-Kirchhoff material in plane stress or plane strain.
+/// St. Venant-Kirchhoff material in plane stress, in plane strain or in a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneSaintVenantKirchhoff {
     /// Elasticity C in Voigt order xx, yy, xy with engineering shear 2 E_xy (force/length^2).
@@ -50,7 +50,7 @@ impl SaintVenantKirchhoff {
     pub fn in_plane(&self, plane: Plane) -> PlaneSaintVenantKirchhoff {
         let (contraction, across) = match plane {
             Plane::Stress => (self.poisson / (1.0 - self.poisson), 0.0),
-            Plane::Strain => (0.0, self.poisson),
+            Plane::Strain | Plane::Revolution => (0.0, self.poisson),
         };
         PlaneSaintVenantKirchhoff {
             c: self.elasticity(plane),
@@ -77,7 +77,7 @@ impl SaintVenantKirchhoff {
                 let c = e / (1.0 - nu * nu);
                 (c, c * nu, c * (1.0 - nu) / 2.0)
             }
-            Plane::Strain => {
+            Plane::Strain | Plane::Revolution => {
                 let c = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
                 (c * (1.0 - nu), c * nu, c * (1.0 - 2.0 * nu) / 2.0)
             }
@@ -91,6 +91,11 @@ impl PlaneSaintVenantKirchhoff {
     #[inline(always)]
     pub fn elasticity(&self) -> &Matrix3<f64> {
         &self.c
+    }
+
+    /// lambda and mu of plane strain and of bodies of revolution (force/length^2).
+    pub(super) fn lame(&self) -> (f64, f64) {
+        (self.c.m12, self.c.m33)
     }
 
     /// -E_zz/(E_xx + E_yy) and S_zz/(S_xx + S_yy).

@@ -1,9 +1,10 @@
 //! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
 //! of its shape and of its volume. Section 4 of docs/theory.md, Damping.
 
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::{Matrix2, Matrix3, Matrix4};
 
 use super::plane::{dyad, product};
+use super::symmetric::{self, IDENTITY, Symmetric, contract};
 use super::{
     Hyperelastic, Plane, SaintVenantKirchhoff, SmallStrainModuli, Strains, StressAtPoints,
 };
@@ -38,6 +39,27 @@ impl Viscosity {
             shape: beta * 2.0 * c0.m33,
             volume: beta * c0.m12,
         }
+    }
+
+    /// S_d dt of a ring, eq. (2.36), with P = C_m^-1 in all components (force time/length^2).
+    pub fn stress_of_ring(&self, e0: &Symmetric, e1: &Symmetric) -> Symmetric {
+        let ((p, j), de) = (Self::halfway_of_ring(e0, e1), e1 - e0);
+        let shape = symmetric::product(&p) * Symmetric::new(de.x, de.y, de.z, 2.0 * de.w);
+        (shape * self.shape + p * (self.volume * contract(&p, &de))) * j
+    }
+
+    /// 2 V of a ring, positive definite: without the change of P and J_m.
+    pub fn tangent_of_ring(&self, e0: &Symmetric, e1: &Symmetric) -> Matrix4<f64> {
+        let (p, j) = Self::halfway_of_ring(e0, e1);
+        (symmetric::product(&p) * self.shape + symmetric::dyad(&p, &p) * self.volume) * (2.0 * j)
+    }
+
+    /// P and J_m of a ring between two strains.
+    fn halfway_of_ring(e0: &Symmetric, e1: &Symmetric) -> (Symmetric, f64) {
+        let c = IDENTITY + e0 + e1;
+        let cofactor = symmetric::cofactor(&c);
+        let square = c.z * cofactor.z;
+        (cofactor / square, square.sqrt())
     }
 
     /// G and 1/J_m of eq. (4.17) between two strains.

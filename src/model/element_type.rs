@@ -13,7 +13,7 @@ pub struct ElementType {
     pub shape: Shape,
     /// How strains follow from the displacements.
     pub formulation: Formulation,
-    /// Plane stress or plane strain.
+    /// Plane stress, plane strain or body of revolution.
     pub plane: Plane,
 }
 
@@ -149,8 +149,24 @@ impl ElementType {
     /// Quadratic quadrilateral in plane stress, integrated with 2 x 2 points.
     pub const CPS8R: Self = Self::CPS8.reduced();
 
+    /// Ring with the section of a triangle.
+    pub const CAX3: Self = Self::standard(Shape::Tri3, Plane::Revolution);
+    /// Ring with the section of a quadrilateral.
+    pub const CAX4: Self = Self::standard(Shape::Quad4, Plane::Revolution);
+    /// Ring with the section of a quadratic triangle.
+    pub const CAX6: Self = Self::standard(Shape::Tri6, Plane::Revolution);
+    /// Ring with the section of a quadratic quadrilateral.
+    pub const CAX8: Self = Self::standard(Shape::Quad8, Plane::Revolution);
+    /// Ring with the section of a quadratic quadrilateral, integrated with 2 x 2 points.
+    pub const CAX8R: Self = Self::CAX8.reduced();
+
     /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 13] = [
+    pub const NAMED: [Self; 18] = [
+        Self::CAX3,
+        Self::CAX4,
+        Self::CAX6,
+        Self::CAX8,
+        Self::CAX8R,
         Self::CPE3,
         Self::CPE4,
         Self::CPE4H,
@@ -223,7 +239,17 @@ impl ElementType {
             (Shape::Tri6, Plane::Stress) => "CPS6",
             (Shape::Quad8, Plane::Stress) if reduced => "CPS8R",
             (Shape::Quad8, Plane::Stress) => "CPS8",
+            (Shape::Tri3, Plane::Revolution) => "CAX3",
+            (Shape::Quad4, Plane::Revolution) => "CAX4",
+            (Shape::Tri6, Plane::Revolution) => "CAX6",
+            (Shape::Quad8, Plane::Revolution) if reduced => "CAX8R",
+            (Shape::Quad8, Plane::Revolution) => "CAX8",
         }
+    }
+
+    /// Whether it is an element of a body of revolution.
+    pub fn is_ring(self) -> bool {
+        self.plane == Plane::Revolution
     }
 
     /// Whether displacements within an element are quadratic: sides have a node between their corners.

@@ -52,11 +52,33 @@ impl Mesh {
         parent
     }
 
+    /// Whether its bodies are bodies of revolution around the axis x = 0; all elements are of this kind, or none.
+    pub fn is_axisymmetric(&self) -> bool {
+        let first = self.elements.first();
+        first.is_some_and(|element| element.element_type.is_ring())
+    }
+
     /// Faces that belong to one element only, in the order of the elements.
-    pub fn exterior_faces(&self) -> Vec<Face> {
+    pub fn outline(&self) -> Vec<Face> {
         let at_nodes = ElementsAtNodes::new(self);
         let faces = self.faces();
         faces.filter(|&face| !at_nodes.share(face, self)).collect()
+    }
+
+    /// Faces of the outline that something can touch: those of a body of revolution that are not on its axis.
+    pub fn exterior_faces(&self) -> Vec<Face> {
+        let faces = self.outline().into_iter();
+        faces.filter(|&face| !self.is_on_axis(face)).collect()
+    }
+
+    /// Whether a face lies on the axis of a body of revolution.
+    pub fn is_on_axis(&self, face: Face) -> bool {
+        let is_ring = self.elements[face.element].element_type.is_ring();
+        is_ring
+            && face
+                .ends(self)
+                .iter()
+                .all(|&node| self.coordinates[node][0] == 0.0)
     }
 
     /// Length of the shortest side in each of `count` groups of elements, to which `group` assigns
@@ -120,6 +142,24 @@ impl Mesh {
         }
         let outline = element.segments().map(|[node, _]| self.coordinates[node]);
         of_corners + 4.0 / 3.0 * (polygon_area(outline) - of_corners)
+    }
+
+    /// Volume of an undeformed element (length^3): t A, or around the axis 2 pi int R dA by the integral over its sides,
+    /// n being the outward normal:
+    ///
+    /// ```text
+    /// 2 pi int R dA = int pi R² n_x dl
+    /// ```
+    pub fn volume(&self, element: &Element, thickness: f64) -> f64 {
+        if !element.element_type.is_ring() {
+            return thickness * self.area(element);
+        }
+        let of_side = |side: Side| {
+            let x = side.nodes().iter().map(|&node| self.coordinates[node]);
+            side.swept_volume(&x.collect::<SmallVec<[[f64; 2]; 3]>>())
+        };
+        let sides = (0..element.side_count()).map(|side| element.side(side));
+        sides.map(of_side).sum()
     }
 
     /// All sides of all elements.

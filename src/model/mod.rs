@@ -14,6 +14,7 @@ mod mesh;
 mod sets;
 mod side;
 mod step;
+mod thickness;
 mod tie;
 
 pub use crate::materials::Plane;
@@ -36,6 +37,7 @@ pub use step::{
     Pressure, Procedure, Rate, RestartOutput, Scheme, Settings, SolverChoice, Step, Support,
     SupportMotion, Traction, Variation,
 };
+pub use thickness::Thickness;
 pub(crate) use tie::{NEAR, nearest_of};
 pub use tie::{Tie, TieReach, TiedNode};
 
@@ -118,11 +120,19 @@ impl Model {
         2 * (self.centre_of(body) + 1)
     }
 
-    /// Mass of an element: density x thickness x area.
+    /// Mass of an element: density x volume.
     pub fn element_mass(&self, element: &Element) -> f64 {
         let section = &self.sections[element.section];
         let density = self.materials[section.material].density;
-        density * section.thickness * self.mesh.area(element)
+        density * self.mesh.volume(element, section.thickness)
+    }
+
+    /// How thick an element is.
+    pub fn thickness(&self, element: &Element) -> Thickness {
+        Thickness::new(
+            element.element_type,
+            self.sections[element.section].thickness,
+        )
     }
 
     /// Speed of longitudinal waves in an element (length/time).
@@ -240,12 +250,12 @@ pub struct Damping {
 
 impl Material {
     /// Speed of longitudinal waves (length/time): sqrt(E/((1 - nu^2) rho)) in plane stress,
-    /// sqrt(E (1 - nu)/((1 + nu) (1 - 2 nu) rho)) in plane strain.
+    /// sqrt(E (1 - nu)/((1 + nu) (1 - 2 nu) rho)) in plane strain and in bodies of revolution.
     pub fn wave_speed(&self, plane: Plane) -> f64 {
         let SmallStrainModuli { young, poisson: nu } = self.law.small_strain();
         let factor = match plane {
             Plane::Stress => 1.0 / (1.0 - nu * nu),
-            Plane::Strain => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+            Plane::Strain | Plane::Revolution => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         };
         (young * factor / self.density).sqrt()
     }
@@ -265,8 +275,8 @@ pub struct EdgeScales {
 impl EdgeScales {
     /// Measures the elements of a mesh, not all of which need have a section.
     pub fn new(mesh: &Mesh, sections: &[Section], materials: &[Material]) -> Self {
-        // elements of a section in plane stress and in plane strain; at last those without section
-        let planes = [Plane::Stress, Plane::Strain];
+        // elements of a section in each plane; at last those without section
+        let planes = [Plane::Stress, Plane::Strain, Plane::Revolution];
         let group = |element: &Element| {
             let section = element.section.min(sections.len());
             let plane = element.element_type.plane as usize;
@@ -299,6 +309,6 @@ impl EdgeScales {
 pub struct Section {
     /// Index into `Model::materials`.
     pub material: usize,
-    /// Thickness t (length).
+    /// Thickness t (length); without a meaning for bodies of revolution.
     pub thickness: f64,
 }

@@ -3,7 +3,11 @@
 //! A side is not a contact segment: a segment is a straight line between two neighbouring nodes, of which a side has one
 //! or more.
 
+use std::f64::consts::{PI, TAU};
+
 use smallvec::SmallVec;
+
+use super::Thickness;
 
 /// A straight line from a node to the next, with the body on the left: what contact knows of a side.
 pub type Segment = [usize; 2];
@@ -35,11 +39,18 @@ fn shape_functions(n: usize, r: f64) -> SmallVec<[[f64; 2]; 3]> {
     (0..n).map(of_node).collect()
 }
 
-/// Gauss points r and their weight on a side with 2 nodes, and with 3: exact for products of a shape function and a
-/// derivative of one.
-const GAUSS: [(&[f64], f64); 2] = [
-    (&[0.0], 2.0),
-    (&[-0.577_350_269_189_625_8, 0.577_350_269_189_625_8], 1.0),
+/// Gauss points r and their weights, exact for polynomials of degree 1, 3 and 5.
+const GAUSS: [&[[f64; 2]]; 3] = [
+    &[[0.0, 2.0]],
+    &[
+        [-0.577_350_269_189_625_8, 1.0],
+        [0.577_350_269_189_625_8, 1.0],
+    ],
+    &[
+        [-0.774_596_669_241_483_4, 5.0 / 9.0],
+        [0.0, 8.0 / 9.0],
+        [0.774_596_669_241_483_4, 5.0 / 9.0],
+    ],
 ];
 
 impl Side {
@@ -75,39 +86,74 @@ impl Side {
         from_first: impl Fn(usize) -> [f64; 2],
     ) -> impl Iterator<Item = (usize, [f64; 2])> {
         // n dl = (e_y, -e_x): on the right of the direction of the side
-        self.integrals(from_first, |e| [e[1], -e[0]])
+        self.integrals(from_first, None, |e| [e[1], -e[0]])
     }
 
-    /// int h_a dl at every node a (length), as [`Self::normals`].
-    pub fn lengths(
+    /// int h_a n t dl at every node a (length^2), as [`Self::normals`], t being the thickness; `radius` is the distance of
+    /// the first node from the axis.
+    pub fn thrusts(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
-    ) -> impl Iterator<Item = (usize, f64)> {
-        let lengths = self.integrals(from_first, |e| [e[0].hypot(e[1]), 0.0]);
-        lengths.map(|(node, [length, _])| (node, length))
+        (thickness, radius): (Thickness, f64),
+    ) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let (factor, around) = thickness.parts(radius);
+        let integrals = self.integrals(from_first, around, |e| [e[1], -e[0]]);
+        integrals.map(move |(node, normal)| (node, normal.map(|n| n * factor)))
     }
 
-    /// int h_a v(dx/dr) dr at every node a.
+    /// int h_a t dl at every node a (length^2), as [`Self::thrusts`].
+    pub fn areas(
+        &self,
+        from_first: impl Fn(usize) -> [f64; 2],
+        (thickness, radius): (Thickness, f64),
+    ) -> impl Iterator<Item = (usize, f64)> {
+        let (factor, around) = thickness.parts(radius);
+        let lengths = self.integrals(from_first, around, |e| [e[0].hypot(e[1]), 0.0]);
+        lengths.map(move |(node, [length, _])| (node, length * factor))
+    }
+
+    /// int pi R² n_x dl of a side with nodes at `x` (length^3).
+    pub(super) fn swept_volume(&self, x: &[[f64; 2]]) -> f64 {
+        let points = GAUSS[self.nodes.len() - 1].iter();
+        let terms = points.map(|&[r, weight]| {
+            let functions = shape_functions(self.nodes.len(), r);
+            let of = |i: usize, k: usize| -> f64 {
+                let terms = x.iter().zip(&functions);
+                terms.map(|(x, h)| x[i] * h[k]).sum()
+            };
+            of(0, 0).powi(2) * of(1, 1) * weight
+        });
+        PI * terms.sum::<f64>()
+    }
+
+    /// int h_a v(dx/dr) dr at every node a, or int 2 pi R h_a v(dx/dr) dr where the first node has a distance from the
+    /// axis.
     fn integrals(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
+        around: Option<f64>,
         v: impl Fn([f64; 2]) -> [f64; 2],
     ) -> impl Iterator<Item = (usize, [f64; 2])> {
         let n = self.nodes.len();
         let mut sums: SmallVec<[(usize, [f64; 2]); 3]> =
             self.nodes.iter().map(|&node| (node, [0.0; 2])).collect();
-        let (points, weight) = GAUSS[n - 2];
-        for &r in points {
+        // products of a shape function and a derivative of one, and of another shape function in R
+        let points = GAUSS[if around.is_some() { n - 1 } else { n - 2 }];
+        for &[r, weight] in points {
             let functions = shape_functions(n, r);
-            let terms = self.nodes.iter().zip(&functions).skip(1);
-            let tangent = terms.fold([0.0; 2], |[x, y], (&node, [_, derivative])| {
+            let terms = || self.nodes.iter().zip(&functions).skip(1);
+            let tangent = terms().fold([0.0; 2], |[x, y], (&node, [_, derivative])| {
                 let from_first = from_first(node);
                 [
                     x + derivative * from_first[0],
                     y + derivative * from_first[1],
                 ]
             });
-            let v = v(tangent).map(|v| v * weight);
+            let circumference = around.map_or(1.0, |radius| {
+                let off = terms().map(|(&node, [h, _])| h * from_first(node)[0]);
+                TAU * (radius + off.sum::<f64>())
+            });
+            let v = v(tangent).map(|v| v * (weight * circumference));
             for ((_, sum), [h, _]) in sums.iter_mut().zip(&functions) {
                 *sum = [sum[0] + h * v[0], sum[1] + h * v[1]];
             }
@@ -127,8 +173,8 @@ mod tests {
         let from_first = |node: usize| [x[node][0] - x[0][0], x[node][1] - x[0][1]];
         let normals: Vec<_> = side.normals(from_first).collect();
         assert_eq!(normals, [(0, [2.0, -1.5]), (1, [2.0, -1.5])]);
-        let lengths: Vec<_> = side.lengths(from_first).collect();
-        assert_eq!(lengths, [(0, 2.5), (1, 2.5)]);
+        let areas: Vec<_> = side.areas(from_first, (Thickness::Of(3.0), 1.0)).collect();
+        assert_eq!(areas, [(0, 7.5), (1, 7.5)]);
         assert_eq!(side.segments().collect::<Vec<_>>(), [side.ends()]);
     }
 
@@ -143,11 +189,34 @@ mod tests {
         for ((_, [x, y]), part) in side.normals(from_first).zip([1.0, 4.0, 1.0]) {
             assert!((x - 4.0 * part / 6.0).abs() < 1e-14 && (y + 3.0 * part / 6.0).abs() < 1e-14);
         }
-        for ((_, length), part) in side.lengths(from_first).zip([1.0, 4.0, 1.0]) {
-            assert!((length - 5.0 * part / 6.0).abs() < 1e-14);
+        let areas = side.areas(from_first, (Thickness::Of(1.0), 0.0));
+        for ((_, area), part) in areas.zip([1.0, 4.0, 1.0]) {
+            assert!((area - 5.0 * part / 6.0).abs() < 1e-14);
         }
         assert_eq!(side.segments().collect::<Vec<_>>(), [[4, 2], [2, 7]]);
         assert_eq!(side.ends(), [4, 7]);
+    }
+
+    #[test]
+    fn around_the_axis_a_side_has_the_area_and_the_thrust_of_a_cone() {
+        // from R = 1 to R = 4, slant 5: pi (1 + 4) 5, pi (4² - 1²) along the axis
+        for nodes in [vec![0, 1], vec![0, 2, 1]] {
+            let side = Side::new(nodes.into_iter().collect());
+            let from_first = |node: usize| [[0.0, 0.0], [3.0, 4.0], [1.5, 2.0]][node];
+            let around = (Thickness::Around, 1.0);
+            let area: f64 = side.areas(from_first, around).map(|(_, a)| a).sum();
+            assert!((area - 25.0 * PI).abs() < 1e-13);
+            let along: f64 = side.thrusts(from_first, around).map(|(_, n)| n[1]).sum();
+            assert!((along + 15.0 * PI).abs() < 1e-13);
+            // node 0 has (2 R_0 + R_1)/6 of the slant on a side of two nodes, R_0/6 on one of three
+            let (_, first) = side.areas(from_first, around).next().expect("a node");
+            let part = if side.nodes().len() == 2 {
+                1.0
+            } else {
+                1.0 / 6.0
+            };
+            assert!((first - TAU * 5.0 * part).abs() < 1e-13);
+        }
     }
 
     #[test]

@@ -183,12 +183,8 @@ impl<'m> FieldGroup<'m> {
         let elements = &model.mesh.elements;
         let gradients = elements.iter().map(|e| MeanGradient::new(&model.mesh, e));
         if asked.energy_density {
-            let thickness = elements.iter().map(|e| model.sections[e.section].thickness);
-            let volumes = gradients
-                .clone()
-                .zip(thickness)
-                .map(|(mean, t)| mean.area * t);
-            let volumes: Vec<f64> = volumes.collect();
+            let volume = |e| model.mesh.volume(e, model.sections[e.section].thickness);
+            let volumes: Vec<f64> = elements.iter().map(volume).collect();
             self.add("ENER", SCALAR, varied, ENERGY_DENSITY, move |frame, v| {
                 let elements = frame.elements.iter().zip(&volumes);
                 v.extend(elements.map(|(e, volume)| e.energy / *volume));

@@ -31,7 +31,10 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
     constant(at, "element_types", &[types.len()], &types, ELEMENT_TYPES)?;
     let section = |e: usize| model.sections.get(elements[e].section);
     let material = |e: usize| section(e).map_or(-1, |section| section.material as i64);
-    let thickness = |e: usize| section(e).map_or(f64::NAN, |section| section.thickness);
+    let thickness = |e: usize| match (section(e), elements[e].element_type.is_ring()) {
+        (Some(section), false) => section.thickness,
+        _ => f64::NAN,
+    };
     let materials: Vec<i64> = (0..elements.len()).map(material).collect();
     constant(
         at,
@@ -45,7 +48,7 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
 }
 
 /// Element types and their numbers in the file, which never change.
-const TYPES: [(ElementType, u8); 13] = [
+const TYPES: [(ElementType, u8); 18] = [
     (ElementType::CPE3, 0),
     (ElementType::CPE4, 1),
     (ElementType::CPS3, 2),
@@ -57,6 +60,11 @@ const TYPES: [(ElementType, u8); 13] = [
     (ElementType::CPS8, 8),
     (ElementType::CPE8R, 9),
     (ElementType::CPS8R, 10),
+    (ElementType::CAX3, 11),
+    (ElementType::CAX4, 12),
+    (ElementType::CAX6, 13),
+    (ElementType::CAX8, 14),
+    (ElementType::CAX8R, 15),
     (ElementType::CPE4I, 16),
     (ElementType::CPS4I, 17),
 ];
@@ -252,13 +260,16 @@ const LOAD_GROUPS: Meaning = (
 );
 const ELEMENT_TYPES: Meaning = (
     "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 16 CPE4I, 17 CPS4I",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 11 CAX3, 12 CAX4, 13 CAX6, 14 CAX8, 15 CAX8R, 16 CPE4I, 17 CPS4I",
 );
 const MATERIAL: Meaning = (
     "1",
     "index of the material in /model/materials, -1 for none",
 );
-const THICKNESS: Meaning = ("length", "thickness of each element");
+const THICKNESS: Meaning = (
+    "length",
+    "thickness of each element; NaN in bodies of revolution, which go once around the axis",
+);
 const LAW: Meaning = (
     "1",
     "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another hyperelastic law",

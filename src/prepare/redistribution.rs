@@ -206,7 +206,7 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
 /// along the element that it has come by.
 fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
     let segments = |face: &Face| face.segments(mesh);
-    let faces: Vec<[usize; 2]> = mesh.exterior_faces().iter().flat_map(segments).collect();
+    let faces: Vec<[usize; 2]> = mesh.outline().iter().flat_map(segments).collect();
     let mut starting: HashMap<usize, Vec<usize>> = HashMap::new();
     for (face, &[a, _]) in faces.iter().enumerate() {
         starting.entry(a).or_default().push(face);

@@ -151,6 +151,8 @@ impl LoadHistories {
             "GRAV" => Some(Body::Gravity),
             "BX" => Some(Body::X),
             "BY" => Some(Body::Y),
+            "BR" if mesh_index.mesh.is_axisymmetric() => Some(Body::X),
+            "BZ" if mesh_index.mesh.is_axisymmetric() => Some(Body::Y),
             _ => None,
         };
         if let Some(body) = body {
@@ -181,6 +183,13 @@ impl LoadHistories {
             Body::X => [1.0, 0.0],
             Body::Y => [0.0, 1.0],
         };
+        let is_axisymmetric = source.targets.mesh_index.mesh.is_axisymmetric();
+        if is_axisymmetric && body == Body::Gravity && direction[0] != 0.0 {
+            let message = "this gravity points across the axis of revolution";
+            cx.error(Code::BadDirection, row.span_at(3), message)
+                .help("it acts along the axis: its direction is 0, 1 or 0, -1");
+            return None;
+        }
         row.at_most(if body == Body::Gravity { 6 } else { 3 }, cx.d);
         let (amplitude, context) = (source.amplitude, source.context);
         self.bodies.reserve(elements.len());

@@ -75,6 +75,7 @@ fn read(cx: &mut Context) -> Model {
     let mut mesh_index = nodes_elements::read(&outline, cx);
     let at_nodes = ElementsAtNodes::new(&mesh_index.mesh);
     checks::mesh(&mesh_index, &at_nodes, cx);
+    checks::half_plane(&mesh_index, cx);
     let sets = sets::read(&outline, &mesh_index, cx);
     let cuts = pretension::read(&outline, &mut mesh_index, &sets, cx);
     let at_nodes = match cuts.is_empty() {
@@ -115,7 +116,8 @@ fn read(cx: &mut Context) -> Model {
     let all = &mut steps.all;
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
     let equations = equations::read(&outline, targets, (&ties, &links, &cuts, &steps.all), cx);
-    rigid_bodies::check(&rigid_bodies, &bodies, (&steps.all, &equations), cx);
+    let around = mesh_index.mesh.is_axisymmetric();
+    rigid_bodies::check(&rigid_bodies, &bodies, around, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let hinges = couplings::hinges(&links, &steps.all, cx);
@@ -140,7 +142,8 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: bodies,
         restarts: steps.restarts,
     };
-    let all: [&dyn Fn(&mut Context); 8] = [
+    let all: [&dyn Fn(&mut Context); 9] = [
+        &|cx| checks::axis(&model, &mesh_index.places, cx),
         &|cx| connectors::check(&model, &mesh_index.connectors, cx),
         &|cx| checks::amplitudes(&model, &amplitudes.spans, cx),
         &|cx| checks::braked_flight(&model, &properties.places, cx),

@@ -482,7 +482,8 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
         Some(reason) => error.help(reason),
         None => error
             .suggest(meant)
-            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R"),
+            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R, or CAX3, CAX4, \
+                 CAX6, CAX8 or CAX8R around the axis x = 0"),
     };
     None
 }
@@ -502,11 +503,11 @@ fn reason(folded: &str) -> Option<&'static str> {
     } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) && folded.len() > 4 {
         Some("write CPE6, CPS6, CPE8, CPS8, CPE8R or CPS8R: other formulations are not supported")
     } else if starts(&["CAX"]) {
-        Some("axisymmetric elements are not supported")
+        Some("write CAX3, CAX4, CAX6, CAX8 or CAX8R: other formulations are not supported")
     } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
         Some("line elements only name sides of plane elements: use T3D2 with two nodes")
     } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
-        Some("the program is plane: use CPS and CPE elements")
+        Some("the program is two-dimensional: use CPS, CPE and CAX elements")
     } else {
         None
     }

@@ -411,10 +411,11 @@ pub(crate) fn complete(
 }
 
 /// Reports what bodies that turn cannot do yet: equations at their nodes, landing return, redistributed mass, and
-/// free motion in a static step.
+/// free motion in a static step; bodies of revolution cannot turn at all.
 pub(crate) fn check(
     rigid_bodies: &[Rigid],
     bodies: &[RigidBody],
+    is_axisymmetric: bool,
     (steps, equations): (&[Step], &[(Equation, Span)]),
     cx: &mut Context,
 ) {
@@ -434,6 +435,11 @@ pub(crate) fn check(
         let redistributes =
             (steps.iter()).any(|step| step.settings.contact_mass == ContactMass::Redistributed);
         let is_static = (steps.iter()).any(|step| step.procedure == Procedure::Static);
+        if is_axisymmetric {
+            let message = format!("{} turns in a model of bodies of revolution", rigid.name);
+            cx.error(Code::Revolution, rigid.span, message)
+                .help("hold its rotation, direction 6 of its reference node");
+        }
         let options = [
             (is_static && !rigid.is_coupling, "a static step"),
             (returns, "LANDING=RETURN"),

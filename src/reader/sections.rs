@@ -89,6 +89,11 @@ impl Properties {
             Some("DISPLACEMENT") => report_mean_dilatation(&elements, card, mesh_index, cx),
             _ => {}
         }
+        let is_ring = |&element: &usize| mesh_index.mesh.elements[element].element_type.is_ring();
+        if let Some(row) = card.rows.first().filter(|_| elements.iter().any(is_ring)) {
+            let help = "bodies of revolution go once around the axis";
+            row.without_effect(0, "this thickness has no effect", help, cx.d);
+        }
         let index = self.sections.len();
         self.sections.extend(section);
         let mut taken = Vec::new();
@@ -176,14 +181,14 @@ impl Properties {
         Some(self.sections.get(element.section)?.material)
     }
 
-    /// Warns about nearly incompressible materials in plane strain, at their Poisson's ratios; in
+    /// Warns about nearly incompressible materials, at their Poisson's ratios; in
     /// plane stress the thickness gives way and nothing locks.
     fn report_locking(&self, mesh_index: &MeshIndex, cx: &mut Context) {
         let mut locks = vec![false; self.materials.len()];
         for element in &mesh_index.mesh.elements {
             let element_type = element.element_type;
             let may_lock = element_type.formulation == Formulation::Displacement
-                && element_type.plane == Plane::Strain
+                && element_type.plane != Plane::Stress
                 && !element_type.is_quadratic();
             if let Some(material) = self.material_of(element).filter(|_| may_lock) {
                 locks[material] = true;
@@ -194,13 +199,13 @@ impl Properties {
             let poisson = material.law.small_strain().poisson;
             if poisson >= LOCKING {
                 let message = format!(
-                    "material {} with nu = {} makes plane strain elements lock",
+                    "material {} with nu = {} makes its elements lock",
                     material.name,
                     (poisson * 1e6).round() / 1e6
                 );
                 cx.warning(Code::Locking, places.poisson, message).help(
-                    "CPE3 and CPE4 are integrated fully: from nu = 0.45 on they are too stiff, the \
-                     more so the closer nu is to 0.5; CPE4H (CPE4 with mean dilatation) and CPE8R \
+                    "CPE3, CPE4, CAX3 and CAX4 are integrated fully: from nu = 0.45 on they are too stiff, the \
+                     more so the closer nu is to 0.5; CPE4H (CPE4 with mean dilatation), CPE8R and CAX8R \
                      are not",
                 );
             }

@@ -230,12 +230,13 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
     mesh.elements.get(element).map_or(0, |e| e.side_count())
 }
 
-/// Exterior sides of these elements, in order.
+/// Exterior sides of these elements, in order; none on the axis of bodies of revolution.
 fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -> Vec<Face> {
     let sides =
         |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });
     let all = elements.iter().flat_map(sides);
-    all.filter(|&face| !at_nodes.share(face, mesh)).collect()
+    all.filter(|&face| !at_nodes.share(face, mesh) && !mesh.is_on_axis(face))
+        .collect()
 }
 
 /// Warns about faces between two elements.

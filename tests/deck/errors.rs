@@ -162,6 +162,8 @@ fn faulty(code: Code) -> Source {
         BadRange => model("*NSET, NSET=ODD, GENERATE\n1, 4, 2"),
         SetCycle => model("*NSET, NSET=A\nB\n*NSET, NSET=B\nA"),
         NoSuchFace => square("BODY, S3", "BODY, S5"),
+        Revolution => square("CPS4", "CAX4\n9, 1, 2, 3, 4\n*ELEMENT, TYPE=CPS4"),
+        AxisNode => square("CPS4", "CAX4"),
         InteriorFace => shared("EBASE, S3", "EBASE, S3\n1, S2"),
         RepeatedFace => square("BODY, S3", "BODY, S3\n7, S3"),
         EmptyMesh => Source::Text("*STEP, NLGEOM\n*DYNAMIC\n1., 1.\n*END STEP\n".to_string()),

@@ -62,12 +62,23 @@ def grid(kind: str, nx: int, ny: int, place: Place, curved: bool = True) -> Mesh
 def body(kind: str, mesh: Mesh, young: float, poisson: float, thickness: float = 1.0) -> Deck:
     """A deck of one body."""
     deck = Deck.titled(kind)
-    deck.add_mesh(mesh, plane="strain" if kind[2] == "E" else "stress")
+    deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
     for card in deck.find("ELEMENT"):
-        card.head = card.head.replace(kind[:4], kind)
+        card.head = card.head.replace(_added(kind), kind)
     deck.elastic("M", young, poisson, 1.0)
-    deck.section("BODY", "M", thickness)
-    return deck
+    return with_section(deck, kind, "BODY", "M", thickness)
+
+
+def _added(kind: str) -> str:
+    """The type that a mesh for a kind is added with."""
+    return ("CPE" if kind[2] == "X" else kind[:3]) + kind[3]
+
+
+def with_section(deck: Deck, kind: str, name: str, material: str, thickness: float = 1.0) -> Deck:
+    """Gives a set of elements its section, which has no thickness in bodies of revolution."""
+    if kind.startswith("CAX"):
+        return deck.add(f"SOLID SECTION, ELSET={name}, MATERIAL={material}")
+    return deck.section(name, material, thickness)
 
 
 def end(result: Result) -> Array:
@@ -100,7 +111,7 @@ def bodies(*kinds: str, laws: tuple[str, ...] = (ELASTIC, ELASTIC), damping: str
         mesh.node_sets = {k + name: v for k, v in mesh.node_sets.items()}
         mesh.sides = {}
         before = len(deck.find("ELEMENT"))
-        deck.add_mesh(mesh, plane="strain" if kind[2] == "E" else "stress")
+        deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
         for card in deck.find("ELEMENT")[before:]:
             card.head = card.head.replace(kind[:4], kind)
         deck.extend(f"*MATERIAL, NAME=M{name}\n{law}\n*DENSITY\n1.\n{damping}")

@@ -47,6 +47,15 @@ KINDS = (
 ENHANCED = {16: (4, False, False, False), 17: (4, True, False, False)}
 """The same of the element types with enhanced strains."""
 
+RINGS = {
+    11: (3, False, False, False),
+    12: (4, False, False, False),
+    13: (6, False, False, False),
+    14: (8, False, False, False),
+    15: (8, False, False, True),
+}
+"""The same of the element types of bodies of revolution."""
+
 DUNAVANT = ((0.44594849091596489, 0.22338158967801147), (0.09157621350977074, 0.10995174365532187))
 """Place a of the points (a, a), (1 - 2 a, a) and (a, 1 - 2 a) of a triangle and their weight, of degree 4."""
 
@@ -359,6 +368,8 @@ class Elements:
         self.of_node = result.read("model/bodies/node")
         self.blocks = list(_blocks(result))
         self.count = len(result.cells)
+        self.keeps = np.array([0.0, 1.0]) if is_axisymmetric(result) else np.ones(2)
+        """Directions in which the momentum of a body may differ from zero."""
 
     def mass(self) -> Array:
         """Mass of each body."""
@@ -427,25 +438,32 @@ def _blocks(result: Result) -> list[Block]:
         for name in ("law", "young", "poisson", "density", "alpha", "beta", "shape", "compressibility")
     }
     from stickslip.certificate.enhanced import EnhancedBlock
+    from stickslip.certificate.rings import RingBlock
 
     found = []
     keys = np.stack([types.astype(np.int64), materials], axis=1)
     for kind, material in np.unique(keys[materials >= 0], axis=0):
         elements = np.flatnonzero((types == kind) & (materials == material))
-        of_kind = EnhancedBlock if kind in ENHANCED else Block
-        count, plane_stress, mean, reduced = ENHANCED[kind] if kind in ENHANCED else KINDS[kind]
+        of_kind = EnhancedBlock if kind in ENHANCED else RingBlock if kind in RINGS else Block
+        others = ENHANCED | RINGS
+        count, plane_stress, mean, reduced = others[kind] if kind in others else KINDS[kind]
         nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)
         place, thick = result.coordinates[nodes], thickness[elements][:, None]
-        gradient, area = _gradients(place, _points(count, reduced))
-        rule = _mass_points(count)
+        points = _points(count, reduced)
+        gradient, area = _gradients(place, points)
+        rule = _mass_points(count, kind in RINGS)
         shape, _ = _shape(count, rule[0])
+        at_points, _ = _shape(count, points[0])
+        around = place[..., 0] @ at_points.T
+        if kind in RINGS:
+            area, thick = area * 2.0 * np.pi * around, 2.0 * np.pi * place[..., 0] @ shape.T
         weight = constants["density"][material] * thick * _gradients(place, rule)[1]
         found.append(
             of_kind(
                 elements,
                 nodes,
                 gradient,
-                area * thick,
+                area if kind in RINGS else area * thick,
                 np.einsum("eg,ga,gb->eab", weight, shape, shape),
                 plane_stress,
                 mean,
@@ -455,7 +473,14 @@ def _blocks(result: Result) -> list[Block]:
                 },
             )
         )
+        if kind in RINGS:
+            found[-1].around = at_points / around[..., None]
     return found
+
+
+def is_axisymmetric(result: Result) -> bool:
+    """Whether the bodies are bodies of revolution."""
+    return bool(np.isin(result.read("model/element_types"), list(RINGS)).any())
 
 
 def _points(count: int, reduced: bool) -> tuple[Array, Array]:
@@ -471,10 +496,10 @@ def _points(count: int, reduced: bool) -> tuple[Array, Array]:
     return points, np.outer(weight, weight).ravel()
 
 
-def _mass_points(count: int) -> tuple[Array, Array]:
+def _mass_points(count: int, is_ring: bool) -> tuple[Array, Array]:
     """As _points, exact for the mass of elements with straight sides."""
     if count not in (3, 6):
-        return _points(count, False)
+        return _points(8 if is_ring else count, False)
     points = [p for a, _ in DUNAVANT for p in ((a, a), (1.0 - 2.0 * a, a), (a, 1.0 - 2.0 * a))]
     return np.array(points), np.repeat([0.5 * weight for _, weight in DUNAVANT], 3)
 

@@ -168,8 +168,8 @@ class Frames:
         self.checks["kinetic energy"].add(error, ENERGY, place)
         mass = self.elements.momentum(np.ones_like(v))[:, 0]
         body_mass = self._sum(mass)
-        centre = self._sum(mass[:, None] * x) / body_mass[:, None]
-        momentum = self._sum(p)
+        centre = self._sum(mass[:, None] * x) / body_mass[:, None] * self.elements.keeps
+        momentum = self._sum(p) * self.elements.keeps
         size = (
             np.abs(history.momentum["linear"]).max()
             + np.abs(body_mass[:, None] * history.bodies["velocity"]).max()
@@ -190,8 +190,9 @@ class Frames:
             return
         total = abs(kinetic.sum() - history.energy["kinetic"][row]) / largest
         self.checks["kinetic energy"].add(total, ENERGY, f"t = {frame.time:g}")
-        linear = np.abs(p.sum(axis=0) - history.momentum["linear"][row]).max()
-        angular = float((x[:, 0] * p[:, 1] - x[:, 1] * p[:, 0]).sum())
+        whole = p.sum(axis=0) * self.elements.keeps
+        linear = np.abs(whole - history.momentum["linear"][row]).max()
+        angular = float((x[:, 0] * p[:, 1] - x[:, 1] * p[:, 0]).sum() * self.elements.keeps[0])
         error = abs(angular - history.momentum["angular"][row])
         if size > 0.0:
             self.checks["momenta"].add(linear / size, ENERGY, f"t = {frame.time:g}")

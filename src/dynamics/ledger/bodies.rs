@@ -96,6 +96,9 @@ impl BodyMasses {
         for (&body, element) in self.bodies.of_element.iter().zip(elements) {
             results[body].strain += element.energy;
         }
+        if problem.model.mesh.is_axisymmetric() {
+            results.iter_mut().for_each(BodyResult::keep_to_axis);
+        }
         results
     }
 
@@ -116,6 +119,9 @@ impl BodyMasses {
             result.contact_force[0] += fx;
             result.contact_force[1] += fy;
             result.contact_moment += (x[0] - c[0]) * fy - (x[1] - c[1]) * fx;
+        }
+        if problem.model.mesh.is_axisymmetric() {
+            results.iter_mut().for_each(BodyResult::keep_to_axis);
         }
     }
 
@@ -163,8 +169,8 @@ fn own_length(problem: &StepProblem, spin: usize) -> f64 {
         .map_or(1.0, |body| body.length)
 }
 
-/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M
-/// V.
+/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M V; of bodies of
+/// revolution that along the axis, all others being zero around it.
 pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
     let mut momentum = Momentum::default();
     let bodies = problem.unknowns.turning.bodies.iter();
@@ -182,6 +188,9 @@ pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum 
         momentum.linear[0] += px;
         momentum.linear[1] += py;
         momentum.angular += position[0] * py - position[1] * px;
+    }
+    if problem.model.mesh.is_axisymmetric() {
+        (momentum.linear[0], momentum.angular) = (0.0, 0.0);
     }
     momentum
 }

@@ -97,13 +97,16 @@ pub(crate) enum Hold {
     Free,
     /// Both dofs of this node are prescribed, and no others.
     Pinned(usize),
-    /// More is prescribed, or equations tie it.
+    /// More is prescribed, equations tie it, or it is a body of revolution.
     Held,
 }
 
-/// How the bodies of a step are held.
+/// How the bodies of a step are held: bodies of revolution can move along their axis alone.
 pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
     let (parts, unknowns) = (problem.parts, &problem.unknowns);
+    if problem.model.mesh.is_axisymmetric() {
+        return vec![Hold::Held; parts.bodies()];
+    }
     let mut holds = vec![Hold::Free; parts.bodies()];
     let mut constrained = unknowns.constrained().iter().peekable();
     while let Some(&dof) = constrained.next() {

@@ -185,10 +185,10 @@ impl<'m> Loads<'m> {
             // int N^T f^S dGamma over the reference face
             let side = load.at.face.of(&self.model.mesh);
             let (x, first) = (&self.model.mesh.coordinates, side.nodes()[0]);
-            let thickness = elements.thickness(load.at.face.element);
+            let across = (elements.thickness(load.at.face.element), x[first][0]);
             let f = weight * at.magnitude(self.model, load);
-            for (node, length) in side.lengths(|node| difference(x[first], x[node])) {
-                let force = f * (length * thickness);
+            for (node, area) in side.areas(|node| difference(x[first], x[node]), across) {
+                let force = f * area;
                 r[2 * node] += force * load.at.direction[0];
                 r[2 * node + 1] += force * load.at.direction[1];
             }
@@ -204,7 +204,7 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// Pressure p on the current face: -p t int N^T n dl, n the outward normal.
+    /// Pressure p on the current face: -p int N^T n t dl, n the outward normal, t the thickness or 2 pi r.
     fn add_pressure(
         &self,
         elements: &Elements,
@@ -216,10 +216,10 @@ impl<'m> Loads<'m> {
         let side = load.at.face.of(&self.model.mesh);
         let (x, a) = (&self.model.mesh.coordinates, side.nodes()[0]);
         let from_first = |b: usize| [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
-        let thrust = p * elements.thickness(load.at.face.element);
-        for (node, normal) in side.normals(from_first) {
-            r[2 * node] -= thrust * normal[0];
-            r[2 * node + 1] -= thrust * normal[1];
+        let across = (elements.thickness(load.at.face.element), x[a][0] + u[2 * a]);
+        for (node, thrust) in side.thrusts(from_first, across) {
+            r[2 * node] -= p * thrust[0];
+            r[2 * node + 1] -= p * thrust[1];
         }
     }
 }

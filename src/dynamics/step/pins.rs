@@ -164,6 +164,11 @@ impl PinnedBody {
         if turning.any(|body| own(2 * body.reference) && unknowns.is_prescribed(body.spin)) {
             gram[(2, 2)] += 1.0;
         }
+        if model.mesh.is_axisymmetric() {
+            // across the axis, and about it, there is no rigid motion
+            gram[(0, 0)] += 1.0;
+            gram[(2, 2)] += 1.0;
+        }
         let eigen = gram.symmetric_eigen();
         let least = FREE * nodes.len() as f64;
         let free: Vec<_> = (0..3)

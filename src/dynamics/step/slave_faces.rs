@@ -2,13 +2,15 @@
 
 use std::collections::BTreeSet;
 
-use crate::model::{Face, Model, Segment, SurfaceKind};
+use crate::model::{Face, Model, Segment, SurfaceKind, Thickness};
 
 /// A segment of a face on which a slave node takes pressure.
 struct SlaveFace {
     node: usize,
     segment: Segment,
-    thickness: f64,
+    thickness: Thickness,
+    /// Place of the node on the segment's line at whose distance from the axis its part is: 0 at itself.
+    place: f64,
     /// Part of the segment that the node has.
     part: f64,
 }
@@ -41,7 +43,7 @@ impl SlaveFaces {
             is_bare[node] = false;
         }
         let slave_faces = |face: &Face, counts: &dyn Fn(usize) -> bool| -> Vec<SlaveFace> {
-            let thickness = thickness(model, face);
+            let thickness = model.thickness(&mesh.elements[face.element]);
             let side = face.of(mesh);
             let (ends, is_linear) = (side.ends(), side.nodes().len() == 2);
             let part = |node: usize| match (is_linear, ends.contains(&node)) {
@@ -54,6 +56,7 @@ impl SlaveFaces {
                     node,
                     segment,
                     thickness,
+                    place: if is_linear { 1.0 / 3.0 } else { 0.0 },
                     part: part(node),
                 })
             });
@@ -78,7 +81,8 @@ impl SlaveFaces {
     ///
     /// n, l and t are outward normal, current length and thickness of a segment, w the part of it that the node has:
     /// 1/2, and on a side with a node between its corners 1/3 at a corner and 2/3 between, so that the forces of a
-    /// uniform pressure give this pressure.
+    /// uniform pressure give this pressure. In a body of revolution t is 2 pi r at a third of the segment from the node,
+    /// eq. (2.35), and at the node itself where the side has a node between its corners.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let from = self.faces.partition_point(|face| face.node < node);
         let own = self.faces[from..]
@@ -92,14 +96,15 @@ impl SlaveFaces {
             let e = [b[0] - a[0], b[1] - a[1]];
             let against = force[1] * e[0] - force[0] * e[1];
             if against > 0.0 {
-                area += face.thickness * against / size * face.part;
+                let (own, other) = if face.segment[0] == node {
+                    (a, b)
+                } else {
+                    (b, a)
+                };
+                let radius = own[0] + (other[0] - own[0]) * face.place;
+                area += face.thickness.at(radius) * against / size * face.part;
             }
         }
         area
     }
-}
-
-fn thickness(model: &Model, face: &Face) -> f64 {
-    let section = model.mesh.elements[face.element].section;
-    model.sections[section].thickness
 }

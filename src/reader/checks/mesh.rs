@@ -182,11 +182,11 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
         }
     }
     let mut total = 0.0;
-    // mass per area, and stiffness
+    // density, and stiffness
     let of_sections = properties.sections.iter().map(|section| {
         let material = &properties.materials[section.material];
         let stiffness = material.law.small_strain().young * section.thickness;
-        (material.density * section.thickness, stiffness)
+        (material.density, stiffness)
     });
     let of_sections: Vec<(f64, f64)> = of_sections.collect();
     for (index, element) in mesh_index.mesh.elements.iter().enumerate() {
@@ -194,7 +194,8 @@ pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &m
             continue;
         };
         let area = mesh_index.mesh.area(element);
-        let mass = density * area;
+        let section = &properties.sections[element.section];
+        let mass = density * mesh_index.mesh.volume(element, section.thickness);
         total += mass;
         if [area, stiffness, mass, total]
             .iter()

@@ -5,8 +5,10 @@ mod amplitudes;
 mod mesh;
 mod model;
 mod overlap;
+mod revolution;
 
 pub(super) use amplitudes::amplitudes;
 pub(super) use mesh::{coincident_nodes, magnitudes, mesh};
 pub(super) use model::{braked_flight, density, fixed_slaves, motion, proportion, thickness};
 pub(super) use overlap::overlap;
+pub(super) use revolution::{axis, half_plane};
