@@ -49,8 +49,8 @@ class Sample:
 
     name: str
     path: Path
-    """The deck, or for a verification case the deck that is changed."""
-    case: runner.Case | None = None
+    """The deck, or for a run of the verification the deck that is changed."""
+    case: runner.Run | None = None
 
     def write(self, folder: Path) -> Path:
         """Writes the deck, in one file, into a folder."""
@@ -69,12 +69,12 @@ def examples() -> list[Sample]:
 
 def verification_cases() -> Iterator[Sample]:
     """The cases of verification/ but those that run an example as it is."""
-    for file in sorted(ROOT.glob("verification/*/cases.toml")):
-        data = runner.read(file.parent)
-        for case in runner.cases_of(data):
-            path = ROOT / data["decks"] / case.deck
-            if case.changes_deck or path.parent == file.parent:
-                yield Sample(f"verification/{file.parent.name}/{case.name}", path, case)
+    for folder in runner.all_folders():
+        form = runner.read(folder)
+        for run in form.runs:
+            path = form.decks / run.deck
+            if run.changes_deck or path.parent == folder:
+                yield Sample(f"verification/{folder.name}/{run.name}", path, run)
 
 
 def all_samples() -> list[Sample]:

@@ -1,174 +1,195 @@
-"""Runs the cases of a verification folder, checks quantities against limits, writes a report.
+"""Runs the cases of the verification, checks their quantities, draws them; scripts/verify says which."""
 
-`cases.toml` of the folder lists the cases (decks with changes) and the limits of its quantities;
-`limits.toml` beside this file lists the limits that hold for every case.
-"""
-
-import argparse
-import importlib.util
 import sys
-import tomllib
+import time
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
+sys.path[:0] = [str(HERE), str(ROOT / "python"), str(ROOT / "scripts")]
 
+from form import Form, Quantity, Run, all_folders, load, markdown, read  # noqa: E402
 from stickslip import program  # noqa: E402
-from stickslip.deck import Deck  # noqa: E402
 from stickslip.result import Result  # noqa: E402
+from values import Values  # noqa: E402
+
+__all__ = ["Check", "Form", "Run", "Study", "all_folders", "load", "markdown", "read"]
 
 
 @dataclass(frozen=True)
-class Case:
-    """A deck with changes."""
+class Check:
+    """A computed value beside what it has to satisfy."""
 
-    name: str
-    deck: str
-    """The deck's name within the folder of the decks."""
-    scheme: str = "deck"
-    """The deck's, or "default": without its STICKSLIP card."""
-    impact_time: str = "deck"
-    """The deck's, or the value of IMPACT TIME on the only setting of all steps."""
-    refine: int = 1
-    """Divides the edges of all elements."""
-    flight: float = 0.0
-    """Time of free flight that the generator leaves out."""
-    parameters: dict[str, float | str] = field(default_factory=dict)
-    """Other parameters of the generator."""
-    divide: float = 1.0
-    """Divides the increment."""
-    until: float | None = None
-    """Duration, if not the deck's."""
-    frames: int | None = None
-    every: float | None = None
-    """Frames of the result: how many, or how far apart in time."""
-    quick: bool = False
-    """Also run with --quick."""
-    group: str = ""
-    """What the case is for."""
+    run: str
+    quantity: str
+    computed: float
+    limit: Quantity
+    reference: float | None = None
+    source: str = ""
+    failure: str = ""
+    """Why there is no value."""
 
     @property
-    def changes_deck(self) -> bool:
-        """Whether the case runs anything but the deck as it stands."""
-        plain = Case(self.name, self.deck, frames=self.frames, every=self.every)
-        return replace(self, quick=False, group="") != plain
+    def error(self) -> float | None:
+        """Against the reference, in the norm of the quantity."""
+        if self.reference is None:
+            return None
+        scale = abs(self.reference) if self.limit.norm == "relative" else 1.0
+        return abs(self.computed - self.reference) / scale
 
-    def changed_deck(self, decks: Path, made: Path) -> Deck:
-        """The deck of a folder with the changes; one with parameters is generated in `made`."""
-        changes = dict(self.parameters)
-        changes |= {"refine": self.refine} if self.refine > 1 else {}
-        changes |= {"flight": self.flight} if self.flight > 0.0 else {}
-        if changes:
-            load(decks / "generate.py").write(made, **changes)
-        deck = Deck.read((made if changes else decks) / self.deck)
-        if self.scheme == "default":
-            deck.set_settings()
-        if self.impact_time != "deck":
-            deck.set_settings(IMPACT_TIME=self.impact_time)
-        if self.divide != 1.0 or self.until is not None:
-            dt = deck.dt / self.divide
-            period = deck.period if self.until is None else self.until
-            deck.set_increments(dt, round(period / dt))
-        return deck
+    @property
+    def holds(self) -> bool:
+        """Whether the value satisfies the limit; never for one that is not a number."""
+        if self.failure:
+            return False
+        if self.error is not None and self.limit.tolerance is not None:
+            return bool(self.error <= self.limit.tolerance)
+        if self.limit.at_most is not None:
+            return bool(self.computed <= self.limit.at_most)
+        return self.limit.at_least is not None and bool(self.computed >= self.limit.at_least)
+
+    @property
+    def common(self) -> bool:
+        """Whether every run of every case has it."""
+        return self.quantity in COMMON
+
+    @property
+    def part(self) -> float:
+        """How much of the tolerance or bound is used: 1 is all of it."""
+        if self.failure or not np.isfinite(self.computed):
+            return np.inf
+        if self.error is not None and self.limit.tolerance:
+            return self.error / self.limit.tolerance
+        if self.limit.at_most:
+            return self.computed / self.limit.at_most
+        if self.limit.at_least:
+            return 1.0 - (self.computed - self.limit.at_least) / abs(self.limit.at_least)
+        return 0.0 if self.holds else np.inf
+
+    def shown(self) -> tuple[str, str, str, str]:
+        """Reference, computed, error, tolerance."""
+        computed = self.failure or f"{self.computed:.6g}"
+        limit = self.limit
+        if self.error is not None and limit.tolerance is not None:
+            relative = limit.norm == "relative"
+            error = f"{100 * self.error:.2g} %" if relative else f"{self.error:.2g}"
+            tolerance = f"{100 * limit.tolerance:.2g} %" if relative else f"{limit.tolerance:.2g}"
+            return f"{self.reference:.6g}", computed, error, tolerance
+        bound = f"<= {limit.at_most:.3g}" if limit.at_most is not None else f">= {limit.at_least:.3g}"
+        return "", computed, "", bound
 
 
-@dataclass(frozen=True)
-class Limit:
-    """What a quantity has to satisfy."""
-
-    quantity: str
-    source: str
-    """Where the limit comes from."""
-    reference: float | None = None
-    tolerance: float | None = None
-    at_most: float | None = None
-    at_least: float | None = None
-
-    def holds(self, value: float) -> bool:
-        """Whether a value satisfies the limit; never for a value that is not a number."""
-        if self.reference is not None and self.tolerance is not None:
-            return abs(value - self.reference) <= self.tolerance
-        if self.at_most is not None:
-            return value <= self.at_most
-        return self.at_least is not None and value >= self.at_least
-
-    def __str__(self) -> str:
-        if self.reference is not None:
-            return f"{self.reference:.6g} +- {self.tolerance:.3g}"
-        if self.at_most is not None:
-            return f"<= {self.at_most:.3g}"
-        return f">= {self.at_least:.3g}"
+COMMON = (
+    "exit code of the run",
+    "increments not converged",
+    "deepest gap / element size",
+    "violation of Coulomb's cone",
+    "energy balance / largest energy",
+)
+"""Quantities of `limits.toml`."""
 
 
 @dataclass
-class Verification:
-    """One verification folder: its cases, their results, the checks done so far."""
+class Study:
+    """One case: its results, the checks done so far."""
 
-    folder: Path
-    decks: Path
-    """Folder of the decks; its generate.py makes refined ones."""
+    form: Form
     output: Path
-    title: str
-    cases: list[Case]
-    limits: dict[str, Limit]
-    reuse: bool
+    runs: list[Run]
+    reuse: bool = False
     results: dict[str, Result] = field(default_factory=dict)
-    failures: int = 0
-    checks: list[Sequence[str]] = field(default_factory=list)
+    seconds: dict[str, float] = field(default_factory=dict)
+    checks: list[Check] = field(default_factory=list)
     tables: list[str] = field(default_factory=list)
 
-    def run(self) -> None:
-        """Runs all cases, two at a time; those without any result are left out."""
-        with ThreadPoolExecutor(2) as pool:
-            for case, (path, code) in zip(self.cases, pool.map(self._run_case, self.cases)):
-                self.check("exit code of the run", case.name, code)
-                if path is not None:
-                    self.results[case.name] = Result(path)
-        self.cases = [case for case in self.cases if case.name in self.results]
-
-    def _run_case(self, case: Case) -> tuple[Path | None, int]:
-        """The result file, up to where a run stopped; the exit code."""
+    def run(self, run: Run) -> tuple[Path | None, int]:
+        """Runs a deck: the result file, up to where a run stopped; the exit code."""
         output = self.output / "runs"
-        path = output / f"{case.name}.vtkhdf"
+        path = output / f"{run.name}.vtkhdf"
         if self.reuse and path.exists():
             with Result(path) as results:
                 return path, int(results.run["exit_status"])
-        print(f"running {case.name}", flush=True)
         options = ["--threads", "1"]
-        if case.frames is not None:
-            options += ["--frames", str(case.frames)]
-        if case.every is not None:
-            options += ["--every", repr(case.every)]
-        changed = case.changed_deck(self.decks, self.output / "decks" / case.name)
-        deck = changed.write(output / f"{case.name}.inp")
+        if run.frames is not None:
+            options += ["--frames", str(run.frames)]
+        if run.every is not None:
+            options += ["--every", repr(run.every)]
+        started = time.monotonic()
         try:
+            changed = run.changed_deck(self.form.decks, self.output / "decks" / run.name)
+            deck = changed.write(output / f"{run.name}.inp")
             return program.run(deck, output, *options).path, 0
         except program.RunFailed as failure:
-            print(failure)
+            print(f"{self.form.name}/{run.name}: {failure}")
             return path if failure.code == program.STOPPED else None, failure.code
+        finally:
+            self.seconds[run.name] = time.monotonic() - started
 
-    def group(self, name: str) -> Iterator[tuple[Case, Result]]:
-        """The cases of a group with their results."""
-        for case in self.cases:
-            if case.group == name:
-                yield case, self.results[case.name]
+    def take(self, run: Run, path: Path | None, code: int) -> None:
+        """Takes the result of a run."""
+        self.check("exit code of the run", run.name, code)
+        if path is not None:
+            self.results[run.name] = Result(path)
 
-    def check(self, quantity: str, case: str, value: float) -> None:
-        """Compares a value with its limit and prints the verdict."""
-        limit = self.limits[quantity]
-        holds = limit.holds(value)
-        self.failures += not holds
-        verdict = "pass" if holds else "FAIL"
-        print(f"{verdict}  {case:28} {quantity:42} {value:12.6g}   {limit}")
-        self.checks.append((verdict, case, quantity, f"{value:.6g}", str(limit), limit.source))
+    def evaluate(self) -> None:
+        """Checks all quantities of the runs that are there: those of `case.toml`, then those of `measure.py`."""
+        self.runs = [run for run in self.runs if run.name in self.results]
+        measures = self.form.folder / "measure.py"
+        if measures.exists():
+            load(measures).measure(self)
+        else:
+            for run in self.runs:
+                self.check_run(run.name, self.results[run.name].edge_length)
+        for quantity in self.form.quantities.values():
+            for run in quantity.runs:
+                self._evaluate(quantity, run)
+        for curve in self.form.curves:
+            limit = Quantity(curve.name, curve.why, at_most=curve.tolerance)
+            for run in filter(self.results.__contains__, curve.runs):
+                self._try(limit, run, lambda: curve_error(self, curve, run))
+        for order in self.form.orders:
+            if all(run in self.results for run in order.runs):
+                limit = Quantity(order.name, order.why, at_least=order.at_least)
+                last = order.runs[-1]
+                self._try(limit, last, lambda: observed_order(*errors(self, order)))
+
+    def _evaluate(self, quantity: Quantity, run: str) -> None:
+        if run in self.results:
+            self._try(quantity, run, lambda: float(self.values(run)(quantity.value)))
+
+    def _try(self, limit: Quantity, run: str, value) -> None:  # noqa: ANN001
+        """Adds a check; an expression that cannot be evaluated is one that fails."""
+        try:
+            self._add(limit, run, value())
+        except Exception as error:  # noqa: BLE001  (expressions are data)
+            text = f"{type(error).__name__}: {error}"
+            self.checks.append(Check(run, limit.name, np.nan, limit, failure=text))
+
+    def values(self, run: str) -> Values:
+        """What evaluates expressions over a run."""
+        found = next(one for one in self.form.runs if one.name == run)
+        return Values(self.form, found, self.results.get(run))
+
+    def group(self, name: str) -> Iterator[tuple[Run, Result]]:
+        """The runs of a group with their results."""
+        for run in self.runs:
+            if run.group == name:
+                yield run, self.results[run.name]
+
+    def check(self, quantity: str, run: str, value: float) -> None:
+        """Compares a value with its limit."""
+        self._add(self.form.quantities[quantity], run, float(value))
+
+    def _add(self, limit: Quantity, run: str, value: float) -> None:
+        reference, source = None, ""
+        if limit.reference:
+            row = self.form.references[self.values(run).named(limit.reference)]
+            reference, source = float(row.value[0]), f"[{row.tag}] {row.source}"
+        self.checks.append(Check(run, limit.name, value, limit, reference, source))
 
     def check_run(self, name: str, edge: float, accuracy: str = "") -> None:
         """What every run has to satisfy; `edge` is the length of the smallest element edge.
@@ -183,79 +204,65 @@ class Verification:
             self.check("deepest gap / element size", name, min(float(np.min(gaps)), 0.0) / edge)
             cones = [contact.cone_violation for contact in results.contact.values()]
             self.check("violation of Coulomb's cone", name, float(np.max(cones)))
-        balance = np.abs(results.history.energy["balance"]).max() / results.history.energy.largest
+        energy = results.history.energy
+        largest = energy.largest
+        balance = np.abs(energy["balance"]).max() / largest if largest > 0.0 else 0.0
         self.check(f"energy balance / largest energy{accuracy}", name, float(balance))
 
     def table(self, title: str, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-        """Adds a table to the report and prints it."""
+        """Adds a table to the case's page of results."""
         texts = [[f"{x:.5g}" if isinstance(x, float) else str(x) for x in row] for row in rows]
         self.tables.append(f"## {title}\n\n{markdown(header, texts)}")
-        widths = [max(map(len, column)) for column in zip(header, *texts)]
-        print(f"\n{title}")
-        for row in [header, *texts]:
-            print("  " + "  ".join(text.rjust(width) for text, width in zip(row, widths)))
 
-    def finish(self) -> int:
-        """Writes the report; the exit code."""
-        header = ("", "case", "quantity", "computed", "limit", "source")
-        verdict = f"{len(self.checks)} checks, {self.failures} failed"
-        parts = [f"# {self.title}\n\n{verdict}\n\n{markdown(header, self.checks)}", *self.tables]
+    @property
+    def failures(self) -> list[Check]:
+        """The checks that do not hold."""
+        return [check for check in self.checks if not check.holds]
+
+    def increments(self, run: str) -> str:
+        """How many increments a run has."""
+        return str(len(self.results[run].history.dt) - 1) if run in self.results else ""
+
+    def finish(self) -> None:
+        """Writes the page of the case: every check, and the tables."""
+        header = ("", "run", "quantity", "reference", "computed", "error", "tolerance", "why")
+        rows = [
+            ("pass" if check.holds else "FAIL", check.run, check.quantity, *check.shown(), check.limit.why)
+            for check in self.checks
+        ]
+        verdict = f"{len(self.checks)} checks, {len(self.failures)} failed"
+        parts = [f"# {self.form.title}\n\n{verdict}\n\n{markdown(header, rows)}", *self.tables]
         self.output.mkdir(parents=True, exist_ok=True)
-        report = self.output / "results.md"
-        report.write_text("\n".join(parts))
-        print(f"\n{verdict}; wrote {report}")
-        return 1 if self.failures else 0
+        (self.output / "results.md").write_text("\n".join(parts))
 
 
-def load(path: Path) -> ModuleType:
-    """A Python file as a module."""
-    spec = importlib.util.spec_from_file_location(f"{path.parent.name}_{path.stem}", path)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"{path} cannot be loaded")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def curve_points(study: Study, curve, run: str) -> tuple[np.ndarray, np.ndarray]:  # noqa: ANN001
+    """Abscissae, in order, and ordinates of a computed curve."""
+    values = study.values(run)
+    x, y = (np.asarray(values(text), dtype=float) for text in (curve.x, curve.y))
+    order = np.argsort(x, kind="stable")
+    return x[order], y[order]
 
 
-def markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A Markdown table."""
-    lines = [header, ["---"] * len(header), *rows]
-    escaped = [[text.replace("|", "\\|") for text in line] for line in lines]
-    return "".join("| " + " | ".join(line) + " |\n" for line in escaped)
+def curve_error(study: Study, curve, run: str) -> float:  # noqa: ANN001
+    """Error of a curve over the points of the reference, as a part of the largest reference."""
+    reference = study.form.references[study.values(run).named(curve.reference)]
+    x, y = curve_points(study, curve, run)
+    off = np.interp(reference.x, x, y) - reference.value
+    size = np.abs(off).max() if curve.norm == "largest" else np.sqrt((off**2).mean())
+    return float(size / np.abs(reference.value).max())
 
 
-def read(folder: Path) -> dict[str, Any]:
-    """What the folder's `cases.toml` says."""
-    return tomllib.loads((folder / "cases.toml").read_text())
+def errors(study: Study, order) -> tuple[np.ndarray, np.ndarray]:  # noqa: ANN001
+    """Sizes and errors of the runs of an order."""
+    pairs = []
+    for run in order.runs:
+        values = study.values(run)
+        pairs.append((float(values(order.size)), float(values(order.error))))
+    sizes, off = np.array(pairs).T
+    return sizes, np.abs(off)
 
 
-def cases_of(data: dict[str, Any]) -> list[Case]:
-    """The cases, with what their groups have in common."""
-    cases = []
-    for entry in data["case"]:
-        shared = data.get("defaults", {}).get(entry.get("group"), {})
-        parameters = shared.get("parameters", {}) | entry.get("parameters", {})
-        cases.append(Case(**shared | entry | {"parameters": parameters}))
-    return cases
-
-
-def start(folder: Path) -> Verification:
-    """Reads the command line and the folder's cases, runs them."""
-    parser = argparse.ArgumentParser(description=f"Verification {folder.name}")
-    parser.add_argument("--quick", action="store_true", help="only the short cases")
-    parser.add_argument("--reuse", action="store_true", help="keep results that exist")
-    arguments = parser.parse_args()
-    data = read(folder)
-    common = tomllib.loads((HERE / "limits.toml").read_text())
-    limits = [Limit(**entry) for entry in common["limit"] + data.get("limit", [])]
-    verification = Verification(
-        folder,
-        ROOT / data["decks"],
-        ROOT / "results" / "verification" / ("quick" if arguments.quick else "") / folder.name,
-        data["title"],
-        [case for case in cases_of(data) if case.quick or not arguments.quick],
-        {limit.quantity: limit for limit in limits},
-        arguments.reuse,
-    )
-    verification.run()
-    return verification
+def observed_order(sizes: np.ndarray, off: np.ndarray) -> float:
+    """Slope of the errors over the sizes, both in logarithms, by least squares."""
+    return float(np.polyfit(np.log(sizes), np.log(off), 1)[0])

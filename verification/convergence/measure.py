@@ -27,7 +27,7 @@ def element_size(results: Result) -> float:
     )
 
 
-def accuracy(case: runner.Case) -> str:
+def accuracy(case: runner.Run) -> str:
     """What limits the energy balance of a case, if not the program: an end of a quantity's name."""
     if float(case.parameters.get("tolerance", 0.0)) >= LOOSE:
         return ", loose tolerance"
@@ -42,21 +42,21 @@ def first_cutback(results: Result) -> str:
     return f"{found[1]}: {found[2]}" if found else ""
 
 
-def check(verification: runner.Verification, case: runner.Case, results: Result) -> list[object]:
+def check(study: runner.Study, case: runner.Run, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
-    verification.check_run(name, element_size(results), accuracy(case))
+    study.check_run(name, element_size(results), accuracy(case))
     passes = results.history.solver["passes"][1:]
     factorizations = int(results.history.solver["factorizations"].sum())
     cutbacks = int(results.run["cutbacks"])
     on_bodies = ", bodies on bodies" if case.group in MASONRY else ""
-    verification.check(f"cutbacks{on_bodies}", name, cutbacks)
+    study.check(f"cutbacks{on_bodies}", name, cutbacks)
     sheared = ", sheared blocks" if case.group == "blocks" else ""
-    verification.check(f"mean passes{sheared}", name, float(passes.mean()))
-    verification.check("largest number of passes", name, int(passes.max()))
+    study.check(f"mean passes{sheared}", name, float(passes.mean()))
+    study.check("largest number of passes", name, int(passes.max()))
     if case.group == "rotation":
         turn = results.history.time[-1] / 0.3  # it turns by 1 rad in a unit of time
-        verification.check("factorisations per 0.3 rad", name, factorizations / turn)
+        study.check("factorisations per 0.3 rad", name, factorizations / turn)
     balance = np.abs(results.history.energy["balance"]).max() / results.history.energy.largest
     return [
         name,
@@ -71,16 +71,10 @@ def check(verification: runner.Verification, case: runner.Case, results: Result)
     ]
 
 
-def main() -> int:
-    """Runs, checks, reports."""
-    verification = runner.start(HERE)
-    cases = verification.cases
-    rows = [check(verification, case, verification.results[case.name]) for case in cases]
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
+    cases = study.runs
+    rows = [check(study, case, study.results[case.name]) for case in cases]
     header = ("case", "increments", "cutbacks", "mean passes", "largest", "factorisations")
     header += ("seconds", "balance", "first cutback")
-    verification.table("Runs", header, rows)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    study.table("Runs", header, rows)

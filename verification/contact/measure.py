@@ -103,34 +103,34 @@ def outside(results: Result) -> int:
     return int(((np.abs(x) > width) | (y < position[box][:, 1].min())).sum())
 
 
-def check(verification: runner.Verification, case: runner.Case, results: Result) -> list[object]:
+def check(study: runner.Study, case: runner.Run, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
-    verification.check_run(name, element_size(results))
+    study.check_run(name, element_size(results))
     overlaps = penetration.follow(results)
     worst = max(range(len(overlaps)), key=lambda frame: overlaps[frame].depth)
     crossed = sum(overlap.crossings > 0 for overlap in overlaps)
     depth = overlaps[worst].depth
-    verification.check("deepest node in a body / element size", name, depth)
-    verification.check("frames in which edges cross", name, crossed)
+    study.check("deepest node in a body / element size", name, depth)
+    study.check("frames in which edges cross", name, crossed)
     if depth > penetration.LIMIT:
         print(f"      {penetration.describe(results, worst, overlaps[worst])}")
-    verification.check("sum of contact forces / their magnitudes", name, imbalance(results))
-    verification.check("energy that contact put in / largest", name, put_in(results))
+    study.check("sum of contact forces / their magnitudes", name, imbalance(results))
+    study.check("energy that contact put in / largest", name, put_in(results))
     account = results.history.energy
     if case.group == "free":
         linear, angular = momentum_changes(results)
-        verification.check("change of linear momentum", name, float(linear.max()))
-        verification.check("change of angular momentum", name, float(angular.max()))
+        study.check("change of linear momentum", name, float(linear.max()))
+        study.check("change of angular momentum", name, float(angular.max()))
     if case.group in ("free", "bullet", "rubber"):
-        verification.check("rise of the energy / start", name, rise(results) / energy(results)[0])
+        study.check("rise of the energy / start", name, rise(results) / energy(results)[0])
     if case.group == "bullet":
-        verification.check("bullet above the plate at the end", name, above(results))
+        study.check("bullet above the plate at the end", name, above(results))
     if case.group in ("pile", "shapes"):
-        verification.check("nodes outside the box", name, outside(results))
+        study.check("nodes outside the box", name, outside(results))
     if case.group == "pile" and case.until is None:
         kinetic = account["kinetic"]
-        verification.check(
+        study.check(
             "energy at rest / kinetic energy before", name, float(kinetic[-1] / kinetic.max())
         )
     closed = sum(contact.closed for contact in results.contact.values())
@@ -149,21 +149,21 @@ def check(verification: runner.Verification, case: runner.Case, results: Result)
     ]
 
 
-def tabulate_corners(verification: runner.Verification) -> None:
+def tabulate_corners(study: runner.Study) -> None:
     """How the upper square flies off; left and right are mirror images."""
     rows = []
-    for case, results in verification.group("free"):
+    for case, results in study.group("free"):
         if case.name.startswith("corners"):
             frame = len(results.frames) - 1
             x, y = results.frames[frame]["V"][results.node_set("UPPER")].mean(axis=0)
             rows.append((case.name, float(x), float(y)))
-    verification.table("Mean velocity of the upper square at the end", ("case", "x", "y"), rows)
+    study.table("Mean velocity of the upper square at the end", ("case", "x", "y"), rows)
 
 
-def draw_conservation(verification: runner.Verification) -> None:
+def draw_conservation(study: runner.Study) -> None:
     """What free flight keeps, against time."""
     figure, axes = plt.subplots(3, 1, figsize=(8, 8))
-    for case, results in verification.group("free"):
+    for case, results in study.group("free"):
         label = {"label": case.name, "lw": 0.8}
         part = results.history.time / results.history.time[-1]
         for axis, change in zip(axes, momentum_changes(results)):
@@ -176,35 +176,29 @@ def draw_conservation(verification: runner.Verification) -> None:
         axis.axhline(penetration.LIMIT, color="k", ls="--", lw=0.8)
     axes[2].set_xlabel("time / duration")
     axes[2].legend(ncols=2)
-    style.save(figure, verification.output / "conservation.png")
+    style.save(figure, study.output / "conservation.png")
 
 
-def draw_motion(verification: runner.Verification) -> None:
+def draw_motion(study: runner.Study) -> None:
     """The motion of the cases."""
     for name, times in MOTION.items():
-        results = verification.results.get(name)
+        results = study.results.get(name)
         if results is None:
             continue
         figure = panels([shown_at(results, times)], Look("von-mises"))
-        style.save(figure, verification.output / f"motion_{name}.png", 90)
+        style.save(figure, study.output / f"motion_{name}.png", 90)
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
-    cases = verification.cases
-    rows = [check(verification, case, verification.results[case.name]) for case in cases]
-    verification.table(
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
+    cases = study.runs
+    rows = [check(study, case, study.results[case.name]) for case in cases]
+    study.table(
         "Runs (energies against the largest of the ledger)",
         ("case", "increments", "cutbacks", "seconds", "pairs", "deepest", "rise of energy")
         + ("friction", "impact", "normal contact"),
         rows,
     )
-    tabulate_corners(verification)
-    draw_conservation(verification)
-    draw_motion(verification)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    tabulate_corners(study)
+    draw_conservation(study)
+    draw_motion(study)

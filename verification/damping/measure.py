@@ -67,11 +67,11 @@ class Figures:
         )
 
 
-def draw(verification: runner.Verification) -> None:
+def draw(study: runner.Study) -> None:
     """Motion of the free end of all runs, with the closed form and its envelope."""
     figure, axes = plt.subplots(figsize=(9, 4))
-    for case in verification.cases:
-        results = verification.results[case.name]
+    for case in study.runs:
+        results = study.results[case.name]
         axes.plot(
             results.history.time / bar.PERIOD, motion(results) / AMPLITUDE, lw=0.9, label=case.name
         )
@@ -82,31 +82,25 @@ def draw(verification: runner.Verification) -> None:
         axes.plot(time / bar.PERIOD, envelope, "k:", lw=0.7)
     axes.set(xlabel="time / period", ylabel="displacement of the end / amplitude")
     axes.legend(loc="upper right", fontsize="small")
-    style.save(figure, verification.output / "decay.png")
+    style.save(figure, study.output / "decay.png")
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
     rows = []
-    for case in verification.cases:
-        results = verification.results[case.name]
+    for case in study.runs:
+        results = study.results[case.name]
         figures = Figures.of(results)
-        verification.check_run(case.name, bar.LENGTH / bar.ELEMENTS)
+        study.check_run(case.name, bar.LENGTH / bar.ELEMENTS)
         suffix = f", {case.group}" if case.group else ""
-        verification.check(f"decrement / closed form{suffix}", case.name, figures.decrement)
-        verification.check(f"period / closed form{suffix}", case.name, figures.period)
-        verification.check(f"largest deviation{suffix}", case.name, figures.deviation)
-        verification.check("damping / energy lost", case.name, figures.dissipated)
+        study.check(f"decrement / closed form{suffix}", case.name, figures.decrement)
+        study.check(f"period / closed form{suffix}", case.name, figures.period)
+        study.check(f"largest deviation{suffix}", case.name, figures.deviation)
+        study.check("damping / energy lost", case.name, figures.dissipated)
         if case.name.startswith("em"):
-            verification.check("numerical dissipation / energy", case.name, figures.numerical)
+            study.check("numerical dissipation / energy", case.name, figures.numerical)
         rows.append((case.name, figures.decrement, figures.period, figures.deviation))
-    verification.table(
+    study.table(
         "Free decay of a bar", ("case", "decrement", "period", "largest deviation"), rows
     )
-    draw(verification)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    draw(study)

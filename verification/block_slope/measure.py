@@ -86,25 +86,25 @@ def accounts(results: Result) -> dict[str, Array]:
     }
 
 
-def check_main(verification: runner.Verification) -> None:
+def check_main(study: runner.Study) -> None:
     """Landing, motion along the slope, and what every run has to satisfy."""
-    for case in verification.cases:
-        results = verification.results[case.name]
-        verification.check_run(case.name, slope.SIDE / 8 / case.refine)
-        verification.check("landing time", case.name, case.flight + landing_time(results))
+    for case in study.runs:
+        results = study.results[case.name]
+        study.check_run(case.name, slope.SIDE / 8 / case.refine)
+        study.check("landing time", case.name, case.flight + landing_time(results))
         if case.deck == "block_slope_mu00.inp" and case.flight == 0.0:
             along = Centre(results).displacement[1:, 0]
             reference = point_mass(0.0).displacement(results.history.time[1:])[:, 0]
             deviation = float((np.abs(along - reference) / reference).max())
-            verification.check("deviation along the slope, mu = 0", case.name, deviation)
+            study.check("deviation along the slope, mu = 0", case.name, deviation)
 
 
-def tabulate_energy(verification: runner.Verification) -> None:
+def tabulate_energy(study: runner.Study) -> None:
     """The ledger after the first impact and at the end."""
     header: list[str] = []
     rows = []
     for group in LABELS:
-        for case, results in verification.group(group):
+        for case, results in study.group(group):
             parts = accounts(results)
             header = ["case", "when", "put in", *parts]
             for when, row in (("first impact", after_first_impact(results)), ("end", -1)):
@@ -113,14 +113,14 @@ def tabulate_energy(verification: runner.Verification) -> None:
                     (case.name, when, float(results.history.energy["external_work"][row]), *values)
                 )
     if rows:
-        verification.table("Where the energy went", header, rows)
+        study.table("Where the energy went", header, rows)
 
 
-def tabulate_tumbling(verification: runner.Verification) -> None:
+def tabulate_tumbling(study: runner.Study) -> None:
     """How far the block turns, and whether a face that is not in the contact would touch."""
     rows = []
     for group in LABELS:
-        for case, results in verification.group(group):
+        for case, results in study.group(group):
             history = results.history.nodes["BLOCK"]
             nodes = np.searchsorted(results.node_labels, history.labels)
             face = np.isin(nodes, results.node_set("BLOCK_FACE"))
@@ -131,7 +131,7 @@ def tabulate_tumbling(verification: runner.Verification) -> None:
             inside = results.history.time[others < 0.0]
             touch = float(inside[0]) if inside.size else "never"
             rows.append((case.name, float(turned), float(others.min()), touch))
-    verification.table(
+    study.table(
         "Tumbling: rotation at the end (degrees), smallest distance of the block's other faces "
         "from the undeformed slope (cm), time from which they would be inside (s)",
         ("case", "rotation", "distance", "inside from"),
@@ -139,10 +139,10 @@ def tabulate_tumbling(verification: runner.Verification) -> None:
     )
 
 
-def tabulate_rebound(verification: runner.Verification) -> None:
+def tabulate_rebound(study: runner.Study) -> None:
     """Rebound ratio against mesh, increment and scheme."""
     rows = []
-    for case, results in verification.group("study"):
+    for case, results in study.group("study"):
         row = after_first_impact(results)
         parts = {name: float(part[row]) for name, part in accounts(results).items()}
         arrival = 0.5 * slope.MASS * point_mass(0.0).landing_speed ** 2
@@ -153,18 +153,18 @@ def tabulate_rebound(verification: runner.Verification) -> None:
         rows.append((scheme, edge, dt, rebound(results), *shares))
     header = ("scheme", "block edge", "increment", "rebound", "vibration", "impact loss")
     header += ("numerical", "normal contact")
-    verification.table(
+    study.table(
         "First rebound, mu = 0 (speed after / before; energies / normal kinetic energy)",
         header,
         rows,
     )
 
 
-def draw_displacement(verification: runner.Verification) -> None:
+def draw_displacement(study: runner.Study) -> None:
     """Horizontal and vertical displacement against time, all mu in one figure."""
     figure, axes = plt.subplots(2, 2, figsize=(11, 7.5), sharex=True, sharey="row")
     for column, (group, label) in enumerate(LABELS.items()):
-        for colour, (case, results) in zip(style.COLOURS, verification.group(group)):
+        for colour, (case, results) in zip(style.COLOURS, study.group(group)):
             friction = slope.FRICTION[Path(case.deck).stem]
             computed = Centre(results).displacement @ FRAME.T
             reference = point_mass(friction).displacement(results.history.time) @ FRAME.T
@@ -181,15 +181,15 @@ def draw_displacement(verification: runner.Verification) -> None:
         axes[1, column].set_xlabel("time (s)")
     axes[0, 0].set_ylabel("horizontal displacement of the mass centre (cm)")
     axes[1, 0].set_ylabel("vertical displacement of the mass centre (cm)")
-    style.save(figure, verification.output / "displacement.png")
+    style.save(figure, study.output / "displacement.png")
 
 
-def draw_motion(verification: runner.Verification) -> None:
+def draw_motion(study: runner.Study) -> None:
     """Shapes every 0.04 s."""
     runs = {
         (row, column): (label, *each)
         for row, (group, label) in enumerate(LABELS.items())
-        for column, each in enumerate(verification.group(group))
+        for column, each in enumerate(study.group(group))
     }
     shown = {place: shown_at(run[2], np.arange(6) * 0.04) for place, run in runs.items()}
     everything = [each for frames in shown.values() for each in frames]
@@ -201,14 +201,14 @@ def draw_motion(verification: runner.Verification) -> None:
         draw_overlay(axes, frames, shades(len(frames)))
         friction = slope.FRICTION[Path(case.deck).stem]
         axes.set_title(f"mu = {friction}; {label}", fontsize=8)
-    style.save(page.figure, verification.output / "motion.png")
+    style.save(page.figure, study.output / "motion.png")
 
 
-def draw_energy(verification: runner.Verification) -> None:
+def draw_energy(study: runner.Study) -> None:
     """The ledger against time."""
     figure, axes = plt.subplots(3, 2, figsize=(11, 10), sharex=True, sharey="row")
     for column, (group, label) in enumerate(LABELS.items()):
-        for row, (case, results) in enumerate(verification.group(group)):
+        for row, (case, results) in enumerate(study.group(group)):
             parts = accounts(results)
             at = axes[row, column]
             at.stackplot(
@@ -230,14 +230,14 @@ def draw_energy(verification: runner.Verification) -> None:
             at.set_ylabel("energy (kg cm$^2$/s$^2$)")
         axes[-1, column].set_xlabel("time (s)")
     axes[0, 0].legend(loc="upper left")
-    style.save(figure, verification.output / "energy.png")
+    style.save(figure, study.output / "energy.png")
 
 
-def draw_rebound(verification: runner.Verification) -> None:
+def draw_rebound(study: runner.Study) -> None:
     """Speed normal to the slope during the first impact, by mesh and increment."""
     figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
     speed = point_mass(0.0).landing_speed
-    for case, results in verification.group("study"):
+    for case, results in study.group("study"):
         row = 1 if case.scheme == "default" else 0
         time = 1e3 * (case.flight + results.history.time - point_mass(0.0).landing)
         normal = Centre(results).velocity[:, 1] / speed
@@ -256,23 +256,17 @@ def draw_rebound(verification: runner.Verification) -> None:
             at.set_xlim(-0.05, 0.6)
     for at in axes[1]:
         at.set_xlabel("time since the landing (ms)")
-    style.save(figure, verification.output / "rebound.png")
+    style.save(figure, study.output / "rebound.png")
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
-    check_main(verification)
-    tabulate_energy(verification)
-    tabulate_rebound(verification)
-    draw_rebound(verification)
-    if any(verification.group("paper")):
-        tabulate_tumbling(verification)
-        draw_displacement(verification)
-        draw_motion(verification)
-        draw_energy(verification)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
+    check_main(study)
+    tabulate_energy(study)
+    tabulate_rebound(study)
+    draw_rebound(study)
+    if any(study.group("paper")):
+        tabulate_tumbling(study)
+        draw_displacement(study)
+        draw_motion(study)
+        draw_energy(study)

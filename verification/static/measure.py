@@ -51,30 +51,29 @@ def end(results: Result, name: str) -> np.ndarray:
     return results.history.nodes[name].U[-1].mean(axis=0)
 
 
-def main() -> int:
-    """Runs, checks, reports."""
-    verification = runner.start(HERE)
-    results = verification.results
-    for case in verification.cases:
-        verification.check_run(case.name, 0.1)
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
+    results = study.results
+    for case in study.runs:
+        study.check_run(case.name, 0.1)
         passes = results[case.name].history.solver["passes"][1:]
-        verification.check("passes per increment", case.name, float(np.max(passes)))
+        study.check("passes per increment", case.name, float(np.max(passes)))
     for load in decks.LOADS:
         name = f"elastica_{load}"
         deflection, shortening = elastica(load)
         u = end(results[name], "END") / decks.LENGTH
-        verification.check("deflection / elastica", name, float(-u[1] / deflection))
-        verification.check("shortening / elastica", name, float(-u[0] / shortening))
+        study.check("deflection / elastica", name, float(-u[1] / deflection))
+        study.check("shortening / elastica", name, float(-u[0] / shortening))
     history = results["released"].history
     moving = history.step == 2
     energy = history.energy["kinetic"] + history.energy["strain"]
     energy = energy + history.energy["numerical_dissipation"]
     static = energy[~moving][-1]
     drift = np.abs(energy[moving] - static).max() / static
-    verification.check("energy drift after the release", "released", float(drift))
+    study.check("energy drift after the release", "released", float(drift))
     u = history.nodes["END"].U[:, 0, 1]
     bent = u[~moving][-1]
-    verification.check(
+    study.check(
         "amplitude / static deflection", "released", float(-u[moving].max() / bent)
     )
     (contact,) = results["incline"].contact.values()
@@ -82,23 +81,18 @@ def main() -> int:
     weight = 0.5
     held = contact.tangential[-1] / contact.normal[-1]
     friction = sin(slope) / cos(slope) + decks.MARGIN
-    verification.check(
+    study.check(
         "sliding force / holding force", "incline", float(abs(held) / friction)
     )
     carried = np.hypot(*contact.force[-1]) / weight
-    verification.check("weight carried", "incline", float(carried))
+    study.check("weight carried", "incline", float(carried))
     pressed = sum(contact.force[-1][1] for contact in results["supports"].contact.values())
-    verification.check("weight carried", "supports", float(pressed / (decks.SPAN * decks.SUPPORTED)))
+    study.check("weight carried", "supports", float(pressed / (decks.SPAN * decks.SUPPORTED)))
     first, last = (results[f"path_{n}"] for n in (decks.PATHS[0], decks.PATHS[-1]))
     u = [end(result, "TOP") for result in (first, last)]
     difference = np.abs(u[0] - u[1]).max() / np.abs(u[1]).max()
-    verification.check("displacement, 1 against 16 increments", "path_1", float(difference))
+    study.check("displacement, 1 against 16 increments", "path_1", float(difference))
     lost = [result.history.energy["friction_dissipation"][-1] for result in (first, last)]
-    verification.check(
+    study.check(
         "dissipation, 1 against 16 increments", "path_1", float(abs(lost[0] / lost[1] - 1))
     )
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -64,31 +64,31 @@ def bonded(x: np.ndarray) -> np.ndarray:
     return pressure
 
 
-def hertz(verification: runner.Verification) -> None:
+def hertz(study: runner.Study) -> None:
     """Half width, peak and pressures; two meshes."""
     errors, peaks = {}, {}
-    for case, result in verification.group("hertz"):
+    for case, result in study.group("hertz"):
         touching = Touching(result, 1.0)
         inner = touching.x < 0.9
         width, peak = ellipse(touching.x[inner], touching.pressure[inner])
         exact = np.sqrt(np.maximum(1 - touching.x**2, 0))
         errors[case.name] = float(np.sqrt(np.mean((touching.pressure - exact) ** 2)))
         peaks[case.name] = peak
-        verification.check("half width / Hertz", case.name, width)
-        verification.check("peak pressure / Hertz", case.name, peak)
-        verification.check("error of pressure / peak", case.name, errors[case.name])
+        study.check("half width / Hertz", case.name, width)
+        study.check("peak pressure / Hertz", case.name, peak)
+        study.check("error of pressure / peak", case.name, errors[case.name])
     for name in ("hertz", "hertz_like"):
-        verification.check(
+        study.check(
             "error of pressure, fine / coarse", name, errors[f"{name}_16"] / errors[f"{name}_8"]
         )
     rough = peaks["hertz_like_mu03_16"] / peaks["hertz_like_16"]
-    verification.check("peak, rough / smooth", "hertz_like_mu03_16", rough)
-    for case, result in verification.group("bonded"):
+    study.check("peak, rough / smooth", "hertz_like_mu03_16", rough)
+    for case, result in study.group("bonded"):
         touching = Touching(result, 1.0)
         exact = bonded(touching.x)
         error = float(np.sqrt(np.mean((touching.pressure - exact) ** 2)))
-        verification.check("error of bonded pressure / peak", case.name, error)
-        verification.check("peak, bonded", case.name, touching.pressure[0] / exact[0])
+        study.check("error of bonded pressure / peak", case.name, error)
+        study.check("peak, bonded", case.name, touching.pressure[0] / exact[0])
 
 
 def softening(share: float) -> float:
@@ -115,53 +115,53 @@ def ends(result: Result) -> list[int]:
     return [int(np.flatnonzero(step == k)[-1]) for k in range(1, step.max() + 1)]
 
 
-def mindlin(verification: runner.Verification) -> None:
+def mindlin(study: runner.Study) -> None:
     """Stick zone, displacement and dissipation in any number of increments; cycles."""
     way, lost = {}, {}
-    groups = [*verification.group("mindlin"), *verification.group("mindlin_fine")]
+    groups = [*study.group("mindlin"), *study.group("mindlin_fine")]
     for case, result in groups:
         touching = Touching(result, 2.0)
         sticks = ~touching.slips
         free = decks.FRICTION * touching.pressure - touching.shear
         stick, _ = ellipse(touching.x[sticks], free[sticks])
-        verification.check("stick zone / (0.632 a)", case.name, stick / sqrt(1 - decks.SHARE))
+        study.check("stick zone / (0.632 a)", case.name, stick / sqrt(1 - decks.SHARE))
         u = result.history.nodes["HEAD"].U[:, 0, 0]
         friction = result.history.energy.friction_dissipation
         pressed, sheared = ends(result)
         way[case.name] = u[sheared] - u[pressed]
         lost[case.name] = friction[sheared] - friction[pressed]
-        verification.check(
+        study.check(
             "dissipation / Mindlin", case.name, lost[case.name] / first_dissipation(decks.SHARE)
         )
         if case.parameters["increments"] == 2:
             half = u[pressed + 1] - u[pressed]
             exact = softening(decks.SHARE) - 2 * softening(decks.SHARE / 2)
             value = (way[case.name] - 2 * half) / exact
-            verification.check("softening of Q / Mindlin", case.name, value)
+            study.check("softening of Q / Mindlin", case.name, value)
     for name in way:
         if name not in ("mindlin_1", "mindlin_fine"):
-            verification.check(
+            study.check(
                 "displacement, N against 1 increments", name, abs(way[name] / way["mindlin_1"] - 1)
             )
-            verification.check(
+            study.check(
                 "dissipation, N against 1 increments", name, abs(lost[name] / lost["mindlin_1"] - 1)
             )
-    for case, result in verification.group("cycles"):
+    for case, result in study.group("cycles"):
         u = result.history.nodes["HEAD"].U[:, 0, 0]
         friction = result.history.energy.friction_dissipation
         turns = ends(result)
         way = u[turns] - u[turns[0]]
         closed = max(np.abs(way[3::2] / way[1] - 1).max(), np.abs(way[2::2] / way[1] + 1).max())
-        verification.check("loop not closed / displacement", case.name, float(closed))
+        study.check("loop not closed / displacement", case.name, float(closed))
         loss = np.diff(friction[turns])
         cycle = (loss[1] + loss[2]) / (4 * loss[0])
-        verification.check("dissipation of a cycle / (4 first)", case.name, float(cycle))
+        study.check("dissipation of a cycle / (4 first)", case.name, float(cycle))
 
 
-def shear_lag(verification: runner.Verification) -> None:
+def shear_lag(study: runner.Study) -> None:
     """Slip length, displacement and dissipation, and what is left when the strip is let go."""
     errors = []
-    for case, result in verification.group("lag"):
+    for case, result in study.group("lag"):
         thickness = case.parameters["thickness"]
         pull = decks.STRAIN * decks.YOUNG * thickness
         way = decks.STRAIN * decks.SLIP_LENGTH / 2
@@ -170,55 +170,55 @@ def shear_lag(verification: runner.Verification) -> None:
         pressed, pulled, free = ends(result)
         moved = (u[pulled] - u[pressed]) / way
         errors.append(abs(moved - 1))
-        verification.check("displacement / shear lag", case.name, moved)
+        study.check("displacement / shear lag", case.name, moved)
         left = (u[free] - u[pressed]) / (u[pulled] - u[pressed])
-        verification.check("displacement left / first", case.name, left)
+        study.check("displacement left / first", case.name, left)
         lost = (friction[pulled] - friction[pressed]) / (pull * way / 3)
-        verification.check("dissipation / shear lag", case.name, lost)
+        study.check("dissipation / shear lag", case.name, lost)
         touching = Touching(result, 2.0)
         reached = result.coordinates[touching.nodes[touching.slips], 0].min()
         slips = (decks.STRIP - reached) / decks.SLIP_LENGTH
-        verification.check("slip length / shear lag", case.name, slips)
-    verification.check("error of displacement, thin / thick", "lag", errors[1] / errors[0])
+        study.check("slip length / shear lag", case.name, slips)
+    study.check("error of displacement, thin / thick", "lag", errors[1] / errors[0])
 
 
-def capstan(verification: runner.Verification) -> None:
+def capstan(study: runner.Study) -> None:
     """The ratio of the tensions of a strip that slides: mean of the last increments."""
-    for case, result in verification.group("capstan"):
+    for case, result in study.group("capstan"):
         wrap = radians(case.parameters["degrees"])
         pull = result.history.nodes["PULLED"].RF.sum(axis=1)
         tension = pull[-4:] @ np.array([cos(wrap / 2), -sin(wrap / 2)])
         load = decks.TENSION * decks.YOUNG * decks.BELT
         exponent = case.parameters["friction"] * wrap / (1 + decks.BELT / 2)
         ratio = float(np.log(tension / load).mean()) / exponent
-        verification.check("log(T1/T2) / (mu wrap R/r)", case.name, ratio)
+        study.check("log(T1/T2) / (mu wrap R/r)", case.name, ratio)
 
 
-def arch(verification: runner.Verification) -> None:
+def arch(study: runner.Study) -> None:
     """Force and way of the punch before, at and beyond the largest force."""
     path = np.array(decks.punch_forces(*decks.ARCH))
     largest, _ = decks.limit_load(*decks.ARCH)
     way = {
         case.name: -result.history.nodes["HEAD"].U[:, 0, 1]
-        for case, result in verification.group("arch")
+        for case, result in study.group("arch")
     }
-    result = verification.results["arch_pushed"]
+    result = study.results["arch_pushed"]
     (contact,) = result.contact.values()
     force = 2 * np.abs(contact.force[1:, 1])
     exact = np.interp(way["arch_pushed"][1:], *path.T)
     worst = force / exact
     worst = worst[np.abs(worst - 1).argmax()]
-    verification.check("force of the punch / shallow arch", "arch_pushed", float(worst))
-    verification.check("largest force / shallow arch", "arch_pushed", force[:-1].max() / largest)
+    study.check("force of the punch / shallow arch", "arch_pushed", float(worst))
+    study.check("largest force / shallow arch", "arch_pushed", force[:-1].max() / largest)
     snapped = path[path[:, 0] > 1.5 * decks.ARCH[1]]
     end = np.interp(1.1 * largest, *snapped.T[::-1])
-    verification.check("way of the punch / shallow arch", "arch_snaps", way["arch_snaps"][-1] / end)
+    study.check("way of the punch / shallow arch", "arch_snaps", way["arch_snaps"][-1] / end)
 
 
-def fits(verification: runner.Verification) -> None:
+def fits(study: runner.Study) -> None:
     """Pressure, hoop stress and energy of a ring pressed on a shaft."""
     hoop = {}
-    for case, result in verification.group("fit"):
+    for case, result in study.group("fit"):
         units, stiffer = (case.parameters.get(name, 1.0) for name in ("units", "stiffer"))
         pressure, hollow = decks.lame()
         scale = stiffer * pressure
@@ -228,7 +228,7 @@ def fits(verification: runner.Verification) -> None:
         found = np.nan_to_num(frame["CONTACT_PRESSURE"][inner]) / scale
         name = "hoop stress / Lame"
         if case.parameters.get("ring", 1.0) == 1.0:
-            verification.check("pressure / Lame", case.name, float(found.mean()))
+            study.check("pressure / Lame", case.name, float(found.mean()))
         else:
             name += ", meshes that do not match"
         ring = result.element_set("HUB")
@@ -240,48 +240,42 @@ def fits(verification: runner.Verification) -> None:
         around = s[:, 0] * y**2 + s[:, 1] * x**2 - 2 * s[:, 2] * x * y
         exact = scale * hollow * (1 + (units * decks.FIT["rim"] / radius) ** 2)
         hoop[case.name] = float((around / exact).mean())
-        verification.check(name, case.name, hoop[case.name])
+        study.check(name, case.name, hoop[case.name])
         energy = result.history.energy
         lost = energy.external_work[-1] - energy.strain[-1]
-        verification.check(
+        study.check(
             "external work less strain energy", case.name, abs(lost) / energy.strain[-1]
         )
     errors = [1 - hoop[f"fit_fine_ring_{k}"] for k in (32, 64)]
     ratio = errors[1] / errors[0]
-    verification.check("error of hoop stress, fine / coarse", "fit_fine_ring", ratio)
+    study.check("error of hoop stress, fine / coarse", "fit_fine_ring", ratio)
 
 
-def bolts(verification: runner.Verification) -> None:
+def bolts(study: runner.Study) -> None:
     """Way of the tightening, and force of the locked bolt beside springs side by side."""
     length, load = decks.BOLT["length"], decks.BOLT["preload"]
     stiff = [decks.YOUNG * decks.BOLT[name] / length for name in ("bolt", "flange")]
-    for case, result in verification.group("bolt"):
+    for case, result in study.group("bolt"):
         asked = result.history.nodes["TIGHTENING"]
         tightened, end = ends(result)
         way = load / stiff[0] + load / stiff[1]
-        verification.check(
+        study.check(
             "tightening / springs", case.name, float(asked.U[tightened, 0, 0]) / way
         )
         pull = case.parameters["pull"] * load
         exact = max(load + pull * stiff[0] / sum(stiff), pull)
         force = float(asked.RF[end, 0, 0])
-        verification.check("force of the bolt / springs", case.name, force / exact)
+        study.check("force of the bolt / springs", case.name, force / exact)
 
 
-def main() -> int:
-    """Runs, checks, reports."""
-    verification = runner.start(HERE)
-    for case in verification.cases:
-        verification.check_run(case.name, EDGES.get(case.group, decks.HALF_WIDTH / 32))
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
+    for case in study.runs:
+        study.check_run(case.name, EDGES.get(case.group, decks.HALF_WIDTH / 32))
     for part in (hertz, mindlin, shear_lag, capstan, arch, fits, bolts):
-        part(verification)
+        part(study)
     rows = [
         (name, len(result.history.dt) - 1, int(result.history.solver["passes"][1:].max()))
-        for name, result in verification.results.items()
+        for name, result in study.results.items()
     ]
-    verification.table("Passes", ("case", "increments", "most passes"), rows)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    study.table("Passes", ("case", "increments", "most passes"), rows)

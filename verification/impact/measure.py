@@ -58,53 +58,51 @@ def wall(results: Result) -> tuple[float, float, float]:
     return float(force.mean()), float(force.std()), float(impulse)
 
 
-def draw(verification: runner.Verification) -> None:
+def draw(study: runner.Study) -> None:
     """Energy of all runs over time."""
-    decks = [deck for deck in impact.DECKS if any(deck in c.deck for c in verification.cases)]
+    decks = [deck for deck in impact.DECKS if any(deck in c.deck for c in study.runs)]
     figure, axes = plt.subplots(len(decks), 1, figsize=(8, 3 * len(decks)), squeeze=False)
     for at, deck in zip(axes[:, 0], decks):
-        for case in verification.cases:
+        for case in study.runs:
             if deck in case.deck:
-                results = verification.results[case.name]
+                results = study.results[case.name]
                 at.plot(results.history.time, energy(results), label=case.name)
         at.set(ylabel="energy / energy at the start", title=deck)
         at.legend(fontsize="small")
     axes[-1, 0].set_xlabel("time")
-    style.save(figure, verification.output / "energy.png")
+    style.save(figure, study.output / "energy.png")
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
     rows, walls = [], []
-    for case in verification.cases:
-        results = verification.results[case.name]
+    for case in study.runs:
+        results = study.results[case.name]
         deck = case.deck.removesuffix(".inp")
-        verification.check_run(case.name, impact.edge(deck))
+        study.check_run(case.name, impact.edge(deck))
         kept = energy(results)
-        verification.check("largest rise of the energy", case.name, float(np.diff(kept).max()))
-        verification.check(f"energy kept, {case.group}", case.name, float(kept[-1]))
+        study.check("largest rise of the energy", case.name, float(np.diff(kept).max()))
+        study.check(f"energy kept, {case.group}", case.name, float(kept[-1]))
         if not case.group.startswith("plastic"):
             suffix = ", events" if case.group.endswith("events") else ""
             taken = f"taken and not returned{suffix}"
-            verification.check(taken, case.name, not_returned(results))
-        verification.check("contacts / ledger", case.name, unshared(results))
+            study.check(taken, case.name, not_returned(results))
+        study.check("contacts / ledger", case.name, unshared(results))
         if deck == "rings":
-            verification.check("change of the momenta", case.name, momentum_error(results))
+            study.check("change of the momenta", case.name, momentum_error(results))
         if deck == "bar":
             force, scatter, impulse = wall(results)
             if case.group != "both" or case.parameters.get("courant", 1.0) <= 1.0:
-                verification.check("mean force / rho c v0", case.name, force)
-            verification.check("impulse / change of momentum", case.name, change(results))
+                study.check("mean force / rho c v0", case.name, force)
+            study.check("impulse / change of momentum", case.name, change(results))
             walls.append((case.name, force, scatter, impulse))
         passes = float(results.history.solver["passes"][1:].mean())
         landings = len(results.history.impacts["time"])
         rows.append((case.name, float(results.history.time[-1]), float(kept[-1]), landings, passes))
     header = ("case", "time", "energy kept", "landings", "passes")
-    verification.table("Bodies that bounce", header, rows)
-    verification.table("Bar on a wall", ("case", "force", "deviation", "impulse"), walls)
-    draw(verification)
-    return verification.finish()
+    study.table("Bodies that bounce", header, rows)
+    study.table("Bar on a wall", ("case", "force", "deviation", "impulse"), walls)
+    draw(study)
 
 
 def change(results: Result) -> float:
@@ -114,7 +112,3 @@ def change(results: Result) -> float:
     return float(
         impulse / (results.history.momentum.linear[-1, 0] - results.history.momentum.linear[0, 0])
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -9,11 +9,12 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import generate as made  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.plot import style  # noqa: E402
 from stickslip.result import Array, Result  # noqa: E402
+
+made = runner.load(HERE / "generate.py")
 
 STEP = 2e-5
 """Of the Runge-Kutta method for the equations of motion."""
@@ -88,27 +89,26 @@ def places(results: Result, number: int) -> Array:
     return np.array([results.history[f"rigid/EB{k}/U"][:, 0] for k in range(number)]).T
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
     finest: dict[tuple[int, float], tuple[Array, Array]] = {}
-    for case in verification.cases:
-        verification.check_run(case.name, 1.0)
+    for case in study.runs:
+        study.check_run(case.name, 1.0)
         number = 1 if case.deck == "one.inp" else 2
         decay = float(case.parameters["decay"])
-        results = verification.results[case.name]
+        results = study.results[case.name]
         time, x = results.history.time, places(results, number)
         times, exact = motion(number, decay)
         amplitude = np.ptp(exact[len(exact) // 3 :])
         at_times = np.array([np.interp(time, times, exact[:, k]) for k in range(number)]).T
         error = np.abs(x - at_times).max() / amplitude
-        verification.check(f"largest error / amplitude, {case.group}", case.name, float(error))
+        study.check(f"largest error / amplitude, {case.group}", case.name, float(error))
         if number == 1:
             found, expected = onsets(time, x[:, 0]), onsets(times, exact[:, 0])
             period = np.diff(found).mean() / np.diff(expected).mean()
-            verification.check(f"period / equation, {case.group}", case.name, float(period))
+            study.check(f"period / equation, {case.group}", case.name, float(period))
             height = np.ptp(x[len(x) // 3 :]) / amplitude
-            verification.check(f"amplitude / equation, {case.group}", case.name, float(height))
+            study.check(f"amplitude / equation, {case.group}", case.name, float(height))
         finest[number, decay] = (time, x)
     figure, axes = plt.subplots(2, 1, figsize=(8, 6), sharex=True)
     for (number, decay), (time, x) in finest.items():
@@ -121,9 +121,4 @@ def main() -> int:
         ax.set(ylabel=f"displacement, {label}")
         ax.legend(title="dotted: equation of motion")
     axes[1].set(xlabel="time")
-    style.save(figure, verification.output / "motion.png")
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    style.save(figure, study.output / "motion.png")

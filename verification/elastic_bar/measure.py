@@ -63,13 +63,13 @@ def mean_speed(results: Result) -> np.ndarray:
     return (speed.mean(axis=1) @ weight) / bar.ELEMENTS
 
 
-def draw(verification: runner.Verification) -> None:
+def draw(study: runner.Study) -> None:
     """Wall force and speed of the mass centre, with and without impulses."""
     figure, axes = plt.subplots(2, 2, figsize=(10, 6.5), sharex=True)
     for column, scheme in enumerate(("ss22", "em")):
         force, speed = axes[:, column]
         for impact, label in (("none", "IMPACT=NONE"), ("impulse", "impact impulses")):
-            results = verification.results.get(f"{scheme}_{impact}")
+            results = study.results.get(f"{scheme}_{impact}")
             if results is None:
                 continue
             (contact,) = results.contact.values()
@@ -84,25 +84,24 @@ def draw(verification: runner.Verification) -> None:
         force.set(title=LABELS[scheme], ylabel="wall force / (rho c v0)")
         speed.set(xlabel="time", ylabel="speed of the mass centre / v0")
         force.legend(loc="upper right")
-    style.save(figure, verification.output / "wall_force.png")
+    style.save(figure, study.output / "wall_force.png")
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
     rows = []
-    for case in verification.cases:
-        results = verification.results[case.name]
+    for case in study.runs:
+        results = study.results[case.name]
         figures = Figures.of(results)
-        verification.check_run(case.name, bar.LENGTH / bar.ELEMENTS)
-        verification.check("landing time", case.name, figures.landing)
+        study.check_run(case.name, bar.LENGTH / bar.ELEMENTS)
+        study.check("landing time", case.name, figures.landing)
         if case.group != "none":
-            verification.check("wall force / (rho c v0), middle", case.name, figures.mean)
-            verification.check(
+            study.check("wall force / (rho c v0), middle", case.name, figures.mean)
+            study.check(
                 "largest deviation of the wall force, middle", case.name, figures.deviation
             )
-            verification.check("std / mean of the wall force, middle", case.name, figures.scatter)
-            verification.check("contact time", case.name, figures.duration)
+            study.check("std / mean of the wall force, middle", case.name, figures.scatter)
+            study.check("contact time", case.name, figures.duration)
         rows.append(
             (
                 case.name,
@@ -113,14 +112,9 @@ def main() -> int:
                 figures.energy,
             )
         )
-    verification.table(
+    study.table(
         "Impact of the bar",
         ("case", "force", "std / mean", "contact time / (2L/c)", "rebound / v0", "energy kept"),
         rows,
     )
-    draw(verification)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    draw(study)

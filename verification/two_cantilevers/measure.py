@@ -25,12 +25,12 @@ def tip(results: Result, name: str = "UPPER_TIP") -> Array:
     return history.U[:, len(history.labels) // 2]
 
 
-def draw_displacement(verification: runner.Verification, name: str, label: str) -> None:
+def draw_displacement(study: runner.Study, name: str, label: str) -> None:
     """Horizontal and vertical displacement of a tip against time, all mu in one figure."""
     figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True)
     for column, load in enumerate("AB"):
         for group, line in (("paper", "-"), ("default", "--")):
-            cases = [(c, r) for c, r in verification.group(group) if c.deck[0] == load]
+            cases = [(c, r) for c, r in study.group(group) if c.deck[0] == load]
             for colour, (case, results) in zip(style.COLOURS, cases):
                 friction = beams.FRICTION[Path(case.deck).stem[2:]]
                 for row in range(2):
@@ -48,21 +48,21 @@ def draw_displacement(verification: runner.Verification, name: str, label: str) 
     axes[0, 0].legend()
     axes[0, 0].set_ylabel(f"horizontal displacement of {label}")
     axes[1, 0].set_ylabel(f"vertical displacement of {label}")
-    style.save(figure, verification.output / f"displacement_{name.lower()}.png")
+    style.save(figure, study.output / f"displacement_{name.lower()}.png")
 
 
-def draw_motion(verification: runner.Verification, group: str) -> None:
+def draw_motion(study: runner.Study, group: str) -> None:
     """Shapes at t = 0, 2, 4, ... at mu = 0.4 for both load cases."""
-    cases = [verification.results[f"{group}_{load}_mu04"] for load in "AB"]
+    cases = [study.results[f"{group}_{load}_mu04"] for load in "AB"]
     rows = [shown_at(results, np.arange(0.0, 15.0, 2.0)) for results in cases]
     figure = panels(rows, Look("von-mises"), columns=4)
-    style.save(figure, verification.output / f"motion_{group}.png", 120)
+    style.save(figure, study.output / f"motion_{group}.png", 120)
 
 
-def sequence(verification: runner.Verification, group: str, kind: str) -> list[runner.Case]:
+def sequence(study: runner.Study, group: str, kind: str) -> list[runner.Run]:
     """Cases of increasing resolution, from the deck's own."""
-    first = [case for case in verification.cases if case.name == f"{group}_A_mu04"]
-    return first + [case for case, _ in verification.group(f"{group}_{kind}")]
+    first = [case for case in study.runs if case.name == f"{group}_A_mu04"]
+    return first + [case for case, _ in study.group(f"{group}_{kind}")]
 
 
 def deviation(results: Result, reference: Result) -> float:
@@ -74,16 +74,16 @@ def deviation(results: Result, reference: Result) -> float:
     return float(np.linalg.norm(tip(results) - at, axis=1).max())
 
 
-def study_convergence(verification: runner.Verification) -> None:
+def study_convergence(study: runner.Study) -> None:
     """Path of the upper tip against the finest run of each sequence."""
     figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
     rows = []
     for row, group in enumerate(LABELS):
         for column, kind in enumerate(("dt", "mesh")):
-            cases = sequence(verification, group, kind)
-            finest = verification.results[cases[-1].name]
+            cases = sequence(study, group, kind)
+            finest = study.results[cases[-1].name]
             for case in cases:
-                results = verification.results[case.name]
+                results = study.results[case.name]
                 edge, dt = 0.5 / case.refine, beams.DT / case.divide
                 label = f"dt {dt:g}" if kind == "dt" else f"edge {edge:g}"
                 axes[row, column].plot(results.history.time, tip(results)[:, 1], label=label)
@@ -94,19 +94,19 @@ def study_convergence(verification: runner.Verification) -> None:
         axes[row, 0].set_ylabel("vertical displacement of the upper tip")
     for at in axes[1]:
         at.set_xlabel("time")
-    style.save(figure, verification.output / "convergence.png")
-    verification.table(
+    style.save(figure, study.output / "convergence.png")
+    study.table(
         "Convergence of the upper tip's path, A, mu = 0.4 (largest distance from the finest run)",
         ("scheme", "refined", "edge", "increment", "distance"),
         rows,
     )
 
 
-def tabulate(verification: runner.Verification) -> None:
+def tabulate(study: runner.Study) -> None:
     """Tips and energies at the end of the runs."""
     rows = []
     for group in LABELS:
-        for case, results in verification.group(group):
+        for case, results in study.group(group):
             upper, lower = tip(results)[-1], tip(results, "LOWER_TIP")[-1]
             account = results.history.energy
             rows.append(
@@ -126,7 +126,7 @@ def tabulate(verification: runner.Verification) -> None:
                     ),
                 )
             )
-    verification.table(
+    study.table(
         "End of the runs",
         ("case", "upper x", "upper y", "lower x", "lower y", "work", "friction", "impact")
         + ("numerical", "normal contact"),
@@ -134,20 +134,14 @@ def tabulate(verification: runner.Verification) -> None:
     )
 
 
-def main() -> int:
-    """Runs, checks, draws, reports."""
-    verification = runner.start(HERE)
-    for case in verification.cases:
-        verification.check_run(case.name, 0.5 / case.refine)
-    tabulate(verification)
-    if any(verification.group("paper_dt")):
-        draw_displacement(verification, "UPPER_TIP", "the upper tip")
-        draw_displacement(verification, "LOWER_TIP", "the lower tip")
+def measure(study: runner.Study) -> None:
+    """Checks, tabulates and draws what the runs give."""
+    for case in study.runs:
+        study.check_run(case.name, 0.5 / case.refine)
+    tabulate(study)
+    if any(study.group("paper_dt")):
+        draw_displacement(study, "UPPER_TIP", "the upper tip")
+        draw_displacement(study, "LOWER_TIP", "the lower tip")
         for group in LABELS:
-            draw_motion(verification, group)
-        study_convergence(verification)
-    return verification.finish()
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+            draw_motion(study, group)
+        study_convergence(study)
