@@ -81,8 +81,7 @@ def rows_of(study: Study) -> list[tuple[str, ...]]:
             continue
         of = f" (worst of {count[check.quantity]})" if worst and count[check.quantity] > 1 else ""
         verdict = "pass" if check.holds else "**FAIL**"
-        seconds = f"{study.seconds.get(check.run, 0.0):.1f}"
-        tail = (verdict, study.increments(check.run), seconds)
+        tail = (verdict, study.increments(check.run), study.seconds(check.run))
         rows.append((f"{study.form.name}/{check.run}", check.quantity + of, *check.shown(), *tail))
     return rows
 

@@ -228,7 +228,10 @@ def references(path: Path) -> dict[str, Reference]:
         if len(places) not in (0, len(those)) or (not places and len(those) > 1):
             raise Fault(f"{path}: {name} has rows with and without x, or several without")
         x = np.array(places, dtype=float) if places else None
-        value = np.array([row["value"] for row in those], dtype=float)
+        try:
+            value = np.array([row["value"] for row in those], dtype=float)
+        except ValueError as error:
+            raise Fault(f"{path}: {name}: {error}") from None
         found[name] = Reference(value, x, tag, source, tuple(row.get("formula") or "" for row in those))
     return found
 

@@ -5,7 +5,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from runner import Study, curve_points, errors
+from form import Curve, Order
+from runner import Study, curve_points, errors, observed_order
 
 LARGEST = 3
 """Panels of a picture."""
@@ -34,7 +35,7 @@ def draw(study: Study, path: Path) -> None:
     plt.close(figure)
 
 
-def draw_curve(study: Study, curve, ax: Axes) -> None:  # noqa: ANN001
+def draw_curve(study: Study, curve: Curve, ax: Axes) -> None:
     """Computed curves, the reference as points."""
     drawn = set()
     for run in filter(study.results.__contains__, curve.runs):
@@ -50,11 +51,11 @@ def draw_curve(study: Study, curve, ax: Axes) -> None:  # noqa: ANN001
     ax.legend(fontsize=6)
 
 
-def draw_orders(study: Study, orders, ax: Axes) -> None:  # noqa: ANN001
+def draw_orders(study: Study, orders: list[Order], ax: Axes) -> None:
     """Errors over sizes."""
     for order in orders:
         sizes, off = errors(study, order)
-        slope = np.polyfit(np.log(sizes), np.log(off), 1)[0]
+        slope = observed_order(sizes, off)
         ax.loglog(sizes, off, "o-", markersize=3, linewidth=1, label=f"{order.name}: {slope:.2f}")
     ax.set_title("error over size, observed order", fontsize=8)
     ax.legend(fontsize=6)

@@ -1,8 +1,7 @@
 """Runs the cases of the verification, checks their quantities, draws them; scripts/verify says which."""
 
 import sys
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -12,7 +11,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 sys.path[:0] = [str(HERE), str(ROOT / "python"), str(ROOT / "scripts")]
 
-from form import Form, Quantity, Run, all_folders, load, markdown, read  # noqa: E402
+from form import Array, Curve, Form, Order, Quantity, Run, all_folders, load, markdown, read  # noqa: E402
 from stickslip import program  # noqa: E402
 from stickslip.result import Result  # noqa: E402
 from values import Values  # noqa: E402
@@ -102,7 +101,6 @@ class Study:
     runs: list[Run]
     reuse: bool = False
     results: dict[str, Result] = field(default_factory=dict)
-    seconds: dict[str, float] = field(default_factory=dict)
     checks: list[Check] = field(default_factory=list)
     tables: list[str] = field(default_factory=list)
 
@@ -118,7 +116,6 @@ class Study:
             options += ["--frames", str(run.frames)]
         if run.every is not None:
             options += ["--every", repr(run.every)]
-        started = time.monotonic()
         try:
             changed = run.changed_deck(self.form.decks, self.output / "decks" / run.name)
             deck = changed.write(output / f"{run.name}.inp")
@@ -126,8 +123,6 @@ class Study:
         except program.RunFailed as failure:
             print(f"{self.form.name}/{run.name}: {failure}")
             return path if failure.code == program.STOPPED else None, failure.code
-        finally:
-            self.seconds[run.name] = time.monotonic() - started
 
     def take(self, run: Run, path: Path | None, code: int) -> None:
         """Takes the result of a run."""
@@ -161,7 +156,7 @@ class Study:
         if run in self.results:
             self._try(quantity, run, lambda: float(self.values(run)(quantity.value)))
 
-    def _try(self, limit: Quantity, run: str, value) -> None:  # noqa: ANN001
+    def _try(self, limit: Quantity, run: str, value: Callable[[], float]) -> None:
         """Adds a check; an expression that cannot be evaluated is one that fails."""
         try:
             self._add(limit, run, value())
@@ -223,6 +218,10 @@ class Study:
         """How many increments a run has."""
         return str(len(self.results[run].history.dt) - 1) if run in self.results else ""
 
+    def seconds(self, run: str) -> str:
+        """How long a run took."""
+        return f"{float(self.results[run].run['seconds_total']):.1f}" if run in self.results else ""
+
     def finish(self) -> None:
         """Writes the page of the case: every check, and the tables."""
         header = ("", "run", "quantity", "reference", "computed", "error", "tolerance", "why")
@@ -236,7 +235,7 @@ class Study:
         (self.output / "results.md").write_text("\n".join(parts))
 
 
-def curve_points(study: Study, curve, run: str) -> tuple[np.ndarray, np.ndarray]:  # noqa: ANN001
+def curve_points(study: Study, curve: Curve, run: str) -> tuple[Array, Array]:
     """Abscissae, in order, and ordinates of a computed curve."""
     values = study.values(run)
     x, y = (np.asarray(values(text), dtype=float) for text in (curve.x, curve.y))
@@ -244,7 +243,7 @@ def curve_points(study: Study, curve, run: str) -> tuple[np.ndarray, np.ndarray]
     return x[order], y[order]
 
 
-def curve_error(study: Study, curve, run: str) -> float:  # noqa: ANN001
+def curve_error(study: Study, curve: Curve, run: str) -> float:
     """Error of a curve over the points of the reference, as a part of the largest reference."""
     reference = study.form.references[study.values(run).named(curve.reference)]
     x, y = curve_points(study, curve, run)
@@ -253,7 +252,7 @@ def curve_error(study: Study, curve, run: str) -> float:  # noqa: ANN001
     return float(size / np.abs(reference.value).max())
 
 
-def errors(study: Study, order) -> tuple[np.ndarray, np.ndarray]:  # noqa: ANN001
+def errors(study: Study, order: Order) -> tuple[Array, Array]:
     """Sizes and errors of the runs of an order."""
     pairs = []
     for run in order.runs:
@@ -263,6 +262,6 @@ def errors(study: Study, order) -> tuple[np.ndarray, np.ndarray]:  # noqa: ANN00
     return sizes, np.abs(off)
 
 
-def observed_order(sizes: np.ndarray, off: np.ndarray) -> float:
+def observed_order(sizes: Array, off: Array) -> float:
     """Slope of the errors over the sizes, both in logarithms, by least squares."""
     return float(np.polyfit(np.log(sizes), np.log(off), 1)[0])
