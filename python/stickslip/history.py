@@ -214,6 +214,8 @@ class ElementSet(Group):
     """Largest principal stress [I, k]."""
     PRESS: Array
     """Pressure [I, k]."""
+    PEEQ: Array
+    """Accumulated plastic strain [I, k]; where a material has `*PLASTIC`."""
     E: Array
     """Green-Lagrange strain xx yy xy [I, k, 3]."""
     sum: Group

@@ -171,7 +171,7 @@ impl Elements {
         for (place, &element) in elements.iter().enumerate() {
             self.places[element] = (number, Place::Chunk(chunk, place as u32));
         }
-        let chunk = AnyChunk::new(model, elements, kind.law);
+        let chunk = AnyChunk::new(model, elements, kind.law.clone());
         self.chunks.push(chunk);
     }
 
@@ -185,7 +185,7 @@ impl Elements {
         self.parts.push(Part {
             index,
             element,
-            law: kind.law,
+            law: kind.law.clone(),
             variables,
         });
     }
@@ -700,7 +700,7 @@ mod tests {
             d1: 0.02,
         });
         [
-            model(elastic, ElementType::CPS4),
+            model(elastic.clone(), ElementType::CPS4),
             model(elastic, ElementType::CPE4),
             model(rubber, ElementType::CPE4),
         ]
@@ -772,12 +772,12 @@ mod tests {
             start: Some(&u0),
             ..Motion::at(&u1, &[])
         };
-        let rubber = models()[2].materials[0].law;
+        let rubber = models()[2].materials[0].law.clone();
         let elastic = Law::elastic(100.0, 0.3);
         let quadratic = [
-            quadratic_model(elastic, ElementType::CPS8),
+            quadratic_model(elastic.clone(), ElementType::CPS8),
             quadratic_model(elastic, ElementType::CPE8R),
-            quadratic_model(rubber, ElementType::CPE8),
+            quadratic_model(rubber.clone(), ElementType::CPE8),
             quadratic_model(rubber, ElementType::CPE8R),
         ];
         for (model, motion) in models()
@@ -877,7 +877,7 @@ mod tests {
             formulation: Formulation::MeanDilatation,
             ..ElementType::CPE4
         };
-        let with_mean = models().map(|m| model(m.materials[0].law, mean));
+        let with_mean = models().map(|m| model(m.materials[0].law.clone(), mean));
         for model in models().iter().chain(&with_mean) {
             // heights become -0.2 of themselves, halfway 0.4
             let coordinates = model.mesh.coordinates.iter();

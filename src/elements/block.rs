@@ -565,6 +565,7 @@ impl Sums {
             across: self.across.0[lane] / volume,
             strain: means(&self.strain),
             principal_strain: self.principal[lane],
+            plastic_strain: 0.0,
         }
     }
 }

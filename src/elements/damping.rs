@@ -154,10 +154,10 @@ mod tests {
             c: 0.05,
         });
         let cases = [
-            (elastic, ElementType::CPS4),
-            (elastic, ElementType::CPE4),
+            (elastic.clone(), ElementType::CPS4),
+            (elastic.clone(), ElementType::CPE4),
             (elastic, mean),
-            (rubber, ElementType::CPE4),
+            (rubber.clone(), ElementType::CPE4),
             (rubber, mean),
             (yielding, ElementType::CPE4),
         ];

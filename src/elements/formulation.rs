@@ -39,6 +39,22 @@ pub trait Formulation {
         (force, determinant)
     }
 
+    /// Internal variables of all points at the end of a configuration, written to `updated`, and the energy dissipated
+    /// on the way to them, int D dOmega (force length).
+    fn update<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &Committed,
+        configuration: &Configuration<N>,
+        updated: &mut [f64],
+    ) -> f64 {
+        let mut dissipated = 0.0;
+        Self::for_each_state(element, material, configuration, |p, state| {
+            let volume = element.points[p].volume;
+            dissipated += material.update(p, &state.strains, updated) * volume;
+        });
+        dissipated
+    }
+
     /// Tangent K = dF/du, D x D (force/length); symmetric.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
@@ -75,22 +91,6 @@ pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
     });
     let weights = element.points.iter().map(|point| point.volume);
     ElementResult::of_points(results.into_iter().zip(weights))
-}
-
-/// Internal variables of all points at the end of a configuration, written to `updated`, and the energy dissipated on
-/// the way to them, int D dOmega (force length).
-pub fn update<F: Formulation, const N: usize, const P: usize>(
-    element: &Reference<N, P>,
-    material: &Committed,
-    configuration: &Configuration<N>,
-    updated: &mut [f64],
-) -> f64 {
-    let mut dissipated = 0.0;
-    F::for_each_state(element, material, configuration, |p, state| {
-        let volume = element.points[p].volume;
-        dissipated += material.update(p, &state.strains, updated) * volume;
-    });
-    dissipated
 }
 
 /// B_L: delta E (xx, yy, 2 xy) per nodal displacement (1/length).
@@ -301,6 +301,8 @@ pub struct ElementResult {
     /// Largest absolute principal value of the Green-Lagrange strain in the plane at the integration
     /// points; NaN when there is one.
     pub principal_strain: f64,
+    /// Accumulated plastic strain, mean over the element.
+    pub plastic_strain: f64,
 }
 
 /// The element with the largest principal strain.
@@ -337,6 +339,8 @@ pub(super) struct PointResult {
     pub strain: Matrix2<f64>,
     /// Green-Lagrange strain across where it counts for the largest strain, as in a body of revolution.
     pub strain_across: f64,
+    /// Accumulated plastic strain.
+    pub plastic_strain: f64,
 }
 
 impl PointResult {
@@ -350,6 +354,7 @@ impl PointResult {
             across: stress * stretch / state.material_determinant,
             strain: green_lagrange(&state.h),
             strain_across: 0.0,
+            plastic_strain: material.plastic_strain(point),
         }
     }
 
@@ -370,11 +375,13 @@ impl ElementResult {
     pub(super) fn of_points(points: impl Iterator<Item = (PointResult, f64)>) -> Self {
         let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
         let (mut energy, mut across, mut volume, mut principal) = (0.0, 0.0, 0.0, 0.0);
+        let mut plastic = 0.0;
         for (point, weight) in points {
             energy += point.energy * weight;
             sigma += point.sigma * weight;
             across += point.across * weight;
             strain += point.strain * weight;
+            plastic += point.plastic_strain * weight;
             principal = -smaller(-principal, -point.principal_strain());
             volume += weight;
         }
@@ -385,6 +392,7 @@ impl ElementResult {
             across: across / volume,
             strain: voigt(strain),
             principal_strain: principal,
+            plastic_strain: plastic / volume,
         }
     }
 

@@ -290,6 +290,7 @@ impl Ring {
                 across: s.z * stretch / determinant,
                 strain: section(e),
                 strain_across: e.z,
+                plastic_strain: material.plastic_strain(p),
             };
             (result, point.volume)
         };

@@ -5,9 +5,7 @@ use std::marker::PhantomData;
 
 use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
-use super::formulation::{
-    Configuration, ElementResult, Formulation, Reference, evaluate, update, work,
-};
+use super::formulation::{Configuration, ElementResult, Formulation, Reference, evaluate, work};
 use crate::materials::{Committed, StressAtPoints};
 use crate::model::ElementType;
 
@@ -137,7 +135,7 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     /// (force length).
     pub(super) fn update(&self, material: &Committed, motion: Motion, updated: &mut [f64]) -> f64 {
         let configuration = self.configuration(motion);
-        update::<F, N, P>(&self.reference, material, &configuration, updated)
+        F::update::<N, P>(&self.reference, material, &configuration, updated)
     }
 
     /// Entries of a vector over all dofs at the nodes, 2 x N.

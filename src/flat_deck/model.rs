@@ -2,7 +2,7 @@
 //! amplitudes, contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{DeckWriter, name, named, number, set};
-use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff};
+use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff, SmallStrainModuli};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
     Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material, Mesh, Model,
@@ -441,18 +441,18 @@ fn write_material(material: &Material, lines: &mut DeckWriter) {
 }
 
 fn write_law(law: &Law, lines: &mut DeckWriter) {
-    match *law {
-        Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson }) => {
+    match law {
+        &Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson }) => {
             if young > 0.0 {
                 lines.card("ELASTIC", []);
                 lines.row([young, poisson].map(number));
             }
         }
-        Law::NeoHooke(NeoHooke { c10, d1 }) => {
+        &Law::NeoHooke(NeoHooke { c10, d1 }) => {
             lines.card("HYPERELASTIC", ["NEO HOOKE".to_owned()]);
             lines.row([c10, d1].map(number));
         }
-        Law::Polynomial(Polynomial {
+        &Law::Polynomial(Polynomial {
             shape: [c10, c20, c30],
             c01,
             d,
@@ -467,6 +467,23 @@ fn write_law(law: &Law, lines: &mut DeckWriter) {
             match mooney_rivlin {
                 true => lines.row([c10, c01, d[0]].map(number)),
                 false => lines.row([c10, c20, c30, d[0], d[1], d[2]].map(number)),
+            }
+        }
+        Law::Plastic(law) => {
+            let SmallStrainModuli { young, poisson } = law.moduli;
+            lines.card("ELASTIC", []);
+            lines.row([young, poisson].map(number));
+            let (hardening, rows) = match law.kinematic > 0.0 {
+                true => {
+                    let first = law.hardening[0][1];
+                    let second = [1.0, first + law.kinematic];
+                    ("KINEMATIC", vec![[0.0, first], second])
+                }
+                false => ("ISOTROPIC", law.hardening.to_vec()),
+            };
+            lines.card("PLASTIC", [set("HARDENING", hardening.to_owned())]);
+            for [strain, stress] in rows {
+                lines.row([stress, strain].map(number));
             }
         }
         #[cfg(test)]

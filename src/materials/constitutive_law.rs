@@ -58,6 +58,11 @@ pub trait ConstitutiveLaw {
 
     /// Stretch and stress across the thickness.
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across;
+
+    /// Accumulated plastic strain.
+    fn plastic_strain(&self, _z: &[f64]) -> f64 {
+        0.0
+    }
 }
 
 /// A stress that follows from the strains at the integration points of one element: that of its

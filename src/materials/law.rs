@@ -10,13 +10,13 @@ use smallvec::SmallVec;
 #[cfg(test)]
 use super::yielding::Yielding;
 use super::{
-    Across, ConstitutiveLaw, NeoHooke, Plane, PlanePolynomial, PlaneSaintVenantKirchhoff,
-    Polynomial, RingStressAtPoints, SaintVenantKirchhoff, SmallStrainModuli, Strains,
-    StressAtPoints, Symmetric,
+    Across, ConstitutiveLaw, NeoHooke, Plane, PlanePlastic, PlanePolynomial,
+    PlaneSaintVenantKirchhoff, Plastic, Polynomial, RingStressAtPoints, SaintVenantKirchhoff,
+    SmallStrainModuli, Strains, StressAtPoints, Symmetric,
 };
 
 /// Law of a material with the constants of the deck.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// `*ELASTIC`
     SaintVenantKirchhoff(SaintVenantKirchhoff),
@@ -24,6 +24,8 @@ pub enum Law {
     NeoHooke(NeoHooke),
     /// `*HYPERELASTIC` of other forms.
     Polynomial(Polynomial),
+    /// `*PLASTIC`
+    Plastic(Plastic),
     /// A law with internal variables.
     #[cfg(test)]
     Yielding(Yielding),
@@ -41,6 +43,7 @@ impl Law {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
             Law::NeoHooke(law) => law.small_strain(),
             Law::Polynomial(law) => law.small_strain(),
+            Law::Plastic(law) => law.small_strain(),
             #[cfg(test)]
             Law::Yielding(law) => law.small_strain(),
         }
@@ -54,21 +57,22 @@ impl Law {
     /// The law in the plane.
     pub fn in_plane(&self, plane: Plane) -> PlaneLaw {
         let polynomial = |law| PlaneLaw::Polynomial(PlanePolynomial { law, plane });
-        match *self {
+        match self {
             Law::SaintVenantKirchhoff(law) => PlaneLaw::SaintVenantKirchhoff(law.in_plane(plane)),
-            Law::NeoHooke(law) => match plane {
+            &Law::NeoHooke(law) => match plane {
                 Plane::Strain | Plane::Revolution => PlaneLaw::NeoHooke(law),
                 Plane::Stress => polynomial(law.into()),
             },
-            Law::Polynomial(law) => polynomial(law),
+            &Law::Polynomial(law) => polynomial(law),
+            Law::Plastic(law) => PlaneLaw::Plastic(law.in_plane(plane)),
             #[cfg(test)]
-            Law::Yielding(law) => PlaneLaw::Yielding(law),
+            &Law::Yielding(law) => PlaneLaw::Yielding(law),
         }
     }
 }
 
 /// Law of a material in the plane of the elements.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum PlaneLaw {
     /// In plane stress or plane strain.
     SaintVenantKirchhoff(PlaneSaintVenantKirchhoff),
@@ -76,6 +80,8 @@ pub enum PlaneLaw {
     NeoHooke(NeoHooke),
     /// In plane stress or plane strain.
     Polynomial(PlanePolynomial),
+    /// A metal.
+    Plastic(PlanePlastic),
     /// A law with internal variables.
     #[cfg(test)]
     Yielding(Yielding),
@@ -88,6 +94,7 @@ impl PlaneLaw {
             PlaneLaw::SaintVenantKirchhoff(law) => law,
             PlaneLaw::NeoHooke(law) => law,
             PlaneLaw::Polynomial(PlanePolynomial { law, .. }) => law,
+            PlaneLaw::Plastic(law) => law,
             #[cfg(test)]
             PlaneLaw::Yielding(law) => law,
         }
@@ -101,6 +108,7 @@ macro_rules! of_each {
             PlaneLaw::SaintVenantKirchhoff($law) => $value,
             PlaneLaw::NeoHooke($law) => $value,
             PlaneLaw::Polynomial($law) => $value,
+            PlaneLaw::Plastic($law) => $value,
             #[cfg(test)]
             PlaneLaw::Yielding($law) => $value,
         }
@@ -134,6 +142,10 @@ impl ConstitutiveLaw for PlaneLaw {
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across {
         of_each!(self, law => law.across(e, z))
     }
+
+    fn plastic_strain(&self, z: &[f64]) -> f64 {
+        of_each!(self, law => law.plastic_strain(z))
+    }
 }
 
 /// A law with the internal variables that the last accepted increment has committed at the integration points of an
@@ -148,6 +160,14 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
     /// A law with the variables of all points of an element.
     pub fn new(law: &'a L, variables: &'a [f64]) -> Self {
         Committed { law, variables }
+    }
+
+    /// The law with other variables.
+    pub fn with<'b>(&self, variables: &'b [f64]) -> Committed<'b, L>
+    where
+        'a: 'b,
+    {
+        Committed::new(self.law, variables)
     }
 
     /// Internal variables of a point among those of the element.
@@ -170,6 +190,11 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
     /// Stretch and stress across the thickness at a point.
     pub fn across(&self, point: usize, e: &Matrix2<f64>) -> Across {
         self.law.across(e, self.at(point))
+    }
+
+    /// Accumulated plastic strain of a point.
+    pub fn plastic_strain(&self, point: usize) -> f64 {
+        self.law.plastic_strain(self.at(point))
     }
 
     /// Internal variables of a point at the end of the strains, written to `updated`, and the energy dissipated on

@@ -141,6 +141,12 @@ impl Model {
         material.wave_speed(element.element_type.plane)
     }
 
+    /// Whether a material may flow.
+    pub fn has_plasticity(&self) -> bool {
+        let mut materials = self.materials.iter();
+        materials.any(|material| matches!(material.law, Law::Plastic(_)))
+    }
+
     /// Whether the law of an element (index) is meant for small strains.
     pub fn is_for_small_strains(&self, element: usize) -> bool {
         let section = &self.sections[self.mesh.elements[element].section];

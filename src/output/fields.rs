@@ -174,7 +174,8 @@ impl<'m> FieldGroup<'m> {
         let asked = &model.sets.fields;
         let principal = PRINCIPAL.iter().filter(|_| asked.principal_stress);
         let pressure = PRESSURE.iter().filter(|_| asked.pressure);
-        for &(name, meaning, of) in principal.chain(pressure) {
+        let plastic = PLASTIC.iter().filter(|_| model.has_plasticity());
+        for &(name, meaning, of) in principal.chain(pressure).chain(plastic) {
             self.add(name, SCALAR, varied, meaning, move |frame, v| {
                 v.extend(frame.elements.iter().map(of));
                 v.extend(repeat_n(f64::NAN, lines));
@@ -378,6 +379,13 @@ const PRINCIPAL: [ElementField<f64>; 3] = [
     ("SP2", ("force/length^2", "middle principal value of S and S33"), |e| e.principal_stresses()[1]),
     ("SP3", ("force/length^2", "largest principal value of S and S33"), |e| e.principal_stresses()[2]),
 ];
+
+/// A field of models with metals.
+const PLASTIC: [ElementField<f64>; 1] = [("PEEQ", PLASTIC_STRAIN, |e| e.plastic_strain)];
+
+/// Meaning of `PEEQ`.
+pub(super) const PLASTIC_STRAIN: Meaning =
+    ("1", "accumulated plastic strain, mean over the element");
 
 /// A field that a deck has to ask for.
 #[rustfmt::skip]

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use hdf5::Group;
 
 use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group};
+use super::fields::PLASTIC_STRAIN;
 use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
 use super::model_group::contact_names;
 use super::strain::SmallStrainElements;
@@ -435,6 +436,11 @@ impl<'m> History<'m> {
         self.table(at, &count, &ELEMENT, |r, each| {
             elements.iter().for_each(|&e| each(&r.elements[e]));
         })?;
+        if self.model.has_plasticity() {
+            self.add(at, "PEEQ", &count, PLASTIC_STRAIN, |r, v| {
+                v.extend(elements.iter().map(|&e| r.elements[e].plastic_strain));
+            })?;
+        }
         let gradients = elements
             .iter()
             .map(|&e| MeanGradient::new(mesh, &mesh.elements[e]));

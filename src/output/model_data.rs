@@ -118,6 +118,7 @@ fn law_code(law: &Law) -> u8 {
         Law::SaintVenantKirchhoff(_) => 0,
         Law::NeoHooke(_) => 1,
         Law::Polynomial(_) => 2,
+        Law::Plastic(_) => 3,
         #[cfg(test)]
         Law::Yielding(_) => u8::MAX,
     }
@@ -272,7 +273,7 @@ const THICKNESS: Meaning = (
 );
 const LAW: Meaning = (
     "1",
-    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another hyperelastic law",
+    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another hyperelastic law, 3 metal with J2 plasticity",
 );
 const SHAPE: Meaning = (
     "force/length^2",

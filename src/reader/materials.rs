@@ -1,11 +1,11 @@
-//! `*MATERIAL` with its law (`*ELASTIC` or `*HYPERELASTIC`), `*DENSITY` and `*DAMPING`.
+//! `*MATERIAL` with its law (`*ELASTIC`, with `*PLASTIC` or without, or `*HYPERELASTIC`), `*DENSITY` and `*DAMPING`.
 
 use super::context::Context;
 use super::names::Names;
 use super::outline::{CardBlock, Outline};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
-use crate::materials::{Law, NeoHooke, Plane, Polynomial, SmallStrainModuli};
+use crate::materials::{Law, NeoHooke, Plane, Plastic, Polynomial, SmallStrainModuli};
 use crate::model::{Damping, Material, Section};
 
 /// Places of a material for messages.
@@ -153,7 +153,10 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     let Some(first) = cards.next() else {
         return Constant::Missing;
     };
+    let plastic = block.parts_of("PLASTIC");
+    cx.only_once(&plastic);
     let law = match first.keyword.name {
+        _ if !plastic.is_empty() => metal(first, plastic[0], cx),
         "ELASTIC" if first.choice("TYPE") == Some("NEO HOOKE") => {
             constant(&[first], elastic_neo_hooke_row, cx)
         }
@@ -164,6 +167,88 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
         report_second(first, card, cx);
         Constant::Wrong
     })
+}
+
+/// The metal of `*ELASTIC` and `*PLASTIC`.
+fn metal(elasticity: &Card, plasticity: &Card, cx: &mut Context) -> Constant<Law> {
+    let is_linear =
+        elasticity.keyword.name == "ELASTIC" && elasticity.choice("TYPE") != Some("NEO HOOKE");
+    if !is_linear {
+        let message = "*PLASTIC stands beside *ELASTIC with E and nu";
+        cx.error(Code::IncompleteMaterial, elasticity.span, message)
+            .help("the elastic strains of metals are small: any law agrees with these constants");
+        return Constant::Wrong;
+    }
+    let elastic = constant(&[elasticity], elastic_row, cx).given();
+    let hardening = hardening(plasticity, cx);
+    match (elastic, hardening) {
+        (Some(elastic), Some((hardening, kinematic))) => Constant::Given(Law::Plastic(Plastic {
+            moduli: elastic.small_strain(),
+            hardening: hardening.into(),
+            kinematic,
+        })),
+        _ => Constant::Wrong,
+    }
+}
+
+/// Rows `yield stress, plastic strain[, T]`: the table of plastic strains and yield stresses, and the modulus of
+/// kinematic hardening.
+fn hardening(card: &Card, cx: &mut Context) -> Option<(Vec<[f64; 2]>, f64)> {
+    if card.faulty {
+        return None;
+    }
+    let (errors, code) = (cx.errors(), Code::MaterialRange);
+    let mut table: Vec<[f64; 2]> = Vec::new();
+    let mut at = None;
+    for row in card.rows.iter() {
+        row.at_most(3, cx.d);
+        let stress = row.required(0, "the yield stress", cx.d).and_then(|field| {
+            field.real_that(|s| s > 0.0, "the yield stress must be positive", code, cx.d)
+        });
+        let strain = row.real_or(1, 0.0, cx.d);
+        let temperature = row.real_or(2, 0.0, cx.d);
+        let (Some(stress), Some(strain), Some(temperature)) = (stress, strain, temperature) else {
+            continue;
+        };
+        if *at.get_or_insert(temperature) != temperature {
+            let message = "constants that depend on temperature cannot be used";
+            cx.error(Code::UnsupportedParameter, row.span(), message);
+            return None;
+        }
+        match table.last() {
+            None if strain != 0.0 => {
+                let message = "the first plastic strain is zero";
+                cx.error(code, row.span_at(1), message);
+            }
+            Some([before, _]) if strain <= *before => {
+                let message = "plastic strains must grow from row to row";
+                cx.error(code, row.span_at(1), message);
+            }
+            Some([_, before]) if stress < *before => {
+                let message = "the yield stress must not fall with the plastic strain";
+                cx.error(code, row.span_at(0), message)
+                    .help("a metal that softens has no solution that does not depend on the mesh");
+            }
+            _ => {}
+        }
+        table.push([strain, stress]);
+    }
+    if table.is_empty() || cx.errors() != errors {
+        return None;
+    }
+    if card.choice("HARDENING") != Some("KINEMATIC") {
+        return Some((table, 0.0));
+    }
+    let [[_, first], [strain, second]] = table[..] else {
+        let message = "linear kinematic hardening has two rows";
+        cx.error(code, card.span, message)
+            .help("give the yield stress at plastic strain 0 and at another one");
+        return None;
+    };
+    if second == first {
+        return Some((vec![[0.0, first]], 0.0));
+    }
+    Some((vec![[0.0, first]], (second - first) / strain))
 }
 
 /// Place of what Poisson's ratio follows from: the second constant of the law.
@@ -347,7 +432,7 @@ fn damping(cards: &[&Card], cx: &mut Context) -> Option<(Damping, Span)> {
 }
 
 /// A constant of a material.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, PartialEq)]
 enum Constant<T> {
     Missing,
     Wrong,
@@ -365,7 +450,7 @@ impl<T> Constant<T> {
 }
 
 /// The constant that all rows of a card agree on.
-fn constant<T: PartialEq + Copy>(
+fn constant<T: PartialEq>(
     cards: &[&Card],
     read: fn(Line, &mut Context) -> Option<T>,
     cx: &mut Context,
@@ -375,9 +460,9 @@ fn constant<T: PartialEq + Copy>(
     };
     let mut found = Constant::Wrong;
     for row in card.rows.iter() {
-        match (read(row, cx), found) {
+        match (read(row, cx), &found) {
             (None, _) => return Constant::Wrong,
-            (Some(value), Constant::Given(first)) if value != first => {
+            (Some(value), Constant::Given(first)) if value != *first => {
                 let message = "constants that depend on temperature cannot be used";
                 cx.error(Code::UnsupportedParameter, row.span(), message);
             }

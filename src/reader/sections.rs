@@ -9,7 +9,7 @@ use super::outline::Outline;
 use super::sets::Sets;
 use crate::deck::Card;
 use crate::diagnostics::Code;
-use crate::materials::Plane;
+use crate::materials::{Law, Plane};
 use crate::model::{Element, ElementType, Formulation, Material, NO_SECTION, Section};
 
 /// Materials and sections.
@@ -197,7 +197,14 @@ impl Properties {
         let materials = self.materials.iter().zip(&self.places).zip(locks);
         for ((material, places), _) in materials.filter(|(_, locks)| *locks) {
             let poisson = material.law.small_strain().poisson;
-            if poisson >= LOCKING {
+            if let Law::Plastic(_) = material.law {
+                let message = format!(
+                    "material {} flows at constant volume, which makes its elements lock",
+                    material.name
+                );
+                cx.warning(Code::Locking, places.poisson, message)
+                    .help("CPE3, CPE4, CAX3 and CAX4 are too stiff once they flow: write CPE4H, CPE4I, CPE8R or CAX8R");
+            } else if poisson >= LOCKING {
                 let message = format!(
                     "material {} with nu = {} makes its elements lock",
                     material.name,

@@ -234,7 +234,7 @@ fn faulty(code: Code) -> Source {
         NonlinearStep => square("*STEP, NLGEOM", "*STEP"),
         MixedOperation => step("*CLOAD, OP=NEW\n4, 2, 1."),
         ConflictingSupport => step("*BOUNDARY\n4, 1\n*BOUNDARY\n4, 1, 1, 0.1"),
-        IgnoredVariable => square("U, RF", "U, PEEQ"),
+        IgnoredVariable => square("U, RF", "U, SDV1"),
         OutOfProportion => square("0.1, 1.", "1.e9, 1.e10"),
         NothingToDo => square("3, 2, 4.", "3, 2, 0."),
         ShortFeature => square(

@@ -168,11 +168,11 @@ fn the_positive_part_of_the_tangent_has_no_negative_eigenvalues() {
         for element_type in TYPES {
             // 0.5 lies beyond the largest force of the St. Venant-Kirchhoff law, at 1/sqrt(3)
             for stretch in [0.5, 0.7, 0.9] {
-                let [whole, positive] = least_eigenvalues(law, element_type, stretch);
+                let [whole, positive] = least_eigenvalues(law.clone(), element_type, stretch);
                 assert!(whole < -1e-3, "{law:?} {stretch}: {whole}");
                 assert!(positive > -1e-14, "{law:?} {stretch}: {positive}");
             }
-            let [whole, positive] = least_eigenvalues(law, element_type, 1.2);
+            let [whole, positive] = least_eigenvalues(law.clone(), element_type, 1.2);
             assert!((whole - positive).abs() < 1e-14 && whole > -1e-14);
         }
     }

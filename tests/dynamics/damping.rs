@@ -154,7 +154,8 @@ fn viscosity_keeps_both_momenta_and_takes_what_is_booked() {
             for beta in [0.005, 0.05, 0.5] {
                 let damping = Damping { alpha: 0.0, beta };
                 let scheme = Scheme::EnergyMomentum;
-                let (keep, summary) = run_to_end(&flying_block(law, formulation, damping, scheme));
+                let (keep, summary) =
+                    run_to_end(&flying_block(law.clone(), formulation, damping, scheme));
                 let (first, last) = (&keep.reports[0], last(&keep));
                 let [linear, angular] = momentum_errors(&keep);
                 let lost = energy(first) - energy(last);
@@ -242,7 +243,7 @@ fn viscosity_needs_no_more_passes_where_it_is_large() {
     let passes = [0.0, 0.5].map(|beta| {
         let damping = Damping { alpha: 0.0, beta };
         let model = flying_block(
-            elastic,
+            elastic.clone(),
             Formulation::Displacement,
             damping,
             Scheme::EnergyMomentum,
@@ -258,7 +259,12 @@ fn mass_proportional_damping_brakes_the_flight_as_booked() {
     let (alpha, dt) = (0.3, 0.05);
     for scheme in SCHEMES {
         let damping = Damping { alpha, beta: 0.01 };
-        let model = flying_block(laws()[0], Formulation::Displacement, damping, scheme);
+        let model = flying_block(
+            laws()[0].clone(),
+            Formulation::Displacement,
+            damping,
+            scheme,
+        );
         let keep = run_to_end(&model).0;
         let (first, last) = (&keep.reports[0], last(&keep));
         // p1 = p0 (1 - alpha dt/2)/(1 + alpha dt/2)

@@ -11,7 +11,12 @@ from restart_equality import Job
 
 
 @pytest.mark.parametrize(
-    "name", ["input/two_cantilevers/A_mu04.inp", "verification/static/supports.inp"]
+    "name",
+    [
+        "input/two_cantilevers/A_mu04.inp",
+        "verification/static/supports.inp",
+        "tests/decks/plastic.inp",
+    ],
 )
 def test_stopped_and_killed_runs_end_in_the_same_bits(name: str, tmp_path: Path) -> None:
     deck = restart_equality.shortened(ROOT / name, None, tmp_path)

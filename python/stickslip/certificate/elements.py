@@ -20,8 +20,8 @@ CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 PATH, PATH_WEIGHTS = np.polynomial.legendre.leggauss(5)
 """Gauss points on the way from the start to the end of an increment."""
 
-SAINT_VENANT_KIRCHHOFF, NEO_HOOKE = 0, 1
-"""Laws of /model/materials/law; all others are polynomials of the invariants."""
+SAINT_VENANT_KIRCHHOFF, NEO_HOOKE, PLASTICITY = 0, 1, 3
+"""Laws of /model/materials/law; the other is a polynomial of the invariants."""
 
 COMPLEX_STEP = 1e-170
 """Imaginary part of a stretch, by which the derivative of a stress is told; its square is zero."""
@@ -368,6 +368,10 @@ class Elements:
         self.of_node = result.read("model/bodies/node")
         self.blocks = list(_blocks(result))
         self.count = len(result.cells)
+        self.is_metal = np.zeros(self.count, np.bool_)
+        """Elements whose stresses the displacements do not tell [E]."""
+        for block in self.blocks:
+            self.is_metal[block.elements] = block.law == PLASTICITY
         self.keeps = np.array([0.0, 1.0]) if is_axisymmetric(result) else np.ones(2)
         """Directions in which the momentum of a body may differ from zero."""
 
@@ -438,6 +442,7 @@ def _blocks(result: Result) -> list[Block]:
         for name in ("law", "young", "poisson", "density", "alpha", "beta", "shape", "compressibility")
     }
     from stickslip.certificate.enhanced import EnhancedBlock
+    from stickslip.certificate.metals import MetalBlock
     from stickslip.certificate.rings import RingBlock
 
     found = []
@@ -445,6 +450,8 @@ def _blocks(result: Result) -> list[Block]:
     for kind, material in np.unique(keys[materials >= 0], axis=0):
         elements = np.flatnonzero((types == kind) & (materials == material))
         of_kind = EnhancedBlock if kind in ENHANCED else RingBlock if kind in RINGS else Block
+        if constants["law"][material] == PLASTICITY:
+            of_kind = MetalBlock
         others = ENHANCED | RINGS
         count, plane_stress, mean, reduced = others[kind] if kind in others else KINDS[kind]
         nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)

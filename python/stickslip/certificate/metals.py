@@ -1,0 +1,26 @@
+"""Elements of metals (`*PLASTIC`): masses and strains; their stresses follow from a history that the file does not have."""
+
+import numpy as np
+
+from stickslip.certificate.elements import Block, _mean
+from stickslip.result import Array
+
+
+class MetalBlock(Block):
+    """Elements whose stresses are not known from the displacements."""
+
+    def energy(self, u: Array) -> Array:
+        """Nothing that is known."""
+        return np.zeros(len(self.elements))
+
+    def means(self, u: Array) -> tuple[Array, Array]:
+        """No stress that is known, and the Green-Lagrange strain."""
+        part = self.weight / self.weight.sum(axis=1, keepdims=True)
+        strain = _mean(part, self.strain(self.displacement_gradient(u)))
+        return np.zeros_like(strain), strain
+
+    def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
+        """Adds nothing that is known."""
+
+    def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
+        """Adds nothing that is known."""

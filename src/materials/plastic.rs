@@ -1,0 +1,900 @@
+//! J2 plasticity at finite strain: multiplicative, with Hencky's elasticity, isotropic hardening by a table and linear
+//! kinematic hardening. The flow of an increment is found inside of a potential of the strain, whose discrete gradient is
+//! the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999). Section 2 of
+//! docs/theory.md, Plasticity.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector4};
+
+use super::symmetric::{IDENTITY, Symmetric, contract};
+use super::{
+    Across, ConstitutiveLaw, Hyperelastic, Plane, RingLaw, SmallStrainModuli, SolidHyperelastic,
+    Strains,
+};
+
+/// A metal, `*PLASTIC`.
+///
+/// ```text
+/// state    G = C_p^-1, the back strain A, the accumulated plastic strain a
+/// trial    X = V C V,  V = G^(1/2),  E_h = ln(X)/2
+/// energy   psi = K/2 (tr E_e)² + mu dev E_e : dev E_e + H_k/3 A:A,   E_e = E_h - dE_p
+/// yield    q = sqrt(3/2) |2 mu dev E_e - 2/3 H_k A| <= sigma_y(a)
+/// flow     dE_p = da 3/2 xi/q,  xi = 2 mu dev E_h - 2/3 H_k A
+/// ```
+///
+/// sigma_y bounds the Kirchhoff stress.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plastic {
+    /// Moduli of the elastic strains.
+    pub moduli: SmallStrainModuli,
+    /// Accumulated plastic strain and yield stress (force/length^2), increasing from a strain of 0; constant beyond.
+    pub hardening: Arc<[[f64; 2]]>,
+    /// Modulus H_k of the kinematic hardening (force/length^2).
+    pub kinematic: f64,
+}
+
+/// Number of components of G - I and of the back strain.
+const COMPONENTS: usize = 4;
+
+impl Plastic {
+    /// Moduli at small strains.
+    pub fn small_strain(&self) -> SmallStrainModuli {
+        self.moduli
+    }
+
+    /// The law in the plane.
+    pub fn in_plane(&self, plane: Plane) -> PlanePlastic {
+        PlanePlastic {
+            law: self.clone(),
+            plane,
+        }
+    }
+
+    fn shear(&self) -> f64 {
+        self.moduli.young / (2.0 * (1.0 + self.moduli.poisson))
+    }
+
+    fn bulk(&self) -> f64 {
+        self.moduli.young / (3.0 * (1.0 - 2.0 * self.moduli.poisson))
+    }
+
+    fn has_back_strain(&self) -> bool {
+        self.kinematic > 0.0
+    }
+
+    /// G - I, A and a.
+    fn variables(&self) -> usize {
+        COMPONENTS * (1 + usize::from(self.has_back_strain())) + 1
+    }
+
+    fn state(&self, z: &[f64]) -> State {
+        let tensor = |from: usize| Vector4::from_fn(|i, _| z[from + i]);
+        State {
+            g: tensor(0),
+            back: match self.has_back_strain() {
+                true => tensor(COMPONENTS),
+                false => Symmetric::zeros(),
+            },
+            slip: z[self.variables() - 1],
+        }
+    }
+
+    /// Segment of the table at an accumulated strain: its start, the yield stress there, its slope and its end.
+    fn segment(&self, index: usize) -> (f64, f64, f64, f64) {
+        let [start, stress] = self.hardening[index];
+        match self.hardening.get(index + 1) {
+            Some([end, next]) => (start, stress, (next - stress) / (end - start), *end),
+            None => (start, stress, 0.0, f64::INFINITY),
+        }
+    }
+
+    fn segment_at(&self, slip: f64) -> usize {
+        let behind = self
+            .hardening
+            .partition_point(|[strain, _]| *strain <= slip);
+        behind.saturating_sub(1)
+    }
+
+    fn yield_stress(&self, slip: f64) -> f64 {
+        let (start, stress, slope, _) = self.segment(self.segment_at(slip));
+        stress + slope * (slip - start)
+    }
+
+    /// int sigma_y da from an accumulated strain on (force/length^2).
+    fn hardening_work(&self, from: f64, by: f64) -> f64 {
+        let (mut at, mut left, mut work) = (from, by, 0.0);
+        for index in self.segment_at(from)..self.hardening.len() {
+            let (start, stress, slope, end) = self.segment(index);
+            let part = left.min(end - at);
+            work += part * (stress + slope * (at - start + part / 2.0));
+            (at, left) = (at + part, left - part);
+            if left <= 0.0 {
+                break;
+            }
+        }
+        work
+    }
+
+    /// da and the slope of sigma_y with q - (3 mu + H_k) da - sigma_y(a + da) = 0, linear on each segment.
+    fn slip(&self, q: f64, from: f64) -> (f64, f64) {
+        let stiffness = 3.0 * self.shear() + self.kinematic;
+        let mut found = (0.0, 0.0);
+        for index in self.segment_at(from)..self.hardening.len() {
+            let (start, stress, slope, end) = self.segment(index);
+            let slip = (q - stress - slope * (from - start)) / (stiffness + slope);
+            found = (slip, slope);
+            if from + slip <= end {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Elastic stress K tr(E) I + 2 mu dev E (force/length^2).
+    fn elastic(&self, e: &Symmetric) -> Symmetric {
+        let trace = e.x + e.y + e.z;
+        IDENTITY * ((self.bulk() - 2.0 / 3.0 * self.shear()) * trace) + e * (2.0 * self.shear())
+    }
+
+    /// Trial state of a strain, eq. (2.37).
+    fn trial(&self, e: &Symmetric, state: &State) -> Trial {
+        let v = IDENTITY + root(&state.g);
+        let y = state.g + between(&v, e) * 2.0;
+        let spectrum = Spectrum::new(&y);
+        let strain = spectrum.map(|y| y.ln_1p() / 2.0);
+        Trial {
+            v,
+            y,
+            spectrum,
+            strain,
+        }
+    }
+
+    /// Flow from a trial strain, which makes the potential of eq. (2.38) least.
+    fn flow(&self, strain: &Symmetric, state: &State) -> Flow {
+        let shear = 2.0 * self.shear();
+        let xi = deviator(strain) * shear - state.back * (2.0 / 3.0 * self.kinematic);
+        let size = contract(&xi, &xi).sqrt();
+        let q = 1.5_f64.sqrt() * size;
+        if q <= self.yield_stress(state.slip) {
+            return Flow::default();
+        }
+        let (slip, slope) = self.slip(q, state.slip);
+        let direction = xi / size;
+        Flow {
+            slip,
+            strain: direction * (1.5_f64.sqrt() * slip),
+            direction,
+            size,
+            slope,
+        }
+    }
+
+    /// Change of the stress T after the flow with the trial strain (force/length^2):
+    ///
+    /// ```text
+    /// dT = K tr dE I + 2 mu dev dE - 2 mu sqrt(3/2) (da' n + da dn)
+    /// da' = sqrt(3/2) 2 mu n:dE/(3 mu + H_k + H),   dn = 2 mu (dev dE - n n:dE)/|xi|
+    /// ```
+    fn stress_change(&self, change: &Symmetric, flow: &Flow) -> Symmetric {
+        let elastic = self.elastic(change);
+        if flow.slip == 0.0 {
+            return elastic;
+        }
+        let (shear, n) = (2.0 * self.shear(), &flow.direction);
+        let along = contract(n, change);
+        let root = 1.5_f64.sqrt();
+        let slip = root * shear * along / (3.0 * self.shear() + self.kinematic + flow.slope);
+        let turn = (deviator(change) - n * along) * (shear / flow.size);
+        elastic - (n * slip + turn * flow.slip) * (shear * root)
+    }
+
+    /// Stored energy psi(E, z) (force/length^2).
+    fn stored(&self, e: &Symmetric, state: &State) -> f64 {
+        let strain = self.trial(e, state).strain;
+        contract(&self.elastic(&strain), &strain) / 2.0
+            + self.kinematic / 3.0 * contract(&state.back, &state.back)
+    }
+
+    /// The state after the flow of a strain, eq. (2.41), in the frame V of the new G, so that the trial strain there is E_e
+    /// turned:
+    ///
+    /// ```text
+    /// K = V X^(-1/2) exp(E_e),  G = K K^T,  R = G^(-1/2) K,  A <- R (A + dE_p) R^T
+    /// ```
+    fn updated(&self, e: &Symmetric, state: &State) -> State {
+        let trial = self.trial(e, state);
+        let flow = self.flow(&trial.strain, state);
+        if flow.slip == 0.0 {
+            return *state;
+        }
+        let elastic = Spectrum::new(&(trial.strain - flow.strain)).map(f64::exp);
+        let back = trial.spectrum.map(|y| 1.0 / (1.0 + y).sqrt());
+        let k = in_plane(&trial.v) * in_plane(&back) * in_plane(&elastic);
+        let around = trial.v.z * back.z * elastic.z;
+        let g = k * k.transpose();
+        // the root of a matrix in the plane: (G + d I)/sqrt(tr G + 2 d), d = sqrt(det G)
+        let d = g.determinant().sqrt();
+        let v = (g + Matrix2::identity() * d) / (g.trace() + 2.0 * d).sqrt();
+        let moved = state.back + flow.strain;
+        let turned = match v.try_inverse() {
+            Some(inverse) => {
+                let r = inverse * k;
+                r * in_plane(&moved) * r.transpose()
+            }
+            None => in_plane(&moved),
+        };
+        let whole = |a: &Matrix2<f64>, z: f64| Vector4::new(a.m11, a.m22, z, (a.m12 + a.m21) / 2.0);
+        State {
+            g: whole(&(g - Matrix2::identity()), around * around - 1.0),
+            back: whole(&turned, moved.z),
+            slip: state.slip + flow.slip,
+        }
+    }
+}
+
+/// The internal variables of a point.
+#[derive(Debug, Clone, Copy, Default)]
+struct State {
+    /// G - I.
+    g: Symmetric,
+    /// Back strain A.
+    back: Symmetric,
+    /// Accumulated plastic strain a.
+    slip: f64,
+}
+
+/// Trial strain of a point.
+struct Trial {
+    v: Symmetric,
+    /// Y = X - I, so that small strains keep their digits.
+    y: Symmetric,
+    spectrum: Spectrum,
+    /// E_h.
+    strain: Symmetric,
+}
+
+/// Flow of an increment.
+#[derive(Default)]
+struct Flow {
+    /// da.
+    slip: f64,
+    /// dE_p.
+    strain: Symmetric,
+    /// n = xi/|xi|.
+    direction: Symmetric,
+    /// |xi| (force/length^2).
+    size: f64,
+    /// Slope of sigma_y at the end (force/length^2).
+    slope: f64,
+}
+
+/// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first.
+#[derive(Debug, Clone, Copy)]
+struct Spectrum {
+    values: [f64; 3],
+    direction: [f64; 2],
+}
+
+impl Spectrum {
+    fn new(a: &Symmetric) -> Self {
+        let (mean, half) = ((a.x + a.y) / 2.0, (a.x - a.y) / 2.0);
+        let radius = half.hypot(a.w);
+        let (sin, cos) = (a.w.atan2(half) / 2.0).sin_cos();
+        Spectrum {
+            values: [mean + radius, mean - radius, a.z],
+            direction: [cos, sin],
+        }
+    }
+
+    /// The tensor with a function of the principal values.
+    fn map(&self, f: impl Fn(f64) -> f64) -> Symmetric {
+        let [a, b, c] = self.values.map(f);
+        self.back(&Vector4::new(a, b, c, 0.0))
+    }
+
+    /// Components in the principal frame.
+    fn to(&self, a: &Symmetric) -> Symmetric {
+        let [c, s] = self.direction;
+        Vector4::new(
+            c * c * a.x + s * s * a.y + 2.0 * c * s * a.w,
+            s * s * a.x + c * c * a.y - 2.0 * c * s * a.w,
+            a.z,
+            c * s * (a.y - a.x) + (c * c - s * s) * a.w,
+        )
+    }
+
+    /// A tensor whose components in the principal frame these are.
+    fn back(&self, a: &Symmetric) -> Symmetric {
+        let [c, s] = self.direction;
+        Vector4::new(
+            c * c * a.x + s * s * a.y - 2.0 * c * s * a.w,
+            s * s * a.x + c * c * a.y + 2.0 * c * s * a.w,
+            a.z,
+            c * s * (a.x - a.y) + (c * c - s * s) * a.w,
+        )
+    }
+
+    /// Derivative of ln(I + Y) in the direction A: A_ij ln[x_i, x_j] in the principal frame.
+    fn log_derivative(&self, a: &Symmetric) -> Symmetric {
+        let (a, [y1, y2, y3]) = (self.to(a), self.values);
+        self.back(&Vector4::new(
+            a.x / (1.0 + y1),
+            a.y / (1.0 + y2),
+            a.z / (1.0 + y3),
+            a.w * first_difference(y1, y2),
+        ))
+    }
+
+    /// Second derivative of ln(I + Y) in the directions A and B:
+    /// sum over k of (A_ik B_kj + B_ik A_kj) ln[x_i, x_k, x_j] in the principal frame.
+    fn second_derivative(&self, a: &Symmetric, b: &Symmetric) -> Symmetric {
+        let ([a, b], [y1, y2, y3]) = ([self.to(a), self.to(b)], self.values);
+        let same = |y: f64| -0.5 / ((1.0 + y) * (1.0 + y));
+        let (f112, f122) = (second_difference(y1, y2), second_difference(y2, y1));
+        self.back(&Vector4::new(
+            2.0 * (same(y1) * a.x * b.x + f112 * a.w * b.w),
+            2.0 * (same(y2) * a.y * b.y + f122 * a.w * b.w),
+            2.0 * same(y3) * a.z * b.z,
+            f112 * (a.x * b.w + b.x * a.w) + f122 * (a.w * b.y + b.w * a.y),
+        ))
+    }
+}
+
+/// (ln x_1 - ln x_2)/(x_1 - x_2), x = 1 + y.
+fn first_difference(y1: f64, y2: f64) -> f64 {
+    let x2 = 1.0 + y2;
+    let d = (y1 - y2) / x2;
+    if d == 0.0 {
+        1.0 / x2
+    } else {
+        d.ln_1p() / (d * x2)
+    }
+}
+
+/// Where the second difference is a series.
+const NEAR: f64 = 0.1;
+/// Terms of the series, the last of which is round-off.
+const TERMS: i32 = 17;
+
+/// ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²), d = (x_2 - x_1)/x_1; near d = 0 the series -sum (-d)^k/(k + 2).
+fn second_difference(y1: f64, y2: f64) -> f64 {
+    let x1 = 1.0 + y1;
+    let d = (y2 - y1) / x1;
+    let value = if d.abs() < NEAR {
+        (0..TERMS)
+            .rev()
+            .fold(0.0, |sum, k| 1.0 / f64::from(k + 2) - d * sum)
+    } else {
+        (1.0 - d.ln_1p() / d) / d
+    };
+    -value / (x1 * x1)
+}
+
+/// (I + g)^(1/2) - I.
+fn root(g: &Symmetric) -> Symmetric {
+    Spectrum::new(g).map(|g| g / (1.0 + (1.0 + g).sqrt()))
+}
+
+/// V E V.
+fn between(v: &Symmetric, e: &Symmetric) -> Symmetric {
+    let (v2, e2) = (in_plane(v), in_plane(e));
+    let product = v2 * e2 * v2;
+    Vector4::new(
+        product.m11,
+        product.m22,
+        v.z * v.z * e.z,
+        (product.m12 + product.m21) / 2.0,
+    )
+}
+
+fn in_plane(a: &Symmetric) -> Matrix2<f64> {
+    Matrix2::new(a.x, a.w, a.w, a.y)
+}
+
+fn deviator(a: &Symmetric) -> Symmetric {
+    a - IDENTITY * ((a.x + a.y + a.z) / 3.0)
+}
+
+/// Largest w = (d/m)² of a series in [`log_change`].
+const SERIES: f64 = 0.25;
+/// Terms of that series.
+const SERIES_TERMS: usize = 30;
+
+/// (ln(I + Y1) - ln(I + Y0))/2 from dY = Y1 - Y0, with digits that are relative to dY. In the plane, with m and D the half
+/// trace and the deviator of X = I + Y, and d² = D:D/2:
+///
+/// ```text
+/// ln X = ln(det X)/2 I + c D,   c = g(w)/m,   g = artanh(sqrt w)/sqrt w = sum w^k/(2 k + 1),   w = d²/m²
+/// ```
+///
+/// and differences of products are (a1 b1 - a0 b0) = da (b0 + b1)/2 + (a0 + a1)/2 db.
+fn log_change(y0: &Symmetric, y1: &Symmetric, dy: &Symmetric) -> Symmetric {
+    let half_trace = |y: &Symmetric| 1.0 + (y.x + y.y) / 2.0;
+    let dev = |y: &Symmetric| [(y.x - y.y) / 2.0, y.w];
+    let ([m0, m1], dm) = ([y0, y1].map(half_trace), (dy.x + dy.y) / 2.0);
+    let ([a0, a1], da) = ([y0, y1].map(dev), dev(dy));
+    let square = |a: [f64; 2]| a[0] * a[0] + a[1] * a[1];
+    // d(d²) and d(det X), det X = m² - d²
+    let squares = (0..2).map(|i| (a0[i] + a1[i]) * da[i]).sum::<f64>();
+    let (d0, d1) = (square(a0), square(a1));
+    let determinant = m0 * m0 - d0;
+    let growth = ((dm * (m0 + m1) - squares) / determinant).ln_1p() / 2.0;
+    let (w0, w1) = (d0 / (m0 * m0), d1 / (m1 * m1));
+    let dw = (squares - w0 * dm * (m0 + m1)) / (m1 * m1);
+    let (g0, g1) = (artanh_ratio(w0), artanh_ratio(w1));
+    let dg = if w0.max(w1) < SERIES {
+        // (w1^k - w0^k)/(w1 - w0) = sum of w1^i w0^(k-1-i)
+        let (mut power, mut sum, mut of_w0) = (1.0, 0.0, 1.0);
+        for k in 1..SERIES_TERMS {
+            sum += power / (2 * k + 1) as f64;
+            of_w0 *= w0;
+            power = w1 * power + of_w0;
+        }
+        sum * dw
+    } else {
+        g1 - g0
+    };
+    let (c0, c1) = (g0 / m0, g1 / m1);
+    let dc = (dg - c0 * dm) / m1;
+    let part = |i: usize| (c0 + c1) / 2.0 * da[i] + dc * (a0[i] + a1[i]) / 2.0;
+    let (along, shear) = (part(0), part(1));
+    let around = (dy.z / (1.0 + y0.z)).ln_1p();
+    Vector4::new(growth + along, growth - along, around, shear) / 2.0
+}
+
+/// artanh(sqrt w)/sqrt w.
+fn artanh_ratio(w: f64) -> f64 {
+    if w < SERIES {
+        let terms = (0..SERIES_TERMS).rev();
+        return terms.fold(0.0, |sum, k| 1.0 / (2 * k + 1) as f64 + w * sum);
+    }
+    let root = w.sqrt();
+    root.atanh() / root
+}
+
+/// The potential Phi(E; z0) of an increment: stored energy and work of hardening after the flow.
+struct Potential<'a> {
+    law: &'a Plastic,
+    state: State,
+}
+
+impl SolidHyperelastic for Potential<'_> {
+    fn energy(&self, e: &Symmetric) -> f64 {
+        let zero = Symmetric::zeros();
+        self.law.stored(&zero, &self.state) + self.energy_change(&zero, e)
+    }
+
+    /// Phi(E1) - psi(E0), since E0 with z0 does not flow, eq. (2.40):
+    ///
+    /// ```text
+    /// (T0 + T1)/2 : (dE_h - dE_p) + H_k/3 (2 A + dE_p):dE_p + int sigma_y da
+    /// ```
+    fn energy_change(&self, e0: &Symmetric, e1: &Symmetric) -> f64 {
+        let Potential { law, state } = self;
+        let (start, end) = (law.trial(e0, state), law.trial(e1, state));
+        let flow = law.flow(&end.strain, state);
+        let dy = between(&start.v, &(e1 - e0)) * 2.0;
+        let change = log_change(&start.y, &end.y, &dy) - flow.strain;
+        let stress = law.elastic(&start.strain) + law.elastic(&(end.strain - flow.strain));
+        let back = state.back * 2.0 + flow.strain;
+        contract(&stress, &change) / 2.0
+            + law.kinematic / 3.0 * contract(&back, &flow.strain)
+            + law.hardening_work(state.slip, flow.slip)
+    }
+
+    /// S = V (D ln(X) : T) V, eq. (2.39) (force/length^2).
+    fn stress(&self, e: &Symmetric) -> Symmetric {
+        let trial = self.law.trial(e, &self.state);
+        let flow = self.law.flow(&trial.strain, &self.state);
+        let stress = self.law.elastic(&(trial.strain - flow.strain));
+        between(&trial.v, &trial.spectrum.log_derivative(&stress))
+    }
+
+    /// V (D ln : (dT/dE_h) : D ln + 2 D² ln : T) V, column by column (force/length^2).
+    fn tangent(&self, e: &Symmetric) -> Matrix4<f64> {
+        let trial = self.law.trial(e, &self.state);
+        let flow = self.law.flow(&trial.strain, &self.state);
+        let stress = self.law.elastic(&(trial.strain - flow.strain));
+        let mut tangent = Matrix4::zeros();
+        for k in 0..4 {
+            let mut unit = Symmetric::zeros();
+            unit[k] = if k == 3 { 0.5 } else { 1.0 };
+            let way = between(&trial.v, &unit);
+            // dE_h = D ln : dX/2, dX = 2 V dE V
+            let strain = trial.spectrum.log_derivative(&way);
+            let change = self.law.stress_change(&strain, &flow);
+            let column = trial.spectrum.log_derivative(&change)
+                + trial.spectrum.second_derivative(&stress, &way) * 2.0;
+            tangent.set_column(k, &between(&trial.v, &column));
+        }
+        tangent
+    }
+}
+
+/// A metal in plane strain, in plane stress or in a body of revolution.
+///
+/// In plane stress the stretch across makes the potential least, as in [`super::PlanePolynomial`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanePlastic {
+    law: Plastic,
+    plane: Plane,
+}
+
+/// Most steps of Newton's method for the stretch across.
+const MOST_STEPS: usize = 60;
+/// Change of its logarithm, beside itself and the strains, that is round-off.
+const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+
+impl PlanePlastic {
+    fn potential(&self, z0: &[f64]) -> PlanePotential<'_> {
+        PlanePotential {
+            solid: Potential {
+                law: &self.law,
+                state: self.law.state(z0),
+            },
+            plane: self.plane,
+        }
+    }
+
+    fn write_updated(&self, e: &Symmetric, z0: &[f64], z1: &mut [f64]) {
+        let state = self.law.updated(e, &self.law.state(z0));
+        z1[..COMPONENTS].copy_from_slice(state.g.as_slice());
+        if self.law.has_back_strain() {
+            z1[COMPONENTS..2 * COMPONENTS].copy_from_slice(state.back.as_slice());
+        }
+        if let Some(slip) = z1.last_mut() {
+            *slip = state.slip;
+        }
+    }
+
+    fn dissipated(&self, e: &Symmetric, z0: &[f64]) -> f64 {
+        let state = self.law.state(z0);
+        let flow = self.law.flow(&self.law.trial(e, &state).strain, &state);
+        self.law.hardening_work(state.slip, flow.slip)
+    }
+}
+
+/// The potential of the strains in the plane.
+struct PlanePotential<'a> {
+    solid: Potential<'a>,
+    plane: Plane,
+}
+
+impl PlanePotential<'_> {
+    /// The strain with its component across.
+    fn complete(&self, e: &Matrix2<f64>) -> Symmetric {
+        let across = match self.plane {
+            Plane::Stress => self.strain_across(e),
+            Plane::Strain | Plane::Revolution => 0.0,
+        };
+        Vector4::new(e.m11, e.m22, across, e.m12)
+    }
+
+    /// E_33 with S_33 = 0, by Newton's method in l, F_33 = exp(l); a step that does not lower |S_33 C_33| is halved.
+    fn strain_across(&self, e: &Matrix2<f64>) -> f64 {
+        let at = |l: f64| Vector4::new(e.m11, e.m22, (2.0 * l).exp_m1() / 2.0, e.m12);
+        let slopes = |l: f64| {
+            let (strain, c33) = (at(l), (2.0 * l).exp());
+            let s33 = SolidHyperelastic::stress(&self.solid, &strain).z;
+            let c3333 = SolidHyperelastic::tangent(&self.solid, &strain).m33;
+            [s33 * c33, (c3333 * c33 + 2.0 * s33) * c33]
+        };
+        let nu = self.solid.law.moduli.poisson;
+        let squared = 2.0 * e.trace() + 4.0 * e.determinant();
+        let mut l = -nu / (1.0 - nu) * squared.ln_1p() / 2.0;
+        let [mut w1, mut w2] = slopes(l);
+        for _ in 0..MOST_STEPS {
+            let is_far = |step: f64| step.abs() > ROUND_OFF * (l.abs() + e.norm());
+            let mut step = -w1 / w2.abs();
+            let mut next = slopes(l + step);
+            while next[0].abs() > w1.abs() && is_far(step) {
+                step /= 2.0;
+                next = slopes(l + step);
+            }
+            let goes_on = is_far(step);
+            l += step;
+            [w1, w2] = next;
+            if !goes_on {
+                break;
+            }
+        }
+        (2.0 * l).exp_m1() / 2.0
+    }
+}
+
+impl Hyperelastic for PlanePotential<'_> {
+    fn stored_energy(&self, e: &Matrix2<f64>) -> f64 {
+        self.solid.law.stored(&self.complete(e), &self.solid.state)
+    }
+
+    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> f64 {
+        (self.solid).energy_change(&self.complete(e0), &self.complete(e1))
+    }
+
+    fn stress(&self, e: &Matrix2<f64>) -> Matrix2<f64> {
+        let e = self.complete(e);
+        let s = SolidHyperelastic::stress(&self.solid, &e);
+        in_plane(&match self.plane {
+            Plane::Strain | Plane::Revolution => s,
+            Plane::Stress => {
+                let across = SolidHyperelastic::tangent(&self.solid, &e)
+                    .column(2)
+                    .into_owned();
+                s - across * (s.z / across.z)
+            }
+        })
+    }
+
+    fn tangent(&self, e: &Matrix2<f64>) -> Matrix3<f64> {
+        let c = SolidHyperelastic::tangent(&self.solid, &self.complete(e));
+        const PLANE: [usize; 3] = [0, 1, 3];
+        let condensed = match self.plane {
+            Plane::Strain | Plane::Revolution => 0.0,
+            Plane::Stress => 1.0 / c[(2, 2)],
+        };
+        Matrix3::from_fn(|i, j| {
+            let (i, j) = (PLANE[i], PLANE[j]);
+            c[(i, j)] - c[(i, 2)] * c[(2, j)] * condensed
+        })
+    }
+
+    fn across(&self, e: &Matrix2<f64>) -> Across {
+        let strain = self.complete(e);
+        Across {
+            stretch: (1.0 + 2.0 * strain.z).sqrt(),
+            stress: match self.plane {
+                Plane::Strain | Plane::Revolution => {
+                    SolidHyperelastic::stress(&self.solid, &strain).z
+                }
+                Plane::Stress => 0.0,
+            },
+        }
+    }
+}
+
+impl ConstitutiveLaw for PlanePlastic {
+    fn variables(&self) -> usize {
+        self.law.variables()
+    }
+
+    fn stress(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]) -> Matrix2<f64> {
+        let potential = self.potential(z0);
+        self.write_updated(&potential.complete(strains.end()), z0, z1);
+        ConstitutiveLaw::stress(&potential, strains, &[], &mut [])
+    }
+
+    fn tangent(&self, strains: &Strains, z0: &[f64]) -> Matrix3<f64> {
+        ConstitutiveLaw::tangent(&self.potential(z0), strains, &[])
+    }
+
+    fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
+        Hyperelastic::stored_energy(&self.potential(z), e)
+    }
+
+    fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64 {
+        self.dissipated(&self.potential(z0).complete(strains.end()), z0)
+    }
+
+    fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across {
+        Hyperelastic::across(&self.potential(z), e)
+    }
+
+    fn plastic_strain(&self, z: &[f64]) -> f64 {
+        self.law.state(z).slip
+    }
+}
+
+impl RingLaw for PlanePlastic {
+    fn stress(&self, strains: &Strains<Symmetric>, z0: &[f64], z1: &mut [f64]) -> Symmetric {
+        self.write_updated(strains.end(), z0, z1);
+        RingLaw::stress(&self.potential(z0).solid, strains, &[], &mut [])
+    }
+
+    fn tangent(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> Matrix4<f64> {
+        RingLaw::tangent(&self.potential(z0).solid, strains, &[])
+    }
+
+    fn stored_energy(&self, e: &Symmetric, z: &[f64]) -> f64 {
+        self.law.stored(e, &self.law.state(z))
+    }
+
+    fn dissipation(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> f64 {
+        self.dissipated(strains.end(), z0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn metal(kinematic: f64) -> Plastic {
+        Plastic {
+            moduli: SmallStrainModuli {
+                young: 1000.0,
+                poisson: 0.3,
+            },
+            hardening: [[0.0, 2.0], [0.05, 3.0], [0.2, 4.0]].into(),
+            kinematic,
+        }
+    }
+
+    const WAY: Symmetric = Vector4::new(0.03, -0.02, 0.008, 0.015);
+
+    fn states(law: &Plastic) -> Vec<State> {
+        // some flow along one way and another
+        let first = law.updated(&(WAY * 3.0), &State::default());
+        let turned = Vector4::new(-0.02, 0.04, 0.01, -0.05);
+        vec![State::default(), first, law.updated(&turned, &first)]
+    }
+
+    #[test]
+    fn the_change_of_a_logarithm_keeps_its_digits() {
+        let y0 = Vector4::new(0.3, -0.2, 0.1, 0.15);
+        for size in [0.3, 1e-3, 1e-8, 1e-14] {
+            let dy = Vector4::new(0.5, -0.3, 0.2, 0.4) * size;
+            let y1 = y0 + dy;
+            let found = log_change(&y0, &y1, &(y1 - y0));
+            let log = |y: &Symmetric| Spectrum::new(y).map(|y| y.ln_1p() / 2.0);
+            if size > 0.1 {
+                let exact = log(&y1) - log(&y0);
+                assert!((found - exact).norm() < 1e-14, "{found} {exact}");
+            } else {
+                // the derivative halfway
+                let mid = Spectrum::new(&((y0 + y1) / 2.0));
+                let exact = mid.log_derivative(&(y1 - y0)) / 2.0;
+                let bound = (1e-14 + size * size) * exact.norm();
+                assert!((found - exact).norm() < bound, "{size}: {found} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn stress_and_tangent_are_derivatives_of_the_potential() {
+        let h = 1e-6;
+        for law in [metal(0.0), metal(30.0)] {
+            for state in states(&law) {
+                for size in [1e-3, 0.4, 3.5] {
+                    let (e, potential) = (WAY * size, Potential { law: &law, state });
+                    let (s, c) = (
+                        SolidHyperelastic::stress(&potential, &e),
+                        SolidHyperelastic::tangent(&potential, &e),
+                    );
+                    for k in 0..4 {
+                        let mut unit = Symmetric::zeros();
+                        unit[k] = if k == 3 { 0.5 } else { 1.0 };
+                        let (ahead, behind) = (e + unit * h, e - unit * h);
+                        let slope = potential.energy_change(&behind, &ahead) / (2.0 * h);
+                        // from a strain that flows the change is not that of the potential
+                        if law.flow(&law.trial(&e, &state).strain, &state).slip == 0.0 {
+                            let work = contract(&s, &unit);
+                            assert!((slope - work).abs() < 1e-7 * c.norm(), "{slope} {work}");
+                        } else {
+                            let zero = Symmetric::zeros();
+                            let at = |e: &Symmetric| potential.energy_change(&zero, e);
+                            let slope = (at(&ahead) - at(&behind)) / (2.0 * h);
+                            let work = contract(&s, &unit);
+                            assert!((slope - work).abs() < 1e-6 * s.norm(), "{slope} {work}");
+                        }
+                        let at = |e: &Symmetric| SolidHyperelastic::stress(&potential, e);
+                        let slope = (at(&ahead) - at(&behind)) / (2.0 * h);
+                        let error = (slope - c.column(k)).norm();
+                        assert!(error < 1e-6 * c.norm(), "{size} {k}: {slope} {c}");
+                    }
+                    assert!((c - c.transpose()).norm() < 1e-12 * c.norm());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn work_is_stored_and_dissipated() {
+        for law in [metal(0.0), metal(30.0)] {
+            let metal = law.in_plane(Plane::Revolution);
+            for state in states(&law) {
+                let mut z0 = vec![0.0; law.variables()];
+                z0[..4].copy_from_slice(state.g.as_slice());
+                if law.kinematic > 0.0 {
+                    z0[4..8].copy_from_slice(state.back.as_slice());
+                }
+                *z0.last_mut().expect("a variable") = state.slip;
+                // a strain without stress but for the back stress: C = G^-1
+                let c = in_plane(&(IDENTITY + state.g))
+                    .try_inverse()
+                    .expect("an inverse");
+                let e0 = Vector4::new(
+                    c.m11 - 1.0,
+                    c.m22 - 1.0,
+                    -state.g.z / (1.0 + state.g.z),
+                    c.m12,
+                ) / 2.0;
+                for size in [1e-9, 1e-4, 0.05, 1.0, 3.0] {
+                    let e1 = e0 + WAY * size;
+                    let (mut z1, strains) = (z0.clone(), Strains::Between(e0, e1));
+                    let s = RingLaw::stress(&metal, &strains, &z0, &mut z1);
+                    let dissipated = RingLaw::dissipation(&metal, &strains, &z0);
+                    let stored = |e: &Symmetric, z: &[f64]| RingLaw::stored_energy(&metal, e, z);
+                    let work = contract(&s, &(e1 - e0));
+                    let change = stored(&e1, &z1) - stored(&e0, &z0) + dissipated;
+                    assert!(dissipated >= 0.0);
+                    let digits = 1e-14 * (1.0 + stored(&e1, &z1));
+                    assert!((work - change).abs() < digits, "{size}: {work} {change}");
+                    // the end does not flow any more, and its stress is that of the return
+                    let after = law.flow(&law.trial(&e1, &law.state(&z1)).strain, &law.state(&z1));
+                    assert!(after.slip < 1e-14, "{}", after.slip);
+                    let back = RingLaw::stress(&metal, &Strains::At(e1), &z1, &mut z1.clone());
+                    let potential = metal.potential(&z0);
+                    let returned = SolidHyperelastic::stress(&potential.solid, &e1);
+                    // with a back stress of another direction the frame turns in the increment
+                    if law.kinematic == 0.0 {
+                        assert!((back - returned).norm() < 1e-12 * (1.0 + returned.norm()));
+                    }
+                    // flow keeps the volume
+                    let g = IDENTITY + law.state(&z1).g;
+                    let det = in_plane(&g).determinant() * g.z;
+                    assert!((det - 1.0).abs() < 1e-13);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn plane_stress_has_no_stress_across() {
+        for law in [metal(0.0), metal(30.0)] {
+            let metal = law.in_plane(Plane::Stress);
+            let z0 = vec![0.0; law.variables()];
+            for size in [1e-4, 0.3, 2.0] {
+                let e = Matrix2::new(0.03, 0.01, 0.01, -0.01) * size;
+                let potential = metal.potential(&z0);
+                let s = SolidHyperelastic::stress(&potential.solid, &potential.complete(&e));
+                assert!(s.z.abs() < 1e-12 * s.norm());
+                let h = 1e-6;
+                let c = Hyperelastic::tangent(&potential, &e);
+                let unit = Matrix2::new(1.0, 0.0, 0.0, 0.0);
+                let at = |e: Matrix2<f64>| Hyperelastic::stress(&potential, &e);
+                let slope = (at(e + unit * h) - at(e - unit * h)) / (2.0 * h);
+                assert!((slope.m11 - c.m11).abs() < 1e-6 * c.norm());
+                assert!((slope.m22 - c.m21).abs() < 1e-6 * c.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn simple_shear_of_perfect_plasticity_stays_at_the_yield_stress() {
+        // tau = sigma_y/sqrt 3 at any shear
+        let law = Plastic {
+            hardening: [[0.0, 2.0]].into(),
+            ..metal(0.0)
+        };
+        let (metal, mut z) = (law.in_plane(Plane::Strain), vec![0.0; law.variables()]);
+        for k in 1..=400 {
+            let f = Matrix2::new(1.0, 0.025 * f64::from(k), 0.0, 1.0);
+            let e = (f.transpose() * f - Matrix2::identity()) / 2.0;
+            let mut z1 = z.clone();
+            let s = ConstitutiveLaw::stress(&metal, &Strains::At(e), &z, &mut z1);
+            z = z1;
+            if [40, 200, 400].contains(&k) {
+                let tau = (f * s * f.transpose()).m12;
+                assert!(
+                    (tau * 3.0_f64.sqrt() / 2.0 - 1.0).abs() < 2e-3,
+                    "{k}: {tau}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_table_is_followed() {
+        let law = metal(0.0);
+        assert_eq!(law.yield_stress(0.1), 3.0 + 0.05 / 0.15);
+        assert_eq!(law.yield_stress(0.5), 4.0);
+        let work = law.hardening_work(0.02, 0.38);
+        let exact = 0.03 * (2.4 + 3.0) / 2.0 + 0.15 * 3.5 + 0.2 * 4.0;
+        assert!((work - exact).abs() < 1e-14);
+        // q beyond two segments
+        let (slip, _) = law.slip(300.0, 0.02);
+        let rest = 300.0 - 3.0 * law.shear() * slip - law.yield_stress(0.02 + slip);
+        assert!(rest.abs() < 1e-11);
+    }
+}
