@@ -23,7 +23,9 @@ WIDTH = 4.0
 """Of the place for bodies."""
 WALL = WIDTH / 2 + 0.3
 """Half the width of the box."""
-MATERIALS = ("neo-hooke", "svk")
+MATERIALS = ("neo-hooke", "svk", "metal")
+YIELD = 0.02
+"""Yield stress of metals, by Young's modulus; it doubles up to a plastic strain of 1."""
 
 
 @dataclass(frozen=True)
@@ -138,8 +140,10 @@ def _digits(value: float) -> float:
 def _material(name: str, body: Body, material: str) -> str:
     """Material and section; the neo-Hookean one has the moduli of the elastic one."""
     young = float(f"{body.young:.6g}")
-    if material == "svk":
+    if material in ("svk", "metal"):
         law = card("ELASTIC", (young, POISSON))
+        if material == "metal":
+            law += card("PLASTIC", (YIELD * young, 0.0), (2.0 * YIELD * young, 1.0))
     else:
         bulk = young / (3 * (1 - 2 * POISSON))
         law = card("HYPERELASTIC, NEO HOOKE", (young / (2 * (1 + POISSON)) / 2, 2 / bulk))

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from measured_run import run
 from random_scenes import INCREMENTS, KINDS, MATERIALS
-from stickslip import command
+from stickslip import Deck, command
 from stickslip.penetration import intrusion as penetration
 from stickslip.program import STOPPED, binary
 from stickslip.result import Result
@@ -84,13 +84,15 @@ class Trial:
     """Seconds of processor time for one scene."""
     folder: Path
     increments: int = INCREMENTS
+    elements: str = "4"
+    """What follows CPE or CPS in the type of the elements."""
 
     def deck(self, seed: int) -> tuple[str, tuple[str, ...]]:
         """The deck of a scene and its settings."""
         scene = KINDS[self.kind](seed)
         settings = scene.settings if self.settings is None else self.settings
         scene = replace(scene, settings=settings, increments=self.increments)
-        return scene.deck(self.material), settings
+        return with_elements(scene.deck(self.material), self.elements), settings
 
     def run(self, seed: int) -> Outcome:
         """Runs a scene."""
@@ -118,6 +120,44 @@ class Trial:
                 max(overlap.corner.depth if overlap.corner else 0.0 for overlap in overlaps),
                 ran.seconds,
             )
+
+
+def with_elements(text: str, family: str) -> str:
+    """A deck of quadrilaterals of four nodes with elements of another family, as 8R; triangles are halves of them."""
+    if family == "4":
+        return text
+    deck = Deck.parse(text)
+    places = {int(row[0]): np.array(row[1:3], float) for card in deck.find("NODE") for row in card.rows}
+    (motion,) = deck.find("INITIAL CONDITIONS")
+    speeds = {(int(row[0]), row[1]): float(row[2]) for row in motion.rows}
+    between: dict[tuple[int, int], int] = {}
+    number = 0
+
+    def middle(a: int, b: int) -> str:
+        """The node between two corners, made where it is missing."""
+        return str(between.setdefault((min(a, b), max(a, b)), max(places) + 1 + len(between)))
+
+    for card in deck.find("ELEMENT"):
+        kind = card.parameters["TYPE"][:3]
+        card.head = card.head.replace(f"{kind}4", f"{kind}{family}")
+        rows = []
+        for row in card.rows:
+            corners = [int(node) for node in row[1:]]
+            own = [corners] if family[0] in "48" else [corners[:3], [*corners[2:], corners[0]]]
+            for one in own:
+                number += 1
+                after = [*one[1:], one[0]]
+                more = [middle(a, b) for a, b in zip(one, after)] if family[0] in "68" else []
+                rows.append([str(number), *map(str, one), *more])
+        card.rows = rows
+    for (a, b), node in between.items():
+        place = (places[a] + places[b]) / 2.0
+        deck.find("NODE")[0].rows.append([str(node), *map(repr, place.tolist())])
+        for way in "12":
+            ends = [speeds.get((end, way)) for end in (a, b)]
+            if None not in ends:
+                motion.rows.append([str(node), way, repr(sum(ends) / 2.0)])
+    return deck.text()
 
 
 def gain(results: Result) -> float:
@@ -172,6 +212,12 @@ def main() -> int:
     parser.add_argument("--seeds", type=seeds, default=range(100), metavar="A:B")
     parser.add_argument("--material", choices=MATERIALS, default=MATERIALS[0])
     parser.add_argument(
+        "--elements",
+        default="4",
+        choices=["3", "4", "4H", "4I", "6", "8", "8R"],
+        help="family of the elements, as in CPE8R",
+    )
+    parser.add_argument(
         "--settings", action="append", help="of *STICKSLIP for all scenes in place of their own"
     )
     parser.add_argument("--jobs", type=command.positive_integer, default=1, help="runs at a time")
@@ -186,6 +232,7 @@ def main() -> int:
         folder = arguments.keep or Path(own)
         folder.mkdir(parents=True, exist_ok=True)
         trial = Trial(arguments.kind, arguments.material, settings, arguments.time, folder)
+        trial = replace(trial, elements=arguments.elements)
         if arguments.deck is not None:
             print(trial.deck(arguments.deck)[0], end="")
             return 0

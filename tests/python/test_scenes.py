@@ -26,6 +26,17 @@ def test_scene(kind: str, seed: int, tmp_path: Path) -> None:
     assert max(found.depth, found.crossing) < LIMIT
 
 
+@pytest.mark.parametrize(
+    ("family", "material"), [("3", "neo-hooke"), ("4I", "neo-hooke"), ("6", "neo-hooke"), ("8R", "neo-hooke"), ("4H", "metal")]
+)
+def test_scene_of_other_elements(family: str, material: str, tmp_path: Path) -> None:
+    found = Trial("falling", material, None, 60.0, tmp_path, INCREMENTS, family).run(2)
+    assert not found.ended
+    assert found.cutbacks == 0
+    assert found.gain < GAIN
+    assert max(found.depth, found.crossing) < LIMIT
+
+
 @pytest.mark.parametrize("kind", random_scenes.KINDS)
 def test_scenes_are_bodies_in_their_places(kind: str) -> None:
     decks = set()
