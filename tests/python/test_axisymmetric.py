@@ -9,6 +9,7 @@ import pytest
 from bodies import ELASTIC, NEO_HOOKE, SCHEMES, body, end, grid, solved, with_section
 from stickslip import Deck, program
 from stickslip.certificate.certify import certify
+from stickslip.certificate.elements import _gradients, _points, _shape
 from stickslip.result import Result
 
 KINDS = ("CAX3", "CAX4", "CAX6", "CAX8", "CAX8R")
@@ -37,6 +38,31 @@ def test_a_thick_cylinder_under_pressure(tmp_path: Path, kind: str, count: int, 
     u = end(solved(tmp_path, deck.extend("*END STEP\n")))
     exact = pressure * (1.0 + poisson) / young * ((1.0 - 2.0 * poisson) + 4.0) / 3.0
     assert u[mesh.node_sets["NLEFT"], 0].mean() == pytest.approx(exact, rel=error)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_displacements_of_a_cylinder_are_of_second_and_third_order(tmp_path: Path, kind: str) -> None:
+    """In L2, against Lame, on distorted meshes."""
+    young, poisson, pressure = 1.0, 0.3, 1e-9
+    errors = []
+    for count in (4, 8, 16):
+        place = lambda x, y: (1.0 + x + 0.05 * np.sin(pi * x) * np.sin(6.0 * y), 0.5 * y)  # noqa: E731
+        mesh = grid(kind, count, count, place)
+        deck = body(kind, mesh, young, poisson)
+        deck.extend("*BOUNDARY\nNBOTTOM, 2\nNTOP, 2\n*STEP, NLGEOM\n*STATIC\n1., 1.\n")
+        deck.add("DSLOAD", ("LEFT", "P", pressure)).extend("*END STEP\n")
+        u = end(solved(tmp_path, deck))
+        of_nodes = np.array(mesh.elements)
+        rule = _points({3: 6, 4: 8}.get(of_nodes.shape[1], of_nodes.shape[1]), False)
+        shape, _ = _shape(of_nodes.shape[1], rule[0])
+        area = _gradients(mesh.points[of_nodes], rule)[1]
+        at, found = (np.einsum("ga,eai->egi", shape, v[of_nodes]) for v in (mesh.points, u))
+        r = at[..., 0]
+        radial = (1.0 + poisson) * pressure / (3.0 * young) * ((1.0 - 2.0 * poisson) * r + 4.0 / r)
+        square = (found[..., 0] - radial) ** 2 + found[..., 1] ** 2
+        errors.append(np.sqrt((area * r * square).sum()))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders[-1] > (1.9 if kind[3] in "34" else 2.85), orders
 
 
 @pytest.mark.parametrize("kind", KINDS)
