@@ -214,6 +214,8 @@ class ElementSet(Group):
     """Largest principal stress [I, k]."""
     PRESS: Array
     """Pressure [I, k]."""
+    E33: Array
+    """Green-Lagrange strain around the axis [I, k]; of bodies of revolution."""
     PEEQ: Array
     """Accumulated plastic strain [I, k]; where a material has `*PLASTIC`."""
     E: Array

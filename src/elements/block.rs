@@ -566,6 +566,7 @@ impl Sums {
             strain: means(&self.strain),
             principal_strain: self.principal[lane],
             plastic_strain: 0.0,
+            strain_around: 0.0,
         }
     }
 }

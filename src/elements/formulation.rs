@@ -303,6 +303,8 @@ pub struct ElementResult {
     pub principal_strain: f64,
     /// Accumulated plastic strain, mean over the element.
     pub plastic_strain: f64,
+    /// Green-Lagrange strain around the axis of a body of revolution; 0 in the plane.
+    pub strain_around: f64,
 }
 
 /// The element with the largest principal strain.
@@ -337,8 +339,8 @@ pub(super) struct PointResult {
     pub across: f64,
     /// Green-Lagrange strain in the plane.
     pub strain: Matrix2<f64>,
-    /// Green-Lagrange strain across where it counts for the largest strain, as in a body of revolution.
-    pub strain_across: f64,
+    /// Green-Lagrange strain around the axis of a body of revolution; 0 in the plane.
+    pub strain_around: f64,
     /// Accumulated plastic strain.
     pub plastic_strain: f64,
 }
@@ -353,12 +355,12 @@ impl PointResult {
             sigma: f * state.s * f.transpose() / (state.determinant * stretch),
             across: stress * stretch / state.material_determinant,
             strain: green_lagrange(&state.h),
-            strain_across: 0.0,
+            strain_around: 0.0,
             plastic_strain: material.plastic_strain(point),
         }
     }
 
-    /// Largest absolute principal value of the strain in the plane and of that across.
+    /// Largest absolute principal value of the strain in the plane, and of that around the axis.
     ///
     /// ```text
     /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
@@ -366,7 +368,7 @@ impl PointResult {
     fn principal_strain(&self) -> f64 {
         let e = &self.strain;
         let (mean, half) = ((e.m11 + e.m22) / 2.0, (e.m11 - e.m22) / 2.0);
-        -smaller(-(mean.abs() + half.hypot(e.m12)), -self.strain_across.abs())
+        -smaller(-(mean.abs() + half.hypot(e.m12)), -self.strain_around.abs())
     }
 }
 
@@ -375,13 +377,14 @@ impl ElementResult {
     pub(super) fn of_points(points: impl Iterator<Item = (PointResult, f64)>) -> Self {
         let (mut sigma, mut strain) = (Matrix2::zeros(), Matrix2::zeros());
         let (mut energy, mut across, mut volume, mut principal) = (0.0, 0.0, 0.0, 0.0);
-        let mut plastic = 0.0;
+        let (mut plastic, mut around) = (0.0, 0.0);
         for (point, weight) in points {
             energy += point.energy * weight;
             sigma += point.sigma * weight;
             across += point.across * weight;
             strain += point.strain * weight;
             plastic += point.plastic_strain * weight;
+            around += point.strain_around * weight;
             principal = -smaller(-principal, -point.principal_strain());
             volume += weight;
         }
@@ -393,6 +396,7 @@ impl ElementResult {
             strain: voigt(strain),
             principal_strain: principal,
             plastic_strain: plastic / volume,
+            strain_around: around / volume,
         }
     }
 

@@ -289,7 +289,7 @@ impl Ring {
                 sigma: f * section(&s) * f.transpose() / (determinant * stretch),
                 across: s.z * stretch / determinant,
                 strain: section(e),
-                strain_across: e.z,
+                strain_around: e.z,
                 plastic_strain: material.plastic_strain(p),
             };
             (result, point.volume)

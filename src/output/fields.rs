@@ -175,7 +175,8 @@ impl<'m> FieldGroup<'m> {
         let principal = PRINCIPAL.iter().filter(|_| asked.principal_stress);
         let pressure = PRESSURE.iter().filter(|_| asked.pressure);
         let plastic = PLASTIC.iter().filter(|_| model.has_plasticity());
-        for &(name, meaning, of) in principal.chain(pressure).chain(plastic) {
+        let around = AROUND.iter().filter(|_| model.mesh.is_axisymmetric());
+        for &(name, meaning, of) in principal.chain(pressure).chain(plastic).chain(around) {
             self.add(name, SCALAR, varied, meaning, move |frame, v| {
                 v.extend(frame.elements.iter().map(of));
                 v.extend(repeat_n(f64::NAN, lines));
@@ -382,6 +383,15 @@ const PRINCIPAL: [ElementField<f64>; 3] = [
 
 /// A field of models with metals.
 const PLASTIC: [ElementField<f64>; 1] = [("PEEQ", PLASTIC_STRAIN, |e| e.plastic_strain)];
+
+/// A field of bodies of revolution.
+const AROUND: [ElementField<f64>; 1] = [("E33", STRAIN_AROUND, |e| e.strain_around)];
+
+/// Meaning of `E33`.
+pub(super) const STRAIN_AROUND: Meaning = (
+    "1",
+    "Green-Lagrange strain around the axis, mean over the element",
+);
 
 /// Meaning of `PEEQ`.
 pub(super) const PLASTIC_STRAIN: Meaning =

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use hdf5::Group;
 
 use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group};
-use super::fields::PLASTIC_STRAIN;
 use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
+use super::fields::{PLASTIC_STRAIN, STRAIN_AROUND};
 use super::model_group::contact_names;
 use super::strain::SmallStrainElements;
 use crate::dynamics::{
@@ -436,6 +436,11 @@ impl<'m> History<'m> {
         self.table(at, &count, &ELEMENT, |r, each| {
             elements.iter().for_each(|&e| each(&r.elements[e]));
         })?;
+        if self.model.mesh.is_axisymmetric() {
+            self.add(at, "E33", &count, STRAIN_AROUND, |r, v| {
+                v.extend(elements.iter().map(|&e| r.elements[e].strain_around));
+            })?;
+        }
         if self.model.has_plasticity() {
             self.add(at, "PEEQ", &count, PLASTIC_STRAIN, |r, v| {
                 v.extend(elements.iter().map(|&e| r.elements[e].plastic_strain));

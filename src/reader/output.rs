@@ -13,10 +13,10 @@ use crate::model::{Frames, HistorySet, RequestedFields, RestartOutput, TimeBase}
 /// Variables that the result file holds.
 const WRITTEN: &[&str] = &[
     "U", "V", "A", "RF", "CF", "UT", "VT", "AT", "S11", "S22", "S33", "S12", "MISES", "E11", "E22",
-    "E12", "LE11", "LE22", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2", "CF1", "CF2",
-    "S", "PEEQ", "SP", "SP1", "SP2", "SP3", "PRESS", "E", "LE", "ENER", "ELSE", "ELKE", "EVOL",
-    "CSTRESS", "CDISP", "CFORCE", "CSTATUS", "CDIS", "CSTR", "CELS", "CF", "CFN", "CFS", "CFT",
-    "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS", "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE",
+    "E33", "E12", "LE11", "LE22", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2", "CF1",
+    "CF2", "S", "PEEQ", "SP", "SP1", "SP2", "SP3", "PRESS", "E", "LE", "ENER", "ELSE", "ELKE",
+    "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS", "CDIS", "CSTR", "CELS", "CF", "CFN", "CFS",
+    "CFT", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS", "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE",
     "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
 ];
 

@@ -16,6 +16,7 @@ from stickslip.certificate.contacts import (
     touching,
 )
 from stickslip.certificate.elements import EPS, Elements
+from stickslip.certificate.rings import RingBlock
 from stickslip.certificate.fits import REASON, Fits
 from stickslip.frame import Frame
 from stickslip.result import OPEN, STICK, Array, Flags, Integers, Result
@@ -248,6 +249,8 @@ class Frames:
             check.scale = max(check.scale, size)
             error = np.abs(found - stored).max(axis=1)[elastic]
             check.add(error, (STRESS * size + factor * noise)[elastic], f"{name} of {place}")
+        if "E33" in self.result.frames.fields:
+            self._around(frame, place)
         across = frame["S33"]
         mises = np.sqrt(
             0.5
@@ -272,6 +275,16 @@ class Frames:
             if name in self.result.frames.fields:
                 error = np.abs(values - frame[name])[elastic]
                 self.checks["stresses"].add(error, bound, f"{name} of {place}")
+
+    def _around(self, frame: Frame, place: str) -> None:
+        """Strains around the axis."""
+        noise = 64 * EPS * np.abs(frame["U"]).max()
+        for block in self.elements.blocks:
+            if isinstance(block, RingBlock):
+                found = block.mean_around(frame["U"])
+                error = np.abs(found - frame["E33"][block.elements])
+                bound = STRESS * np.abs(found).max(initial=0.0) + noise * block.around.max()
+                self.checks["strains"].add(error, bound, f"E33 of {place}")
 
     def _actions(self, frame: Frame, increment: Increment) -> None:
         """Contact forces of a frame have no resultant and no moment."""

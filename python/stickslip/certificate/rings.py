@@ -108,6 +108,10 @@ class RingBlock(Block):
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
         return _mean(part, cauchy), _mean(part, strain[0])
 
+    def mean_around(self, u: Array) -> Array:
+        """Mean of E_33 over the elements [E]."""
+        return (self.weight * 0.5 * self.strains(u)[1]).sum(axis=1) / self.weight.sum(axis=1)
+
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
         """Adds F of eq. (2.33); `halfway`: the energy-momentum form, else that of u1."""
         if halfway:

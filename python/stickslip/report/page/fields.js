@@ -20,6 +20,7 @@ const NAMES = {
   SP2: "middle principal stress",
   SP3: "largest principal stress",
   PRESS: "pressure",
+  E33: "Green-Lagrange strain around the axis",
   PEEQ: "accumulated plastic strain",
   E: "Green-Lagrange strain",
   LE: "logarithmic strain",
