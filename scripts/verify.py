@@ -25,7 +25,7 @@ def verify(
 ) -> list[Study]:
     """Runs and checks cases (all without names); their studies, evaluated."""
     studies = [
-        Study(form, output / form.name, [run for run in form.runs if run.quick or not quick], reuse)
+        Study(form, output / form.name, [run for run in form.runs if run.quick or not quick], reuse, not quick)
         for form in forms(names)
     ]
     studies = [study for study in studies if study.runs]

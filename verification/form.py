@@ -5,7 +5,6 @@ import importlib.util
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -242,12 +241,7 @@ def all_folders() -> list[Path]:
 
 
 def load(path: Path) -> ModuleType:
-    """A Python file as a module."""
-    return _load(path.resolve())
-
-
-@cache
-def _load(path: Path) -> ModuleType:
+    """A Python file as a module, a new one every time."""
     spec = importlib.util.spec_from_file_location(f"{path.parent.name}_{path.stem}", path)
     if spec is None or spec.loader is None:
         raise ImportError(f"{path} cannot be loaded")

@@ -100,6 +100,8 @@ class Study:
     output: Path
     runs: list[Run]
     reuse: bool = False
+    draws: bool = True
+    """Whether `measure.py` draws its own pictures, which takes longer than many runs."""
     results: dict[str, Result] = field(default_factory=dict)
     checks: list[Check] = field(default_factory=list)
     tables: list[str] = field(default_factory=list)
@@ -135,7 +137,11 @@ class Study:
         self.runs = [run for run in self.runs if run.name in self.results]
         measures = self.form.folder / "measure.py"
         if measures.exists():
-            load(measures).measure(self)
+            try:
+                load(measures).measure(self)
+            except Exception as error:  # noqa: BLE001  (one case must not end the others)
+                text = f"{type(error).__name__}: {error}"
+                self.checks.append(Check("", "measure.py", np.nan, Quantity("measure.py", "it ends"), failure=text))
         else:
             for run in self.runs:
                 self.check_run(run.name, self.results[run.name].edge_length)

@@ -264,9 +264,11 @@ def measure(study: runner.Study) -> None:
     check_main(study)
     tabulate_energy(study)
     tabulate_rebound(study)
-    draw_rebound(study)
     if any(study.group("paper")):
         tabulate_tumbling(study)
+    if study.draws:
+        draw_rebound(study)
+    if study.draws and any(study.group("paper")):
         draw_displacement(study)
         draw_motion(study)
         draw_energy(study)

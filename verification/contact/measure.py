@@ -200,5 +200,6 @@ def measure(study: runner.Study) -> None:
         rows,
     )
     tabulate_corners(study)
-    draw_conservation(study)
-    draw_motion(study)
+    if study.draws:
+        draw_conservation(study)
+        draw_motion(study)

@@ -69,7 +69,7 @@ def deviation(results: Result, reference: Result) -> float:
     """Largest distance of the upper tip's paths, at the increments of the coarser run."""
     other = tip(reference)
     at = np.stack(
-        [np.interp(results.history.time, reference.time, other[:, i]) for i in range(2)], axis=1
+        [np.interp(results.history.time, reference.history.time, other[:, i]) for i in range(2)], axis=1
     )
     return float(np.linalg.norm(tip(results) - at, axis=1).max())
 
