@@ -8,9 +8,7 @@ use std::array::from_fn;
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::formulation::{
-    ElementResult, Jacobian, Reference, ShapeFunctions, gradients, inverse_jacobian, smaller,
-};
+use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
 use crate::materials::lanes::{LANES, Lanes, Positive, SymmetricLanes};
 use crate::materials::{LawInLanes, StrainChange, TangentLanes};
 
@@ -27,17 +25,6 @@ pub struct Block<const N: usize, const P: usize> {
     pub inverse: [TensorLanes; P],
     /// Weights of the points (length^3).
     pub volume: [Lanes; P],
-    /// (dX/dr)^-1 at [`Shape::CORNERS`] (1/length).
-    pub corners: Vec<TensorLanes>,
-}
-
-/// The map of one element from natural coordinates r: all that differs between two elements of a shape.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Map<const P: usize> {
-    /// That at the integration points.
-    pub points: [Jacobian; P],
-    /// (dX/dr)^-1 at [`Shape::CORNERS`] (1/length).
-    pub corners: Vec<Matrix2<f64>>,
 }
 
 /// Displacements of the nodes at which a block is evaluated (length).
@@ -112,43 +99,35 @@ impl Deformation {
 
 impl<const N: usize, const P: usize> Block<N, P> {
     /// A block of elements with the given nodes and maps.
-    pub fn new(nodes: [[u16; N]; LANES], maps: &[Map<P>; LANES]) -> Self {
+    pub fn new(nodes: [[u16; N]; LANES], maps: &[[Jacobian; P]; LANES]) -> Self {
         let of = |p: usize, value: &dyn Fn(&Jacobian) -> f64| {
-            Lanes(from_fn(|lane| value(&maps[lane].points[p])))
-        };
-        let corner = |c: usize| {
-            let entry = |i, j| Lanes(from_fn(|lane| maps[lane].corners[c][(i, j)]));
-            from_fn(|i| from_fn(|j| entry(i, j)))
+            Lanes(from_fn(|lane| value(&maps[lane][p])))
         };
         Block {
             nodes: from_fn(|a| from_fn(|lane| nodes[lane][a])),
             inverse: from_fn(|p| from_fn(|i| from_fn(|j| of(p, &|at| at.inverse[(i, j)])))),
             volume: from_fn(|p| of(p, &|at| at.volume)),
-            corners: (0..maps[0].corners.len()).map(corner).collect(),
         }
     }
 
     /// The map of one element.
-    pub fn map(&self, lane: usize) -> Map<P> {
+    pub fn map(&self, lane: usize) -> [Jacobian; P] {
         let matrix = |of: &TensorLanes| Matrix2::from_fn(|i, j| of[i][j].0[lane]);
-        Map {
-            points: from_fn(|p| Jacobian {
-                inverse: matrix(&self.inverse[p]),
-                volume: self.volume[p].0[lane],
-            }),
-            corners: self.corners.iter().map(matrix).collect(),
-        }
+        from_fn(|p| Jacobian {
+            inverse: matrix(&self.inverse[p]),
+            volume: self.volume[p].0[lane],
+        })
     }
 
     /// Internal force F = int B_L^T S dOmega, eq. (2.5) (force), and whether det F is positive at all
-    /// points and corners.
+    /// points.
     #[inline(always)]
     pub fn force<S: Shape<N, P>>(
         &self,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
-        let mut positive = self.at_corners::<S>(motion);
+        let mut positive = Positive::default();
         let mut q = [[[Lanes::ZERO; 2]; P]; 2];
         let u = motion.derivatives::<S, P>();
         for p in 0..P {
@@ -159,30 +138,6 @@ impl<const N: usize, const P: usize> Block<N, P> {
             [q[0][p], q[1][p]] = times_transposed(&piola, &self.inverse[p]);
         }
         ([S::nodal_sums(&q[0]), S::nodal_sums(&q[1])], positive)
-    }
-
-    /// Whether det F is positive at the corners: of the configuration, and of the end in the energy-momentum form.
-    #[inline(always)]
-    fn at_corners<S: Shape<N, P>>(&self, motion: &BlockMotion<N>) -> Positive {
-        let mut positive = Positive::default();
-        for ([r, s], natural) in self.corners.iter().zip(S::CORNERS) {
-            let gradient = |u: &NodalLanes<N>| {
-                let row = |u: &[Lanes; N]| {
-                    let [dr, ds] = derivative(u, natural);
-                    [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]]
-                };
-                [row(&u[0]), row(&u[1])]
-            };
-            positive = match motion {
-                BlockMotion::At(u) => positive.and(determinant(&gradient(u))),
-                BlockMotion::Between(mid, half) => {
-                    let (h, g) = (gradient(mid), gradient(half));
-                    let end = determinant(&plus(&h, &g));
-                    positive.and(determinant(&h)).and(end)
-                }
-            };
-        }
-        positive
     }
 
     /// Deformation at a point, given natural derivatives; `positive` takes in det F.
@@ -298,10 +253,6 @@ pub trait Shape<const N: usize, const P: usize> {
     /// The shape functions.
     const FUNCTIONS: ShapeFunctions<N, P>;
 
-    /// Natural derivatives dh_a/dr_i at the corners, where det F is looked at beside the points; none for linear
-    /// displacements.
-    const CORNERS: &'static [[[f64; 2]; N]] = &[];
-
     /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at every point.
     #[inline(always)]
     fn derivatives(v: &[Lanes; N]) -> [[Lanes; 2]; P] {
@@ -332,25 +283,16 @@ pub trait Shape<const N: usize, const P: usize> {
     /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
     fn nodal_volumes(x: &SMatrix<f64, 2, N>, t: f64) -> SVector<f64, N>;
 
-    /// The map to the element of thickness `t` between nodes at `x`, column a for node a (length).
-    fn map(x: &SMatrix<f64, 2, N>, t: f64) -> Map<P> {
-        let corners = Self::CORNERS.iter();
-        Map {
-            points: Self::FUNCTIONS.jacobians(x, t),
-            corners: corners
-                .map(|natural| inverse_jacobian(x, natural).0)
-                .collect(),
-        }
+    /// The map to the element of thickness `t` between nodes at `x`, column a for node a (length): all that differs
+    /// between two elements of a shape.
+    fn map(x: &SMatrix<f64, 2, N>, t: f64) -> [Jacobian; P] {
+        Self::FUNCTIONS.jacobians(x, t)
     }
 
     /// The element with a map.
-    fn reference(map: &Map<P>) -> Reference<N, P> {
-        let corners = Self::CORNERS.iter().zip(&map.corners);
+    fn reference(map: &[Jacobian; P]) -> Reference<N, P> {
         Reference {
-            points: Self::FUNCTIONS.points(&map.points),
-            corners: corners
-                .map(|(natural, inverse)| gradients(natural, inverse))
-                .collect(),
+            points: Self::FUNCTIONS.points(map),
         }
     }
 }

@@ -21,7 +21,7 @@ pub trait Formulation {
     );
 
     /// Internal force F = int B_L^T S dOmega, eq. (2.5) (paper eq. 12), 2 x N (force), with the smallest
-    /// determinant of the deformation gradient at points and corners.
+    /// determinant of the deformation gradient at the points.
     #[inline]
     fn internal_force<const N: usize, const P: usize>(
         element: &Reference<N, P>,
@@ -29,7 +29,7 @@ pub trait Formulation {
         configuration: &Configuration<N>,
     ) -> (SMatrix<f64, 2, N>, f64) {
         let mut force = SMatrix::<f64, 2, N>::zeros();
-        let mut determinant = element.corner_determinant(configuration);
+        let mut determinant = f64::INFINITY;
         Self::for_each_state(element, material, configuration, |p, state| {
             let point = &element.points[p];
             // B_L^T S of node a is F S dh_a/dX: the first Piola-Kirchhoff stress times the gradient.
@@ -180,7 +180,7 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
 }
 
 /// (dX/dr)^-1 and det(dX/dr) at a place with the natural derivatives dh_a/dr_i.
-pub(super) fn inverse_jacobian<const N: usize>(
+fn inverse_jacobian<const N: usize>(
     x: &SMatrix<f64, 2, N>,
     natural: &[[f64; 2]; N],
 ) -> (Matrix2<f64>, f64) {
@@ -190,7 +190,7 @@ pub(super) fn inverse_jacobian<const N: usize>(
 }
 
 /// Gradients dh_a/dX = dh_a/dr (dX/dr)^-1, row a.
-pub(super) fn gradients<const N: usize>(
+fn gradients<const N: usize>(
     natural: &[[f64; 2]; N],
     inverse: &Matrix2<f64>,
 ) -> SMatrix<f64, N, 2> {
@@ -202,29 +202,12 @@ pub(super) fn gradients<const N: usize>(
 pub struct Reference<const N: usize, const P: usize> {
     /// Integration points of stress and internal force.
     pub points: [Point<N>; P],
-    /// Gradients dh_a/dX_i at the corners, where det F may be negative while it is positive at all points; none for
-    /// linear displacements.
-    pub corners: Vec<SMatrix<f64, N, 2>>,
 }
 
 impl<const N: usize, const P: usize> Reference<N, P> {
     /// Volume of the element (length^3).
     pub fn volume(&self) -> f64 {
         self.points.iter().map(|p| p.volume).sum()
-    }
-
-    /// Smallest det F at the corners, infinite without any: of the configuration, and of the end in the
-    /// energy-momentum form.
-    fn corner_determinant(&self, configuration: &Configuration<N>) -> f64 {
-        let at = |u: &SMatrix<f64, 2, N>| {
-            let all = self.corners.iter().map(|g| determinant(&(u * g)));
-            all.fold(f64::INFINITY, |least, det| smaller(det, least))
-        };
-        match configuration {
-            _ if self.corners.is_empty() => f64::INFINITY,
-            Configuration::At(u) => at(u),
-            Configuration::Between(u0, u1) => smaller(at(&((u0 + u1) / 2.0)), at(u1)),
-        }
     }
 }
 

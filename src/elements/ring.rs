@@ -27,26 +27,21 @@ struct Points {
 
 impl Points {
     fn new<const N: usize, const P: usize>(functions: &ShapeFunctions<N, P>) -> Self {
-        let mut points = Points::at(&functions.natural);
-        points.weights = functions.weights.to_vec();
-        for (value, all) in points.values.iter_mut().zip(&functions.values) {
-            value[..N].copy_from_slice(all);
-        }
-        points
-    }
-
-    /// Points without weight of which the derivatives are known.
-    fn at<const N: usize>(natural: &[[[f64; 2]; N]]) -> Self {
-        let padded = natural.iter().map(|all| {
+        let values = functions.values.iter().map(|all| {
+            let mut padded = [0.0; MAX_NODES];
+            padded[..N].copy_from_slice(all);
+            padded
+        });
+        let natural = functions.natural.iter().map(|all| {
             let mut padded = [[0.0; 2]; MAX_NODES];
             padded[..N].copy_from_slice(all);
             padded
         });
         Points {
             nodes: N,
-            values: vec![[0.0; MAX_NODES]; natural.len()],
-            natural: padded.collect(),
-            weights: vec![0.0; natural.len()],
+            values: values.collect(),
+            natural: natural.collect(),
+            weights: functions.weights.to_vec(),
         }
     }
 
@@ -60,16 +55,6 @@ impl Points {
                 Points::new(&ReducedSerendipity::FUNCTIONS)
             }
             (model::Shape::Quad8, _) => Points::new(&Serendipity::FUNCTIONS),
-        }
-    }
-
-    /// Corners where det F may be negative while it is positive at all points.
-    fn of_corners(shape: model::Shape) -> Self {
-        match shape {
-            model::Shape::Tri3 => Points::at(Triangle::CORNERS),
-            model::Shape::Quad4 => Points::at(Quadrilateral::CORNERS),
-            model::Shape::Tri6 => Points::at(QuadraticTriangle::CORNERS),
-            model::Shape::Quad8 => Points::at(Serendipity::CORNERS),
         }
     }
 
@@ -161,7 +146,6 @@ struct State {
 pub(super) struct Ring {
     nodes: Nodes,
     points: Vec<Point>,
-    corners: Vec<Point>,
 }
 
 impl Ring {
@@ -172,7 +156,6 @@ impl Ring {
         Ring {
             nodes: element.nodes.clone(),
             points: Points::of_stress(element_type).map(&own),
-            corners: Points::of_corners(element_type.shape).map(&own),
         }
     }
 
@@ -186,7 +169,7 @@ impl Ring {
         self.points.len()
     }
 
-    /// Internal force with the smallest determinant of the deformation gradient at points and corners:
+    /// Internal force with the smallest determinant of the deformation gradient at the points:
     ///
     /// ```text
     /// F_a = sum over the points of v (F S dh_a/dX + (1 + h) S_33 h_a/R e_r)      eq. (2.33)
@@ -197,7 +180,7 @@ impl Ring {
         motion: Motion,
     ) -> (ElementVector, f64) {
         let mut force = [0.0; MAX_DOFS];
-        let mut determinant = self.corner_determinant(motion);
+        let mut determinant = f64::INFINITY;
         for (p, point) in self.points.iter().enumerate() {
             let state = self.state(point, motion);
             let s = material.ring_stress(p, &state.strains);
@@ -338,24 +321,6 @@ impl Ring {
             strains: Strains::Between(start.strain(), end.strain()),
             determinant: smaller(mid.determinant(), end.determinant()),
         }
-    }
-
-    /// Smallest det F at the corners, infinite without any.
-    fn corner_determinant(&self, motion: Motion) -> f64 {
-        let of_section = |point: &Point, u: &[f64]| {
-            (Matrix2::identity() + self.gradient(point, u).h).determinant()
-        };
-        let at = |point: &Point| {
-            let end = of_section(point, motion.end);
-            let Some(start) = motion.start else {
-                return end;
-            };
-            let [h0, h1] = [start, motion.end].map(|u| self.gradient(point, u).h);
-            let mid = (Matrix2::identity() + (h0 + h1) / 2.0).determinant();
-            smaller(mid, end)
-        };
-        let all = self.corners.iter().map(at);
-        all.fold(f64::INFINITY, |least, det| smaller(det, least))
     }
 }
 

@@ -231,9 +231,6 @@ impl Shape<6, 3> for QuadraticTriangle {
         quadratic_triangle([[near, near], [far, near], [near, far]], [near; 3])
     };
 
-    const CORNERS: &'static [[[f64; 2]; 6]] =
-        &quadratic_triangle([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [0.0; 3]).natural;
-
     fn mass(x: &SMatrix<f64, 2, 6>, t: f64) -> SMatrix<f64, 6, 6> {
         mass(&Self::MASS, x, t)
     }
@@ -314,8 +311,6 @@ const DEGREE_5: ([[f64; 2]; 9], [f64; 9]) = {
 impl Shape<8, 9> for Serendipity {
     const FUNCTIONS: ShapeFunctions<8, 9> = serendipity(DEGREE_5.0, DEGREE_5.1);
 
-    const CORNERS: &'static [[[f64; 2]; 8]] = &serendipity(NODES, [0.0; 4]).natural;
-
     fn mass(x: &SMatrix<f64, 2, 8>, t: f64) -> SMatrix<f64, 8, 8> {
         mass(&Self::FUNCTIONS, x, t)
     }
@@ -327,8 +322,6 @@ impl Shape<8, 9> for Serendipity {
 
 impl Shape<8, 4> for ReducedSerendipity {
     const FUNCTIONS: ShapeFunctions<8, 4> = serendipity(BY_FOUR, [1.0; 4]);
-
-    const CORNERS: &'static [[[f64; 2]; 8]] = Serendipity::CORNERS;
 
     fn mass(x: &SMatrix<f64, 2, 8>, t: f64) -> SMatrix<f64, 8, 8> {
         Serendipity::mass(x, t)
@@ -384,7 +377,7 @@ pub(super) mod tests {
     ) {
         let element = S::reference(&S::map(&x, 0.25));
         let places = element.points.iter().map(|p| &p.gradient);
-        for gradient in places.chain(&element.corners) {
+        for gradient in places {
             // sum_a X_a dh_a/dX = I, sum_a dh_a/dX = 0
             let identity: Matrix2<f64> = x * gradient;
             assert!((identity - Matrix2::identity()).norm() < 1e-13);
@@ -393,7 +386,6 @@ pub(super) mod tests {
         for p in &element.points {
             assert!((p.shape.sum() - 1.0).abs() < 1e-15);
         }
-        assert_eq!(element.corners.is_empty(), N == corners);
         // shoelace formula, and two thirds of the parallelogram between a side and its curve
         let area: f64 = (0..corners)
             .map(|a| {
