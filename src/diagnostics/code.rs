@@ -192,9 +192,9 @@ codes! {
         "Names are compared without case, and without blanks."
         "Rename one of the two."
     ElementType "D308" "An element type that cannot be used."
-        "Elements are CPE3, CPE4, CPE4I, CPE4H, CPE6, CPE8 or CPE8R in plane strain, CPS3, CPS4, CPS4I, CPS6, CPS8 or CPS8R in plane stress, \
+        "Elements are CPE3, CPE4, CPE4I, CPE4R, CPE4H, CPE6, CPE8 or CPE8R in plane strain, CPS3, CPS4, CPS4I, CPS4R, CPS6, CPS8 or CPS8R in plane stress, \
          CAX3, CAX4, CAX6, CAX8 or CAX8R around an axis."
-        "Mesh with one of these; --lenient reads CPE4R, CPS4R and CAX4R as CPE4, CPS4 and CAX4."
+        "Mesh with one of these; --lenient reads CAX4R as CAX4."
     BadShape "D309" "An element is clockwise, degenerate or not convex."
         "Its nodes are listed in the wrong order, or two of them coincide."
         "List them counter-clockwise, or mend the mesh."

@@ -8,8 +8,8 @@ use super::chunk::{Chunk, TangentSweep};
 use super::formulation::ElementResult;
 use super::ring::{self, Ring};
 use super::shapes::{
-    Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad8, Quad8Reduced, QuadraticTriangle,
-    Quadrilateral, ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
+    Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad4Reduced, Quad8, Quad8Reduced,
+    QuadraticTriangle, Quadrilateral, ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
 };
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
 use super::{block, formulation};
@@ -28,6 +28,8 @@ pub(super) enum AnyElement {
     Quad4MeanDilatation(Quad4MeanDilatation),
     /// Q4, enhanced strains.
     Quad4Enhanced(Quad4Enhanced),
+    /// Q4, one strain and hourglass stiffness.
+    Quad4Reduced(Quad4Reduced),
     /// T6, displacement formulation.
     Tri6(Box<Tri6>),
     /// Q8, displacement formulation.
@@ -46,6 +48,7 @@ macro_rules! with_element {
             AnyElement::Quad4($element) => $value,
             AnyElement::Quad4MeanDilatation($element) => $value,
             AnyElement::Quad4Enhanced($element) => $value,
+            AnyElement::Quad4Reduced($element) => $value,
             AnyElement::Tri6($element) => $value,
             AnyElement::Quad8($element) => $value,
             AnyElement::Quad8Reduced($element) => $value,
@@ -73,6 +76,9 @@ impl AnyElement {
             }
             (Shape::Quad4, Formulation::Enhanced) => {
                 Self::Quad4Enhanced(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
+            }
+            (Shape::Quad4, Formulation::Reduced) => {
+                Self::Quad4Reduced(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
             }
             (Shape::Quad4, _) => Self::Quad4(solid::<Quadrilateral, _, _, _, _>(nodes, x, t)),
             (Shape::Tri6, _) => Self::Tri6(Box::new(solid::<QuadraticTriangle, _, _, _, _>(
@@ -179,6 +185,8 @@ impl AnyChunk {
         let by_element = [Formulation::MeanDilatation, Formulation::Enhanced];
         law.variables() == 0
             && !by_element.contains(&element_type.formulation)
+            && *element_type != ElementType::CPE4R
+            && *element_type != ElementType::CPS4R
             && !element_type.is_ring()
     }
 

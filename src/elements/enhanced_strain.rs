@@ -48,11 +48,13 @@ fn signs(a: usize) -> [f64; 2] {
 }
 
 /// Hourglass pattern and strains of an element, in the reference configuration.
-struct Modes<const N: usize, const P: usize> {
+pub(super) struct Modes<const N: usize, const P: usize> {
+    /// Mean gradients b of the shape functions, row a (1/length).
+    pub mean: SMatrix<f64, N, 2>,
     /// gamma of eq. (2.26), so that q = sum gamma_a u_a.
-    gamma: SVector<f64, N>,
+    pub gamma: SVector<f64, N>,
     /// grad h of h = r s at every point (1/length).
-    slope: [Vector2<f64>; P],
+    pub slope: [Vector2<f64>; P],
     /// The four strains M at every point.
     strains: [[Matrix2<f64>; 4]; P],
 }
@@ -63,7 +65,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     /// ```text
     /// b = sum v g/V,  grad h = sum +-1 g,  g = b + gamma grad h,  dxi/dX = 4 n^T b,  n_a = (r_a, s_a)/4
     /// ```
-    fn new(element: &Reference<N, P>) -> Self {
+    pub fn new(element: &Reference<N, P>) -> Self {
         let (points, volume) = (&element.points, element.volume());
         let mut b = SMatrix::<f64, N, 2>::zeros();
         for point in points {
@@ -94,6 +96,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
             strains.iter_mut().for_each(|m| m[k] /= mean.sqrt());
         }
         Modes {
+            mean: b,
             gamma: gamma / squares,
             slope,
             strains,
@@ -130,13 +133,13 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     }
 
     /// Columns (xx, yy, 2 xy) of the strains of a point.
-    fn columns(&self, p: usize) -> SMatrix<f64, 3, 4> {
+    pub fn columns(&self, p: usize) -> SMatrix<f64, 3, 4> {
         let m = &self.strains[p];
         SMatrix::from_fn(|i, k| [m[k].m11, m[k].m22, 2.0 * m[k].m12][i])
     }
 
     /// K_aa = sum v M C M
-    fn stiffness(
+    pub fn stiffness(
         &self,
         element: &Reference<N, P>,
         c: impl Fn(usize) -> Matrix3<f64>,

@@ -55,6 +55,16 @@ pub trait Formulation {
         dissipated
     }
 
+    /// Stored energy of the hourglass modes of a configuration, or the work of their viscous stress between two (force
+    /// length).
+    fn hourglass_energy<const N: usize, const P: usize>(
+        _element: &Reference<N, P>,
+        _material: &impl StressAtPoints,
+        _configuration: &Configuration<N>,
+    ) -> f64 {
+        0.0
+    }
+
     /// Tangent K = dF/du, D x D (force/length); symmetric.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
@@ -69,7 +79,7 @@ pub fn work<F: Formulation, const N: usize, const P: usize>(
     material: &impl StressAtPoints,
     configuration: &Configuration<N>,
 ) -> f64 {
-    let mut work = 0.0;
+    let mut work = F::hourglass_energy(element, material, configuration);
     F::for_each_state(element, material, configuration, |p, state| {
         if let Strains::Between(e0, e1) = state.strains {
             let s = material.stress(p, &state.strains);
@@ -86,11 +96,14 @@ pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
     u: &SMatrix<f64, 2, N>,
 ) -> ElementResult {
     let mut results = [PointResult::default(); P];
-    F::for_each_state(element, material, &Configuration::At(*u), |p, state| {
+    let configuration = Configuration::At(*u);
+    F::for_each_state(element, material, &configuration, |p, state| {
         results[p] = PointResult::new(state, material, p);
     });
     let weights = element.points.iter().map(|point| point.volume);
-    ElementResult::of_points(results.into_iter().zip(weights))
+    let mut result = ElementResult::of_points(results.into_iter().zip(weights));
+    result.energy += F::hourglass_energy(element, material, &configuration);
+    result
 }
 
 /// B_L: delta E (xx, yy, 2 xy) per nodal displacement (1/length).

@@ -14,6 +14,7 @@ mod enhanced_strain;
 mod formulation;
 mod mean_dilatation;
 mod mean_gradient;
+mod reduced;
 mod ring;
 mod shapes;
 mod solid;

@@ -9,6 +9,7 @@ use super::displacement::Displacement;
 use super::enhanced_strain::EnhancedStrain;
 use super::formulation::ShapeFunctions;
 use super::mean_dilatation::MeanDilatation;
+use super::reduced::ReducedIntegration;
 use super::solid::Solid;
 use crate::materials::lanes::Lanes;
 
@@ -52,6 +53,8 @@ pub type Quad4 = Solid<4, 4, 8, Displacement>;
 pub type Quad4MeanDilatation = Solid<4, 4, 8, MeanDilatation>;
 /// Q4 with enhanced strains (CPE4I, CPS4I).
 pub type Quad4Enhanced = Solid<4, 4, 8, EnhancedStrain>;
+/// Q4 with one strain and hourglass stiffness.
+pub type Quad4Reduced = Solid<4, 4, 8, ReducedIntegration>;
 
 /// Natural coordinates of the nodes.
 ///

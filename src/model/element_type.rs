@@ -136,6 +136,10 @@ impl ElementType {
     pub const CPE4I: Self = Self::CPE4.enhanced();
     /// Quadrilateral in plane stress with enhanced strains.
     pub const CPS4I: Self = Self::CPS4.enhanced();
+    /// Quadrilateral in plane strain with one strain and hourglass stiffness.
+    pub const CPE4R: Self = Self::CPE4.reduced();
+    /// Quadrilateral in plane stress with one strain and hourglass stiffness.
+    pub const CPS4R: Self = Self::CPS4.reduced();
     /// Quadratic triangle in plane strain.
     pub const CPE6: Self = Self::standard(Shape::Tri6, Plane::Strain);
     /// Quadratic triangle in plane stress.
@@ -161,7 +165,7 @@ impl ElementType {
     pub const CAX8R: Self = Self::CAX8.reduced();
 
     /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 18] = [
+    pub const NAMED: [Self; 20] = [
         Self::CAX3,
         Self::CAX4,
         Self::CAX6,
@@ -171,12 +175,14 @@ impl ElementType {
         Self::CPE4,
         Self::CPE4H,
         Self::CPE4I,
+        Self::CPE4R,
         Self::CPE6,
         Self::CPE8,
         Self::CPE8R,
         Self::CPS3,
         Self::CPS4,
         Self::CPS4I,
+        Self::CPS4R,
         Self::CPS6,
         Self::CPS8,
         Self::CPS8R,
@@ -229,12 +235,14 @@ impl ElementType {
             (Shape::Tri3, Plane::Strain) => "CPE3",
             (Shape::Quad4, Plane::Strain) if mean => "CPE4H",
             (Shape::Quad4, Plane::Strain) if enhanced => "CPE4I",
+            (Shape::Quad4, Plane::Strain) if reduced => "CPE4R",
             (Shape::Quad4, Plane::Strain) => "CPE4",
             (Shape::Tri6, Plane::Strain) => "CPE6",
             (Shape::Quad8, Plane::Strain) if reduced => "CPE8R",
             (Shape::Quad8, Plane::Strain) => "CPE8",
             (Shape::Tri3, Plane::Stress) => "CPS3",
             (Shape::Quad4, Plane::Stress) if enhanced => "CPS4I",
+            (Shape::Quad4, Plane::Stress) if reduced => "CPS4R",
             (Shape::Quad4, Plane::Stress) => "CPS4",
             (Shape::Tri6, Plane::Stress) => "CPS6",
             (Shape::Quad8, Plane::Stress) if reduced => "CPS8R",
@@ -279,7 +287,7 @@ mod tests {
             let found = ElementType::from_name(element_type.name());
             assert_eq!(found, Some(element_type));
         }
-        assert_eq!(ElementType::from_name("CPE4R"), None);
+        assert_eq!(ElementType::from_name("CPE4RT"), None);
     }
 
     #[test]

@@ -48,7 +48,7 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
 }
 
 /// Element types and their numbers in the file, which never change.
-const TYPES: [(ElementType, u8); 18] = [
+const TYPES: [(ElementType, u8); 20] = [
     (ElementType::CPE3, 0),
     (ElementType::CPE4, 1),
     (ElementType::CPS3, 2),
@@ -67,6 +67,8 @@ const TYPES: [(ElementType, u8); 18] = [
     (ElementType::CAX8R, 15),
     (ElementType::CPE4I, 16),
     (ElementType::CPS4I, 17),
+    (ElementType::CPE4R, 18),
+    (ElementType::CPS4R, 19),
 ];
 
 /// Number of an element type in the file: as in [`TYPES`].
@@ -261,7 +263,7 @@ const LOAD_GROUPS: Meaning = (
 );
 const ELEMENT_TYPES: Meaning = (
     "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 11 CAX3, 12 CAX4, 13 CAX6, 14 CAX8, 15 CAX8R, 16 CPE4I, 17 CPS4I",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 11 CAX3, 12 CAX4, 13 CAX6, 14 CAX8, 15 CAX8R, 16 CPE4I, 17 CPS4I, 18 CPE4R, 19 CPS4R",
 );
 const MATERIAL: Meaning = (
     "1",

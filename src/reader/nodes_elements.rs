@@ -482,7 +482,7 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
         Some(reason) => error.help(reason),
         None => error
             .suggest(meant)
-            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R, or CAX3, CAX4, \
+            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPS4R, CPE4R, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R, or CAX3, CAX4, \
                  CAX6, CAX8 or CAX8R around the axis x = 0"),
     };
     None
@@ -491,14 +491,9 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
 /// Why a type that other codes know cannot be used.
 fn reason(folded: &str) -> Option<&'static str> {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
-    if starts(&["CPE4R", "CPS4R"]) && folded.len() == 5 {
+    if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
         Some(
-            "quadrilaterals with one integration point are not supported: write CPE4I or CPS4I, CPE4 or CPS4 \
-             (--lenient takes them as these), or CPE8R or CPS8R with nodes between the corners",
-        )
-    } else if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
-        Some(
-            "write CPE3, CPS3, CPE4, CPE4I, CPE4H, CPS4 or CPS4I: other formulations are not supported",
+            "write CPE3, CPS3, CPE4, CPE4I, CPE4R, CPE4H, CPS4, CPS4I or CPS4R: other formulations are not supported",
         )
     } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) && folded.len() > 4 {
         Some("write CPE6, CPS6, CPE8, CPS8, CPE8R or CPS8R: other formulations are not supported")

@@ -40,6 +40,7 @@ pub(super) fn read(
     report_without_section(complete, mesh_index, cx);
     drafts.report_without_law(&properties.sections, cx);
     (properties.materials, properties.places) = drafts.complete(cx);
+    properties.refuse_metals(mesh_index, cx);
     properties.report_locking(mesh_index, cx);
     properties
 }
@@ -181,6 +182,28 @@ impl Properties {
         Some(self.sections.get(element.section)?.material)
     }
 
+    /// Refuses metals in elements with hourglass stiffness: it is that of an elastic material, so that they would not
+    /// bend as metals that flow.
+    fn refuse_metals(&self, mesh_index: &MeshIndex, cx: &mut Context) {
+        let stiffened = [ElementType::CPE4R, ElementType::CPS4R];
+        let elements = mesh_index.mesh.elements.iter();
+        let stiffened = elements.filter(|element| stiffened.contains(&element.element_type));
+        let used: Vec<_> = stiffened
+            .filter_map(|element| self.material_of(element))
+            .collect();
+        for (index, (material, places)) in self.materials.iter().zip(&self.places).enumerate() {
+            if matches!(material.law, Law::Plastic(_)) && used.contains(&index) {
+                let message = format!(
+                    "material {} flows in CPE4R or CPS4R elements",
+                    material.name
+                );
+                cx.error(Code::ElementType, places.poisson, message).help(
+                    "their hourglass stiffness is that of an elastic material: write CPE4H, CPE4I, CPS4I, CPE8R or CPS8R",
+                );
+            }
+        }
+    }
+
     /// Warns about nearly incompressible materials, at their Poisson's ratios; in
     /// plane stress the thickness gives way and nothing locks.
     fn report_locking(&self, mesh_index: &MeshIndex, cx: &mut Context) {
@@ -212,7 +235,7 @@ impl Properties {
                 );
                 cx.warning(Code::Locking, places.poisson, message).help(
                     "CPE3, CPE4, CAX3 and CAX4 are integrated fully: from nu = 0.45 on they are too stiff, the \
-                     more so the closer nu is to 0.5; CPE4H (CPE4 with mean dilatation), CPE8R and CAX8R \
+                     more so the closer nu is to 0.5; CPE4H (CPE4 with mean dilatation), CPE4I, CPE4R, CPE8R and CAX8R \
                      are not",
                 );
             }

@@ -156,7 +156,7 @@ fn faulty(code: Code) -> Source {
         UndefinedElement => model("*ELSET, ELSET=MORE\n7, 8"),
         UndefinedName => square("MATERIAL=RUBBER", "MATERIAL=RUBER"),
         RepeatedName => model("*SURFACE, NAME=top\nBODY, S1"),
-        ElementType => square("CPS4", "CPS4R"),
+        ElementType => square("CPS4", "CPS4RT"),
         BadShape => square("7, 1, 2, 3, 4", "7, 1, 4, 3, 2"),
         UnusedNode => square("4, 0., 1.", "4, 0., 1.\n5, 9., 9.\n6, 9., 8."),
         BadRange => model("*NSET, NSET=ODD, GENERATE\n1, 4, 2"),

@@ -313,10 +313,13 @@ fn cards_in_any_order() {
 fn a_lenient_reader_takes_reduced_elements_as_full_ones() {
     let lenient = Diagnostics::with_strictness(Strictness::Lenient);
     let (mut sources, mut d) = (Sources::new(), lenient);
-    let text = SQUARE.replace("CPS4", "CPS4R");
+    let text = SQUARE.replace("CPS4", "CAX4R");
     let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    assert_eq!(reader::build(&deck, &mut d), build(SQUARE).0);
-    assert_eq!(codes(&d), [Code::ElementType]);
+    assert_eq!(
+        reader::build(&deck, &mut d),
+        build(&SQUARE.replace("CPS4", "CAX4")).0
+    );
+    assert!(codes(&d).contains(&Code::ElementType));
 }
 
 #[test]

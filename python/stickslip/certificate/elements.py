@@ -47,6 +47,9 @@ KINDS = (
 ENHANCED = {16: (4, False, False, False), 17: (4, True, False, False)}
 """The same of the element types with enhanced strains."""
 
+REDUCED = {18: (4, False, False, False), 19: (4, True, False, False)}
+"""The same of the element types with one strain and hourglass stiffness."""
+
 RINGS = {
     11: (3, False, False, False),
     12: (4, False, False, False),
@@ -443,16 +446,18 @@ def _blocks(result: Result) -> list[Block]:
     }
     from stickslip.certificate.enhanced import EnhancedBlock
     from stickslip.certificate.metals import MetalBlock
+    from stickslip.certificate.reduced import ReducedBlock
     from stickslip.certificate.rings import RingBlock
 
     found = []
     keys = np.stack([types.astype(np.int64), materials], axis=1)
     for kind, material in np.unique(keys[materials >= 0], axis=0):
         elements = np.flatnonzero((types == kind) & (materials == material))
-        of_kind = EnhancedBlock if kind in ENHANCED else RingBlock if kind in RINGS else Block
+        families = ((ENHANCED, EnhancedBlock), (REDUCED, ReducedBlock), (RINGS, RingBlock))
+        of_kind = next((block for family, block in families if kind in family), Block)
         if constants["law"][material] == PLASTICITY:
             of_kind = MetalBlock
-        others = ENHANCED | RINGS
+        others = ENHANCED | REDUCED | RINGS
         count, plane_stress, mean, reduced = others[kind] if kind in others else KINDS[kind]
         nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)
         place, thick = result.coordinates[nodes], thickness[elements][:, None]
@@ -480,6 +485,8 @@ def _blocks(result: Result) -> list[Block]:
                 },
             )
         )
+        if kind in REDUCED:
+            found[-1].condense()
         if kind in RINGS:
             found[-1].around = at_points / around[..., None]
     return found

@@ -18,25 +18,29 @@ DIFFERENCE = 1e-6
 """Change of alpha by which the derivative of a stress is told."""
 
 
+def patterns(weight: Array, gradient: Array) -> tuple[Array, Array, Array]:
+    """gamma [E, 4], grad h [E, G, 2] and M [E, G, 4, 2, 2] of quadrilaterals."""
+    part = weight / weight.sum(axis=1)[:, None]
+    center = np.einsum("eg,egai->eai", part, gradient)
+    slope = np.einsum("a,egai->egi", PATTERN, gradient)
+    away = gradient - center[:, None]
+    gamma = np.einsum("egai,egi->ea", away, slope) / (slope**2).sum(axis=(1, 2))[:, None]
+    inverse = np.einsum("ai,eaj->eij", CORNERS, center)
+    shapes = np.zeros((4, 4, 2, 2))
+    shapes[:, 0, 0, 0] = shapes[:, 2, 0, 1] = shapes[:, 2, 1, 0] = CORNERS[:, 0]
+    shapes[:, 1, 1, 1] = shapes[:, 3, 0, 1] = shapes[:, 3, 1, 0] = CORNERS[:, 1]
+    strains = np.einsum("eik,gmij,ejl,eg->egmkl", inverse, shapes, inverse, 1.0 / part)
+    size = np.sqrt(np.einsum("eg,egmij->em", part, strains**2))
+    return gamma, slope, strains / size[:, None, :, None, None]
+
+
 class EnhancedBlock(Block):
     """Elements whose stored energy is least in four strains of their own."""
 
     @cached_property
     def modes(self) -> tuple[Array, Array, Array]:
         """gamma [E, 4], grad h [E, G, 2] and M [E, G, 4, 2, 2]."""
-        volume = self.weight.sum(axis=1)
-        part = self.weight / volume[:, None]
-        center = np.einsum("eg,egai->eai", part, self.gradient)
-        slope = np.einsum("a,egai->egi", PATTERN, self.gradient)
-        away = self.gradient - center[:, None]
-        gamma = np.einsum("egai,egi->ea", away, slope) / (slope**2).sum(axis=(1, 2))[:, None]
-        inverse = np.einsum("ai,eaj->eij", CORNERS, center)
-        shapes = np.zeros((4, 4, 2, 2))
-        shapes[:, 0, 0, 0] = shapes[:, 2, 0, 1] = shapes[:, 2, 1, 0] = CORNERS[:, 0]
-        shapes[:, 1, 1, 1] = shapes[:, 3, 0, 1] = shapes[:, 3, 1, 0] = CORNERS[:, 1]
-        strains = np.einsum("eik,gmij,ejl,eg->egmkl", inverse, shapes, inverse, 1.0 / part)
-        size = np.sqrt(np.einsum("eg,egmij->em", part, strains**2))
-        return gamma, slope, strains / size[:, None, :, None, None]
+        return patterns(self.weight, self.gradient)
 
     def compatible(self, u: Array) -> Array:
         """Strains of the displacements, eq. (2.27)."""

@@ -1,0 +1,413 @@
+//! The four-node quadrilateral with one strain (CPE4R, CPS4R), that of its mean gradients, and a potential of its
+//! hourglass modes. Section 2 of docs/theory.md.
+//!
+//! # Derivation
+//!
+//! With u = sum u_a h_a, F = F0 + q x grad h exactly: F0 = I + sum u_a x b_a, q = sum gamma_a u_a. H = F0^T q does not
+//! change when the element turns. The potential is that of the element with enhanced strains at small strains:
+//!
+//! ```text
+//! Phi = V W(E0) + H.Kh H/2,  Kh = K_HH - K_Ha K_aa^-1 K_aH
+//! ```
+//!
+//! H is quadratic in the displacements, so that dH = F0m^T dq + dF0^T qm holds exactly between two configurations, and
+//! the force with Kh (H0 + H1)/2 at halfway does exactly the work of the hourglass energy.
+
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
+
+use super::enhanced_strain::Modes;
+use super::formulation::{
+    Configuration, Formulation, Point, PointState, Reference, add_geometric, determinant,
+    green_lagrange, smaller, strain_displacement,
+};
+use crate::materials::{Strains, StressAtPoints};
+
+/// One strain of the element and hourglass stiffness. All points of the quadrilateral have that strain: they give the
+/// weights and the hourglass modes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedIntegration;
+
+/// What the hourglass modes of a configuration give, H.Kh H/2 of eq. (2.42) and its stress.
+struct Hourglass {
+    /// Kh (force/length).
+    stiffness: Matrix2<f64>,
+    /// F0 and q at the displacements of the strain-displacement matrix.
+    f: Matrix2<f64>,
+    q: Vector2<f64>,
+    /// Stress f that does work on H (force).
+    stress: Vector2<f64>,
+    /// Energy, or work between two configurations of a viscosity (force length).
+    energy: f64,
+}
+
+impl Hourglass {
+    fn new<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        modes: &Modes<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+    ) -> Self {
+        let zero = Matrix2::zeros();
+        let strains = match configuration {
+            Configuration::Between(..) if material.is_viscous() => Strains::Between(zero, zero),
+            _ => Strains::At(zero),
+        };
+        let stiffness = stiffness(element, modes, &material.tangent(0, &strains));
+        let of = |u: &SMatrix<f64, 2, N>| (Matrix2::identity() + u * modes.mean, u * modes.gamma);
+        let h = |(f, q): (Matrix2<f64>, Vector2<f64>)| f.tr_mul(&q);
+        match configuration {
+            Configuration::At(u) => {
+                let (f, q) = of(u);
+                let stress = stiffness * h((f, q));
+                let energy = stress.dot(&h((f, q))) / 2.0;
+                Hourglass {
+                    stiffness,
+                    f,
+                    q,
+                    stress,
+                    energy,
+                }
+            }
+            Configuration::Between(u0, u1) => {
+                let (f, q) = of(&((u0 + u1) / 2.0));
+                let [h0, h1] = [u0, u1].map(|u| h(of(u)));
+                // the tangent of a viscosity is that by the mean of the strains: twice that by their change
+                let along = if material.is_viscous() {
+                    h1 - h0
+                } else {
+                    h0 + h1
+                };
+                let stress = stiffness * along / 2.0;
+                let energy = stress.dot(&(h1 - h0));
+                Hourglass {
+                    stiffness,
+                    f,
+                    q,
+                    stress,
+                    energy,
+                }
+            }
+        }
+    }
+
+    /// Rows of dH by the displacements: b_a q_i + F0^T e_i gamma_a.
+    fn rows<const N: usize, const P: usize, const D: usize>(
+        &self,
+        modes: &Modes<N, P>,
+    ) -> SMatrix<f64, 2, D> {
+        SMatrix::from_fn(|k, j| {
+            let (a, i) = (j / 2, j % 2);
+            modes.mean[(a, k)] * self.q[i] + self.f[(i, k)] * modes.gamma[a]
+        })
+    }
+}
+
+/// Kh of the tangent C at small strains: the energy of sym(H x grad h) + M alpha, least in alpha (force/length).
+fn stiffness<const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    modes: &Modes<N, P>,
+    c: &Matrix3<f64>,
+) -> Matrix2<f64> {
+    let (mut k, mut mixed) = (Matrix2::zeros(), SMatrix::<f64, 2, 4>::zeros());
+    for (p, point) in element.points.iter().enumerate() {
+        let slope = modes.slope[p];
+        let b = SMatrix::<f64, 3, 2>::new(slope.x, 0.0, 0.0, slope.y, slope.y, slope.x);
+        let cb = c * b * point.volume;
+        k += b.transpose() * cb;
+        mixed += cb.transpose() * modes.columns(p);
+    }
+    match modes.stiffness(element, |_| *c).try_inverse() {
+        Some(inverse) => k - mixed * inverse * mixed.transpose(),
+        None => k,
+    }
+}
+
+/// The element as one point: mean gradients and volume.
+fn center<const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    modes: &Modes<N, P>,
+) -> Point<N> {
+    Point {
+        shape: element.points[0].shape,
+        gradient: modes.mean,
+        volume: element.volume(),
+    }
+}
+
+/// Deformation and stress of the element.
+fn state<const N: usize, const P: usize>(
+    modes: &Modes<N, P>,
+    material: &impl StressAtPoints,
+    configuration: &Configuration<N>,
+) -> PointState {
+    let of = |u: &SMatrix<f64, 2, N>| u * modes.mean;
+    let (h, strains, least) = match configuration {
+        Configuration::At(u) => {
+            let h = of(u);
+            (h, Strains::At(green_lagrange(&h)), determinant(&h))
+        }
+        Configuration::Between(u0, u1) => {
+            let [h0, h1] = [u0, u1].map(of);
+            let h = (h0 + h1) / 2.0;
+            let strains = Strains::Between(green_lagrange(&h0), green_lagrange(&h1));
+            (h, strains, smaller(determinant(&h), determinant(&h1)))
+        }
+    };
+    PointState {
+        h,
+        strains,
+        material_determinant: determinant(&h),
+        s: material.stress(0, &strains),
+        determinant: least,
+    }
+}
+
+impl Formulation for ReducedIntegration {
+    /// The one state of the element for each of its points.
+    fn for_each_state<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+        mut visit: impl FnMut(usize, &PointState),
+    ) {
+        let state = state(&Modes::new(element), material, configuration);
+        for p in 0..P {
+            visit(p, &state);
+        }
+    }
+
+    /// V F0 S b_a + q (b_a.f) + F0 f gamma_a, eq. (2.43), with the smallest determinant of F at the points too.
+    fn internal_force<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+    ) -> (SMatrix<f64, 2, N>, f64) {
+        let modes = Modes::new(element);
+        let state = state(&modes, material, configuration);
+        let hourglass = Hourglass::new(element, &modes, material, configuration);
+        let Hourglass { f, q, stress, .. } = &hourglass;
+        let force = state.f() * state.s * modes.mean.transpose() * element.volume()
+            + q * (modes.mean * stress).transpose()
+            + f * stress * modes.gamma.transpose();
+        let end = match configuration {
+            Configuration::At(u) | Configuration::Between(_, u) => u,
+        };
+        let of_points = element
+            .points
+            .iter()
+            .map(|p| determinant(&(end * p.gradient)));
+        let least = of_points.fold(state.determinant, |least, det| smaller(det, least));
+        (force, least)
+    }
+
+    fn hourglass_energy<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+    ) -> f64 {
+        Hourglass::new(element, &Modes::new(element), material, configuration).energy
+    }
+
+    /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D^2 H, G the rows of dH, D^2 H_k = b_ak gamma_b + gamma_a b_bk
+    /// in both directions.
+    fn tangent<const N: usize, const P: usize, const D: usize>(
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        configuration: &Configuration<N>,
+    ) -> SMatrix<f64, D, D> {
+        let modes = Modes::new(element);
+        let (point, state) = (
+            center(element, &modes),
+            state(&modes, material, configuration),
+        );
+        let b = strain_displacement::<N, D>(&point, &state.f());
+        let mut k = b.transpose() * (material.tangent(0, &state.strains) * b) * point.volume;
+        add_geometric(&mut k, &point, &state.s);
+        let hourglass = Hourglass::new(element, &modes, material, configuration);
+        let rows = hourglass.rows::<N, P, D>(&modes);
+        k += rows.transpose() * (hourglass.stiffness * rows);
+        let along = modes.mean * hourglass.stress;
+        for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {
+            let second = along[a] * modes.gamma[b] + modes.gamma[a] * along[b];
+            for i in 0..2 {
+                k[(2 * a + i, 2 * b + i)] += second;
+            }
+        }
+        k
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::block::Shape;
+    use crate::elements::formulation::evaluate;
+    use crate::elements::shapes::Quadrilateral;
+    use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
+    use nalgebra::SVector;
+
+    const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
+
+    fn corners() -> SMatrix<f64, 2, 4> {
+        SMatrix::from_columns(&CORNERS.map(|p| p.into()))
+    }
+
+    fn quad() -> Reference<4, 4> {
+        Quadrilateral::reference(&Quadrilateral::map(&corners(), 0.5))
+    }
+
+    /// All laws and planes.
+    fn laws() -> Vec<PlaneLaw> {
+        let rubber = NeoHooke {
+            c10: 200.0,
+            d1: 2e-3,
+        };
+        let laws = [Law::elastic(1000.0, 0.3), Law::NeoHooke(rubber)];
+        let planes = [Plane::Strain, Plane::Stress];
+        let all = laws
+            .iter()
+            .flat_map(|law| planes.map(|plane| law.in_plane(plane)));
+        all.collect()
+    }
+
+    /// Some displacements of moderate size, the same for every run.
+    fn displacements(seed: usize) -> SMatrix<f64, 2, 4> {
+        SMatrix::from_fn(|i, a| (((seed + 7 * a + 3 * i) * 37) % 23) as f64 / 100.0 - 0.11)
+    }
+
+    fn force(law: &PlaneLaw, configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
+        ReducedIntegration::internal_force::<4, 4>(
+            &quad(),
+            &Committed::new(law, &[]),
+            configuration,
+        )
+        .0
+    }
+
+    fn energy(law: &PlaneLaw, u: &SMatrix<f64, 2, 4>) -> f64 {
+        evaluate::<ReducedIntegration, 4, 4>(&quad(), &Committed::new(law, &[]), u).energy
+    }
+
+    /// Difference quotient of a function of the displacements by the dof j.
+    fn quotient<T>(f: impl Fn(SMatrix<f64, 2, 4>) -> T, j: usize) -> T
+    where
+        T: std::ops::Sub<Output = T> + std::ops::Div<f64, Output = T>,
+    {
+        let (u, h) = (displacements(5), 1e-6);
+        let mut du = SMatrix::<f64, 2, 4>::zeros();
+        du[j] = h;
+        (f(u + du) - f(u - du)) / (2.0 * h)
+    }
+
+    #[test]
+    fn force_and_tangent_are_derivatives_of_the_energy() {
+        for law in laws() {
+            let at = Configuration::At(displacements(5));
+            let (found, material) = (force(&law, &at), Committed::new(&law, &[]));
+            let k = ReducedIntegration::tangent::<4, 4, 8>(&quad(), &material, &at);
+            for j in 0..8 {
+                let slope = quotient(|u| energy(&law, &u), j);
+                assert!((found[j] - slope).abs() < 1e-7 * found.norm(), "{j}");
+                let column = quotient(|u| force(&law, &Configuration::At(u)), j);
+                for i in 0..8 {
+                    assert!((k[(i, j)] - column[i]).abs() < 1e-7 * k.norm(), "({i},{j})");
+                }
+            }
+            assert!((k - k.transpose()).norm() < 1e-13 * k.norm());
+        }
+    }
+
+    #[test]
+    fn the_energy_momentum_force_does_exactly_the_work_of_the_strain_energy() {
+        for law in laws() {
+            for size in [1.0, 1e-3, 1e-6] {
+                let u0 = displacements(5);
+                let u1 = u0 + displacements(11) * size;
+                let force = force(&law, &Configuration::Between(u0, u1));
+                let (work, change) = (force.dot(&(u1 - u0)), energy(&law, &u1) - energy(&law, &u0));
+                assert!((work - change).abs() < 1e-13 * energy(&law, &u1), "{size}");
+                let x = corners() + (u0 + u1) / 2.0;
+                let moments = (0..4).map(|a| x[(0, a)] * force[(1, a)] - x[(1, a)] * force[(0, a)]);
+                assert!(force.column_sum().norm() < 1e-13 * force.norm());
+                assert!(moments.sum::<f64>().abs() < 1e-13 * force.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn only_rigid_motions_have_no_stiffness() {
+        for law in laws() {
+            let at = Configuration::At(SMatrix::zeros());
+            let material = Committed::new(&law, &[]);
+            let k = ReducedIntegration::tangent::<4, 4, 8>(&quad(), &material, &at);
+            let values = k.symmetric_eigenvalues();
+            let zero = values.iter().filter(|v| v.abs() < 1e-12 * k.norm());
+            assert_eq!(zero.count(), 3, "{values}");
+            assert!(values.iter().all(|&v| v > -1e-12 * k.norm()));
+        }
+    }
+
+    #[test]
+    fn homogeneous_deformation_is_exact() {
+        // patch test of a distorted element: the hourglass modes stay zero
+        use crate::elements::displacement::Displacement;
+        let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * corners();
+        for law in laws() {
+            let material = Committed::new(&law, &[]);
+            let found = evaluate::<ReducedIntegration, 4, 4>(&quad(), &material, &u);
+            let exact = evaluate::<Displacement, 4, 4>(&quad(), &material, &u);
+            assert!((found.energy - exact.energy).abs() < 1e-13 * exact.energy);
+            for (a, b) in found.stress.iter().zip(exact.stress) {
+                assert!((a - b).abs() < 1e-12 * exact.von_mises());
+            }
+            let at = Configuration::At(u);
+            let exact = Displacement::internal_force::<4, 4>(&quad(), &material, &at).0;
+            assert!((force(&law, &at) - exact).norm() < 1e-12 * exact.norm());
+        }
+    }
+
+    #[test]
+    fn rigid_rotation_gives_no_internal_force() {
+        for law in laws() {
+            for degrees in (0..=360).step_by(15) {
+                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
+                let u = Matrix2::new(cos, -sin, sin, cos) * corners() - corners();
+                let force = force(&law, &Configuration::At(u));
+                assert!(force.amax() < 1e-11 * 1000.0, "{degrees}: {}", force.amax());
+            }
+        }
+    }
+
+    #[test]
+    fn a_block_compressed_to_a_fifth_stays_stable() {
+        // uniaxial, neo-Hooke: no eigenvalue of the tangent but the rotation's is negative in the hourglass pattern
+        let law = laws().swap_remove(2);
+        let material = Committed::new(&law, &[]);
+        let x = SMatrix::from_columns(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]].map(|p| p.into()));
+        let square = Quadrilateral::reference(&Quadrilateral::map(&x, 1.0));
+        for percent in (20..=95).step_by(5) {
+            let u = Matrix2::new(0.0, 0.0, 0.0, f64::from(percent) / 100.0 - 1.0) * x;
+            let at = Configuration::At(u);
+            let k = ReducedIntegration::tangent::<4, 4, 8>(&square, &material, &at);
+            for i in 0..2 {
+                let mode = SVector::<f64, 8>::from_fn(|j, _| match j % 2 == i {
+                    true => [1.0, -1.0][j / 2 % 2],
+                    false => 0.0,
+                });
+                assert!(mode.dot(&(k * mode)) > 0.0, "{percent} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn small_strains_are_those_of_enhanced_strains() {
+        use crate::elements::enhanced_strain::EnhancedStrain;
+        let at = Configuration::At(SMatrix::zeros());
+        for law in laws() {
+            let material = Committed::new(&law, &[]);
+            let found = ReducedIntegration::tangent::<4, 4, 8>(&quad(), &material, &at);
+            let exact = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &at);
+            assert!((found - exact).norm() < 1e-13 * exact.norm());
+        }
+    }
+}
