@@ -214,7 +214,7 @@ def main() -> int:
     parser.add_argument(
         "--elements",
         default="4",
-        choices=["3", "4", "4H", "4I", "6", "8", "8R"],
+        choices=["3", "4", "4H", "4I", "4R", "6", "8", "8R"],
         help="family of the elements, as in CPE8R",
     )
     parser.add_argument(
