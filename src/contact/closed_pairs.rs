@@ -8,7 +8,7 @@ use super::targets::PairTarget;
 use crate::lcp::ContactState;
 
 /// A pair in contact.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ClosedPair {
     /// Its constraint.
     pub key: ConstraintKey,
@@ -27,7 +27,7 @@ impl ClosedPair {
     pub fn new(constraint: &Constraint, force: [f64; 2], state: ContactState) -> Self {
         ClosedPair {
             key: constraint.key,
-            source: constraint.source.allowing(1),
+            source: constraint.source.clone().allowing(1),
             force,
             mu: constraint.mu,
             state,
@@ -38,7 +38,7 @@ impl ClosedPair {
     pub fn constraint(&self, at: &Configurations) -> Constraint {
         Constraint {
             mu: self.mu,
-            ..Constraint::new(self.source.untilted(), at)
+            ..Constraint::new(self.source.clone().untilted(), at)
         }
     }
 

@@ -114,6 +114,7 @@ impl Constraint {
         (gap, scale): (f64, f64),
         at: &Configurations,
     ) -> Self {
+        let shrinkage = source.allowed[0] - source.allowed[1];
         let dofs: [usize; N] = from_fn(|k| 2 * source.nodes[k / 2] + k % 2);
         // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
         let d = dofs.map(|dof| at.u[dof] - at.u0[dof]);
@@ -129,7 +130,7 @@ impl Constraint {
             slip: product(&force.tangential),
             mu: 0.0,
             mu_varies: false,
-            shrinkage: source.allowed[0] - source.allowed[1],
+            shrinkage,
             scale,
             source,
         }
@@ -143,10 +144,8 @@ impl Constraint {
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
     pub fn with_force_rows(&self) -> Self {
         Constraint {
-            dofs: self.dofs.clone(),
-            force_rows: self.force_rows.clone(),
             other_derivative_rows: None,
-            ..*self
+            ..self.clone()
         }
     }
 
@@ -240,6 +239,20 @@ impl Constraint {
     /// Its slave nodes.
     pub fn slave_nodes(&self) -> impl Iterator<Item = usize> {
         self.nodes().take(self.slave_dofs / 2)
+    }
+
+    /// The slave nodes whose state it says: of a weighted constraint only the one that it is named by.
+    pub fn named_slaves(&self) -> impl Iterator<Item = usize> {
+        let count = match self.is_weighted() {
+            true => 1,
+            false => self.slave_dofs / 2,
+        };
+        self.nodes().take(count)
+    }
+
+    /// Whether its gap is a mean over points of slave faces.
+    pub fn is_weighted(&self) -> bool {
+        !self.source.points.is_empty()
     }
 
     /// Bn^T Pn + Bt^T Pt at every node.

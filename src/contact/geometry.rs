@@ -15,7 +15,9 @@ use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE};
-use crate::model::{Contact, Element, ElementsAtNodes, Mesh, Model, SurfaceKind};
+use crate::model::{
+    Contact, ContactFormulation, Element, ElementsAtNodes, Mesh, Model, SurfaceKind,
+};
 use crate::vectors::{cross, difference, dot, length};
 
 /// A point in the local frame of a segment from a to b, which has its body on the left.
@@ -76,6 +78,11 @@ impl<'a> Positions<'a> {
         [x + u, y + v]
     }
 
+    /// Reference coordinates of the nodes (length).
+    pub fn reference(&self) -> &'a [[f64; 2]] {
+        self.x
+    }
+
     /// Projection of a node on a segment; `nodes` are slave, a and b.
     pub fn place(&self, nodes: [usize; 3]) -> Projection {
         let [s, a, b] = nodes.map(|node| self.of(node));
@@ -109,6 +116,17 @@ pub struct ContactSurfaces {
     pub sharp_corners: Vec<bool>,
     /// Interior of the bodies; behind a segment without an element everything is inside.
     pub interior: Arc<Interior>,
+    /// Faces at the slave nodes, where contact is from surface to surface.
+    pub slave_segments: Option<SlaveSegments>,
+}
+
+/// Slave faces and slave nodes of a contact from surface to surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlaveSegments {
+    /// Numbers of the slave nodes at the ends of every face, none of a node that takes no part.
+    pub ends: Vec<[Option<usize>; 2]>,
+    /// For every slave node its faces, each with the end (0 or 1) at which the node is.
+    pub at_nodes: Vec<Vec<[usize; 2]>>,
 }
 
 impl ContactSurfaces {
@@ -133,6 +151,7 @@ impl ContactSurfaces {
             slaves,
             segments,
             interior: Arc::default(),
+            slave_segments: None,
         }
     }
 
@@ -140,6 +159,34 @@ impl ContactSurfaces {
     pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
         self.interior = interior;
         self
+    }
+
+    /// With contact from surface to surface.
+    pub fn from_surface_to_surface(mut self) -> Self {
+        let numbered = self.slaves.iter().enumerate();
+        let numbers: HashMap<usize, usize> = numbered.map(|(k, &node)| (node, k)).collect();
+        let mut at_nodes = vec![Vec::new(); self.slaves.len()];
+        let ends: Vec<[Option<usize>; 2]> = (self.slave_faces.iter())
+            .map(|face| face.map(|node| numbers.get(&node).copied()))
+            .collect();
+        for (face, ends) in ends.iter().enumerate() {
+            for (end, number) in ends.iter().enumerate() {
+                if let Some(k) = *number {
+                    at_nodes[k].push([face, end]);
+                }
+            }
+        }
+        self.slave_segments = Some(SlaveSegments { ends, at_nodes });
+        self
+    }
+
+    /// Half the length of the longest slave face, at the positions `x`, of contact from surface to surface; else 0.
+    pub fn half_longest_face(&self, x: &[[f64; 2]]) -> f64 {
+        if self.slave_segments.is_none() {
+            return 0.0;
+        }
+        let half = |&[a, b]: &[usize; 2]| length(difference(x[a], x[b])) / 2.0;
+        self.slave_faces.iter().map(half).fold(0.0, f64::max)
     }
 
     /// With the exterior faces at the slave nodes, for a slave surface that is made of nodes.
@@ -236,6 +283,9 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
         )
         .with_sharp_corners(&model.mesh.coordinates)
         .with_interior(Arc::clone(&interior));
+        if contact.formulation == ContactFormulation::SurfaceToSurface {
+            return surfaces.from_surface_to_surface();
+        }
         match slave.kind {
             SurfaceKind::Nodes(_) => surfaces.with_exterior_faces(&model.mesh),
             _ => surfaces,

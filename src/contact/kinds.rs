@@ -1,21 +1,34 @@
 //! Kinds of contact constraints: which kind is made for which target. Section 3 of docs/theory.md.
 
+use nalgebra::DMatrix;
+
 use super::constraint::{Configurations, Constraint};
 use super::targets::PairTarget;
-use super::{node_to_corner, node_to_segment};
+use super::{node_to_corner, node_to_segment, surface_to_surface};
 
 impl Constraint {
     /// The constraint of a slave node at its target.
     pub fn new(source: PairTarget, at: &Configurations) -> Self {
+        if !source.points.is_empty() {
+            return surface_to_surface::constraint(source, at);
+        }
         match source.target.corner {
             None => node_to_segment::constraint(source, at),
             Some(corner) => node_to_corner::constraint(source, corner, at),
         }
     }
 
+    /// Contact stiffness Kc of the contact force, eq. (4.12), over the dofs of the constraint (force/length).
+    pub fn stiffness(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
+        match &self.source.points[..] {
+            [] => self.stiffness_of_node(force, at),
+            points => surface_to_surface::stiffness(self, points, force, at),
+        }
+    }
+
     /// The same constraint at the start, with the segment that holds the node there.
     pub fn at_start(&self, start: &Configurations) -> Self {
-        let mut source = self.source.allowing(0);
+        let mut source = surface_to_surface::at_start(self.source.clone().allowing(0));
         if let Some([a, b]) = source.from.take() {
             (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
         }
@@ -29,7 +42,7 @@ impl Constraint {
 
     /// The same constraint between other configurations, at whose start the same target holds the node.
     pub fn untilted(&self, at: &Configurations) -> Self {
-        Constraint::new(self.source.untilted(), at)
+        Constraint::new(self.source.clone().untilted(), at)
     }
 
     /// The same constraint between other configurations.
@@ -37,7 +50,7 @@ impl Constraint {
         Constraint {
             mu: self.mu,
             mu_varies: self.mu_varies,
-            ..Constraint::new(self.source, at)
+            ..Constraint::new(self.source.clone(), at)
         }
     }
 }

@@ -17,6 +17,7 @@ mod pairing;
 mod seam_tests;
 mod search;
 mod stiffness;
+mod surface_to_surface;
 mod targets;
 #[cfg(test)]
 pub(crate) mod testing;

@@ -72,10 +72,14 @@ pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
 
 /// Projection and rows of the node s on the segment from a to b.
 pub(super) fn segment_rows(nodes: [usize; 3], at: &Configurations) -> SegmentRows {
-    let (start, end) = (at.start(nodes), at.iterate(nodes));
+    rows_between([at.start(nodes), at.iterate(nodes)], at.form)
+}
+
+/// Projection and rows between the positions of s, a and b at start and end.
+pub(super) fn rows_between([start, end]: [[[f64; 2]; 3]; 2], form: RowForm) -> SegmentRows {
     let [s, a, b] = end;
     let projection = project(s, a, b);
-    let (force, derivative) = match at.form {
+    let (force, derivative) = match form {
         RowForm::End => end_rows(&projection, start, end),
         RowForm::DiscreteGradient => {
             let (start, end) = (Arms::new(start), Arms::new(end));
@@ -184,7 +188,7 @@ fn gradients(r: [f64; 2], e: [f64; 2]) -> [[f64; 6]; 3] {
 }
 
 /// p row + q other
-fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
+pub(super) fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
     std::array::from_fn(|k| p * row[k] + q * other[k])
 }
 

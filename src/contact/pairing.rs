@@ -4,10 +4,11 @@
 use smallvec::SmallVec;
 
 use super::closed_pairs::ClosedPairs;
-use super::constraint::Constraint;
+use super::constraint::{Constraint, RowForm};
 use super::geometry::Positions;
 use super::keys::NodeAtSegment;
 use super::search::{ListedSlave, Search};
+use super::surface_to_surface::find_points;
 use super::targets::{ContactTarget, PairTarget, SlaveNode, Targets};
 use super::tolerances::KEPT_BEYOND_ENDS;
 
@@ -17,6 +18,8 @@ use super::tolerances::KEPT_BEYOND_ENDS;
 /// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
 /// node now: passes that go to and fro across a corner come to rest with it.
 ///
+/// Of contacts from surface to surface the pairs are the points of slave faces, whose rows have the given form.
+///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
 pub fn find_targets(
@@ -24,6 +27,7 @@ pub fn find_targets(
     [u0, u]: [&[f64]; 2],
     before: &[Constraint],
     (held, kept): (&ClosedPairs, Option<f64>),
+    form: RowForm,
     pairs: &mut Vec<PairTarget>,
 ) {
     let [start, now] = [u0, u].map(|u| Positions::new(search.coordinates(), u));
@@ -33,6 +37,22 @@ pub fn find_targets(
         .peekable();
     pairs.clear();
     for listed in search.slaves() {
+        if listed.surfaces.slave_segments.is_some() {
+            if listed.key.slave == 0 {
+                find_points(
+                    listed.territory(),
+                    listed.key.contact,
+                    [start, now],
+                    form,
+                    pairs,
+                );
+            }
+            while before
+                .next_if(|pair| pair.key.slave <= listed.key)
+                .is_some()
+            {}
+            continue;
+        }
         let held_by = held.of_slave(listed.key).iter();
         let held_by: SmallVec<[usize; 4]> =
             held_by.map(|pair| pair.source.target.segment).collect();
@@ -88,6 +108,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         nodes: [s, a, b, c],
         from: target.from.map(|i| surfaces.segments[i]),
         allowed: listed.allowed(),
+        points: Vec::new(),
     }
 }
 

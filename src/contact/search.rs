@@ -188,7 +188,12 @@ pub struct ListedSlave<'a, 'm> {
     territory: &'a Territory<'m>,
 }
 
-impl<'a> ListedSlave<'a, '_> {
+impl<'a, 'm> ListedSlave<'a, 'm> {
+    /// Search of its contact.
+    pub(super) fn territory(&self) -> &'a Territory<'m> {
+        self.territory
+    }
+
     /// The node.
     pub fn node(&self) -> usize {
         self.surfaces.slaves[self.key.slave]
@@ -253,7 +258,8 @@ impl<'m> Territory<'m> {
         let mean = lengths().sum::<f64>() / contact.segments.len().max(1) as f64;
         Territory {
             contact,
-            reach: PAIRING_REACH * mean,
+            // of all points of a slave face, whose ends are listed
+            reach: PAIRING_REACH * mean + contact.half_longest_face(x),
             skin: SEARCH_MARGIN * mean,
             slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
             segments: Side::new(contact.segments.clone()),

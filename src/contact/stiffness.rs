@@ -32,9 +32,13 @@ use super::node_to_segment::tilt;
 const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
 
 impl Constraint {
-    /// Contact stiffness Kc of the contact force, eq. (4.12), over the dofs of the constraint
+    /// Contact stiffness Kc of the contact force of a node, eq. (4.12), over the dofs of the constraint
     /// (force/length). The weight of a corner and the length of its normal are those of the iterate.
-    pub fn stiffness(&self, [pn, pt]: [f64; 2], at: &Configurations) -> DMatrix<f64> {
+    pub(super) fn stiffness_of_node(
+        &self,
+        [pn, pt]: [f64; 2],
+        at: &Configurations,
+    ) -> DMatrix<f64> {
         let [s, a, b, c] = self.source.nodes;
         let mut k = DMatrix::zeros(self.dofs.len(), self.dofs.len());
         match self.source.target.corner {
@@ -99,8 +103,16 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, segment: usize) {
 /// d(Bn^T Pn + Bt^T Pt) of a node s on the segment from a to b, with respect to the end, over s, a
 /// and b.
 fn changes(nodes: [usize; 3], force: [f64; 2], at: &Configurations) -> Matrix6<f64> {
-    let (start, end) = (at.start(nodes), at.iterate(nodes));
-    let k = match at.form {
+    changes_between([at.start(nodes), at.iterate(nodes)], force, at.form)
+}
+
+/// The same between the positions of s, a and b at start and end.
+pub(super) fn changes_between(
+    [start, end]: [[[f64; 2]; 3]; 2],
+    force: [f64; 2],
+    form: RowForm,
+) -> Matrix6<f64> {
+    let k = match form {
         RowForm::End => changes_of_end_rows(end, force),
         RowForm::DiscreteGradient => changes_of_discrete_gradients(start, end, force),
     };
@@ -226,9 +238,9 @@ mod tests {
     }
 
     /// Central differences of the nodal forces over the dofs of a constraint, symmetric part.
-    fn quotients(source: PairTarget, form: RowForm) -> DMatrix<f64> {
+    fn quotients(source: &PairTarget, form: RowForm) -> DMatrix<f64> {
         let force = |u: &[f64]| {
-            let constraint = Constraint::new(source, &between(form, u));
+            let constraint = Constraint::new(source.clone(), &between(form, u));
             let mut force = [0.0; 10];
             constraint.add_force(FORCE, &mut force);
             DVector::from_iterator(
@@ -236,7 +248,7 @@ mod tests {
                 constraint.dofs.iter().map(|&d| force[d]),
             )
         };
-        let dofs = Constraint::new(source, &between(form, &U1)).dofs;
+        let dofs = Constraint::new(source.clone(), &between(form, &U1)).dofs;
         let columns: Vec<DVector<f64>> = dofs
             .iter()
             .map(|&dof| {
@@ -256,8 +268,8 @@ mod tests {
             for from in [None, Some([4, 1])] {
                 let source = target(face, [0, 1, 2, 2], from);
                 let at = between(form, &U1);
-                let found = Constraint::new(source, &at).stiffness(FORCE, &at);
-                let error = (&found - quotients(source, form)).amax();
+                let found = Constraint::new(source.clone(), &at).stiffness(FORCE, &at);
+                let error = (&found - quotients(&source, form)).amax();
                 assert!(error < 1e-8 * found.amax(), "{form:?} {from:?}: {error}");
             }
         }

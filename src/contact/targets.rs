@@ -59,8 +59,32 @@ impl ContactTarget {
     }
 }
 
-/// Which slave node meets which segment, or which corner.
+/// A point of a slave face at the line of a master segment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SurfacePoint {
+    /// Ends of the slave face, and ends a and b of the master segment.
+    pub nodes: [usize; 4],
+    /// Place on the slave face, 0 at its first end and 1 at its second.
+    pub eta: f64,
+    /// Part of its gap in that of the constraint, w N/c of eq. (3.18).
+    pub weight: f64,
+    /// Where it was at the start of the increment.
+    pub origin: Origin,
+}
+
+/// The master segment that a point was over at the start of the increment.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Origin {
+    /// The same.
+    Same,
+    /// Another one, with these ends.
+    Other([usize; 2]),
+    /// None: it has come in over the end of the master surface.
+    Outside,
+}
+
+/// Which slave node meets which segment, or which corner, or what the points of its faces meet.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairTarget {
     /// Key of their constraint.
     pub key: ConstraintKey,
@@ -73,12 +97,22 @@ pub struct PairTarget {
     pub from: Option<[usize; 2]>,
     /// Overlap that a fit allows the node at the start of the increment and at its end (length), eq. (3.15).
     pub allowed: [f64; 2],
+    /// Points whose gaps are averaged, from surface to surface; none of a node that meets a segment or corner.
+    pub points: Vec<SurfacePoint>,
 }
 
 impl PairTarget {
     /// The same target, whatever held the node at the start.
     pub(super) fn untilted(self) -> Self {
-        PairTarget { from: None, ..self }
+        let mut points = self.points;
+        for point in &mut points {
+            point.origin = Origin::Same;
+        }
+        PairTarget {
+            from: None,
+            points,
+            ..self
+        }
     }
 
     /// The same target in one configuration, with the overlap that is allowed at the start of the increment (0) or at

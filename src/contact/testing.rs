@@ -21,6 +21,7 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
         nodes,
         from: None,
         allowed: [0.0; 2],
+        points: Vec::new(),
     }
 }
 

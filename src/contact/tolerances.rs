@@ -96,11 +96,27 @@ pub(crate) const CLEAR_PRODUCT: f64 = 1e-9;
 pub(crate) const CROSSING_BEYOND_ENDS: f64 = 1e-9;
 /// Depth behind a segment that is round-off of positions.
 pub(crate) const DEPTH_ROUND_OFF: f64 = 1e-9;
+/// Depth of a node behind a segment that means of gaps may leave it: what is beyond has not been held.
+pub(crate) const NODE_DEPTH: f64 = 0.5;
 /// Depth to which a free node may clip a corner on its straight path within an increment; halving
 /// the increment need not find a node inside when it is less.
 pub(crate) const CORNER_CLIP_DEPTH: f64 = 0.01;
 /// Distance from the end of a segment at which a crossing is at the corner itself.
 pub(crate) const SEGMENT_END: f64 = 1e-6;
+
+// Contact from surface to surface.
+
+/// Cosine of the angle between a slave face and a master segment, turned to each other, up to which they take part.
+pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Part of a slave face that is no cell.
+pub(crate) const LEAST_CELL: f64 = 1e-13;
+/// Part of the weight of a slave node that must be covered.
+pub(crate) const LEAST_COVER: f64 = 1e-6;
+/// Tangent of the tilt of the force at a point that has changed its segment, beyond which it keeps the segment of the
+/// start, unless the surface turns by half as much.
+pub(crate) const POINT_TILT: f64 = 0.3;
+/// Mean overlap (segment lengths) that is left as it is where the end of a master surface has come over it.
+pub(crate) const MOST_LEFT_OVERLAP: f64 = 0.02;
 
 // Preparation of a model.
 

@@ -11,7 +11,7 @@ use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
 use super::search::Search;
 use super::targets::raised;
-use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, SEGMENT_END};
+use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END};
 use crate::linear::{larger, largest};
 use crate::vectors::{cross, difference};
 
@@ -40,6 +40,10 @@ pub fn find_penetration(
             closed,
             unsolved,
             allowed: listed.allowed(),
+            depth: match listed.surfaces.slave_segments {
+                Some(_) => NODE_DEPTH,
+                None => DEPTH_ROUND_OFF,
+            },
         };
         events.clear();
         for candidate in listed.candidates() {
@@ -66,6 +70,8 @@ struct NodePath<'a> {
     unsolved: &'a [f64],
     /// Overlap that a fit allows the node at the start and at the end (length).
     allowed: [f64; 2],
+    /// Depth that is none (segment lengths).
+    depth: f64,
 }
 
 impl NodePath<'_> {
@@ -200,7 +206,7 @@ impl NodePath<'_> {
     fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
         let [a, b] = self.contact.segments[i];
         let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
-        depth <= largest(&unsolved) + DEPTH_ROUND_OFF * length
+        depth <= largest(&unsolved) + self.depth * length
     }
 
     /// Whether the node has crossed a segment near its end and is outside the corner there: behind the
@@ -270,11 +276,14 @@ fn turns_left(first: &Projection, second: &Projection) -> bool {
 /// ```
 ///
 /// h being the distances of the ends p and q of the edge from the line of the segment from a to b, and the other
-/// way round. Edges with a common node do not count.
+/// way round. Edges with a common node do not count, nor do those of contact from surface to surface, whose gaps are means.
 pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let mut most = 0.0;
-    for listed in search.slaves().filter(|listed| !listed.is_fitted()) {
+    for listed in search
+        .slaves()
+        .filter(|listed| !listed.is_fitted() && listed.surfaces.slave_segments.is_none())
+    {
         let slave = listed.node();
         let Some(adjacent) = listed.surfaces.adjacent[listed.key.slave] else {
             continue;

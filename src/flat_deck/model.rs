@@ -208,7 +208,7 @@ pub(super) fn pair_row(contact: &Contact, model: &Model, lines: &mut DeckWriter)
 fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut DeckWriter) {
     let mut parameters = vec![
         set("INTERACTION", interactions.name(&contact.interaction)),
-        set("TYPE", "NODE TO SURFACE"),
+        set("TYPE", contact.formulation.name()),
     ];
     parameters.extend(contact.adjust.map(|adjust| match adjust {
         Adjust::Within(reach) => set("ADJUST", number(reach.above)),

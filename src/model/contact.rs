@@ -31,6 +31,26 @@ pub struct Wear {
     pub by_friction: bool,
 }
 
+/// What of the slave surface is kept out of the master.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ContactFormulation {
+    /// Every slave node.
+    #[default]
+    NodeToSegment,
+    /// Means over points of the slave faces, one for each slave node.
+    SurfaceToSurface,
+}
+
+impl ContactFormulation {
+    /// Its name in decks and logs.
+    pub fn name(self) -> &'static str {
+        match self {
+            ContactFormulation::NodeToSegment => "NODE TO SURFACE",
+            ContactFormulation::SurfaceToSurface => "SURFACE TO SURFACE",
+        }
+    }
+}
+
 /// A slave surface whose nodes may not enter the body behind the master surface; self-contact if
 /// both are the same surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +61,8 @@ pub struct Contact {
     pub master: usize,
     /// The contact law.
     pub interaction: Interaction,
+    /// What is kept out.
+    pub formulation: ContactFormulation,
     /// Slave nodes that are moved onto the master surface before the start.
     pub adjust: Option<Adjust>,
     /// Slave nodes that take no part (indices, increasing).

@@ -22,8 +22,8 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
 pub use contact::{
-    ALL_EXTERIOR, Adjust, Contact, Equation, Hinge, Interaction, Reach, RigidBody, Surface,
-    SurfaceKind, TurningBody, Wear,
+    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Equation, Hinge, Interaction, Reach,
+    RigidBody, Surface, SurfaceKind, TurningBody, Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};

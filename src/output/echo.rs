@@ -11,9 +11,9 @@ use super::status::monitored;
 use crate::diagnostics::Sources;
 use crate::dynamics::rigid_inertia;
 use crate::model::{
-    Connector, ConnectorLaw, Contact, ContactChanges, EdgeScales, Element, ElementType, Frames,
-    Impact, ImpactTime, Incrementation, Interference, LandingRule, Load, Model, Procedure, Scheme,
-    Settings, SolverChoice, Step, SurfaceKind,
+    Connector, ConnectorLaw, Contact, ContactChanges, ContactFormulation, EdgeScales, Element,
+    ElementType, Frames, Impact, ImpactTime, Incrementation, Interference, LandingRule, Load,
+    Model, Procedure, Scheme, Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -267,11 +267,13 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         true => format!("{} ({nodes}, {edges}) with itself", slave.name),
         false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
     };
-    let pieces = [
-        sides,
-        contact.interaction.friction.to_string(),
-        smallest_gap(gaps),
-    ];
+    let formulation = match contact.formulation {
+        ContactFormulation::NodeToSegment => None,
+        ContactFormulation::SurfaceToSurface => Some("surface to surface".to_owned()),
+    };
+    let mut pieces = vec![sides];
+    pieces.extend(formulation);
+    pieces.extend([contact.interaction.friction.to_string(), smallest_gap(gaps)]);
     wrap("contact", &pieces)
 }
 

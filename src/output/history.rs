@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use hdf5::Group;
 
-use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group};
+use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group, text_attribute};
 use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
 use super::fields::{PLASTIC_STRAIN, STRAIN_AROUND};
 use super::model_group::contact_names;
@@ -219,6 +219,7 @@ impl<'m> History<'m> {
         let own = move |r: &IncrementReport, each: &mut dyn FnMut(&ContactResultant)| {
             r.contacts.get(k).into_iter().for_each(each);
         };
+        text_attribute(at, "formulation", contact.formulation.name())?;
         self.table(at, &[], &CONTACT, own)?;
         let mut rigid = self.model.rigid_bodies.iter();
         if rigid.any(|body| body.surface == Some(contact.master)) {

@@ -15,6 +15,7 @@ use super::run_record::UNFINISHED;
 use super::warnings::{Findings, Losses, Touches, never_closed, part};
 use crate::dynamics::{Energy, Touch};
 use crate::linear::{larger, largest};
+use crate::model::ContactFormulation;
 
 /// Why a result file could not be read.
 #[derive(Debug, Error)]
@@ -364,7 +365,13 @@ fn read_open(at: &Group) -> hdf5::Result<Vec<String>> {
 fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {
     let read = |name: String| {
         let normal: Vec<f64> = column(at, &format!("{name}/normal"))?;
-        Ok((name, largest(&normal)))
+        // a file from before there was this attribute has nodes on segments
+        let formulation = text(&at.group(&name)?, "formulation").unwrap_or_default();
+        let shown = match formulation == ContactFormulation::SurfaceToSurface.name() {
+            true => format!("{name}, surface to surface"),
+            false => name,
+        };
+        Ok((shown, largest(&normal)))
     };
     at.member_names()?.into_iter().map(read).collect()
 }

@@ -184,6 +184,7 @@ mod tests {
     use super::*;
     use crate::contact::contact_surfaces;
     use crate::diagnostics::Span;
+    use crate::model::ContactFormulation;
     use crate::model::{ElementType, Face, Interaction, Surface, SurfaceKind};
 
     /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
@@ -239,6 +240,7 @@ mod tests {
             slave: 0,
             master: 1,
             interaction: Interaction::default(),
+            formulation: ContactFormulation::default(),
             adjust: Some(Adjust::Within(Reach {
                 above: 0.1 * edge,
                 below: f64::INFINITY,

@@ -416,8 +416,8 @@ pub(crate) mod tests {
     use crate::diagnostics::Span;
     use crate::materials::Law;
     use crate::model::{
-        Contact, Damping, Element, ElementType, Equation, Interaction, Material, Model, Section,
-        Surface, SurfaceKind,
+        Contact, ContactFormulation, Damping, Element, ElementType, Equation, Interaction,
+        Material, Model, Section, Surface, SurfaceKind,
     };
 
     /// A bent block of cells of two sizes, each a quadrilateral or two triangles, in contact with itself
@@ -475,6 +475,7 @@ pub(crate) mod tests {
             slave: 0,
             master: 0,
             interaction: Interaction::default(),
+            formulation: ContactFormulation::default(),
             adjust: None,
             left_out: Vec::new(),
             is_interference_fit: false,

@@ -10,9 +10,10 @@ use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, Face, Friction, FrictionCurve, FrictionLaw, Interaction, Reach,
-    Surface, SurfaceKind, Wear,
+    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
+    ImpactTime, Interaction, LandingRule, Mesh, Model, Reach, Surface, SurfaceKind, Wear,
 };
+use crate::vectors::{difference, dot, length};
 use std::collections::{HashMap, HashSet};
 
 /// Reads the contacts with their interactions.
@@ -29,10 +30,18 @@ pub(crate) fn read(
         let name = card.required("INTERACTION", cx.d);
         let interaction = name.and_then(|name| interactions.find(name, cx).cloned());
         let adjust = adjust(card, sets, cx);
+        let formulation = match card.choice("TYPE") {
+            Some("SURFACE TO SURFACE") => ContactFormulation::SurfaceToSurface,
+            _ => ContactFormulation::NodeToSegment,
+        };
         for row in card.rows.iter() {
             let contact = contact(row, interaction.clone(), surfaces, cx);
             report_adjusted_self_contact(contact.as_ref(), card, cx);
-            contacts.extend(contact.map(|contact| Contact { adjust, ..contact }));
+            contacts.extend(contact.map(|contact| Contact {
+                adjust,
+                formulation,
+                ..contact
+            }));
         }
     }
     report_repeated(&contacts, cx);
@@ -48,6 +57,69 @@ pub(crate) fn read(
     }
     contacts.extend(general);
     contacts
+}
+
+/// Takes node to surface where contact from surface to surface cannot be used, with a warning that says why.
+pub(super) fn restrict_formulations(model: &mut Model, cx: &mut Context) {
+    for number in 0..model.contacts.len() {
+        let contact = &model.contacts[number];
+        if contact.formulation == ContactFormulation::NodeToSegment {
+            continue;
+        }
+        if let Some(why) = not_from_surface_to_surface(contact, model) {
+            let message = "TYPE=SURFACE TO SURFACE is taken as NODE TO SURFACE";
+            cx.d.warning_once(Code::IgnoredParameter, contact.span, message)
+                .help(why);
+            model.contacts[number].formulation = ContactFormulation::NodeToSegment;
+        }
+    }
+}
+
+/// Why a contact cannot be from surface to surface, if it cannot.
+fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'static str> {
+    let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
+    let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));
+    let settings = || model.steps.iter().map(|step| &step.settings);
+    let is_general = |other: &Contact| model.surfaces[other.slave].name == ALL_EXTERIOR;
+    if !is_of_faces(slave) || !is_of_faces(master) {
+        Some("both surfaces must be made of element faces")
+    } else if contact.is_self_contact() {
+        Some("a surface that touches itself has pairs of nodes and segments")
+    } else if model.contacts.iter().any(is_general) {
+        Some("with general contact all pairs are nodes and segments")
+    } else if model.mesh.is_axisymmetric() {
+        Some("bodies of revolution have pairs of nodes and segments")
+    } else if !contact.left_out.is_empty() {
+        Some("some of the slave nodes are tied")
+    } else if [slave, master].iter().any(|s| has_corner(s, &model.mesh)) {
+        Some(
+            "a surface turns by more than 30 degrees at a node: name its faces as surfaces of their own",
+        )
+    } else if settings().any(|s| s.impact_time == ImpactTime::Event) {
+        Some("impacts at their times need nodes that land on segments")
+    } else if settings().any(|s| s.landing == LandingRule::Return) {
+        Some("landings that give energy back need pairs of nodes and segments")
+    } else if model.redistributes_mass() {
+        Some("redistributed mass needs pairs of nodes and segments")
+    } else {
+        None
+    }
+}
+
+/// Cosine of 30 degrees, the most that a surface may turn at a node.
+const CORNER_COSINE: f64 = 0.866;
+
+/// Whether a surface has a corner between two of its segments.
+fn has_corner(surface: &Surface, mesh: &Mesh) -> bool {
+    let segments = surface.segments(mesh);
+    let starting: HashMap<usize, usize> = segments.iter().map(|&[a, b]| (a, b)).collect();
+    let x = |node: usize| mesh.coordinates[node];
+    segments.iter().any(|&[a, b]| {
+        starting.get(&b).is_some_and(|&c| {
+            let (e, f) = (difference(x(a), x(b)), difference(x(b), x(c)));
+            dot(e, f) < CORNER_COSINE * length(e) * length(f)
+        })
+    })
 }
 
 /// A clearance or a node set.
@@ -104,6 +176,7 @@ fn contact(
         slave: slave.0,
         master: master.0,
         interaction: interaction?,
+        formulation: ContactFormulation::default(),
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,
@@ -451,6 +524,7 @@ fn general(
         slave: surface,
         master: surface,
         interaction: assigned.ok()?,
+        formulation: ContactFormulation::default(),
         adjust,
         left_out: Vec::new(),
         is_interference_fit,

@@ -121,7 +121,7 @@ fn read(cx: &mut Context) -> Model {
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
     let hinges = couplings::hinges(&links, &steps.all, cx);
-    let model = Model {
+    let mut model = Model {
         title: title(&outline),
         mesh: mesh_index.mesh,
         sets: named_sets(sets, steps.histories, mesh_index.instances),
@@ -142,6 +142,8 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: bodies,
         restarts: steps.restarts,
     };
+    contact::restrict_formulations(&mut model, cx);
+    let model = model;
     let all: [&dyn Fn(&mut Context); 9] = [
         &|cx| checks::axis(&model, &mesh_index.places, cx),
         &|cx| connectors::check(&model, &mesh_index.connectors, cx),

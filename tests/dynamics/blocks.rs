@@ -8,9 +8,9 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, ContactChanges, Damping, Element, ElementType, Face, Frames, Friction,
-    Incrementation, Increments, Interaction, Load, Material, Model, Procedure, Scheme, Section,
-    Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
+    BodyForce, Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face,
+    Frames, Friction, Incrementation, Increments, Interaction, Load, Material, Model, Procedure,
+    Scheme, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -156,6 +156,7 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
             friction: Friction::constant(friction),
             ..Interaction::default()
         },
+        formulation: ContactFormulation::default(),
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,

@@ -7,7 +7,8 @@
 
 use stickslip::diagnostics::Span;
 use stickslip::model::{
-    Contact, ElementType, Face, Interaction, Model, Settings, Surface, SurfaceKind,
+    Contact, ContactFormulation, ElementType, Face, Interaction, Model, Settings, Surface,
+    SurfaceKind,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -42,6 +43,7 @@ fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, V
         slave: 0,
         master: 0,
         interaction: Interaction::default(),
+        formulation: ContactFormulation::default(),
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,

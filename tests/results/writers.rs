@@ -20,9 +20,10 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, ContactChanges, Damping, Element, ElementType, Face, Frames, Friction, HistorySet,
-    Incrementation, Increments, Interaction, Material, Mesh, Model, NamedSets, Procedure,
-    RequestedFields, Section, Set, Settings, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face, Frames,
+    Friction, HistorySet, Incrementation, Increments, Interaction, Material, Mesh, Model,
+    NamedSets, Procedure, RequestedFields, Section, Set, Settings, Step, Support, SupportMotion,
+    Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -136,6 +137,7 @@ fn contact() -> Contact {
             friction: Friction::constant(0.3),
             ..Interaction::default()
         },
+        formulation: ContactFormulation::default(),
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,

@@ -405,7 +405,7 @@ fn held_impulses(
         if all_push {
             let less = closed.iter().map(|pair| {
                 let at = constraints.iter().position(|c| c.key == pair.key);
-                let mut less = *pair;
+                let mut less = pair.clone();
                 less.force[0] -= at.map_or(0.0, |at| held[at]);
                 less
             });

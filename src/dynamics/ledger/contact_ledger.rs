@@ -182,7 +182,7 @@ impl ContactLedger {
         let mut increments = vec![0.0_f64; self.slip.len()];
         for (constraint, _) in solved.contact.forces.acting() {
             let slip = constraint.tangential_motion(&solved.d).abs();
-            for node in constraint.slave_nodes() {
+            for node in constraint.named_slaves() {
                 increments[node] = increments[node].max(slip);
             }
         }

@@ -475,7 +475,10 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
     let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
         let p = problem.positions(&start.u).place(constraint.pair().nodes);
         let gap = p.gap + constraint.allowed_at_start();
-        let was_beyond = !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length;
+        let was_beyond = match constraint.is_weighted() {
+            true => constraint.start_gap < -CLOSED_GAP * constraint.scale,
+            false => !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length,
+        };
         // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
         let work = if was_beyond {
             pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage)

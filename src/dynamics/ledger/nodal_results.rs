@@ -66,7 +66,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
             Some(ContactState::Stick) => NodeStatus::Stick,
             Some(_) => NodeStatus::Slip,
         };
-        for slave in constraint.slave_nodes() {
+        for slave in constraint.named_slaves() {
             results.gap[slave] = results.gap[slave].min(gap);
             results.status[slave] = results.status[slave].max(status);
         }
@@ -103,7 +103,7 @@ fn friction_coefficients(problem: &StepProblem, forces: &ContactForces) -> Vec<f
     }
     let mut means = vec![MeanCoefficient::default(); problem.model.mesh.node_count()];
     for (constraint, pair) in forces.acting() {
-        for node in constraint.slave_nodes() {
+        for node in constraint.named_slaves() {
             means[node].add(constraint.mu, pair.force[0]);
         }
     }

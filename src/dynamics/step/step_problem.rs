@@ -250,8 +250,12 @@ impl StepProblem<'_> {
         let configurations = self.configurations(u0, u);
         constraints.clear();
         constraints.reserve(pairs.len());
-        for source in pairs.iter().filter(|pair| self.unknowns.moves(&pair.nodes)) {
-            let constraint = Constraint::new(*source, &configurations);
+        let moves = |pair: &&PairTarget| {
+            let mut points = pair.points.iter();
+            self.unknowns.moves(&pair.nodes) || points.any(|q| self.unknowns.moves(&q.nodes))
+        };
+        for source in pairs.iter().filter(moves) {
+            let constraint = Constraint::new(source.clone(), &configurations);
             if self.unknowns.opens(&constraint) {
                 constraints.push(constraint);
             }

@@ -193,7 +193,8 @@ impl<'m> Workspace<'m> {
         } = self;
         meter.time(|t| &mut t.search, || search.cover(increment[1]));
         let write = || {
-            find_targets(search, increment, before, (held, kept), pairs);
+            let form = problem.integration.row_form();
+            find_targets(search, increment, before, (held, kept), form, pairs);
             problem.constraints(pairs, increment, constraints);
         };
         meter.time(|t| &mut t.contact, write);

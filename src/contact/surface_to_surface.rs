@@ -1,0 +1,632 @@
+//! Constraints from surface to surface: one for every slave node, whose gap is a weighted mean of the
+//! gaps of points inside the slave faces. Section 3 of docs/theory.md, From surface to surface.
+//!
+//! A point is a node that is not there: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in
+//! the positions of the nodes, so that rows and stiffness are those of a node on a segment.
+
+use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
+use smallvec::SmallVec;
+
+use super::constraint::{Configurations, Constraint, PerDof, RowForm, RowPair, Rows};
+use super::geometry::{ContactSurfaces, Positions, Projection, project};
+use super::keys::{ConstraintKey, SlaveKey};
+use super::node_to_segment::{SegmentRows, rows_between, sum_of};
+use super::search::Territory;
+use super::stiffness::changes_between;
+use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, position_round_off};
+use super::tolerances::{FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, POINT_TILT};
+use crate::vectors::{cross, difference, dot, length};
+
+/// A slave face with the master segments that it faces, and where it is over each.
+struct Face {
+    ends: [usize; 2],
+    segments: SmallVec<[usize; 8]>,
+}
+
+/// Part [low, high] of a slave face that is over a master segment.
+type Cells = SmallVec<[(f64, f64, usize); 8]>;
+
+/// Adds the points of all slave nodes of a contact between start and iterate, a constraint for each node
+/// that is covered.
+///
+/// ```text
+/// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
+/// ```
+///
+/// w_q is half the reference length of its cell: two Gauss points in a cell, where g_q is linear and N_j g_q
+/// quadratic. Cells end on the bisectors of the master's vertices, of the iterate and, between which rows are
+/// exact differences, of the start as well.
+pub(super) fn find_points(
+    territory: &Territory,
+    contact: usize,
+    positions: [Positions; 2],
+    form: RowForm,
+    pairs: &mut Vec<PairTarget>,
+) {
+    let surfaces = territory.surfaces();
+    let Some(slave) = &surfaces.slave_segments else {
+        return;
+    };
+    let finder = Finder {
+        surfaces,
+        positions,
+        form,
+    };
+    let of_faces: Vec<Vec<SurfacePoint>> = (surfaces.slave_faces.iter().zip(&slave.ends))
+        .map(|(&ends, numbers)| finder.points(territory, ends, *numbers))
+        .collect();
+    for (number, (&node, faces)) in surfaces.slaves.iter().zip(&slave.at_nodes).enumerate() {
+        let mut points = Vec::new();
+        let (mut covered, mut whole) = (0.0, 0.0);
+        let mut nearest = (0.0, [0; 2]);
+        for &[face, end] in faces {
+            whole += finder.reference_length(surfaces.slave_faces[face]) / 2.0;
+            for point in &of_faces[face] {
+                let hat = if end == 0 { 1.0 - point.eta } else { point.eta };
+                let weight = point.weight * hat;
+                covered += weight;
+                let [.., a, b] = point.nodes;
+                if hat > nearest.0 {
+                    nearest = (hat, [a, b]);
+                }
+                points.push(SurfacePoint { weight, ..*point });
+            }
+        }
+        if covered <= LEAST_COVER * whole {
+            continue;
+        }
+        points.iter_mut().for_each(|q| q.weight /= covered);
+        let [a, b] = nearest.1;
+        pairs.push(PairTarget {
+            key: ConstraintKey {
+                slave: SlaveKey {
+                    contact,
+                    slave: number,
+                },
+                segment: 0,
+            },
+            target: ContactTarget::face(0),
+            nodes: [node, a, b, b],
+            from: None,
+            allowed: [0.0; 2],
+            points,
+        });
+    }
+}
+
+/// The points of slave faces between start and iterate.
+struct Finder<'a> {
+    surfaces: &'a ContactSurfaces,
+    positions: [Positions<'a>; 2],
+    form: RowForm,
+}
+
+impl Finder<'_> {
+    /// Points of the face between two nodes, of the given slave numbers, with weights w_q (length).
+    fn points(
+        &self,
+        territory: &Territory,
+        ends: [usize; 2],
+        numbers: [Option<usize>; 2],
+    ) -> Vec<SurfacePoint> {
+        let face = Face {
+            ends,
+            segments: self.faced(territory, ends, numbers),
+        };
+        let [start, now] = [0, 1].map(|k| self.cells(&face, k));
+        let mut cuts: SmallVec<[f64; 32]> = SmallVec::new();
+        let of_start = start
+            .iter()
+            .filter(|_| self.form == RowForm::DiscreteGradient);
+        for &(low, high, _) in now.iter().chain(of_start) {
+            cuts.extend([low, high]);
+        }
+        cuts.sort_by(f64::total_cmp);
+        let mut points = Vec::new();
+        for cell in cuts.windows(2) {
+            let (part, middle) = (cell[1] - cell[0], f64::midpoint(cell[0], cell[1]));
+            if part <= LEAST_CELL {
+                continue;
+            }
+            let Some(j) = self.over(&face, &now, middle, 1) else {
+                continue;
+            };
+            let i = match self.form {
+                RowForm::End => Some(j),
+                RowForm::DiscreteGradient => self.over(&face, &start, middle, 0),
+            };
+            // two Gauss points, each with half of the cell
+            for side in [-1.0, 1.0] {
+                points.push(self.point(
+                    ends,
+                    middle + side * part / 12_f64.sqrt(),
+                    self.reference_length(ends) * part / 2.0,
+                    [i, Some(j)],
+                ));
+            }
+        }
+        points
+    }
+
+    /// A point that was over segment i at the start and is over j now. Where its force would be tilted too far it
+    /// keeps the segment of the start.
+    fn point(
+        &self,
+        ends: [usize; 2],
+        eta: f64,
+        weight: f64,
+        [i, j]: [Option<usize>; 2],
+    ) -> SurfacePoint {
+        let segment = |i: usize| self.surfaces.segments[i];
+        let j = j.unwrap_or_default();
+        let point = |segment: [usize; 2], origin: Origin| SurfacePoint {
+            nodes: [ends[0], ends[1], segment[0], segment[1]],
+            eta,
+            weight,
+            origin,
+        };
+        let origin = match i {
+            Some(i) if i == j => return point(segment(j), Origin::Same),
+            Some(i) => Origin::Other(segment(i)),
+            None => Origin::Outside,
+        };
+        let tilted = point(segment(j), origin);
+        let places = [0, 1].map(|k| tilted.places(|node| self.positions[k].of(node)));
+        let start = |i: usize| self.tangent(segment(i), 0);
+        let turn = i.map_or(0.0, |i| cross(start(i), start(j)).abs());
+        let kappa = tilted.tilt(places, |node| self.positions[0].of(node));
+        match kappa.is_some_and(|kappa| kappa.abs() <= POINT_TILT.max(2.0 * turn)) {
+            true => tilted,
+            false => point(segment(i.unwrap_or(j)), Origin::Same),
+        }
+    }
+
+    /// Segments that a face is turned to at the start, within reach.
+    fn faced(
+        &self,
+        territory: &Territory,
+        ends: [usize; 2],
+        numbers: [Option<usize>; 2],
+    ) -> SmallVec<[usize; 8]> {
+        let mut faced: SmallVec<[usize; 8]> = SmallVec::new();
+        for number in numbers.into_iter().flatten() {
+            for candidate in territory.candidates(number) {
+                if self.faces(ends, candidate.segment) {
+                    let [a, b] = self.surfaces.segments[candidate.segment];
+                    let gaps = ends.map(|s| self.positions[0].place([s, a, b]).gap);
+                    let is_near = gaps.iter().any(|gap| gap.abs() <= candidate.reach)
+                        || gaps[0] * gaps[1] < 0.0;
+                    if is_near {
+                        faced.push(candidate.segment);
+                    }
+                }
+            }
+        }
+        faced.sort_unstable();
+        faced.dedup();
+        faced
+    }
+
+    /// Whether a face and a segment are turned to each other at the start.
+    fn faces(&self, ends: [usize; 2], segment: usize) -> bool {
+        let segment = self.surfaces.segments[segment];
+        let has_own = ends.iter().any(|node| segment.contains(node));
+        !has_own && dot(self.tangent(ends, 0), self.tangent(segment, 0)) < -FACING_COSINE
+    }
+
+    /// Unit vector from the first to the second node at the start (0) or in the iterate (1).
+    fn tangent(&self, [a, b]: [usize; 2], k: usize) -> [f64; 2] {
+        let [a, b] = [a, b].map(|node| self.positions[k].of(node));
+        let e = difference(a, b);
+        let length = length(e);
+        e.map(|e| e / length)
+    }
+
+    /// The parts of a face over its segments, at the start (0) or in the iterate (1): those between the bisectors of the
+    /// vertices, or the normals at open ends.
+    ///
+    /// ```text
+    /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
+    /// ```
+    fn cells(&self, face: &Face, k: usize) -> Cells {
+        let [x1, x2] = face.ends.map(|node| self.positions[k].of(node));
+        let normal = |i: usize| {
+            let [x, y] = self.tangent(self.surfaces.segments[i], k);
+            [y, -x]
+        };
+        let eta = |i: usize, vertex: usize, neighbour: Option<usize>| {
+            let neighbour = neighbour.filter(|&j| self.faces(face.ends, j));
+            let (n, other) = (normal(i), neighbour.map_or([0.0; 2], normal));
+            let m = [n[0] + other[0], n[1] + other[1]];
+            let v = self.positions[k].of(vertex);
+            -cross(difference(v, x1), m) / cross(difference(x1, x2), m)
+        };
+        let mut cells = Cells::new();
+        for &i in &face.segments {
+            let [a, b] = self.surfaces.segments[i];
+            let at_a = eta(i, a, self.surfaces.previous[i]);
+            let at_b = eta(i, b, self.surfaces.next[i]);
+            // the face runs against the segment
+            let (low, high) = (at_b.max(0.0), at_a.min(1.0));
+            if low < high {
+                cells.push((low, high, i));
+            }
+        }
+        cells
+    }
+
+    /// The nearest segment that a place of a face is over.
+    fn over(&self, face: &Face, cells: &Cells, eta: f64, k: usize) -> Option<usize> {
+        let [x1, x2] = face.ends.map(|node| self.positions[k].of(node));
+        let x = between(x1, x2, eta);
+        let over = cells
+            .iter()
+            .filter(|(low, high, _)| (*low..=*high).contains(&eta));
+        let distance = |i: usize| {
+            let [a, b] = self.surfaces.segments[i].map(|node| self.positions[k].of(node));
+            project(x, a, b).gap.abs()
+        };
+        over.map(|&(_, _, i)| i)
+            .min_by(|i, j| distance(*i).total_cmp(&distance(*j)))
+    }
+
+    /// Length of a face in the reference configuration.
+    fn reference_length(&self, [a, b]: [usize; 2]) -> f64 {
+        let x = self.positions[0].reference();
+        length(difference(x[a], x[b]))
+    }
+}
+
+/// (1 - eta) x_1 + eta x_2
+fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
+    [0, 1].map(|i| (1.0 - eta) * x1[i] + eta * x2[i])
+}
+
+impl SurfacePoint {
+    /// Positions of the point and of a and b.
+    fn places(&self, at: impl Fn(usize) -> [f64; 2]) -> [[f64; 2]; 3] {
+        let [x1, x2, a, b] = self.nodes.map(at);
+        [between(x1, x2, self.eta), a, b]
+    }
+
+    fn configurations(&self, at: &Configurations) -> [[[f64; 2]; 3]; 2] {
+        let of = |[x1, x2, a, b]: [[f64; 2]; 4]| [between(x1, x2, self.eta), a, b];
+        [of(at.start(self.nodes)), of(at.iterate(self.nodes))]
+    }
+
+    /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b;
+    /// none of a point that has not moved along j.
+    ///
+    /// ```text
+    /// kappa = (g0_j - g0_i)/s,   g0_i = max(g0_j, 0) of a point that was over none    eq. (7.8)
+    /// ```
+    fn tilt(
+        &self,
+        [start, end]: [[[f64; 2]; 3]; 2],
+        at_start: impl Fn(usize) -> [f64; 2],
+    ) -> Option<f64> {
+        let [p, q] = [start, end].map(|[s, a, b]| project(s, a, b));
+        let before = match self.origin {
+            Origin::Same => return Some(0.0),
+            Origin::Other(segment) => {
+                let [a, b] = segment.map(at_start);
+                project(start[0], a, b).gap
+            }
+            Origin::Outside => p.gap.max(0.0),
+        };
+        let rise = p.gap - before;
+        let slip = slip(&p, &q);
+        let is_slip = slip.abs() > position_round_off(start[0]);
+        match rise == 0.0 {
+            true => Some(0.0),
+            false => is_slip.then(|| rise / slip),
+        }
+    }
+
+    /// Projection and rows over the point, a and b, the force row tilted, eq. (7.8); and the tilt.
+    fn rows(&self, at: &Configurations) -> (SegmentRows, f64) {
+        let places = self.configurations(at);
+        let mut rows = rows_between(places, at.form);
+        let kappa = match at.form {
+            RowForm::End => 0.0,
+            RowForm::DiscreteGradient => {
+                let tilt = self.tilt(places, |node| at.start([node])[0]);
+                tilt.unwrap_or(0.0)
+            }
+        };
+        if kappa != 0.0 {
+            let RowPair { normal, tangential } = rows.force;
+            rows.force.normal = sum_of(1.0, &normal, kappa, &tangential);
+        }
+        (rows, kappa)
+    }
+
+    /// Places of its nodes among those of a constraint, with the parts that they have of s, a and b.
+    fn shares(&self, nodes: &[usize]) -> [(usize, usize, f64); 4] {
+        let [first, second, a, b] = self.nodes;
+        let place = |node: usize| nodes.iter().position(|&n| n == node).unwrap_or_default();
+        [
+            (place(first), 0, 1.0 - self.eta),
+            (place(second), 0, self.eta),
+            (place(a), 1, 1.0),
+            (place(b), 2, 1.0),
+        ]
+    }
+}
+
+/// L (xi1 - xi0)
+fn slip(start: &Projection, end: &Projection) -> f64 {
+    (start.length + end.length) / 2.0 * (end.xi - start.xi)
+}
+
+/// The points of a constraint at the start of the increment; those that have come in later are left out.
+pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
+    if source.points.iter().any(|q| q.origin != Origin::Outside) {
+        source.points.retain(|q| q.origin != Origin::Outside);
+    }
+    for point in &mut source.points {
+        if let Origin::Other([a, b]) = point.origin {
+            (point.nodes[2], point.nodes[3]) = (a, b);
+        }
+        point.origin = Origin::Same;
+    }
+    let sum: f64 = source.points.iter().map(|q| q.weight).sum();
+    source.points.iter_mut().for_each(|q| q.weight /= sum);
+    source
+}
+
+/// Nodes of a constraint, its slave nodes first, of them the one that it is named by; and the number of slave nodes.
+fn nodes(source: &PairTarget) -> (SmallVec<[usize; 12]>, usize) {
+    let mut nodes: SmallVec<[usize; 12]> = SmallVec::new();
+    nodes.push(source.nodes[0]);
+    let mut add = |node: usize| {
+        if !nodes.contains(&node) {
+            nodes.push(node);
+        }
+        nodes.len()
+    };
+    let slave_ends = source.points.iter().flat_map(|q| [q.nodes[0], q.nodes[1]]);
+    let slaves = slave_ends.map(&mut add).last().unwrap_or(1);
+    let master_ends = source.points.iter().flat_map(|q| [q.nodes[2], q.nodes[3]]);
+    master_ends.for_each(|node| {
+        add(node);
+    });
+    (nodes, slaves)
+}
+
+/// The constraint of a slave node with its points: sums of their gaps and rows by their weights,
+///
+/// ```text
+/// Bn_j = sum_q C_jq Bn_q,  Gn_j = sum_q C_jq Gn_q,  s_j = Bt_j d,   C_jq = w_q N_j/c_j    eq. (3.20)
+/// ```
+pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
+    let (nodes, slaves) = nodes(&source);
+    let zero = || -> PerDof<f64> { PerDof::from_elem(0.0, 2 * nodes.len()) };
+    // force rows n, t, derivative rows n, t
+    let mut sums = [zero(), zero(), zero(), zero()];
+    let (mut gap, mut scale) = (0.0, 0.0);
+    for point in &source.points {
+        let (rows, _) = point.rows(at);
+        gap += point.weight * rows.projection.gap;
+        scale += point.weight * rows.projection.length;
+        let of_point = [
+            rows.force.normal,
+            rows.force.tangential,
+            rows.derivative.normal,
+            rows.derivative.tangential,
+        ];
+        for (place, own, share) in point.shares(&nodes) {
+            for (sum, row) in sums.iter_mut().zip(&of_point) {
+                for i in 0..2 {
+                    sum[2 * place + i] += point.weight * share * row[2 * own + i];
+                }
+            }
+        }
+    }
+    let dofs: PerDof<usize> = nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
+    let product = |row: &[f64]| -> f64 {
+        let motions = dofs.iter().map(|&dof| at.u[dof] - at.u0[dof]);
+        row.iter().zip(motions).map(|(b, d)| b * d).sum()
+    };
+    let [n, t, gn, gt] = sums;
+    let (mut start_gap, slip) = (gap - product(&n), product(&t));
+    // what the end of the master has come over in the increment stays, eq. (7.9)
+    if at.form == RowForm::DiscreteGradient
+        && (-MOST_LEFT_OVERLAP * scale..0.0).contains(&start_gap)
+    {
+        gap -= start_gap;
+        start_gap = 0.0;
+    }
+    let (force_rows, derivative_rows) = (
+        Rows {
+            normal: n,
+            tangential: t,
+        },
+        Rows {
+            normal: gn,
+            tangential: gt,
+        },
+    );
+    Constraint {
+        key: source.key,
+        slave_dofs: 2 * slaves,
+        other_derivative_rows: (derivative_rows != force_rows).then_some(derivative_rows),
+        force_rows,
+        gap,
+        start_gap,
+        slip,
+        mu: 0.0,
+        mu_varies: false,
+        shrinkage: 0.0,
+        scale,
+        dofs,
+        source,
+    }
+}
+
+/// Contact stiffness of a constraint with the given points, eq. (4.12): the sum of those of its points, the weights as
+/// they are.
+pub(super) fn stiffness(
+    constraint: &Constraint,
+    points: &[SurfacePoint],
+    [pn, pt]: [f64; 2],
+    at: &Configurations,
+) -> DMatrix<f64> {
+    let nodes: SmallVec<[usize; 12]> = constraint.nodes().collect();
+    let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
+    for point in points {
+        let places = point.configurations(at);
+        let (rows, kappa) = point.rows(at);
+        let [pn, pt] = [pn, pt].map(|p| point.weight * p);
+        let mut own: Matrix6<f64> = changes_between(places, [pn, pt + kappa * pn], at.form);
+        if kappa != 0.0 {
+            // dkappa = -kappa/s Gt
+            let [p, q] = places.map(|[s, a, b]| project(s, a, b));
+            let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
+            let (force, slope) = (
+                column(rows.force.tangential),
+                column(rows.derivative.tangential),
+            );
+            own -= force * slope.transpose() * (pn * kappa / slip(&p, &q));
+        }
+        let shares = point.shares(&nodes);
+        for &(row, i, p) in &shares {
+            for &(col, j, q) in &shares {
+                let block: SMatrix<f64, 2, 2> =
+                    own.fixed_view::<2, 2>(2 * i, 2 * j).into_owned() * (p * q);
+                let mut place = k.fixed_view_mut::<2, 2>(2 * row, 2 * col);
+                place += block;
+            }
+        }
+    }
+    (&k + k.transpose()) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::testing;
+
+    /// Three slave nodes above the master nodes 3, 4 and 5, which the surface runs through from right to left.
+    const X: [[f64; 2]; 6] = [
+        [0.1, 0.3],
+        [0.9, 0.2],
+        [2.1, 0.3],
+        [2.2, 0.1],
+        [1.1, -0.1],
+        [-0.2, 0.05],
+    ];
+    const U0: [f64; 12] = [
+        0.01, 0.02, -0.03, 0.01, 0.02, 0.03, 0.02, -0.01, 0.01, 0.02, -0.02, 0.01,
+    ];
+    const U1: [f64; 12] = [
+        0.11, -0.05, 0.08, -0.02, 0.15, 0.03, -0.04, 0.06, 0.03, -0.02, 0.05, 0.04,
+    ];
+
+    /// The constraint of node 1 with points over both segments; one has come from the other segment.
+    fn source() -> PairTarget {
+        let point = |ends: [usize; 2], eta, weight, [a, b]: [usize; 2], origin| SurfacePoint {
+            nodes: [ends[0], ends[1], a, b],
+            eta,
+            weight,
+            origin,
+        };
+        PairTarget {
+            points: vec![
+                point([0, 1], 0.3, 0.1, [4, 5], Origin::Same),
+                point([0, 1], 0.9, 0.4, [4, 5], Origin::Same),
+                point([1, 2], 0.15, 0.3, [3, 4], Origin::Other([4, 5])),
+                point([1, 2], 0.6, 0.2, [3, 4], Origin::Same),
+            ],
+            ..testing::pair(ContactTarget::face(0), [1, 4, 5, 5])
+        }
+    }
+
+    fn between_displacements<'a>(form: RowForm, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
+        let x = &X;
+        Configurations { form, x, u0, u }
+    }
+
+    /// The weighted mean of the gaps of the points at some displacements, each over its segment of the start or of the
+    /// end.
+    fn gap(u: &[f64], is_start: bool) -> f64 {
+        let at = |node: usize| [X[node][0] + u[2 * node], X[node][1] + u[2 * node + 1]];
+        let gaps = source().points.into_iter().map(|q| {
+            let [x1, x2, a, b] = match q.origin {
+                Origin::Other([a, b]) if is_start => [q.nodes[0], q.nodes[1], a, b],
+                _ => q.nodes,
+            };
+            let gap = project(between(at(x1), at(x2), q.eta), at(a), at(b)).gap;
+            q.weight * gap
+        });
+        gaps.sum()
+    }
+
+    #[test]
+    fn rows_are_discrete_gradients_of_the_mean_gap() {
+        let at = between_displacements(RowForm::DiscreteGradient, &U0, &U1);
+        let constraint = constraint(source(), &at);
+        assert!((constraint.gap - gap(&U1, false)).abs() < 1e-15);
+        assert!((constraint.start_gap - gap(&U0, true)).abs() < 1e-13);
+        let Rows { normal, tangential } = &constraint.force_rows;
+        for row in [normal, tangential] {
+            let (mut force, mut moment) = ([0.0; 2], 0.0);
+            for (entries, dofs) in row.chunks(2).zip(constraint.dofs.chunks(2)) {
+                let middle = |i: usize| X[dofs[0] / 2][i] + (U0[dofs[i]] + U1[dofs[i]]) / 2.0;
+                force = [force[0] + entries[0], force[1] + entries[1]];
+                moment += middle(0) * entries[1] - middle(1) * entries[0];
+            }
+            assert!(
+                force[0].abs() < 1e-14 && force[1].abs() < 1e-14,
+                "{force:?}"
+            );
+            assert!(moment.abs() < 1e-14, "{moment}");
+        }
+    }
+
+    #[test]
+    fn derivative_rows_are_the_derivatives_of_the_mean_gap() {
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let of = |u: &[f64]| constraint(source(), &between_displacements(form, &U0, u));
+            let found = of(&U1);
+            let rows = found.derivative_rows();
+            for (k, &dof) in found.dofs.iter().enumerate() {
+                let moved = |by: f64| {
+                    let mut u = U1;
+                    u[dof] += by;
+                    of(&u).gap
+                };
+                let slope = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                assert!((rows.normal[k] - slope).abs() < 1e-9, "{form:?} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn contact_stiffness_is_the_symmetric_derivative_of_the_nodal_forces() {
+        let force = [1.3, -0.4];
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let nodal = |u: &[f64]| {
+                let mut forces = [0.0; 12];
+                constraint(source(), &between_displacements(form, &U0, u))
+                    .add_force(force, &mut forces);
+                forces
+            };
+            let at = between_displacements(form, &U0, &U1);
+            let of_all = constraint(source(), &at);
+            let found = stiffness(&of_all, &source().points, force, &at);
+            let quotient = |row: usize, column: usize| {
+                let [mut plus, mut minus] = [U1; 2];
+                (plus[column], minus[column]) = (plus[column] + 1e-6, minus[column] - 1e-6);
+                (nodal(&plus)[row] - nodal(&minus)[row]) / 2e-6
+            };
+            for (i, &row) in of_all.dofs.iter().enumerate() {
+                for (j, &column) in of_all.dofs.iter().enumerate() {
+                    let expected = (quotient(row, column) + quotient(column, row)) / 2.0;
+                    let error = (found[(i, j)] - expected).abs();
+                    assert!(error < 1e-7 * found.amax(), "{form:?} {i} {j} {error}");
+                }
+            }
+        }
+    }
+}

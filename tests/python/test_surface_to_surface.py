@@ -1,0 +1,245 @@
+"""Contact from surface to surface: patch tests of unlike meshes, momenta and energy, and what it is refused for."""
+
+import subprocess
+from collections.abc import Callable
+from math import cos, pi, sin
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from bodies import ELASTIC, grid, with_section
+from stickslip import Deck, program
+from stickslip.mesh import Mesh
+
+SURFACES = "TYPE=SURFACE TO SURFACE"
+Place = Callable[[float, float], tuple[float, float]]
+
+
+def add_body(deck: Deck, name: str, kind: str, mesh: Mesh, **sides: str) -> None:
+    """Adds a body with its elements, nodes and surfaces named after it."""
+    mesh.element_sets = {name: mesh.element_sets["BODY"]}
+    mesh.node_sets = {key + name: value for key, value in mesh.node_sets.items()}
+    mesh.node_sets["N" + name] = np.arange(len(mesh.points))
+    mesh.sides = {surface: mesh.sides[side] for side, surface in sides.items()}
+    before = len(deck.find("ELEMENT"))
+    deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
+    for card in deck.find("ELEMENT")[before:]:
+        card.head = card.head.replace(kind[:4], kind)
+    with_section(deck, kind, name, "M")
+
+
+def contact(deck: Deck, slave: str, master: str, friction: float, kind: str = SURFACES) -> None:
+    deck.extend(f"*SURFACE INTERACTION, NAME=DRY\n*FRICTION\n{friction}\n")
+    deck.extend(f"*CONTACT PAIR, INTERACTION=DRY, {kind}\n{slave}, {master}\n")
+
+
+def uneven(x: float) -> float:
+    """A map of [0, 1] onto itself with unequal spacing."""
+    return x + 0.15 * sin(2.0 * pi * x) / pi
+
+
+def patch(
+    tmp_path: Path,
+    kinds: tuple[str, str],
+    counts: tuple[int, int],
+    gradient: np.ndarray,
+    degrees: float,
+    friction: float,
+    contact_kind: str = SURFACES,
+) -> float:
+    """Largest deviation of the stresses of two blocks from those of a homogeneous displacement gradient in a frame turned by
+    some degrees, beside the largest stress. All nodes but those between the blocks are moved as the gradient says."""
+    c, s = cos(degrees * pi / 180.0), sin(degrees * pi / 180.0)
+    turn = np.array([[c, -s], [s, c]])
+    deck = Deck.titled("patch")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    numbers = {}
+    spaced = uneven if degrees else lambda x: x
+    for name, side, kind, count, low in zip(
+        ("A", "B"), ("TOP", "BOTTOM"), kinds, counts, (-1.0, 0.0)
+    ):
+
+        def place(x: float, y: float) -> tuple[float, float]:
+            return tuple(turn @ np.array([spaced(x) if name == "A" else x, low + y]))
+
+        mesh = grid(kind, count, 3, place)
+        between = {"A": "NTOP", "B": "NBOTTOM"}[name]
+        ends = {"NLEFT", "NRIGHT", "NTOP", "NBOTTOM"} - {between}
+        held = {int(n) for key in ends for n in mesh.node_sets[key]}
+        first = len(deck.find("NODE")) and sum(len(card.rows) for card in deck.find("NODE"))
+        numbers[name] = [(first + n + 1, turn @ gradient @ turn.T @ mesh.points[n]) for n in sorted(held)]
+        add_body(deck, name, kind, mesh, **{side: "S" + name})
+    contact(deck, "SB", "SA", friction, contact_kind)
+    rows = [(n, i + 1, i + 1, float(u[i])) for both in numbers.values() for n, u in both for i in (0, 1)]
+    deck.extend("*STEP, NLGEOM\n*STATIC, DIRECT\n0.5, 1.\n")
+    deck.add("BOUNDARY", *rows)
+    deck.extend("*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    stress = np.column_stack([result.frames[-1]["S"], result.frames[-1]["S33"]])
+    return float(np.abs(stress - stress.mean(axis=0)).max() / np.abs(stress).max())
+
+
+PRESSED = np.array([[0.0, 0.0], [0.0, -0.01]])
+SHEARED = np.array([[0.0, 0.002], [0.0, -0.01]])
+
+
+@pytest.mark.parametrize("kinds", [("CPE4", "CPE4"), ("CPS4", "CPS4"), ("CPE3", "CPE4"), ("CPS4", "CPS3")])
+@pytest.mark.parametrize(("counts", "degrees"), [((16, 7), 0.0), ((7, 16), 0.0), ((13, 8), 30.0)])
+def test_unlike_meshes_pass_the_patch_test(
+    tmp_path: Path, kinds: tuple[str, str], counts: tuple[int, int], degrees: float
+) -> None:
+    assert patch(tmp_path, kinds, counts, PRESSED, degrees, 0.0) < 1e-11
+    assert patch(tmp_path, kinds, counts, SHEARED, degrees, 0.9) < 1e-11
+
+
+def test_nodes_on_segments_do_not(tmp_path: Path) -> None:
+    """The patch test sees the difference."""
+    error = patch(tmp_path, ("CPE4", "CPE4"), (16, 7), PRESSED, 0.0, 0.0, "TYPE=NODE TO SURFACE")
+    assert error > 1e-3
+
+
+def test_colliding_bars_of_unlike_mesh_stay_straight(tmp_path: Path) -> None:
+    deck = Deck.titled("bars")
+    deck.extend("*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*DENSITY\n1.\n")
+    for name, side, count, low in (("A", "TOP", 4, 0.0), ("B", "BOTTOM", 3, 1.05)):
+        mesh = grid("CPS4", count, 6, lambda x, y: (x, low + y))
+        add_body(deck, name, "CPS4", mesh, **{side: "S" + name})
+    contact(deck, "SB", "SA", 0.3)
+    deck.extend("*INITIAL CONDITIONS, TYPE=VELOCITY\nNB, 2, -1.\n")
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.4\n*NODE FILE, FREQUENCY=1\nU, V\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    assert result.history.contact.SB_SA.normal.max() > 0.0
+    assert max(np.abs(frame["V"][:, 0]).max() for frame in result.frames) < 1e-12
+
+
+def ring(count: int, x: float, y: float, radius: float) -> Mesh:
+    """A ring of two layers of elements."""
+    points = [
+        (x + r * radius * cos(2.0 * pi * k / count), y + r * radius * sin(2.0 * pi * k / count))
+        for r in (0.8, 0.9, 1.0)
+        for k in range(count)
+    ]
+    elements = [
+        [j * count + k, (j + 1) * count + k, (j + 1) * count + (k + 1) % count, j * count + (k + 1) % count]
+        for j in (0, 1)
+        for k in range(count)
+    ]
+    outside = [[2 * count + k, 2 * count + (k + 1) % count] for k in range(count)]
+    return Mesh(np.array(points), elements, {"BODY": range(2 * count)}, {}, {"OUT": outside})
+
+
+def rings() -> Deck:
+    deck = Deck.titled("rings")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    for name, mesh in (("A", ring(24, 0.0, 0.0, 1.0)), ("B", ring(34, 0.35, 2.03, 1.0))):
+        add_body(deck, name, "CPS4", mesh, OUT="S" + name)
+    return deck
+
+
+def beams() -> Deck:
+    """A soft beam falls with its face on the face of another, tilted, past its end."""
+    deck = Deck.titled("beams")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    c, s = cos(0.08), sin(0.08)
+    places: dict[str, Place] = {
+        "A": lambda x, y: (4.0 * x - 2.0, 0.4 * y - 0.4),
+        "B": lambda x, y: (0.4 + c * 3.0 * x - s * 0.3 * y, 0.03 + s * 3.0 * x + c * 0.3 * y),
+    }
+    for name, side, count in (("A", "TOP", 18), ("B", "BOTTOM", 11)):
+        mesh = grid("CPS4", count, 2, places[name])
+        add_body(deck, name, "CPS4", mesh, **{side: "S" + name})
+    return deck
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("dt", [0.01, 0.02, 0.04])
+@pytest.mark.parametrize("make", [rings, beams])
+def test_collisions_keep_momenta_and_never_gain_energy(
+    tmp_path: Path, make: Callable[[], Deck], dt: float, friction: float
+) -> None:
+    deck = make()
+    contact(deck, "SB", "SA", friction)
+    deck.extend("*INITIAL CONDITIONS, TYPE=VELOCITY\nNB, 2, -1.\nNB, 1, 0.3\nNA, 2, 0.5\n")
+    deck.extend(f"*STEP, NLGEOM\n*DYNAMIC, DIRECT\n{dt}, 1.6\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    history = result.history
+    assert history.contact.SB_SA.normal.max() > 0.0
+    energy, momentum = history.energy, history.momentum
+    total = energy.kinetic + energy.strain
+    assert np.diff(total).max() < 1e-13 * energy.largest
+    assert np.abs(energy.balance).max() < 1e-12 * energy.largest
+    for values in (momentum.linear, momentum.angular):
+        assert np.abs(values - values[0]).max() < 1e-12 * np.abs(values).max()
+
+
+def test_the_stored_formulation_is_told(tmp_path: Path) -> None:
+    deck = rings()
+    contact(deck, "SB", "SA", 0.0)
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 0.04\n*END STEP\n")
+    path = deck.write(tmp_path / "deck.inp")
+    program.run(path, tmp_path)
+    assert "surface to surface" in (tmp_path / "deck.log").read_text()
+    words = [program.binary(), "info", tmp_path / "deck.vtkhdf"]
+    told = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    assert "SB_SA, surface to surface, largest normal force" in told
+    with h5py.File(tmp_path / "deck.vtkhdf") as file:
+        assert file["history/contact/SB_SA"].attrs["formulation"] == "SURFACE TO SURFACE"
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda deck: deck.extend("*STICKSLIP, IMPACT TIME=EVENT\n"), "impacts at their times"),
+        (lambda deck: deck.extend("*STICKSLIP, LANDING=RETURN\n"), "landings that give energy back"),
+        (lambda deck: deck.extend("*STICKSLIP, CONTACT MASS=REDISTRIBUTED\n"), "redistributed mass"),
+        (lambda deck: deck.extend("*CONTACT PAIR, INTERACTION=DRY, TYPE=SURFACE TO SURFACE\nSA\n"), "touches itself"),
+    ],
+)
+def test_what_has_nodes_on_segments_all_the_same_says_why(
+    tmp_path: Path, change: Callable[[Deck], Deck], reason: str
+) -> None:
+    deck = rings()
+    contact(deck, "SB", "SA", 0.0)
+    is_setting = "STICKSLIP" in change.__code__.co_consts.__repr__()
+    if not is_setting:
+        change(deck)
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 0.04\n")
+    if is_setting:
+        change(deck)
+    deck.extend("*END STEP\n")
+    path = deck.write(tmp_path / "deck.inp")
+    done = subprocess.run([program.binary(), "check", path], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    told = done.stdout + done.stderr
+    assert "is taken as NODE TO SURFACE" in told and reason in told
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("scheme", ["ENERGY-MOMENTUM", "SS22"])
+def test_sheared_blocks_with_an_overhang_need_no_cutback(
+    tmp_path: Path, friction: float, scheme: str
+) -> None:
+    """The end of the master lies inside a slave face, whose node sticks as the bodies are strained."""
+    deck = Deck.titled("blocks")
+    deck.extend("*MATERIAL, NAME=M\n*ELASTIC\n1.E4, 0.3\n*DENSITY\n1.\n")
+    places: dict[str, Place] = {
+        "A": lambda x, y: (x, 0.5 * y - 0.5),
+        "B": lambda x, y: (0.1 + x, 0.5 * y),
+    }
+    for name, side, count in (("A", "TOP", 45), ("B", "BOTTOM", 32)):
+        mesh = grid("CPE4", count, count // 2, places[name])
+        add_body(deck, name, "CPE4", mesh, **{side: "S" + name})
+    contact(deck, "SB", "SA", friction)
+    deck.extend("*BOUNDARY\nNBOTTOMA, 1, 2\n")
+    deck.extend("*AMPLITUDE, NAME=PRESS\n0., 0., 0.1, 1., 1., 1.\n")
+    deck.extend("*AMPLITUDE, NAME=SHEAR\n0., 0., 0.1, 0., 0.2, 1.\n")
+    deck.extend(f"*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.2\n*STICKSLIP, SCHEME={scheme}\n")
+    deck.extend("*BOUNDARY, AMPLITUDE=PRESS\nNTOPB, 2, 2, -0.01\n")
+    deck.extend("*BOUNDARY, AMPLITUDE=SHEAR\nNTOPB, 1, 1, 0.02\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    assert len(result.history.time) == 21
+    energy = result.history.energy
+    if scheme == "ENERGY-MOMENTUM":
+        total = energy.kinetic + energy.strain - energy.external_work
+        assert np.diff(total).max() < 1e-13 * energy.largest
