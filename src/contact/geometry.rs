@@ -127,6 +127,8 @@ pub struct SlaveSegments {
     pub ends: Vec<[Option<usize>; 2]>,
     /// For every slave node its faces, each with the end (0 or 1) at which the node is.
     pub at_nodes: Vec<Vec<[usize; 2]>>,
+    /// Whether the faces are those of bodies of revolution.
+    pub are_rings: bool,
 }
 
 impl ContactSurfaces {
@@ -161,8 +163,8 @@ impl ContactSurfaces {
         self
     }
 
-    /// With contact from surface to surface.
-    pub fn from_surface_to_surface(mut self) -> Self {
+    /// With contact from surface to surface, of bodies of revolution or in the plane.
+    pub fn from_surface_to_surface(mut self, are_rings: bool) -> Self {
         let numbered = self.slaves.iter().enumerate();
         let numbers: HashMap<usize, usize> = numbered.map(|(k, &node)| (node, k)).collect();
         let mut at_nodes = vec![Vec::new(); self.slaves.len()];
@@ -176,7 +178,11 @@ impl ContactSurfaces {
                 }
             }
         }
-        self.slave_segments = Some(SlaveSegments { ends, at_nodes });
+        self.slave_segments = Some(SlaveSegments {
+            ends,
+            at_nodes,
+            are_rings,
+        });
         self
     }
 
@@ -284,7 +290,7 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
         .with_sharp_corners(&model.mesh.coordinates)
         .with_interior(Arc::clone(&interior));
         if contact.formulation == ContactFormulation::SurfaceToSurface {
-            return surfaces.from_surface_to_surface();
+            return surfaces.from_surface_to_surface(model.mesh.is_axisymmetric());
         }
         match slave.kind {
             SurfaceKind::Nodes(_) => surfaces.with_exterior_faces(&model.mesh),

@@ -33,8 +33,8 @@ type Cells = SmallVec<[(f64, f64, usize); 8]>;
 /// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
 /// ```
 ///
-/// w_q is half the reference length of its cell: two Gauss points in a cell, where g_q is linear and N_j g_q
-/// quadratic. Cells end on the bisectors of the master's vertices, of the iterate and, between which rows are
+/// w_q is half the reference length of its cell, times the radius of the point in bodies of revolution: two Gauss points
+/// in a cell, where N_j g_q is quadratic and its product with the radius cubic. Cells end on the bisectors of the master's vertices, of the iterate and, between which rows are
 /// exact differences, of the start as well.
 pub(super) fn find_points(
     territory: &Territory,
@@ -48,6 +48,7 @@ pub(super) fn find_points(
         return;
     };
     let finder = Finder {
+        are_rings: slave.are_rings,
         surfaces,
         positions,
         form,
@@ -60,7 +61,7 @@ pub(super) fn find_points(
         let (mut covered, mut whole) = (0.0, 0.0);
         let mut nearest = (0.0, [0; 2]);
         for &[face, end] in faces {
-            whole += finder.reference_length(surfaces.slave_faces[face]) / 2.0;
+            whole += finder.reference_weight(surfaces.slave_faces[face], 0.5, 0.5);
             for point in &of_faces[face] {
                 let hat = if end == 0 { 1.0 - point.eta } else { point.eta };
                 let weight = point.weight * hat;
@@ -96,6 +97,7 @@ pub(super) fn find_points(
 
 /// The points of slave faces between start and iterate.
 struct Finder<'a> {
+    are_rings: bool,
     surfaces: &'a ContactSurfaces,
     positions: [Positions<'a>; 2],
     form: RowForm,
@@ -137,12 +139,9 @@ impl Finder<'_> {
             };
             // two Gauss points, each with half of the cell
             for side in [-1.0, 1.0] {
-                points.push(self.point(
-                    ends,
-                    middle + side * part / 12_f64.sqrt(),
-                    self.reference_length(ends) * part / 2.0,
-                    [i, Some(j)],
-                ));
+                let eta = middle + side * part / 12_f64.sqrt();
+                let weight = self.reference_weight(ends, eta, part / 2.0);
+                points.push(self.point(ends, eta, weight, [i, Some(j)]));
             }
         }
         points
@@ -270,10 +269,14 @@ impl Finder<'_> {
             .min_by(|i, j| distance(*i).total_cmp(&distance(*j)))
     }
 
-    /// Length of a face in the reference configuration.
-    fn reference_length(&self, [a, b]: [usize; 2]) -> f64 {
+    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
+    fn reference_weight(&self, [a, b]: [usize; 2], eta: f64, part: f64) -> f64 {
         let x = self.positions[0].reference();
-        length(difference(x[a], x[b]))
+        let radius = match self.are_rings {
+            true => between(x[a], x[b], eta)[0],
+            false => 1.0,
+        };
+        length(difference(x[a], x[b])) * part * radius
     }
 }
 

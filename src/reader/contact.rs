@@ -87,8 +87,6 @@ fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'sta
         Some("a surface that touches itself has pairs of nodes and segments")
     } else if model.contacts.iter().any(is_general) {
         Some("with general contact all pairs are nodes and segments")
-    } else if model.mesh.is_axisymmetric() {
-        Some("bodies of revolution have pairs of nodes and segments")
     } else if !contact.left_out.is_empty() {
         Some("some of the slave nodes are tied")
     } else if [slave, master].iter().any(|s| has_corner(s, &model.mesh)) {

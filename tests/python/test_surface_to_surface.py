@@ -25,7 +25,7 @@ def add_body(deck: Deck, name: str, kind: str, mesh: Mesh, **sides: str) -> None
     before = len(deck.find("ELEMENT"))
     deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
     for card in deck.find("ELEMENT")[before:]:
-        card.head = card.head.replace(kind[:4], kind)
+        card.head = card.head.replace(("CPE" if kind[2] == "X" else kind[:3]) + kind[3], kind)
     with_section(deck, kind, name, "M")
 
 
@@ -91,6 +91,14 @@ def test_unlike_meshes_pass_the_patch_test(
 ) -> None:
     assert patch(tmp_path, kinds, counts, PRESSED, degrees, 0.0) < 1e-11
     assert patch(tmp_path, kinds, counts, SHEARED, degrees, 0.9) < 1e-11
+
+
+@pytest.mark.parametrize("counts", [(16, 7), (7, 16)])
+@pytest.mark.parametrize("kinds", [("CAX4", "CAX4"), ("CAX3", "CAX4")])
+def test_discs_of_unlike_mesh_pass_the_patch_test(
+    tmp_path: Path, kinds: tuple[str, str], counts: tuple[int, int]
+) -> None:
+    assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.0) < 1e-11
 
 
 def test_nodes_on_segments_do_not(tmp_path: Path) -> None:
