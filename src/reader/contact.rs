@@ -79,10 +79,11 @@ pub(super) fn restrict_formulations(model: &mut Model, cx: &mut Context) {
 fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'static str> {
     let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
     let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));
+    let has_segments = |surface: &Surface| !matches!(surface.kind, SurfaceKind::Nodes(_));
     let settings = || model.steps.iter().map(|step| &step.settings);
     let is_general = |other: &Contact| model.surfaces[other.slave].name == ALL_EXTERIOR;
-    if !is_of_faces(slave) || !is_of_faces(master) {
-        Some("both surfaces must be made of element faces")
+    if !is_of_faces(slave) || !has_segments(master) {
+        Some("the slave surface must be made of element faces")
     } else if contact.is_self_contact() {
         Some("a surface that touches itself has pairs of nodes and segments")
     } else if model.contacts.iter().any(is_general) {
