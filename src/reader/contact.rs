@@ -11,7 +11,7 @@ use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
-    ImpactTime, Interaction, LandingRule, Mesh, Model, Reach, Surface, SurfaceKind, Wear,
+    ImpactTime, Interaction, Mesh, Model, Reach, Surface, SurfaceKind, Wear,
 };
 use crate::vectors::{difference, dot, length};
 use std::collections::{HashMap, HashSet};
@@ -96,10 +96,6 @@ fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'sta
         )
     } else if settings().any(|s| s.impact_time == ImpactTime::Event) {
         Some("impacts at their times need nodes that land on segments")
-    } else if settings().any(|s| s.landing == LandingRule::Return) {
-        Some("landings that give energy back need pairs of nodes and segments")
-    } else if model.redistributes_mass() {
-        Some("redistributed mass needs pairs of nodes and segments")
     } else {
         None
     }
