@@ -1,7 +1,7 @@
 """Meshes of one block for the cases: triangles or quadrilaterals, linear or quadratic, of any shape."""
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
@@ -99,6 +99,68 @@ def rectangle(
     """A rectangle of so many cells, its lower left corner at `corner`."""
     (nx, ny), (width, height), (x, y) = cells, size, corner
     return Block(name, kind, nx, ny, lambda i, j: (x + width * i / (2 * nx), y + height * j / (2 * ny)), after)
+
+
+def graded(size: float, even: float, end: float, growth: float = 1.35) -> list[float]:
+    """Places from 0 to `end`: of equal distance up to `even`, then farther and farther apart."""
+    places = [k * size for k in range(round(even / size) + 1)]
+    steps, reach = [], 0.0
+    while reach < end - places[-1]:
+        steps.append(size * growth ** (len(steps) + 1))
+        reach += steps[-1]
+    stretch = (end - places[-1]) / reach if reach else 1.0
+    for step in steps:
+        places.append(places[-1] + step * stretch)
+    return places
+
+
+def mapped(
+    name: str, kind: str, xs: Sequence[float], ys: Sequence[float],
+    shape: Callable[[float, float], tuple[float, float]] = lambda x, y: (x, y), after: Block | None = None,
+) -> Block:
+    """Cells between the lines x and y, mapped by `shape`, which the nodes between corners follow too."""
+
+    def between(lines: Sequence[float], k: int) -> float:
+        return lines[k // 2] if k % 2 == 0 else (lines[k // 2] + lines[k // 2 + 1]) / 2
+
+    return Block(name, kind, len(xs) - 1, len(ys) - 1, lambda i, j: shape(between(xs, i), between(ys, j)), after)
+
+
+def plane(name: str, start: tuple[float, float], end: tuple[float, float], reference: str = "REFERENCE") -> str:
+    """A rigid line with the obstacle on the right of the way from start to end, and its reference node."""
+    return "".join(
+        [
+            card(f"NODE, NSET={reference}", (100_000, *start)),
+            card(f"SURFACE, NAME={name}, TYPE=SEGMENTS", ("START", *start), ("LINE", *end)),
+            card(f"RIGID BODY, ANALYTICAL SURFACE={name}, REF NODE={reference}"),
+        ]
+    )
+
+
+def ride(block: Block, side: str, head: str, *directions: int) -> str:
+    """The nodes of a side move in these directions as the first of them does, which is the set `head`."""
+    first, *others = block.on(side)
+    return "".join(
+        [
+            card(f"NSET, NSET={head}", (first,)),
+            card(f"NSET, NSET={head}_OTHERS", *((node,) for node in others)),
+            *(
+                card("EQUATION", (2,), (f"{head}_OTHERS", direction, 1.0, head, direction, -1.0))
+                for direction in directions
+            ),
+        ]
+    )
+
+
+def follower(surface: str, pressure: float) -> str:
+    """A pressure, which follows the surface."""
+    return card("DSLOAD", (surface, "P", pressure))
+
+
+def write_deck(folder: Path, name: str, cards: Iterable[str]) -> None:
+    """Writes a deck into a folder, which is made."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_text("".join(cards))
 
 
 def static(*cards: str, dt: float = 1.0, direct: bool = False) -> str:

@@ -6,9 +6,9 @@ from math import cos, pi, radians, sin, sqrt
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "python"))
+sys.path.insert(0, str(HERE.parent))
 
+from meshes import graded, static  # noqa: E402  (first: it finds the modules of python/)
 from stickslip.cards import card, dry, elastic  # noqa: E402
 from stickslip.deck import write_to_folder  # noqa: E402
 from stickslip.quads import Grid  # noqa: E402
@@ -45,12 +45,6 @@ SNAP, DAMPING = 100.0, 0.3
 """Time in which the arch comes to rest after it has snapped through, and its damping (ALPHA)."""
 
 
-def static(*cards: str, dt: float = 1.0, direct: bool = False) -> str:
-    """A static step of the duration 1."""
-    keyword = "STATIC, DIRECT" if direct else "STATIC"
-    return "".join([card("STEP, NLGEOM"), card(keyword, (dt, 1.0)), *cards, card("END STEP")])
-
-
 def after(*grids: Grid) -> dict[str, int]:
     """First node and element of a grid after others."""
     return {"first_node": grids[-1].next_node, "first_element": grids[-1].next_element}
@@ -72,19 +66,6 @@ def plane(name: str, start: float, end: float) -> str:
             card(f"RIGID BODY, ANALYTICAL SURFACE={name}, REF NODE=REFERENCE"),
         ]
     )
-
-
-def graded(size: float, even: float, end: float, growth: float = 1.35) -> list[float]:
-    """Places from 0 to `end`: of equal distance up to `even`, then farther and farther apart."""
-    places = [k * size for k in range(round(even / size) + 1)]
-    steps, reach = [], 0.0
-    while reach < end - places[-1]:
-        steps.append(size * growth ** (len(steps) + 1))
-        reach += steps[-1]
-    stretch = (end - places[-1]) / reach
-    for step in steps:
-        places.append(places[-1] + step * stretch)
-    return places
 
 
 def cylinder(name: str, size: float, *, half: bool, below: bool = False, **labels: int) -> Grid:
