@@ -78,8 +78,8 @@ class Check:
             error = f"{100 * self.error:.2g} %" if relative else f"{self.error:.2g}"
             tolerance = f"{100 * limit.tolerance:.2g} %" if relative else f"{limit.tolerance:.2g}"
             return f"{self.reference:.6g}", computed, error, tolerance
-        bound = f"<= {limit.at_most:.3g}" if limit.at_most is not None else f">= {limit.at_least:.3g}"
-        return "", computed, "", bound
+        bounds = [("<=", limit.at_most), (">=", limit.at_least), ("within", limit.tolerance)]
+        return "", computed, "", next(f"{sign} {bound:.3g}" for sign, bound in bounds if bound is not None)
 
 
 COMMON = (
