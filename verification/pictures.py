@@ -38,6 +38,7 @@ def draw(study: Study, path: Path) -> None:
 def draw_curve(study: Study, curve: Curve, ax: Axes) -> None:
     """Computed curves, the reference as points."""
     drawn = set()
+    ends: list[float] = []
     for run in filter(study.results.__contains__, curve.runs):
         name = study.values(run).named(curve.reference)
         reference = study.form.references[name]
@@ -45,7 +46,10 @@ def draw_curve(study: Study, curve: Curve, ax: Axes) -> None:
             label = f"reference [{reference.tag}]" if not drawn else None
             ax.plot(reference.x, reference.value, "k.", markersize=4, label=label, zorder=3)
             drawn.add(name)
+            ends += [reference.x.min(), reference.x.max()]
         ax.plot(*curve_points(study, curve, run), linewidth=1, label=run)
+    margin = 0.15 * (max(ends) - min(ends))
+    ax.set_xlim(min(ends) - margin, max(ends) + margin)
     ax.set_title(curve.name, fontsize=8)
     ax.set_xlabel(curve.label, fontsize=7)
     ax.legend(fontsize=6)

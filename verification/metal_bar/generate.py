@@ -15,7 +15,7 @@ YOUNG = 117e3
 
 def write(folder: Path, settings: str, n: int = 40, stiff: float = 1e4, kind: str = "CAX4", courant: float = 1.0) -> None:
     """A bar hits a wall; `stiff` times as stiff as copper, so that it stays as good as rigid."""
-    bar = rectangle("BAR", kind, (max(n // 10, 1), n), (RADIUS, LENGTH), (0.0, GAP))
+    bar = rectangle("BAR", kind, (1, n), (RADIUS, LENGTH), (0.0, GAP))
     speed = (YOUNG * stiff / DENSITY) ** 0.5
     flight, contact = GAP / SPEED, 2 * LENGTH / speed
     dt = courant * LENGTH / n / speed
