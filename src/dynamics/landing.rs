@@ -146,6 +146,7 @@ pub(super) fn factorize_anew(
         acting: solved.contact.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),
         are_held: false,
+        out_of_balance: &[],
     };
     let factorized = workspace.factorize(problem, dt, motion, &closed);
     factorized.map_err(|error| problem.unsolvable(error))

@@ -7,7 +7,7 @@ use super::outline::{CardBlock, Outline};
 use super::rigid_bodies::{Lookup, Rigid};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
-use crate::model::{Hinge, Procedure, Step};
+use crate::model::Hinge;
 use crate::vectors::distance;
 use std::collections::BTreeSet;
 
@@ -292,18 +292,12 @@ fn is_at_one_place(
 }
 
 /// The hinges among links.
-pub(super) fn hinges(links: &[Link], steps: &[Step], cx: &mut Context) -> Vec<Hinge> {
+pub(super) fn hinges(links: &[Link], cx: &mut Context) -> Vec<Hinge> {
     let mut all: Vec<Hinge> = Vec::new();
-    let is_static = steps.iter().any(|step| step.procedure == Procedure::Static);
     for link in links {
         let Link::Hinge { nodes, span } = *link else {
             continue;
         };
-        if is_static {
-            let message = "a hinge between rigid bodies, which a static step does not know";
-            cx.error(Code::Coupling, span, message)
-                .help("use *DYNAMIC, APPLICATION=QUASI-STATIC");
-        }
         let [a, b] = nodes;
         if all
             .iter()

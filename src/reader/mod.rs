@@ -120,7 +120,7 @@ fn read(cx: &mut Context) -> Model {
     rigid_bodies::check(&rigid_bodies, &bodies, around, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
-    let hinges = couplings::hinges(&links, &steps.all, cx);
+    let hinges = couplings::hinges(&links, cx);
     let mut model = Model {
         title: title(&outline),
         mesh: mesh_index.mesh,

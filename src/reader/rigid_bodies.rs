@@ -410,8 +410,8 @@ pub(crate) fn complete(
     rigid_bodies.iter().zip(&motions).map(body).collect()
 }
 
-/// Reports what bodies that turn cannot do yet: equations at their nodes, landing return, redistributed mass, and
-/// free motion in a static step; bodies of revolution cannot turn at all.
+/// Reports what bodies that turn cannot do yet: equations at their nodes, landing return and redistributed mass; bodies
+/// of revolution cannot turn at all.
 pub(crate) fn check(
     rigid_bodies: &[Rigid],
     bodies: &[RigidBody],
@@ -434,26 +434,19 @@ pub(crate) fn check(
         let returns = (steps.iter()).any(|step| step.settings.landing == LandingRule::Return);
         let redistributes =
             (steps.iter()).any(|step| step.settings.contact_mass == ContactMass::Redistributed);
-        let is_static = (steps.iter()).any(|step| step.procedure == Procedure::Static);
         if is_axisymmetric {
             let message = format!("{} turns in a model of bodies of revolution", rigid.name);
             cx.error(Code::Revolution, rigid.span, message)
                 .help("hold its rotation, direction 6 of its reference node");
         }
         let options = [
-            (is_static && !rigid.is_coupling, "a static step"),
             (returns, "LANDING=RETURN"),
             (redistributes, "CONTACT MASS=REDISTRIBUTED"),
         ];
         for (_, option) in options.into_iter().filter(|(is_asked, _)| *is_asked) {
             let message = format!("{} turns, which {option} does not know", rigid.name);
-            let help = match option {
-                "a static step" => {
-                    "hold its rotation, direction 6 of its reference node, or use *DYNAMIC"
-                }
-                _ => "leave it out of *STICKSLIP",
-            };
-            cx.error(Code::RigidSurface, rigid.span, message).help(help);
+            cx.error(Code::RigidSurface, rigid.span, message)
+                .help("leave it out of *STICKSLIP");
         }
     }
 }
@@ -564,23 +557,11 @@ fn complete_turning(
             return report_other_motion(rigid, &mesh_index.node_name(held.dof / 2), cx);
         }
         let turns_freely = motion_of(step, angle).is_none();
-        if has_mass && turns_freely && !rigid.is_coupling && !rigid.has_inertia() {
+        let needs_inertia = has_mass && !rigid.is_coupling && step.procedure != Procedure::Static;
+        if needs_inertia && turns_freely && !rigid.has_inertia() {
             let message = format!("{} may turn and has no rotary inertia", rigid.name);
             cx.error(Code::RigidSurface, rigid.span, message).help(
                 "add *ELEMENT, TYPE=ROTARYI and *ROTARY INERTIA, or hold direction 6 of its reference node",
-            );
-            return;
-        }
-        let reference = 2 * rigid.reference;
-        let is_free = |dof: &usize| motion_of(step, *dof).is_none();
-        if has_mass
-            && step.procedure == Procedure::Static
-            && [reference, reference + 1, angle].iter().any(is_free)
-        {
-            let number = index + 1;
-            let message = format!("{} is free to move in the static step {number}", rigid.name);
-            cx.error(Code::RigidSurface, rigid.span, message).help(
-                "prescribe directions 1, 2 and 6 of its reference node in a static step, or write *DYNAMIC",
             );
             return;
         }

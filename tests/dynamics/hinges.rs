@@ -294,7 +294,4 @@ fn hinges_that_cannot_be_are_told() {
     assert!(message(&apart).contains("at the place of the other node"));
     let tied = format!("{bars}*MPC\nTIE, 11, 21\n{step}");
     assert!(message(&tied).contains("a tie would make one"));
-    let pinned = format!("{bars}*MPC\nPIN, 11, 21\n{step}");
-    let statics = pinned.replace("*DYNAMIC, DIRECT", "*STATIC");
-    assert!(message(&statics).contains("which a static step does not know"));
 }

@@ -32,6 +32,7 @@ mod redistributed_mass;
 mod rest;
 mod restart;
 mod rigid;
+mod rigid_statics;
 mod scales;
 mod statics;
 mod subincrements;

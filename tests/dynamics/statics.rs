@@ -8,7 +8,7 @@ use stickslip::prepare::PreparedModel;
 use stickslip::reader;
 
 /// A run of a deck: what it has reported, and why it stopped.
-fn run_deck(text: &str) -> (Keep, Option<Failure>) {
+pub(crate) fn run_deck(text: &str) -> (Keep, Option<Failure>) {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
     let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
     let model = reader::build(&deck, &mut d);

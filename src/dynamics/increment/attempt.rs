@@ -68,8 +68,9 @@ pub(crate) struct Solved {
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
-    /// Largest displacement increment after the first pass, by the tangent of its start (length).
-    pub tangent_way: f64,
+    /// Displacement increment after the first pass, by the tangent of its start; where contact alone holds a body, after
+    /// the first one with closed pairs.
+    pub tangent: Vec<f64>,
     /// Its passes.
     pub passes: Vec<PassReport>,
     /// What is given back once it has converged.
@@ -159,27 +160,54 @@ struct Vectors {
     closing: Vec<f64>,
     /// Correction dU.
     du: Vec<f64>,
-    /// Largest displacement increment after the first pass.
-    tangent_way: f64,
+    /// Displacement increment after the first pass.
+    tangent: Vec<f64>,
     residual: Residual,
 }
 
 /// Steps in a pass that take the forces of pins out.
-const PIN_STEPS: usize = 20;
+const PIN_STEPS: usize = 40;
 /// The least of them before forces count as settled.
 const LEAST_PIN_STEPS: usize = 4;
 /// Parts of the stiffness of pins with which they are made, one after the other.
 const SOFTER: [f64; 3] = [1.0, 1e-2, 1e-4];
+/// The last of them.
+const SOFTEST_PART: f64 = SOFTER[SOFTER.len() - 1];
+/// Part of forces of pins that some steps leave where softer pins are to go on.
+const SLOW_PIN: f64 = 0.5;
 /// Forces of pins that are none, beside the other forces.
 const PIN_FORCE: f64 = 1e-13;
 /// Those that the next pass may take out.
 const SMALL_PIN_FORCE: f64 = 1e-8;
 /// Change of forces of pins, beside them, that become no smaller.
 const SETTLED_PIN: f64 = 1e-3;
+/// Part of a force of pins that a step leaves from which on the next one goes farther.
+const HARDLY_FALLS: f64 = 0.9;
 /// Passes with the same closed pairs in which forces of pins stay after which there is no equilibrium.
 const FREE_PASSES: usize = 3;
 /// Constraints that the stiffness of pins is taken from.
 const NEAR: usize = 12;
+
+/// How much farther than its own motion the pins of a body go in the next step of a pass, beside that motion, `last`
+/// being what it was in this one and f, f_last the forces of the pins: to where they vanish if all components go on as the
+/// largest one does, at most twice as far and its own motion once more.
+///
+/// ```text
+/// p <- S^T dU + w (S^T dU - p),   w = r/(1 - r),   r = f.f_last/|f_last|²      eq. (12.6)
+/// ```
+fn stride(last: f64, f: &[f64], f_last: &[f64]) -> f64 {
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let r = product(f, f_last) / product(f_last, f_last);
+    if r.is_nan() || r <= HARDLY_FALLS {
+        return 0.0;
+    }
+    let most = 2.0 * last + 1.0;
+    if r < 1.0 {
+        most.min(r / (1.0 - r))
+    } else {
+        most
+    }
+}
 
 /// Passes in a row in which forces of pins stay.
 #[derive(Default)]
@@ -195,13 +223,8 @@ impl FreePasses {
     }
 
     /// Takes in a pass that has not; whether there is no equilibrium: with closed pairs at once, as a body that tips
-    /// or slides would look for another one in the passes that follow.
-    fn fail(&mut self, contact: &ContactForces) -> bool {
-        let closed = contact
-            .closed
-            .iter()
-            .map(|pair| pair.key)
-            .collect::<Vec<_>>();
+    /// or slides would look for another one in the passes that follow. `closed` are its closed pairs.
+    fn fail(&mut self, closed: Vec<ConstraintKey>) -> bool {
         self.count = if closed == self.closed {
             self.count + 1
         } else {
@@ -295,6 +318,7 @@ impl<'m> Attempt<'_, 'm> {
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
         let mut free = FreePasses::default();
+        let mut has_no_pairs = true;
         v.equilibrium.hinges.clear();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
         let mut d = match self.guess {
@@ -328,16 +352,10 @@ impl<'m> Attempt<'_, 'm> {
             // Pn, Pt of the complementarity problem, eq. (5.2);
             // dU = d_p + K*^-1 (r - theta2 K d_p + Bn^T Pn + Bt^T Pt), eq. (4.7)
             let weight = equal_forces.weight(settled);
-            let hinge_forces = self.close_hinges(v)?;
-            match self.workspace.pins.are_none() {
-                true => (contact.forces).solve(
-                    [&v.closing, &v.load],
-                    weight,
-                    &mut self.k_star(),
-                    &mut v.du,
-                )?,
+            let hinge_forces = match self.workspace.pins.are_none() {
+                true => self.balance(&mut contact.forces, weight, v)?,
                 false => self.iterate_pins(&mut contact.forces, weight, &mut free, v)?,
-            }
+            };
             self.take_hinge_forces(hinge_forces, v);
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
@@ -359,9 +377,11 @@ impl<'m> Attempt<'_, 'm> {
             }
             // d <- d + dU, eq. (4.7)
             d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
-            if number == 0 {
-                v.tangent_way = largest(&d);
+            let begins = number == 0 || (has_no_pairs && !self.workspace.pins.are_none());
+            if begins && !self.problem.integration.has_rates {
+                v.tangent.clone_from(&d);
             }
+            has_no_pairs &= contact.forces.closed.is_empty();
             if ends {
                 return self.finish(&d, contact, v, false);
             }
@@ -441,40 +461,57 @@ impl<'m> Attempt<'_, 'm> {
         (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
     }
 
+    /// Contact forces and correction of a pass without pins; gives the forces by which hinges close their gaps.
+    fn balance(
+        &mut self,
+        contact: &mut ContactForces,
+        weight: Option<f64>,
+        v: &mut Vectors,
+    ) -> Result<Vec<f64>, Cause> {
+        let closing = self.close_hinges(v)?;
+        contact.solve([&v.closing, &v.load], weight, &mut self.k_star(), &mut v.du)?;
+        Ok(closing)
+    }
+
     /// Contact forces and correction of a pass in which pins hold bodies that no support holds: pinned where the
     /// forces p of the pins, a' p, let the body move as it would without them.
     ///
     /// ```text
     /// dU = y + W (B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
     /// ```
+    ///
+    /// Gives the forces by which hinges close their gaps.
     fn iterate_pins(
         &mut self,
         contact: &mut ContactForces,
         weight: Option<f64>,
         free: &mut FreePasses,
         v: &mut Vectors,
-    ) -> Result<(), Cause> {
+    ) -> Result<Vec<f64>, Cause> {
         let problem = self.problem;
         let near = nearest(contact);
         let near: Vec<&Constraint> = near.iter().collect();
         let dofs: Vec<usize> = self.workspace.pins.dofs().collect();
+        let of_bodies = self.workspace.pins.of_bodies();
+        let reach = self.workspace.search.reach();
         let mut p = vec![0.0; dofs.len()];
-        let mut stays = None;
-        // where f vanishes slowly, pins are too stiff for the contact that holds the body
+        let (mut stays, mut closing) = (None, Vec::new());
+        // where f vanishes slowly, pins are too stiff for what holds the body
         'rounds: for part in SOFTER {
             let stiffness = (self.workspace)
                 .soften(problem, &near, part)
                 .map_err(|error| problem.unsolvable(error))?;
+            closing = self.close_hinges(v)?;
             let mut forces: Vec<Vec<f64>> = Vec::new();
+            let mut strides = vec![0.0; of_bodies.len()];
             let mut left = f64::INFINITY;
             for step in 0..PIN_STEPS {
                 let mut load = v.load.clone();
                 add_pin_forces(&self.workspace.pins, &stiffness, &p, &mut load);
-                contact.solve([&v.d_p, &load], weight, &mut self.k_star(), &mut v.du)?;
+                contact.solve([&v.closing, &load], weight, &mut self.k_star(), &mut v.du)?;
                 let moved: Vec<f64> = dofs.iter().map(|&dof| v.du[dof]).collect();
                 let carried = |k: usize| stiffness[k] * (moved[k] - p[k]);
                 let force: Vec<f64> = (0..dofs.len()).map(carried).collect();
-                p = moved;
                 let Equilibrium { load, internal, .. } = &v.equilibrium;
                 let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
                 let others = [largest(load), largest(internal)]
@@ -484,29 +521,46 @@ impl<'m> Attempt<'_, 'm> {
                 // without any force there is nothing to carry
                 if left.is_nan() || left <= PIN_FORCE {
                     free.ends();
-                    return Ok(());
+                    return Ok(closing);
                 }
                 if let Some(before) = step.checked_sub(2).map(|before| &forces[before])
                     && step >= LEAST_PIN_STEPS
                     && left > SMALL_PIN_FORCE
                     && largest(&difference(&force, before)) < SETTLED_PIN * largest(&force)
                 {
-                    stays = Some(force);
-                    break 'rounds;
+                    stays.get_or_insert_with(|| (force.clone(), v.du.clone(), contact.keys()));
+                    if largest(&moved) > reach {
+                        break 'rounds;
+                    }
+                }
+                for (pins, last) in of_bodies.iter().zip(&mut strides) {
+                    let before = forces.last().map_or(&[][..], |force| &force[pins.clone()]);
+                    *last = stride(*last, &force[pins.clone()], before);
+                    for k in pins.clone() {
+                        p[k] = moved[k] + *last * (moved[k] - p[k]);
+                    }
                 }
                 forces.push(force);
             }
-            if left <= SMALL_PIN_FORCE {
+            // soft springs take them over slowly
+            let slow = forces
+                .len()
+                .checked_sub(LEAST_PIN_STEPS)
+                .is_some_and(|before| {
+                    let last = forces.last().map_or(0.0, |force| largest(force));
+                    last > SLOW_PIN * largest(&forces[before])
+                });
+            if left <= SMALL_PIN_FORCE && !(slow && part > SOFTEST_PART) {
                 free.ends();
-                return Ok(());
+                return Ok(closing);
             }
         }
-        match stays {
-            Some(force) if free.fail(contact) => {
-                Err((self.workspace.pins).unbalanceable(problem, &v.u, &v.du, &force))
-            }
-            _ => Ok(()),
+        if let Some((force, du, closed)) = stays
+            && free.fail(closed)
+        {
+            return Err((self.workspace.pins).unbalanceable(problem, &v.u, &du, &force));
         }
+        Ok(closing)
     }
 
     /// Makes the rigid part of the correction of a pinned body a finite motion.
@@ -616,6 +670,7 @@ impl<'m> Attempt<'_, 'm> {
             acting: contact.acting().collect(),
             at: problem.configurations(&self.start.u, u),
             are_held: factors.hold_pairs(),
+            out_of_balance: &equilibrium.out_of_balance,
         };
         let factorized = (self.workspace).factorize(problem, dt, motion, &closed);
         factorized.map_err(|error| problem.unsolvable(error))
@@ -685,7 +740,7 @@ impl<'m> Attempt<'_, 'm> {
             self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
         }
         let v0p = v0p.v0p.into_owned();
-        let tangent_way = v.tangent_way;
+        let tangent = std::mem::take(&mut v.tangent);
         // V1 of eq. (4.2); of what is prescribed from the amplitude; at rest in a static step
         let integration = &self.problem.integration;
         let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
@@ -715,7 +770,7 @@ impl<'m> Attempt<'_, 'm> {
             contact,
             end,
             material_dissipation: dissipated,
-            tangent_way,
+            tangent,
             passes: Vec::new(),
             returned: Returned::default(),
         })

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::contact_system::{ContactSystem, FEW, Guess, Response};
 use crate::contact::tolerances::SETTLED_OVERLAP;
-use crate::contact::{ClosedPair, ClosedPairs, Constraint};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
 
 /// Constraints with the forces (or impulses) of those that are closed.
@@ -78,6 +78,11 @@ impl ContactForces {
     pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> {
         self.iter()
             .filter_map(|(constraint, pair)| Some((constraint, pair?)))
+    }
+
+    /// Keys of the closed pairs.
+    pub fn keys(&self) -> Vec<ConstraintKey> {
+        self.closed.iter().map(|pair| pair.key).collect()
     }
 
     /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.

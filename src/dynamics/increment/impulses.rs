@@ -643,6 +643,7 @@ mod tests {
             acting: vec![],
             at: problem.configurations(&still, &still),
             are_held: false,
+            out_of_balance: &[],
         };
         let motion = Motion::at(&still, &[]);
         (workspace.factorize(&problem, DT, motion, &contact)).expect("positive definite");

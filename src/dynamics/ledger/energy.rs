@@ -266,7 +266,7 @@ impl Ledger {
     }
 
     /// Enters the work of a static increment that started from `start` with the strain energy `strain0`: between two
-    /// equilibria loads, internal force and normal contact forces act with the mean of both, eq. (12.6) and eq. (12.7).
+    /// equilibria loads, internal force and normal contact forces act with the mean of both, eq. (12.7) and eq. (12.8).
     fn enter_equilibrium(
         &mut self,
         problem: &StepProblem,
@@ -290,7 +290,7 @@ impl Ledger {
             &contact.forces,
         );
         let e = &mut self.energy;
-        // d.(R0 + R1)/2, and at supports d_p ((F - R - B^T P)0 + (F - R - B^T P)1)_p/2, eq. (12.6); what is left is
+        // d.(R0 + R1)/2, and at supports d_p ((F - R - B^T P)0 + (F - R - B^T P)1)_p/2, eq. (12.7); what is left is
         // the work of the forces within rigid bodies on the chords of their nodes
         let turning = &problem.unknowns.turning;
         let way = turning.way(d);

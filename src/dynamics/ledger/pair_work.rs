@@ -136,7 +136,7 @@ impl EndForces {
     /// work of tangential forces friction does not dissipate:
     ///
     /// ```text
-    /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2,  -(1 + Pn0/Pn1)/2 Pt1.(Bt1 d)                       eq. (12.7)
+    /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2,  -(1 + Pn0/Pn1)/2 Pt1.(Bt1 d)                       eq. (12.8)
     /// ```
     ///
     /// A pair that slides has |Pt| = mu Pn all the way, and Pn is linear: it slides with the mean force.

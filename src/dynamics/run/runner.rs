@@ -23,7 +23,7 @@ use crate::dynamics::step::{
     ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, Workspace,
 };
 use crate::elements::{Motion, most_strained};
-use crate::linear::{LinearError, largest};
+use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
@@ -582,6 +582,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             acting: solved.contact.forces.acting().collect(),
             at: problem.configurations(&self.state.u, &end.u),
             are_held: false,
+            out_of_balance: &solved.equilibrium.out_of_balance,
         };
         let motion = Motion::at(&end.u, &end.internal);
         let stable = workspace.check_stability(problem, motion, &contact);
@@ -593,25 +594,35 @@ impl<'m, 'o> Runner<'m, 'o> {
 
     /// A static increment must not lead to another equilibrium: much farther than at the rate of the last increment,
     /// in the first one than by its tangent, unless the way becomes shorter with the increment. Bodies that contact
-    /// alone holds may move freely up to it.
+    /// alone holds may move freely up to it, and others suddenly when it begins.
     fn check_way(&mut self, workspace: &Workspace, solved: &Solved, dt: f64) -> Result<(), Cause> {
+        let pins = &workspace.pins;
+        let is_held: Vec<bool> = match pins.are_none() {
+            true => Vec::new(),
+            false => (0..solved.d.len() / 2).map(|n| !pins.hold(n)).collect(),
+        };
+        let of_held = |dof: &usize| is_held.get(dof / 2).copied().unwrap_or(true);
+        let dofs: Vec<usize> = (0..solved.d.len()).filter(of_held).collect();
+        let largest = |d: &[f64]| dofs.iter().map(|&dof| d[dof].abs()).fold(0.0, larger);
+        let by_tangent = || largest(&solved.tangent);
         let expected = match &self.path {
-            Some(path) => dt * largest(&path.v),
-            None => solved.tangent_way,
+            Some(path) if pins.are_none() => dt * largest(&path.v),
+            Some(path) => larger(dt * largest(&path.v), by_tangent()),
+            None => by_tangent(),
         };
         let way = largest(&solved.d);
         let shrinks = |[before, dt_before]: [f64; 2]| way <= SHRINKS * before * dt / dt_before;
         let counts = way > COUNTS * largest(&solved.end.u);
-        let is_far = workspace.pins.are_none() && counts && way > FAR * expected;
+        let is_far = counts && way > FAR * expected;
         if !is_far || self.rejected.is_some_and(shrinks) {
             self.rejected = None;
             return Ok(());
         }
         self.rejected = Some([way, dt]);
-        let size = |dof: &usize| solved.d[*dof].abs();
-        let most = (0..solved.d.len()).max_by(|i, k| size(i).total_cmp(&size(k)));
+        let size = |dof: &&usize| solved.d[**dof].abs();
+        let most = dofs.iter().max_by(|i, k| size(i).total_cmp(&size(k)));
         Err(Cause::Jump {
-            node: most.unwrap_or(0) / 2,
+            node: most.map_or(0, |dof| dof / 2),
         })
     }
 

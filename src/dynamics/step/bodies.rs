@@ -266,6 +266,7 @@ mod tests {
             acting: vec![],
             at: problem.configurations(&u0, &u1),
             are_held: false,
+            out_of_balance: &[],
         };
         let first = kept.factorize(&problem, 0.1, before, &contact);
         let second = fresh.factorize(&problem, 0.1, after, &contact);

@@ -13,7 +13,7 @@ use super::hinges::Hinges;
 use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
 use super::pins::{Pins, pin_columns, soften};
-use super::rank_update::RankUpdate;
+use super::rank_update::{RankUpdate, Updates};
 use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
@@ -39,8 +39,8 @@ pub(crate) struct FactoredMatrix {
     pub space: DelassusSpace,
     /// Memory of its solves.
     pub vectors: SolveVectors,
-    /// What its inverse differs by from that of its factors: by softened pins, or by closed hinges.
-    update: Option<RankUpdate>,
+    /// What its inverse differs by from that of its factors.
+    updates: Updates,
     /// Hinges that its solutions keep closed.
     hinges: Hinges,
 }
@@ -80,7 +80,7 @@ impl FactoredMatrix {
             kept: BTreeMap::new(),
             space: DelassusSpace::default(),
             vectors: SolveVectors::default(),
-            update: None,
+            updates: Updates::default(),
             hinges: Hinges::default(),
         }
     }
@@ -92,7 +92,7 @@ impl FactoredMatrix {
 
     /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
-        self.update = None;
+        self.updates = Updates::default();
         self.compliance.renew(self.solver.groups());
         self.solver.factorize()
     }
@@ -103,7 +103,7 @@ impl FactoredMatrix {
             solver,
             compliance,
             kept,
-            update,
+            updates,
             space: _,
             vectors: _,
             hinges: _,
@@ -118,14 +118,12 @@ impl FactoredMatrix {
         for scope in scopes {
             kept.entry(scope).or_default().carry(archive)?;
         }
-        archive.carry(update)
+        archive.carry(updates)
     }
 
     /// The rows of T of bodies that turn, which are to change.
     fn map_mut(&mut self) -> &mut Transformation {
-        if !self.hinges.are_none() {
-            self.update = None;
-        }
+        self.updates.hinges = None;
         self.compliance.map_mut()
     }
 
@@ -187,6 +185,8 @@ pub(crate) struct ClosedConstraints<'a> {
     pub at: Configurations<'a>,
     /// Whether K* holds them though it is definite without.
     pub are_held: bool,
+    /// Load less internal force, over all dofs, in a static step.
+    pub out_of_balance: &'a [f64],
 }
 
 /// The largest entry of the mass on the diagonal of nodes without mass: no impulse acts there, and M
@@ -218,8 +218,8 @@ pub(crate) struct EffectiveStiffness {
     angles: BodyAngles,
     /// What K* is made of.
     pub form: StiffnessForm,
-    /// Stiffness of the pins in K* (force/length).
-    pub pin: f64,
+    /// Stiffness of every pin in K* (force/length).
+    pub pins: Vec<f64>,
     /// Length of the increments of K* (time).
     dt: f64,
     /// Largest diagonal entry of theta2 K, with damping, in every part (force/length).
@@ -247,7 +247,7 @@ impl EffectiveStiffness {
             m,
             angles: BodyAngles::new(problem),
             form: StiffnessForm::Tangent,
-            pin: 0.0,
+            pins: Vec::new(),
             dt: f64::NAN,
             stiffness: Vec::new(),
             inertia: Vec::new(),
@@ -261,7 +261,7 @@ impl EffectiveStiffness {
             m,
             angles,
             form,
-            pin,
+            pins,
             dt,
             stiffness,
             inertia,
@@ -270,7 +270,7 @@ impl EffectiveStiffness {
         m.carry(archive)?;
         angles.carry(archive)?;
         archive.carry(form)?;
-        archive.carry(pin)?;
+        archive.carry(pins)?;
         archive.carry(dt)?;
         archive.carry(stiffness)?;
         archive.carry(inertia)
@@ -358,9 +358,7 @@ impl EffectiveStiffness {
     /// Turns the factors of K* with the bodies, to the configuration of a motion (docs/numerics.md, Turned factors).
     pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
         let angles = self.angles.since_assembly(problem, motion);
-        if !self.k.hinges.are_none() {
-            self.k.update = None;
-        }
+        self.k.updates.hinges = None;
         (self.k.compliance).turn(&angles, problem.parts.of_nodes());
     }
 
@@ -376,9 +374,15 @@ impl EffectiveStiffness {
         let FactoredMatrix {
             solver, compliance, ..
         } = &mut self.k;
-        let diagonal: Vec<f64> = solver.matrix().diagonal().collect();
+        let mut diagonal: Vec<f64> = solver.matrix().diagonal().collect();
         let map = compliance.map();
         let mut blocks = AddedBlocks::default();
+        if !pins.are_none() {
+            let force = map.largest_restricted(contact.out_of_balance);
+            let both = (map, problem.parts);
+            self.pins = pins.stiffnesses(&diagonal, both, &contact.acting, force);
+            pins.stiffen_rigid(both, &self.pins, &mut diagonal);
+        }
         for (constraint, pair) in &contact.acting {
             let k = match form {
                 // K* <- K* - Kc, eq. (4.12)
@@ -403,16 +407,28 @@ impl EffectiveStiffness {
             };
             blocks.add(map, &constraint.dofs, &k);
         }
+        if !problem.integration.has_rates && !problem.unknowns.turning.is_empty() {
+            let mut force = contact.out_of_balance.to_vec();
+            for (constraint, pair) in &contact.acting {
+                constraint.add_force(pair.force, &mut force);
+            }
+            let of_angles = (problem.unknowns.turning)
+                .geometric_stiffness([contact.at.u0, contact.at.u], &force);
+            for (spin, k) in of_angles {
+                if form != StiffnessForm::Positive || k > 0.0 {
+                    blocks.add(map, &[spin], &DMatrix::from_element(1, 1, k));
+                }
+            }
+        }
         // K* <- K* + S a S^T, a the mean K*_ii, eq. (12.2)
         if !pins.are_none() {
-            self.pin = diagonal.iter().map(|k| k.abs()).sum::<f64>() / diagonal.len() as f64;
             let part = match form {
                 StiffnessForm::Stability => NEUTRAL,
                 _ => 1.0,
             };
-            let stiffness = DMatrix::from_element(1, 1, part * self.pin);
-            pins.dofs()
-                .for_each(|dof| blocks.add(map, &[dof], &stiffness));
+            for (dof, a) in pins.dofs().zip(&self.pins) {
+                blocks.add(map, &[dof], &DMatrix::from_element(1, 1, part * a));
+            }
         }
         solver.add_blocks(blocks);
     }
@@ -447,21 +463,21 @@ impl<'a> System<'a> {
         &mut self,
         problem: &StepProblem,
         pins: &Pins,
-        [a, part]: [f64; 2],
+        (a, part): (&[f64], f64),
         constraints: &[&Constraint],
     ) -> Result<Vec<f64>, LinearError> {
-        let map = &problem.unknowns.map;
-        self.matrix.update = None;
-        let columns = pin_columns(pins, map, |b| self.solve(b))?;
+        self.matrix.updates = Updates::default();
+        let map = self.matrix.map().clone();
+        let columns = pin_columns(pins, &map, |b| self.solve(b))?;
         let none = vec![[0.0; 2]; constraints.len()];
         let lcp = self.frictional_lcp(&Scope::All, constraints, &none)?;
         let numbered = constraints.iter().enumerate();
         let compliances: Vec<_> = numbered.map(|(j, &c)| (c, lcp.q[(j, j)])).collect();
         self.take_back(lcp);
         let dofs = problem.model.dof_count();
-        let both = (map, problem.parts);
-        let (update, stiffness) = soften(pins, both, [a, part], columns, &compliances, dofs);
-        self.matrix.update = Some(update);
+        let both = (&map, problem.parts);
+        let (update, stiffness) = soften(pins, both, (a, part), columns, &compliances, dofs);
+        self.matrix.updates = Updates::of_pins(update);
         Ok(stiffness)
     }
 
@@ -471,17 +487,24 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             solver,
             compliance,
-            update,
+            updates: Updates { pins, hinges: held },
             hinges,
             ..
         } = &mut **matrix;
-        if hinges.are_none() || update.is_some() {
+        if hinges.are_none() || held.is_some() {
             return Ok(());
         }
         let at = (compliance.map(), compliance.rotation());
         let dofs = at.0.rows().count();
-        let columns = || hinges.hold(at, dofs, |b| solver.solve(b));
-        *update = Some(meter.time(|t| &mut t.solve, columns)?);
+        let solve = |b: &[f64]| {
+            let solution = solver.solve(b)?;
+            Ok(match pins {
+                Some(pins) => pins.solution(b, &solution),
+                None => solution,
+            })
+        };
+        let columns = || hinges.hold(at, dofs, solve);
+        *held = Some(meter.time(|t| &mut t.solve, columns)?);
         Ok(())
     }
 
@@ -493,13 +516,13 @@ impl<'a> System<'a> {
     /// Forces of the hinges, and the motion that they make over all dofs, by which the gaps `gaps` of the hinges close.
     pub fn close(&mut self, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
         self.hold()?;
-        let update = self.matrix.update.as_ref();
+        let update = self.matrix.updates.hinges.as_ref();
         Ok(update.map_or((Vec::new(), Vec::new()), |update| update.answer(gaps)))
     }
 
     /// Forces of the hinges in the last solve.
     pub fn hinge_forces(&self) -> Vec<f64> {
-        let update = self.matrix.update.as_ref();
+        let update = self.matrix.updates.hinges.as_ref();
         let parts = update.map_or(Vec::new(), RankUpdate::parts);
         parts.into_iter().map(|part| -part).collect()
     }
@@ -528,7 +551,7 @@ impl<'a> System<'a> {
             solver,
             compliance,
             vectors,
-            update,
+            updates,
             ..
         } = &mut **matrix;
         let SolveVectors { forces, .. } = vectors;
@@ -542,9 +565,7 @@ impl<'a> System<'a> {
                 rotation.turn_back(forces);
                 map.write_restricted(forces, b);
             }
-            if let Some(update) = update {
-                update.begin(b);
-            }
+            updates.all_mut().for_each(|update| update.begin(b));
         };
         meter.time(|t| &mut t.solve, || solver.begin(write))
     }
@@ -553,18 +574,17 @@ impl<'a> System<'a> {
     pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
-        if let Some(update) = &matrix.update {
-            update.correct(unknowns, values);
-        }
+        matrix
+            .updates
+            .all()
+            .for_each(|update| update.correct(unknowns, values));
     }
 
     /// Adds to the right-hand side at unknowns of the last part (unknown, value).
     pub fn add(&mut self, b: &[(usize, f64)]) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.add(b));
-        if let Some(update) = &mut matrix.update {
-            update.add(b);
-        }
+        matrix.updates.all_mut().for_each(|update| update.add(b));
     }
 
     /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
@@ -574,12 +594,12 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             solver,
             compliance,
-            update,
+            updates,
             ..
         } = &mut **matrix;
         let (map, rotation) = (compliance.map(), compliance.rotation());
         let write = |q: &[f64]| {
-            let corrected = update.as_ref().map(|update| update.corrected(q));
+            let corrected = updates.corrected(q);
             let q = corrected.as_deref().unwrap_or(q);
             if rotation.is_identity() {
                 map.write_sum(start, q, response);
@@ -638,15 +658,16 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             compliance,
             space,
-            update,
+            updates,
             ..
         } = &mut **matrix;
         let pose = || {
             let all = (&*compliance, scope);
             let mut problem = frictional_lcp(constraints, all, constant_terms, space);
-            if let Some(update) = update {
-                update.change(constraints, &mut problem.q);
-            }
+            let q = &mut problem.q;
+            updates
+                .all()
+                .for_each(|update| update.change(constraints, q));
             problem
         };
         Ok(meter.time(|t| &mut t.contact, pose))

@@ -7,11 +7,12 @@ use super::bodies::{Hold, holds};
 use super::parts::Parts;
 use super::rank_update::{Columns, RankUpdate};
 use super::step_problem::StepProblem;
-use crate::contact::Constraint;
+use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, Unbalanced};
 use crate::linear::{LinearError, Rotation, Transformation, larger, largest};
 use crate::model::Equation;
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 /// Largest motion of a node, and angle (rad), by which a pass moves a body as a rigid one: of the reach of the search.
 const LARGEST_WAY: f64 = 0.8;
@@ -23,6 +24,8 @@ const AGREES: f64 = 1e-9;
 /// Compliance of pins in the complementarity problems beside that of the pairs of their body: much softer ones leave
 /// problems with friction several solutions.
 const SOFT: f64 = 1e2;
+/// Compliance of pairs, beside that with the pins in K*, up to which it is round-off.
+const COMPLIANT: f64 = 1e-10;
 /// Least and largest stiffness of pins there, beside that in K*.
 const SOFTEST: f64 = 1e-6;
 const STIFFEST: f64 = 1e3;
@@ -36,7 +39,12 @@ pub(crate) struct Pins {
 /// A body with rigid motions that no support holds.
 struct PinnedBody {
     body: usize,
+    /// Its nodes, and the centres of mass of the rigid bodies in it that turn, increasing.
     nodes: Vec<usize>,
+    /// Dofs of the angles of these rigid bodies, with their lengths.
+    spins: Vec<Spin>,
+    /// Whether it is a rigid body, without elements that deform.
+    is_rigid: bool,
     /// Whether it has no support, or is pinned at a node.
     hold: Hold,
     /// Free motions: two translations and the rotation about the pole in units of the body's size, column by column.
@@ -45,6 +53,31 @@ struct PinnedBody {
     size: f64,
     /// Dofs that are pinned, one per free motion.
     dofs: Vec<usize>,
+}
+
+/// Dof L theta of an angle, with the length L.
+type Spin = (usize, f64);
+
+/// Two translations and the rotation about a pole, in units of a size, at a configuration.
+struct Frame<'a> {
+    pole: [f64; 2],
+    size: f64,
+    spins: &'a [Spin],
+    x: &'a dyn Fn(usize) -> [f64; 2],
+}
+
+impl Frame<'_> {
+    /// Motion of a dof in both translations and the rotation that moves places at the distance of the size by 1.
+    fn row(&self, dof: usize) -> Vector3<f64> {
+        if let Some((_, length)) = self.spins.iter().find(|spin| spin.0 == dof) {
+            return Vector3::new(0.0, 0.0, length / self.size);
+        }
+        let [px, py] = (self.x)(dof / 2);
+        match dof % 2 {
+            0 => Vector3::new(1.0, 0.0, -(py - self.pole[1]) / self.size),
+            _ => Vector3::new(0.0, 1.0, (px - self.pole[0]) / self.size),
+        }
+    }
 }
 
 impl Pins {
@@ -57,12 +90,15 @@ impl Pins {
         let holds = holds(problem);
         let mut nodes = vec![Vec::new(); parts.bodies()];
         let mut has_unknowns = vec![false; parts.bodies()];
-        // what bodies that turn have beside their nodes has no place
-        let of_mesh = parts
-            .of_nodes()
-            .iter()
-            .take(problem.model.mesh.node_count());
-        for (node, &body) in of_mesh.enumerate() {
+        let turning = &unknowns.turning;
+        let mut spins: Vec<Vec<Spin>> = vec![Vec::new(); parts.bodies()];
+        for body in turning.bodies {
+            spins[parts.of_nodes()[body.centre]].push((body.spin, body.length));
+        }
+        // the angles of bodies that turn have no place
+        let is_angle = |node: usize| turning.bodies.iter().any(|body| body.spin == 2 * node);
+        let placed = parts.of_nodes().iter().enumerate();
+        for (node, &body) in placed.filter(|(node, _)| !is_angle(*node)) {
             nodes[body].push(node);
         }
         for &dof in &unknowns.dof {
@@ -72,13 +108,14 @@ impl Pins {
         for &node in problem.elements.connected().flatten() {
             has_elements[node] = true;
         }
-        let pinned = |(body, nodes): (usize, Vec<usize>)| {
+        let pinned = |(body, (nodes, spins)): (usize, (Vec<usize>, Vec<Spin>))| {
             let movable = has_unknowns[body] && nodes.len() > 1;
             let of_body = (body, holds[body], has_elements.as_slice());
-            movable.then(|| PinnedBody::new(problem, of_body, nodes))?
+            movable.then(|| PinnedBody::new(problem, of_body, (nodes, spins)))?
         };
+        let all = nodes.into_iter().zip(spins).enumerate();
         Pins {
-            bodies: nodes.into_iter().enumerate().filter_map(pinned).collect(),
+            bodies: all.filter_map(pinned).collect(),
         }
     }
 
@@ -87,11 +124,85 @@ impl Pins {
         self.bodies.is_empty()
     }
 
+    /// Whether a node belongs to a body that is pinned.
+    pub fn hold(&self, node: usize) -> bool {
+        self.bodies
+            .iter()
+            .any(|body| body.nodes.binary_search(&node).is_ok())
+    }
+
     /// The pinned dofs.
     pub fn dofs(&self) -> impl Iterator<Item = usize> + '_ {
         self.bodies
             .iter()
             .flat_map(|body| body.dofs.iter().copied())
+    }
+
+    /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii, eq. (12.2). That of a rigid body without
+    /// pairs is the mean over its own unknowns, where springs give them stiffness, and that of any rigid body is at
+    /// least `force` over its size.
+    pub fn stiffnesses(
+        &self,
+        diagonal: &[f64],
+        (map, parts): (&Transformation, &Parts),
+        acting: &[(&Constraint, &ClosedPair)],
+        force: f64,
+    ) -> Vec<f64> {
+        let mean = |of: &mut dyn Iterator<Item = f64>| {
+            let (sum, count) = of.fold((0.0, 0.0), |(sum, n), k| (sum + k.abs(), n + 1.0));
+            if count > 0.0 { sum / count } else { 0.0 }
+        };
+        let of_all = mean(&mut diagonal.iter().copied());
+        let of_body = |body: &PinnedBody| {
+            let is_own = |node: usize| parts.of_nodes()[node] == body.body;
+            let unknowns = (map.rows().enumerate())
+                .filter(|(dof, row)| is_own(dof / 2) && row.len() == 1)
+                .map(|(_, row)| diagonal[row[0].0]);
+            let touches = || acting.iter().any(|(c, _)| c.nodes().any(is_own));
+            let own = match body.is_rigid {
+                true => mean(&mut unknowns.into_iter()),
+                false => 0.0,
+            };
+            let a = match own > 0.0 && !touches() {
+                true => own,
+                false => larger(own, of_all),
+            };
+            let a = match body.is_rigid {
+                true => larger(a, force / body.size),
+                false => a,
+            };
+            // without stiffness and forces nothing moves
+            if a > 0.0 { a } else { 1.0 }
+        };
+        let all = self.bodies.iter();
+        all.flat_map(|body| vec![of_body(body); body.dofs.len()])
+            .collect()
+    }
+
+    /// Makes the stiffness of the unknowns of rigid bodies at least that of their pins, `a` of each.
+    pub fn stiffen_rigid(&self, (map, parts): (&Transformation, &Parts), a: &[f64], k: &mut [f64]) {
+        let all = self.bodies.iter().zip(self.of_bodies());
+        for (body, pins) in all.filter(|(body, _)| body.is_rigid) {
+            let of_body = a[pins.start];
+            for (dof, row) in map.rows().enumerate() {
+                if let &[(unknown, _)] = row
+                    && parts.of_nodes()[dof / 2] == body.body
+                {
+                    k[unknown] = larger(k[unknown], of_body);
+                }
+            }
+        }
+    }
+
+    /// Places of the pins of every body among all.
+    pub fn of_bodies(&self) -> Vec<Range<usize>> {
+        let mut end = 0;
+        let places = self.bodies.iter().map(|body| {
+            let first = end;
+            end += body.dofs.len();
+            first..end
+        });
+        places.collect()
     }
 
     /// Body of every pinned dof.
@@ -104,11 +215,9 @@ impl Pins {
     /// displacements `u`: the body with the largest.
     pub fn unbalanceable(&self, problem: &StepProblem, u: &[f64], du: &[f64], f: &[f64]) -> Cause {
         let at = |node: usize| problem.position(u, node);
-        let mut first = 0;
         let mut most = (0.0, Cause::NotConverged);
-        for body in &self.bodies {
-            let own = &f[first..first + body.dofs.len()];
-            first += body.dofs.len();
+        for (body, pins) in self.bodies.iter().zip(self.of_bodies()) {
+            let own = &f[pins];
             let size = largest(own);
             if size >= most.0 {
                 most = (size, body.unbalanceable(&at, du, own));
@@ -132,19 +241,29 @@ impl PinnedBody {
     fn new(
         problem: &StepProblem,
         (body, hold, has_elements): (usize, Hold, &[bool]),
-        nodes: Vec<usize>,
+        (nodes, spins): (Vec<usize>, Vec<Spin>),
     ) -> Option<Self> {
         let (model, unknowns) = (problem.model, &problem.unknowns);
-        let x = |node: usize| model.mesh.coordinates[node];
+        let x = |node: usize| problem.coordinates[node];
         let pole = pole(hold, &nodes, &x);
-        let size = nodes
-            .iter()
-            .map(|&node| distance(pole, x(node)))
-            .fold(0.0, larger);
-        let row = |dof: usize| motion_row(dof, pole, size, &x);
+        let arms = nodes.iter().map(|&node| distance(pole, x(node)));
+        let lengths = spins.iter().map(|spin| spin.1);
+        let size = match arms.fold(0.0, larger) {
+            0.0 => lengths.fold(0.0, larger),
+            size => size,
+        };
+        let frame = Frame {
+            pole,
+            size,
+            spins: &spins,
+            x: &x,
+        };
+        let row = |dof: usize| frame.row(dof);
         // what supports and equations ask of a rigid motion
         let mut gram = Matrix3::zeros();
-        let own = |dof: usize| nodes.binary_search(&(dof / 2)).is_ok();
+        let of_nodes = |dof: usize| nodes.binary_search(&(dof / 2)).is_ok();
+        let of_angles = |dof: usize| spins.iter().any(|spin| spin.0 == dof);
+        let own = |dof: usize| of_nodes(dof) || of_angles(dof);
         let tightening = tightening(&model.equations, has_elements, own, row);
         let moves_parts = |dof: usize| tightening.contains(&dof);
         for dof in unknowns
@@ -159,10 +278,6 @@ impl PinnedBody {
             let of_terms: Vector3<f64> = terms.iter().map(|&(to, c)| c * row(to)).sum();
             let asked = row(*dof) - of_terms;
             gram += asked * asked.transpose();
-        }
-        let mut turning = unknowns.turning.bodies.iter();
-        if turning.any(|body| own(2 * body.reference) && unknowns.is_prescribed(body.spin)) {
-            gram[(2, 2)] += 1.0;
         }
         if model.mesh.is_axisymmetric() {
             // across the axis, and about it, there is no rigid motion
@@ -180,11 +295,15 @@ impl PinnedBody {
         }
         let free = DMatrix::from_fn(3, free.len(), |i, k| free[k][i]);
         let is_meant = |&dof: &usize| own(dof) && !moves_parts(dof);
-        let candidates = unknowns.dof.iter().copied().filter(is_meant);
-        let dofs = independent_dofs(candidates.collect(), &free, row)?;
+        let candidates: Vec<usize> = unknowns.dof.iter().copied().filter(is_meant).collect();
+        let leads = |dof: &usize| unknowns.turning.leading().any(|leading| leading == *dof);
+        let is_rigid = candidates.iter().all(leads);
+        let dofs = independent_dofs(candidates, &free, row)?;
         Some(PinnedBody {
             body,
             nodes,
+            spins,
+            is_rigid,
             hold,
             free,
             size,
@@ -195,9 +314,10 @@ impl PinnedBody {
     fn unbalanceable(&self, at: &dyn Fn(usize) -> [f64; 2], du: &[f64], f: &[f64]) -> Cause {
         let pole = pole(self.hold, &self.nodes, at);
         let (mut force, mut moment) = ([0.0; 2], 0.0);
+        let frame = self.frame(pole, at);
         for (&dof, &f) in self.dofs.iter().zip(f) {
-            let row = motion_row(dof, pole, self.size, at);
-            force[dof % 2] += f;
+            let row = frame.row(dof);
+            (0..2).for_each(|i| force[i] += row[i] * f);
             moment += row[2] * self.size * f;
         }
         let motion = self.motion(at, pole, du).unwrap_or_default();
@@ -210,6 +330,16 @@ impl PinnedBody {
         }))
     }
 
+    /// Its motions about a pole.
+    fn frame<'a>(&'a self, pole: [f64; 2], x: &'a dyn Fn(usize) -> [f64; 2]) -> Frame<'a> {
+        Frame {
+            pole,
+            size: self.size,
+            spins: &self.spins,
+            x,
+        }
+    }
+
     /// Rigid part of a correction: Z_p^-1 dU_p
     fn motion(
         &self,
@@ -217,9 +347,10 @@ impl PinnedBody {
         pole: [f64; 2],
         du: &[f64],
     ) -> Option<Vector3<f64>> {
-        let row = |dof: usize| motion_row(dof, pole, self.size, at);
+        let frame = self.frame(pole, at);
         let m = self.dofs.len();
-        let seen = |i: usize, k: usize| row(self.dofs[i]).dot(&self.free.fixed_view::<3, 1>(0, k));
+        let seen =
+            |i: usize, k: usize| (frame.row(self.dofs[i])).dot(&self.free.fixed_view::<3, 1>(0, k));
         let z = DMatrix::from_fn(m, m, seen);
         let moved = DVector::from_fn(m, |i, _| du[self.dofs[i]]);
         let part = z.lu().solve(&moved)?;
@@ -263,6 +394,9 @@ impl PinnedBody {
             };
             du[2 * node] += to[0] - lx;
             du[2 * node + 1] += to[1] - ly;
+        }
+        for &(spin, length) in &self.spins {
+            du[spin] += (part - 1.0) * angle * length;
         }
         part < 1.0
     }
@@ -308,20 +442,6 @@ fn pole(hold: Hold, nodes: &[usize], x: &dyn Fn(usize) -> [f64; 2]) -> [f64; 2] 
     sum.map(|sum| sum / nodes.len() as f64)
 }
 
-/// Motion of a dof in two translations and a rotation about a pole that moves places at the given distance by 1.
-fn motion_row(
-    dof: usize,
-    pole: [f64; 2],
-    size: f64,
-    x: &dyn Fn(usize) -> [f64; 2],
-) -> Vector3<f64> {
-    let [px, py] = x(dof / 2);
-    match dof % 2 {
-        0 => Vector3::new(1.0, 0.0, -(py - pole[1]) / size),
-        _ => Vector3::new(0.0, 1.0, (px - pole[0]) / size),
-    }
-}
-
 /// As many dofs as there are free motions, by a pivoted QR factorisation of what they see of them.
 fn independent_dofs(
     dofs: Vec<usize>,
@@ -348,8 +468,8 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
-/// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins, `a` in K_r, with the columns of V over
-/// the unknowns; and their stiffness a' in K'. `compliances` are Qnn of some pairs.
+/// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins, `a` of each in K_r, with the columns
+/// of V over the unknowns; and their stiffness a' in K', this part of that of eq. (12.3). `compliances` are Qnn of some pairs.
 ///
 /// ```text
 /// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1/(a' - a) + S^T V)^-1            eq. (12.4)
@@ -358,16 +478,17 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
 pub(crate) fn soften(
     pins: &Pins,
     (map, parts): (&Transformation, &Parts),
-    [a, part]: [f64; 2],
+    (a, part): (&[f64], f64),
     columns: Vec<Vec<f64>>,
     compliances: &[(&Constraint, f64)],
     dofs: usize,
 ) -> (RankUpdate, Vec<f64>) {
     let unturned = Rotation::default();
+    let works = Columns::works(columns.clone(), (map, &unturned));
     let v = Columns::motions(columns, (map, &unturned), dofs);
     let bodies: Vec<usize> = pins.bodies().collect();
-    let soft = |body: usize| {
-        let (mut q, mut z) = (0.0_f64, 0.0_f64);
+    let soft = |(&body, &a): (&usize, &f64)| {
+        let (mut q, mut z, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);
         for (constraint, compliance) in compliances {
             if constraint
                 .nodes()
@@ -382,19 +503,22 @@ pub(crate) fn soften(
                 .filter(|(_, other)| **other == body);
             let seen: f64 = of_body.map(|(v, _)| constraint.gap_change(v).powi(2)).sum();
             q = q.max(compliance - a * seen);
+            most = most.max(*compliance);
             z = z.max(a * a * seen);
         }
         match q > 0.0 {
+            // pairs between rigid bodies have no compliance
+            _ if z > 0.0 && q <= COMPLIANT * most => part * a,
             true => (part * z / (SOFT * q)).clamp(SOFTEST * a, STIFFEST * a),
             false => SOFTEST * a,
         }
     };
-    let stiffness: Vec<f64> = bodies.iter().map(|&body| soft(body)).collect();
+    let stiffness: Vec<f64> = bodies.iter().zip(a).map(soft).collect();
     let unknown = |dof: usize| map.row(dof).first().map_or(0, |term| term.0);
     let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
     let m = unknowns.len();
     let mut c = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
-    for (k, soft) in stiffness.iter().enumerate() {
+    for (k, (soft, a)) in stiffness.iter().zip(a).enumerate() {
         let difference = match soft - a {
             0.0 => -f64::EPSILON * a,
             difference => difference,
@@ -402,7 +526,7 @@ pub(crate) fn soften(
         c[(k, k)] += 1.0 / difference;
     }
     let c = c.try_inverse().unwrap_or_else(|| DMatrix::zeros(m, m));
-    (RankUpdate::new([v.clone(), v], c), stiffness)
+    (RankUpdate::new([v, works], c), stiffness)
 }
 
 /// Adds the stiffness of all pins to the forces of a pass: a' p at the pinned dofs.

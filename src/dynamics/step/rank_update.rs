@@ -6,6 +6,45 @@ use nalgebra::DMatrix;
 use crate::contact::Constraint;
 use crate::linear::{Rotation, Transformation};
 
+/// What an inverse differs by from that of the factors of its matrix.
+#[derive(Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Updates {
+    /// By softened pins.
+    pub pins: Option<RankUpdate>,
+    /// By hinges that are kept closed, beside the pins.
+    pub hinges: Option<RankUpdate>,
+}
+
+impl Updates {
+    /// By softened pins alone.
+    pub fn of_pins(pins: RankUpdate) -> Self {
+        Updates {
+            pins: Some(pins),
+            hinges: None,
+        }
+    }
+
+    /// All of them: W b is A^-1 b less the sum of their V C Y^T b.
+    pub fn all(&self) -> impl Iterator<Item = &RankUpdate> {
+        self.pins.iter().chain(&self.hinges)
+    }
+
+    /// All of them.
+    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut RankUpdate> {
+        self.pins.iter_mut().chain(&mut self.hinges)
+    }
+
+    /// W b for A^-1 b over all unknowns, where it differs.
+    pub fn corrected(&self, solution: &[f64]) -> Option<Vec<f64>> {
+        let mut corrected = None;
+        for update in self.all() {
+            let of_last = corrected.as_deref().unwrap_or(solution);
+            corrected = Some(update.corrected(of_last));
+        }
+        corrected
+    }
+}
+
 /// W b = A^-1 b - V C Y^T b for the inverse A^-1 of the factors.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct RankUpdate {
@@ -119,6 +158,12 @@ impl RankUpdate {
                 *value -= part * column[at];
             }
         }
+    }
+
+    /// W b from b and A^-1 b over all unknowns.
+    pub fn solution(&mut self, b: &[f64], solution: &[f64]) -> Vec<f64> {
+        self.begin(b);
+        self.corrected(solution)
     }
 
     /// W b for A^-1 b over all unknowns.

@@ -423,6 +423,27 @@ impl<'m> Turning<'m> {
         }
     }
 
+    /// What forces over all dofs that turn no more than their nodes add to the stiffness of the angles from
+    /// displacements `u0` to `u`, by the dof of the angle:
+    ///
+    /// ```text
+    /// K_ss += sum f.r_1/(L² (1 + c²/4))      eq. (11.10)
+    /// ```
+    pub fn geometric_stiffness(
+        &self,
+        [u0, u]: [&[f64]; 2],
+        force: &[f64],
+    ) -> impl Iterator<Item = (usize, f64)> {
+        self.with_poles().map(move |(body, pole)| {
+            let half = (body.angle(u) - body.angle(u0)) / 2.0;
+            let arms = body.arms_from(pole, body.angle(u));
+            let along = |(node, r): (usize, [f64; 2])| dot([0, 1].map(|i| force[2 * node + i]), r);
+            let sum: f64 = arms.map(along).sum();
+            let derivative = half.cos().powi(2) / body.length;
+            (body.spin, sum / body.length * derivative)
+        })
+    }
+
     /// Makes moments M on the angles the forces on s = L c that do the work M dtheta in the increment `d`:
     /// (M/L) dtheta/c, eq. (11.4); in a static step M/L.
     pub fn scale_moments(&self, d: &[f64], force: &mut [f64]) {

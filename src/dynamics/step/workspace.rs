@@ -74,8 +74,8 @@ impl<'m> Workspace<'m> {
             pins,
             ..
         } = self;
-        let stiffness_of_pins = [stiffness.pin, part];
-        System::new(&mut stiffness.k, meter).soften(problem, pins, stiffness_of_pins, constraints)
+        let EffectiveStiffness { k, pins: a, .. } = stiffness;
+        System::new(k, meter).soften(problem, pins, (a, part), constraints)
     }
 
     /// The mass M.
