@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 use super::increment::{PairReturn, Release, Solved};
 use super::patterns::{
-    FrictionLoad, Pattern, ReturnLoad, RigidBodies, given, pattern, shares, signs,
+    FrictionLoad, Pattern, ReturnLoad, RigidBodies, given, pattern, shares, signs, turning_bodies,
 };
 use super::results::{Cause, State};
 use super::step::{ClosedConstraints, StepProblem, Workspace, difference, dot, sum};
@@ -29,7 +29,9 @@ pub(crate) fn return_landings(
     if !problem.returns_landings() {
         return Ok(());
     }
+    let turns = turning_bodies(problem);
     let landings: Vec<_> = (solved.contact.forces.acting())
+        .filter(|(constraint, _)| !touches(problem, &turns, constraint))
         .filter_map(|(constraint, pair)| landing(problem, solved, dt, constraint, pair))
         .collect();
     let (pairs, loads): (Vec<_>, Vec<_>) = landings.into_iter().unzip();
@@ -45,6 +47,12 @@ pub(crate) fn return_landings(
     solved.returned.pairs = shares.filter_map(share).collect();
     solved.returned.support_work = given.support_work;
     Ok(())
+}
+
+/// Whether a constraint acts on a body that a rigid one that turns is a part of: its landings take what they take.
+fn touches(problem: &StepProblem, turns: &[bool], constraint: &Constraint) -> bool {
+    let body_of = problem.parts.of_nodes();
+    constraint.nodes().any(|node| turns[body_of[node]])
 }
 
 /// Part of the energy of a load below which what is left of it is round-off.
@@ -291,7 +299,9 @@ pub(crate) fn return_release(
     solved: &mut Solved,
     release: Release,
 ) -> Result<(), Cause> {
-    if problem.returns_landings() && release.loss > 0.0 {
+    let turns = turning_bodies(problem);
+    let gives = (release.opened.iter()).all(|(pair, _)| !touches(problem, &turns, pair));
+    if problem.returns_landings() && release.loss > 0.0 && gives {
         if solved.returned.pairs.is_empty() {
             factorize_anew(problem, workspace, (start, dt), solved)?;
         }

@@ -63,13 +63,25 @@ pub(super) fn pattern(
 ) -> Result<Pattern, Cause> {
     let mut w = (workspace.k()).respond(force)?;
     bodies.correct(problem, dt, force, &mut w);
+    bodies.keep_turning(problem, &mut w);
     let momentum = problem.mass.times(&w);
     Ok(Pattern { w, momentum })
+}
+
+/// Whether a rigid body that turns is a part of each body.
+pub(super) fn turning_bodies(problem: &StepProblem) -> Vec<bool> {
+    let mut turns = vec![false; problem.parts.bodies()];
+    for body in problem.unknowns.turning.bodies {
+        turns[problem.parts.of_nodes()[body.centre]] = true;
+    }
+    turns
 }
 
 /// The free bodies as rigid ones.
 pub(super) struct RigidBodies {
     is_free: Vec<bool>,
+    /// Whether a rigid body that turns is a part of it.
+    turns: Vec<bool>,
     /// Mass and moment of inertia of every body.
     inertia: Vec<[f64; 2]>,
     /// Arms from the centres of mass, over all dofs.
@@ -93,6 +105,7 @@ impl RigidBodies {
         let arms = body_of.iter().enumerate().flat_map(arm).collect();
         let mut bodies = RigidBodies {
             is_free,
+            turns: turning_bodies(problem),
             inertia: sums.iter().map(|[m, ..]| [*m, 0.0]).collect(),
             arms,
         };
@@ -125,6 +138,14 @@ impl RigidBodies {
             at(&held).or_else(|| at(&moving)).unwrap_or(0.0)
         };
         (0..v.len()).map(of_dof).collect()
+    }
+
+    /// Takes rigid bodies that turn, and what is coupled to them, out of a pattern: they are given nothing.
+    fn keep_turning(&self, problem: &StepProblem, w: &mut [f64]) {
+        let body_of = problem.parts.of_nodes();
+        let all = w.iter_mut().enumerate();
+        all.filter(|(dof, _)| self.turns[body_of[dof / 2]])
+            .for_each(|(_, w)| *w = 0.0);
     }
 
     /// What the velocities `v` of the free bodies have besides a rigid motion, over all dofs: its momenta are zero.

@@ -4,7 +4,7 @@
 //! With `LANDING=RETURN` a bar of 50 elements that hits a wall keeps 1.0000 of its energy, where it keeps 0.994 with the
 //! mass at the surface (docs/impact.md).
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
@@ -158,7 +158,7 @@ impl<'m> Neighbours<'m> {
 }
 
 /// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without
-/// mass: nodes at the edge of a hole may not, nor those that equations, springs and dashpots tie.
+/// mass: nodes at the edge of a hole may not, nor those that equations, springs, dashpots and rigid bodies tie.
 pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<(usize, bool)> {
     let mesh = &model.mesh;
     let mut may = outer_nodes(mesh);
@@ -170,6 +170,20 @@ pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<
     for node in equations.map(|dof| dof / 2).chain(connectors.copied()) {
         if let Some(may) = &mut may[node] {
             *may = false;
+        }
+    }
+    // nodes that turn with a rigid body keep the mass of the elements that deform, and have no other
+    let mut deforms = vec![false; mesh.node_count()];
+    let rigid: BTreeSet<usize> = (model.turning_bodies())
+        .flat_map(|(body, _)| body.elements.iter().copied())
+        .collect();
+    let elements = mesh.elements.iter().enumerate();
+    for (_, element) in elements.filter(|(index, _)| !rigid.contains(index)) {
+        element.nodes.iter().for_each(|&node| deforms[node] = true);
+    }
+    for (body, _) in model.turning_bodies() {
+        for &node in body.nodes.iter().chain([&body.reference]) {
+            may[node] = may[node].filter(|_| deforms[node]).map(|_| false);
         }
     }
     let of_contact = |contact: &ContactSurfaces| {

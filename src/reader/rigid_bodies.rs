@@ -410,8 +410,8 @@ pub(crate) fn complete(
     rigid_bodies.iter().zip(&motions).map(body).collect()
 }
 
-/// Reports what bodies that turn cannot do yet: equations at their nodes, landing return and redistributed mass; bodies
-/// of revolution cannot turn at all.
+/// Reports equations at nodes of bodies that turn, and that landing return and redistributed mass leave these bodies
+/// out; bodies of revolution cannot turn at all.
 pub(crate) fn check(
     rigid_bodies: &[Rigid],
     bodies: &[RigidBody],
@@ -444,9 +444,9 @@ pub(crate) fn check(
             (redistributes, "CONTACT MASS=REDISTRIBUTED"),
         ];
         for (_, option) in options.into_iter().filter(|(is_asked, _)| *is_asked) {
-            let message = format!("{} turns, which {option} does not know", rigid.name);
-            cx.error(Code::RigidSurface, rigid.span, message)
-                .help("leave it out of *STICKSLIP");
+            let message = format!("{} turns, and {option} leaves it out", rigid.name);
+            cx.warning(Code::RigidSurface, rigid.span, message)
+                .help("it holds for contacts between bodies that deform");
         }
     }
 }

@@ -226,3 +226,65 @@ fn a_pinned_body_swings() {
     // it swings through: the centre comes lower than the pin
     assert!(reports.iter().any(|r| r.bodies[0].center[1] < -0.7));
 }
+
+/// A mesh of 4 x 4 elements of a square with the side 1 from a point, its skin, and its velocity along x.
+fn mesh(first: usize, [x, y]: [f64; 2], name: &str) -> String {
+    let nodes: String = (0..25)
+        .map(|k| {
+            let at = |i: usize| 0.25 * i as f64;
+            format!("{}, {:?}, {:?}\n", first + k, x + at(k % 5), y + at(k / 5))
+        })
+        .collect();
+    let elements: String = (0..16)
+        .map(|e| {
+            let a = first + e % 4 + 5 * (e / 4);
+            format!("{}, {a}, {}, {}, {}\n", first + e, a + 1, a + 6, a + 5)
+        })
+        .collect();
+    format!(
+        "*NODE, NSET=N{name}\n{nodes}*ELEMENT, TYPE=CPS4, ELSET={name}\n{elements}\
+         *SOLID SECTION, ELSET={name}, MATERIAL=M\n1.\n*SURFACE, NAME=S{name}\n{name},\n"
+    )
+}
+
+/// Two elastic blocks and a rigid one collide: landing return and redistributed mass hold for the elastic ones.
+#[test]
+fn landing_return_and_redistributed_mass_leave_bodies_out_that_turn() {
+    let run = |settings: &str| {
+        let text = format!(
+            "{}{}{}{MATERIAL}*NODE\n399, 0.4, 1.9\n*RIGID BODY, ELSET=C, REF NODE=399\n\
+             *SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\n\
+             SA, SB\nSB, SA\nSC, SA\nSA, SC\nSC, SB\nSB, SC\n\
+             *INITIAL CONDITIONS, TYPE=VELOCITY\nNA, 1, 2.\nNB, 1, -1.\n399, 2, -3.\n399, 6, 1.5\n\
+             *STEP, NLGEOM, INC=1000\n*DYNAMIC, DIRECT\n0.01, 0.4\n{settings}*END STEP\n",
+            mesh(1, [0.0, 0.0], "A"),
+            mesh(101, [1.2, 0.2], "B"),
+            square(301, [0.4, 1.9], 0.4, "C"),
+        );
+        let (keep, _) = run_to_end(&read(&text));
+        let reports = keep.reports;
+        assert!(
+            unbalanced(&reports) < 1e-11,
+            "{settings}: {:e}",
+            unbalanced(&reports)
+        );
+        let total = |r: &IncrementReport| r.energy.kinetic + r.energy.strain;
+        let start = &reports[0].momentum;
+        for pair in reports.windows(2) {
+            assert!(total(&pair[1]) <= total(&pair[0]) * (1.0 + 1e-12));
+            let now = &pair[1].momentum;
+            (0..2).for_each(|i| assert!((now.linear[i] - start.linear[i]).abs() < 1e-12));
+            assert!((now.angular - start.angular).abs() < 1e-11);
+        }
+        let touch = |contact: usize| reports.iter().any(|r| r.contacts[contact].closed > 0);
+        assert!(touch(0) && (touch(2) || touch(3)));
+        reports.last().expect("increments").energy
+    };
+    let plain = run("");
+    let returned = run("*STICKSLIP, LANDING=RETURN\n");
+    assert!(plain.landing_return == 0.0 && returned.landing_return > 1e-4);
+    let redistributed = run("*STICKSLIP, CONTACT MASS=REDISTRIBUTED\n");
+    // the elastic blocks lose nothing to impulses, and the rigid one lands on surfaces without mass
+    assert!(redistributed.impact_loss < 1e-3 * plain.impact_loss);
+    run("*STICKSLIP, LANDING=RETURN, CONTACT MASS=REDISTRIBUTED\n");
+}
