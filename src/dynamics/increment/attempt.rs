@@ -166,14 +166,16 @@ struct Vectors {
 }
 
 /// Steps in a pass that take the forces of pins out.
-const PIN_STEPS: usize = 40;
+const PIN_STEPS: usize = 30;
 /// The least of them before forces count as settled.
 const LEAST_PIN_STEPS: usize = 4;
 /// Parts of the stiffness of pins with which they are made, one after the other.
 const SOFTER: [f64; 3] = [1.0, 1e-2, 1e-4];
 /// The last of them.
 const SOFTEST_PART: f64 = SOFTER[SOFTER.len() - 1];
-/// Part of forces of pins that some steps leave where softer pins are to go on.
+/// Part of the tolerance up to which forces of pins are left to the next pass.
+const WITHIN_TOLERANCE: f64 = 0.1;
+/// Part of small forces of pins above which steps that go farther have changed nothing.
 const SLOW_PIN: f64 = 0.5;
 /// Forces of pins that are none, beside the other forces.
 const PIN_FORCE: f64 = 1e-13;
@@ -494,6 +496,7 @@ impl<'m> Attempt<'_, 'm> {
         let dofs: Vec<usize> = self.workspace.pins.dofs().collect();
         let of_bodies = self.workspace.pins.of_bodies();
         let reach = self.workspace.search.reach();
+        let tolerance = problem.settings.tolerance;
         let mut p = vec![0.0; dofs.len()];
         let (mut stays, mut closing) = (None, Vec::new());
         // where f vanishes slowly, pins are too stiff for what holds the body
@@ -504,11 +507,9 @@ impl<'m> Attempt<'_, 'm> {
             closing = self.close_hinges(v)?;
             let mut forces: Vec<Vec<f64>> = Vec::new();
             let mut strides = vec![0.0; of_bodies.len()];
-            let mut left = f64::INFINITY;
+            let (mut left, mut small) = (f64::INFINITY, None);
             for step in 0..PIN_STEPS {
-                let mut load = v.load.clone();
-                add_pin_forces(&self.workspace.pins, &stiffness, &p, &mut load);
-                contact.solve([&v.closing, &load], weight, &mut self.k_star(), &mut v.du)?;
+                self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
                 let moved: Vec<f64> = dofs.iter().map(|&dof| v.du[dof]).collect();
                 let carried = |k: usize| stiffness[k] * (moved[k] - p[k]);
                 let force: Vec<f64> = (0..dofs.len()).map(carried).collect();
@@ -533,6 +534,9 @@ impl<'m> Attempt<'_, 'm> {
                         break 'rounds;
                     }
                 }
+                if left <= SMALL_PIN_FORCE {
+                    small.get_or_insert_with(|| (p.clone(), left));
+                }
                 for (pins, last) in of_bodies.iter().zip(&mut strides) {
                     let before = forces.last().map_or(&[][..], |force| &force[pins.clone()]);
                     *last = stride(*last, &force[pins.clone()], before);
@@ -542,17 +546,22 @@ impl<'m> Attempt<'_, 'm> {
                 }
                 forces.push(force);
             }
-            // soft springs take them over slowly
-            let slow = forces
-                .len()
-                .checked_sub(LEAST_PIN_STEPS)
-                .is_some_and(|before| {
-                    let last = forces.last().map_or(0.0, |force| largest(force));
-                    last > SLOW_PIN * largest(&forces[before])
-                });
-            if left <= SMALL_PIN_FORCE && !(slow && part > SOFTEST_PART) {
-                free.ends();
-                return Ok(closing);
+            let stayed = small.filter(|(_, before)| left > SLOW_PIN * before);
+            let softer = left > WITHIN_TOLERANCE * tolerance && part > SOFTEST_PART;
+            match stayed {
+                _ if left > SMALL_PIN_FORCE => {}
+                // a weak spring takes them over slowly
+                Some(_) if softer => {}
+                // what does not fall is round-off in a motion that nothing resists
+                Some((p, _)) => {
+                    self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
+                    free.ends();
+                    return Ok(closing);
+                }
+                None => {
+                    free.ends();
+                    return Ok(closing);
+                }
             }
         }
         if let Some((force, du, closed)) = stays
@@ -561,6 +570,19 @@ impl<'m> Attempt<'_, 'm> {
             return Err((self.workspace.pins).unbalanceable(problem, &v.u, &du, &force));
         }
         Ok(closing)
+    }
+
+    /// Contact forces and correction of a pass with the forces a' p at the pins.
+    fn solve_with_pins(
+        &mut self,
+        contact: &mut ContactForces,
+        weight: Option<f64>,
+        (stiffness, p): (&[f64], &[f64]),
+        v: &mut Vectors,
+    ) -> Result<(), Cause> {
+        let mut load = v.load.clone();
+        add_pin_forces(&self.workspace.pins, stiffness, p, &mut load);
+        contact.solve([&v.closing, &load], weight, &mut self.k_star(), &mut v.du)
     }
 
     /// Makes the rigid part of the correction of a pinned body a finite motion.
