@@ -232,8 +232,10 @@ impl Constraint {
     /// The keys that its slave node has at each of its segments: at a corner, two.
     pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
         let slave = self.key.slave;
-        let segments = self.source.target.segments();
-        segments.map(move |segment| ConstraintKey { slave, segment })
+        let own = self.is_weighted().then_some(self.key);
+        let segments = self.source.target.segments().filter(move |_| own.is_none());
+        let of_segments = segments.map(move |segment| ConstraintKey { slave, segment });
+        own.into_iter().chain(of_segments)
     }
 
     /// Its slave nodes.
@@ -261,6 +263,18 @@ impl Constraint {
         let force = move |k: usize| normal[k] * pn + tangential[k] * pt;
         let numbered = self.nodes().enumerate();
         numbered.map(move |(k, node)| (node, [force(2 * k), force(2 * k + 1)]))
+    }
+
+    /// Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
+    pub fn forces_on_slave_surface(
+        &self,
+        force: [f64; 2],
+    ) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let slaves = self.slave_dofs / 2;
+        let is_of_master = self.source.is_of_master;
+        let numbered = self.nodal_forces(force).enumerate();
+        let own = numbered.filter(move |(k, _)| (*k < slaves) != is_of_master);
+        own.map(|(_, force)| force)
     }
 
     /// Bn^T Pn + Bt^T Pt at every slave node.

@@ -14,7 +14,9 @@
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
-use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE};
+use super::tolerances::{
+    CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE,
+};
 use crate::model::{
     Contact, ContactFormulation, Element, ElementsAtNodes, Mesh, Model, SurfaceKind,
 };
@@ -118,6 +120,19 @@ pub struct ContactSurfaces {
     pub interior: Arc<Interior>,
     /// Faces at the slave nodes, where contact is from surface to surface.
     pub slave_segments: Option<SlaveSegments>,
+    /// From surface to surface, the corners of both as nodes against the segments of the other.
+    pub corners: Vec<Corners>,
+}
+
+/// Corners of one surface against the segments of the other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corners {
+    /// The corners as slave nodes.
+    pub surfaces: ContactSurfaces,
+    /// Overlap that each of them may have (length).
+    pub allowed: Vec<f64>,
+    /// Whether they are corners of the contact's master.
+    pub are_of_master: bool,
 }
 
 /// Slave faces and slave nodes of a contact from surface to surface.
@@ -125,8 +140,15 @@ pub struct ContactSurfaces {
 pub struct SlaveSegments {
     /// Numbers of the slave nodes at the ends of every face, none of a node that takes no part.
     pub ends: Vec<[Option<usize>; 2]>,
-    /// For every slave node its faces, each with the end (0 or 1) at which the node is.
-    pub at_nodes: Vec<Vec<[usize; 2]>>,
+    /// For every slave node its faces on both sides, two lists where it is a corner, each face with the end
+    /// (0 or 1) at which the node is.
+    pub at_nodes: Vec<Vec<Vec<[usize; 2]>>>,
+    /// Number of the run of every master segment: segments without a corner between them.
+    pub runs: Vec<usize>,
+    /// Rank of every segment of a surface that touches itself: of two faces the one of lower rank is slave.
+    pub ranks: Option<Vec<usize>>,
+    /// Ends of the sides by their nodes between.
+    pub middles: HashMap<usize, [usize; 2]>,
     /// Whether the faces are those of bodies of revolution.
     pub are_rings: bool,
 }
@@ -154,6 +176,7 @@ impl ContactSurfaces {
             segments,
             interior: Arc::default(),
             slave_segments: None,
+            corners: Vec::new(),
         }
     }
 
@@ -163,8 +186,13 @@ impl ContactSurfaces {
         self
     }
 
-    /// With contact from surface to surface, of bodies of revolution or in the plane.
-    pub fn from_surface_to_surface(mut self, are_rings: bool) -> Self {
+    /// With contact from surface to surface; `middles` are the ends of sides by their nodes between.
+    pub fn from_surface_to_surface(
+        mut self,
+        mesh: &Mesh,
+        middles: HashMap<usize, [usize; 2]>,
+    ) -> Self {
+        let x = &mesh.coordinates;
         let numbered = self.slaves.iter().enumerate();
         let numbers: HashMap<usize, usize> = numbered.map(|(k, &node)| (node, k)).collect();
         let mut at_nodes = vec![Vec::new(); self.slaves.len()];
@@ -178,12 +206,137 @@ impl ContactSurfaces {
                 }
             }
         }
+        let of_sides = |faces: Vec<[usize; 2]>| -> Vec<Vec<[usize; 2]>> {
+            let tangent = |face: usize| {
+                let [a, b] = self.slave_faces[face].map(|node| x[node]);
+                project(a, a, b).tangent
+            };
+            match faces[..] {
+                [[f, _], [g, _]] if dot(tangent(f), tangent(g)) >= CORNER_COSINE => vec![faces],
+                _ => faces.into_iter().map(|face| vec![face]).collect(),
+            }
+        };
+        let is_self_contact = self.slave_faces == self.segments;
+        self.corners = self.corners_of_both(x, is_self_contact);
         self.slave_segments = Some(SlaveSegments {
             ends,
-            at_nodes,
-            are_rings,
+            at_nodes: at_nodes.into_iter().map(of_sides).collect(),
+            runs: self.runs(x),
+            ranks: is_self_contact.then(|| self.ranks(x)),
+            middles,
+            are_rings: mesh.is_axisymmetric(),
         });
         self
+    }
+
+    /// Whether the surface has a corner between a segment and the next at the positions `x`.
+    fn has_corner(&self, x: &[[f64; 2]], i: usize, j: usize) -> bool {
+        let [e, f] = [i, j].map(|i| {
+            let [a, b] = self.segments[i].map(|node| x[node]);
+            project(a, a, b).tangent
+        });
+        dot(e, f) < CORNER_COSINE
+    }
+
+    /// Number of the run of every segment: its first segment, of a closed one without corners the least.
+    fn runs(&self, x: &[[f64; 2]]) -> Vec<usize> {
+        let mut runs = vec![usize::MAX; self.segments.len()];
+        let before = |j: usize| self.previous[j].filter(|&i| !self.has_corner(x, i, j));
+        let after = |i: usize| self.next[i].filter(|&j| !self.has_corner(x, i, j));
+        let heads = (0..runs.len()).filter(|&i| before(i).is_none());
+        for head in heads.chain(0..self.segments.len()) {
+            let mut following = Some(head);
+            while let Some(i) = following.filter(|&i| runs[i] == usize::MAX) {
+                runs[i] = head;
+                following = after(i);
+            }
+        }
+        runs
+    }
+
+    /// Ranks of the segments of a surface that touches itself: those of chains with shorter segments come first, in
+    /// a chain one segment after the other.
+    fn ranks(&self, x: &[[f64; 2]]) -> Vec<usize> {
+        let mut seen = vec![false; self.segments.len()];
+        let mut chains: Vec<(f64, Vec<usize>)> = Vec::new();
+        let heads = (0..seen.len()).filter(|&i| self.previous[i].is_none());
+        for head in heads.chain(0..self.segments.len()) {
+            let (mut chain, mut following) = (Vec::new(), Some(head));
+            while let Some(i) = following.filter(|&i| !seen[i]) {
+                seen[i] = true;
+                chain.push(i);
+                following = self.next[i];
+            }
+            let lengths = chain.iter().map(|&i| self.length(x, i));
+            let sum: f64 = lengths.sum();
+            if !chain.is_empty() {
+                chains.push((sum / chain.len() as f64, chain));
+            }
+        }
+        chains.sort_by(|(l, p), (m, q)| l.total_cmp(m).then(p.cmp(q)));
+        let mut ranks = vec![0; self.segments.len()];
+        for (rank, i) in chains.into_iter().flat_map(|(_, chain)| chain).enumerate() {
+            ranks[i] = rank;
+        }
+        ranks
+    }
+
+    fn length(&self, x: &[[f64; 2]], i: usize) -> f64 {
+        let [a, b] = self.segments[i];
+        length(difference(x[a], x[b]))
+    }
+
+    /// The corners of both surfaces, of one that touches itself once.
+    fn corners_of_both(&self, x: &[[f64; 2]], is_self_contact: bool) -> Vec<Corners> {
+        let chains = |faces: &[[usize; 2]]| ContactSurfaces::new(Vec::new(), &[], faces.to_vec());
+        let [slave, master] = [&self.slave_faces, &self.segments].map(|faces| chains(faces));
+        let mut both = vec![(&slave, &master, false)];
+        if !is_self_contact {
+            both.push((&master, &slave, true));
+        }
+        let is_slave: HashSet<usize> = self.slaves.iter().copied().collect();
+        let corners = both.into_iter().map(|(own, against, are_of_master)| {
+            let mut nodes = own.corner_nodes(x);
+            nodes.retain(|node| are_of_master || is_slave.contains(node));
+            let shortest = shortest_faces(&own.segments, x);
+            let lengths = (0..against.segments.len()).map(|i| against.length(x, i));
+            let least = lengths.fold(f64::INFINITY, f64::min);
+            let allowed = |node: &usize| CORNER_DEPTH * shortest[node].min(least);
+            let allowed = nodes.iter().map(allowed).collect();
+            let surfaces = ContactSurfaces::new(nodes, &own.segments, against.segments.clone());
+            Corners {
+                surfaces: surfaces
+                    .with_sharp_corners(x)
+                    .with_interior(Arc::clone(&self.interior)),
+                allowed,
+                are_of_master,
+            }
+        });
+        corners
+            .filter(|corners| !corners.allowed.is_empty())
+            .collect()
+    }
+
+    /// Ends of the surface of the segments, and its nodes where it has a convex corner; increasing.
+    fn corner_nodes(&self, x: &[[f64; 2]]) -> Vec<usize> {
+        let mut nodes = Vec::new();
+        for (i, &[a, b]) in self.segments.iter().enumerate() {
+            if self.previous[i].is_none() {
+                nodes.push(a);
+            }
+            let tangent = |i: usize| {
+                let [a, b] = self.segments[i].map(|node| x[node]);
+                project(a, a, b).tangent
+            };
+            let is_corner = self.next[i]
+                .is_none_or(|j| self.has_corner(x, i, j) && cross(tangent(i), tangent(j)) > 0.0);
+            if is_corner {
+                nodes.push(b);
+            }
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
     }
 
     /// Half the length of the longest slave face, at the positions `x`, of contact from surface to surface; else 0.
@@ -221,8 +374,28 @@ impl ContactSurfaces {
             })
         };
         self.sharp_corners = (0..self.segments.len()).map(is_sharp).collect();
+        let corners = self.corners.into_iter();
+        self.corners = corners
+            .map(|corners| Corners {
+                surfaces: corners.surfaces.with_sharp_corners(x),
+                ..corners
+            })
+            .collect();
         self
     }
+}
+
+/// Length of the shortest of some faces at each of their nodes.
+pub fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f64> {
+    let mut shortest = HashMap::new();
+    for &[a, b] in faces {
+        let length = length(difference(x[a], x[b]));
+        for node in [a, b] {
+            let least = shortest.entry(node).or_insert(length);
+            *least = length.min(*least);
+        }
+    }
+    shortest
 }
 
 /// Direction along a chain of segments.
@@ -290,7 +463,9 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
         .with_sharp_corners(&model.mesh.coordinates)
         .with_interior(Arc::clone(&interior));
         if contact.formulation == ContactFormulation::SurfaceToSurface {
-            return surfaces.from_surface_to_surface(model.mesh.is_axisymmetric());
+            let both = [slave, master].into_iter();
+            let middles = both.flat_map(|surface| surface.middles(&model.mesh));
+            return surfaces.from_surface_to_surface(&model.mesh, middles.collect());
         }
         match slave.kind {
             SurfaceKind::Nodes(_) => surfaces.with_exterior_faces(&model.mesh),
@@ -381,6 +556,18 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
+    /// Whether a point of a face behind the line of a segment has penetrated the body there through this segment: the
+    /// same of a point between nodes.
+    pub fn takes_in_point(
+        &self,
+        segment: [usize; 2],
+        (point, face): ([f64; 2], [usize; 2]),
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> bool {
+        self.line_to(segment, point, NEARER_HALF, at)
+            .is_none_or(|line| face.iter().all(|&node| self.is_foreign(&line, node)))
+    }
+
     /// Whether a node behind the line of a segment belongs to the body there: it is a node of the
     /// far side.
     pub fn joins(&self, segment: [usize; 2], node: usize, at: impl Fn(usize) -> [f64; 2]) -> bool {
@@ -397,8 +584,20 @@ impl Interior {
         depths: f64,
         at: impl Fn(usize) -> [f64; 2],
     ) -> Option<Line> {
+        let s = at(node);
+        self.line_to(segment, s, depths, at)
+    }
+
+    /// The same to any point.
+    fn line_to(
+        &self,
+        segment: [usize; 2],
+        s: [f64; 2],
+        depths: f64,
+        at: impl Fn(usize) -> [f64; 2],
+    ) -> Option<Line> {
         let first = self.left(segment)?;
-        let ([a, b], s) = (segment.map(&at), at(node));
+        let [a, b] = segment.map(&at);
         let p = project(s, a, b);
         let xi = p.xi.clamp(0.0, 1.0);
         let from = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));

@@ -9,7 +9,7 @@ use crate::lcp::ContactName;
 pub struct SlaveKey {
     /// Contact of the model.
     pub(super) contact: usize,
-    /// Number of the slave node in its contact.
+    /// Number of the slave node in its contact; those of corners from surface to surface follow.
     pub(super) slave: usize,
 }
 
@@ -17,6 +17,14 @@ impl SlaveKey {
     /// Number of the contact of the model.
     pub fn contact(self) -> usize {
         self.contact
+    }
+
+    /// The slave node whose number in the contact is larger.
+    pub(super) fn plus(self, count: usize) -> Self {
+        SlaveKey {
+            slave: self.slave + count,
+            ..self
+        }
     }
 }
 
@@ -27,8 +35,8 @@ impl SlaveKey {
 )]
 pub struct ConstraintKey {
     pub(super) slave: SlaveKey,
-    /// Segment in its contact, at a corner that before it. A kind with one constraint for each slave
-    /// node gives the same number to all.
+    /// Segment in its contact, at a corner that before it. From surface to surface twice the number of the run of
+    /// segments, and one more on the second side of a corner.
     pub(super) segment: usize,
 }
 

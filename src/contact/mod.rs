@@ -35,6 +35,7 @@ pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
 pub use geometry::{
     Along, ContactSurfaces, Interior, Positions, Projection, contact_surfaces, project,
+    shortest_faces,
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use pairing::find_targets;

@@ -38,14 +38,8 @@ pub fn find_targets(
     pairs.clear();
     for listed in search.slaves() {
         if listed.surfaces.slave_segments.is_some() {
-            if listed.key.slave == 0 {
-                find_points(
-                    listed.territory(),
-                    listed.key.contact,
-                    [start, now],
-                    form,
-                    pairs,
-                );
+            if listed.number == 0 {
+                find_points(listed.territory(), [start, now], form, pairs);
             }
             while before
                 .next_if(|pair| pair.key.slave <= listed.key)
@@ -60,7 +54,7 @@ pub fn find_targets(
             surfaces: listed.surfaces,
             start,
             now,
-            slave: listed.key.slave,
+            slave: listed.number,
             held_by: &held_by,
             allowed: listed.allowed(),
         };
@@ -109,6 +103,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         from: target.from.map(|i| surfaces.segments[i]),
         allowed: listed.allowed(),
         points: Vec::new(),
+        is_of_master: listed.is_of_master(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
 //! that stay valid over several increments. Section 10 of docs/theory.md, Candidate search.
 
-use super::geometry::{ContactSurfaces, position};
+use super::geometry::{ContactSurfaces, Corners, position};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
 use super::tolerances::{
@@ -44,7 +44,9 @@ impl<'m> Search<'m> {
     pub fn new(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search {
             x,
-            territories: contacts.iter().map(|c| Territory::new(c, x)).collect(),
+            territories: (contacts.iter().enumerate())
+                .flat_map(|(contact, surfaces)| Territory::of_contact(contact, surfaces, x))
+                .collect(),
             searches: 0,
         }
     }
@@ -52,15 +54,17 @@ impl<'m> Search<'m> {
     /// Takes the overlaps that fits allow the slave nodes of every contact at the start of an increment and at its end
     /// (length); of a contact without a fit none.
     pub fn allow(&mut self, allowed: Vec<Vec<[f64; 2]>>) {
-        for (territory, allowed) in self.territories.iter_mut().zip(allowed) {
-            territory.is_fitted = allowed.iter().any(|[_, end]| *end != 0.0);
-            territory.allowed = allowed;
+        for territory in &mut self.territories {
+            territory.allow(&allowed[territory.key.contact]);
         }
     }
 
     /// Lets nodes of a contact pair with segments that they are behind by a further `overlap` (length).
     pub fn reach_into(&mut self, contact: usize, overlap: f64) {
-        self.territories[contact].reach += overlap;
+        let own = |territory: &&mut Territory| territory.key.contact == contact;
+        for territory in self.territories.iter_mut().filter(own) {
+            territory.reach += overlap;
+        }
     }
 
     /// Starts an increment of length `dt` with the velocities `v`: the reach of a pair grows by the
@@ -149,18 +153,18 @@ impl<'m> Search<'m> {
         reaches.fold(f64::INFINITY, f64::min)
     }
 
-    /// The contacts with their candidates.
+    /// The contacts with their candidates, one after the other; from surface to surface with their corners.
     pub fn territories(&self) -> &[Territory<'m>] {
         &self.territories
     }
 
     /// The slave nodes of all contacts with their candidates, in the order of their numbers.
     pub fn slaves(&self) -> impl Iterator<Item = ListedSlave<'_, 'm>> {
-        let territories = self.territories.iter().enumerate();
-        territories.flat_map(|(contact, territory)| {
+        self.territories.iter().flat_map(|territory| {
             let surfaces = territory.contact;
-            (0..surfaces.slaves.len()).map(move |slave| ListedSlave {
-                key: SlaveKey { contact, slave },
+            (0..surfaces.slaves.len()).map(move |number| ListedSlave {
+                key: territory.key.plus(number),
+                number,
                 surfaces,
                 territory,
             })
@@ -183,6 +187,8 @@ impl<'m> Search<'m> {
 pub struct ListedSlave<'a, 'm> {
     /// What identifies it.
     pub key: SlaveKey,
+    /// Its number on the surfaces.
+    pub(super) number: usize,
     /// Surfaces of its contact.
     pub surfaces: &'m ContactSurfaces,
     territory: &'a Territory<'m>,
@@ -196,7 +202,7 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
 
     /// The node.
     pub fn node(&self) -> usize {
-        self.surfaces.slaves[self.key.slave]
+        self.surfaces.slaves[self.number]
     }
 
     /// The node with a segment of its contact.
@@ -213,8 +219,17 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
 
     /// Overlap that a fit allows it at the start of the increment and at its end (length).
     pub fn allowed(&self) -> [f64; 2] {
-        let allowed = self.territory.allowed.get(self.key.slave);
-        allowed.copied().unwrap_or_default()
+        self.territory.allowed(self.number)
+    }
+
+    /// Whether it is a corner of the contact's master.
+    pub fn is_of_master(&self) -> bool {
+        (self.territory.corners).is_some_and(|corners| corners.are_of_master)
+    }
+
+    /// Whether its contact is node to segment.
+    pub fn is_node_to_segment(&self) -> bool {
+        self.territory.corners.is_none() && self.surfaces.slave_segments.is_none()
     }
 
     /// Whether nodes of its contact may overlap at the end of the increment.
@@ -224,13 +239,17 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
 
     /// Its candidates, with increasing segments.
     pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
-        self.territory.candidates(self.key.slave)
+        self.territory.candidates(self.number)
     }
 }
 
-/// The candidates of one contact.
+/// The candidates of one contact, or of the corners of one.
 pub struct Territory<'m> {
     contact: &'m ContactSurfaces,
+    /// Key of the first slave node.
+    key: SlaveKey,
+    /// The corners, if they are some.
+    corners: Option<&'m Corners>,
     /// Distance up to which a node at rest pairs with a segment at rest (length).
     reach: f64,
     /// Margin of an entity at rest (length).
@@ -250,7 +269,24 @@ pub struct Territory<'m> {
 }
 
 impl<'m> Territory<'m> {
-    fn new(contact: &'m ContactSurfaces, x: &[[f64; 2]]) -> Self {
+    /// The territories of a contact and of its corners, whose numbers follow those of the slave nodes.
+    fn of_contact(contact: usize, surfaces: &'m ContactSurfaces, x: &[[f64; 2]]) -> Vec<Self> {
+        let mut key = SlaveKey { contact, slave: 0 };
+        let mut all = vec![Territory::new(key, (surfaces, None), x)];
+        let mut before = surfaces;
+        for corners in &surfaces.corners {
+            key = key.plus(before.slaves.len());
+            before = &corners.surfaces;
+            all.push(Territory::new(key, (before, Some(corners)), x));
+        }
+        all
+    }
+
+    fn new(
+        key: SlaveKey,
+        (contact, corners): (&'m ContactSurfaces, Option<&'m Corners>),
+        x: &[[f64; 2]],
+    ) -> Self {
         let lengths = || {
             let segments = contact.segments.iter();
             segments.map(|&[a, b]| distance(x[a], x[b]))
@@ -258,6 +294,8 @@ impl<'m> Territory<'m> {
         let mean = lengths().sum::<f64>() / contact.segments.len().max(1) as f64;
         Territory {
             contact,
+            key,
+            corners,
             // of all points of a slave face, whose ends are listed
             reach: PAIRING_REACH * mean + contact.half_longest_face(x),
             skin: SEARCH_MARGIN * mean,
@@ -269,6 +307,32 @@ impl<'m> Territory<'m> {
             allowed: Vec::new(),
             is_fitted: false,
         }
+    }
+
+    /// Takes the overlaps that a fit allows the slave nodes of the contact; corners, which no fit names, take the
+    /// largest.
+    fn allow(&mut self, allowed: &[[f64; 2]]) {
+        self.is_fitted = allowed.iter().any(|[_, end]| *end != 0.0);
+        self.allowed = match self.corners {
+            None => allowed.to_vec(),
+            Some(_) if allowed.is_empty() => Vec::new(),
+            Some(corners) => {
+                let largest = |end: usize| allowed.iter().map(|a| a[end]).fold(0.0, f64::max);
+                vec![[largest(0), largest(1)]; corners.allowed.len()]
+            }
+        };
+    }
+
+    /// Overlap that a slave node may have at the start of the increment and at its end (length).
+    pub(super) fn allowed(&self, number: usize) -> [f64; 2] {
+        let of_fit = self.allowed.get(number).copied().unwrap_or_default();
+        let always = self.corners.map_or(0.0, |corners| corners.allowed[number]);
+        of_fit.map(|allowed| allowed + always)
+    }
+
+    /// Key of the first slave node.
+    pub(super) fn key(&self) -> SlaveKey {
+        self.key
     }
 
     /// The surfaces.

@@ -8,37 +8,50 @@ use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
 use smallvec::SmallVec;
 
 use super::constraint::{Configurations, Constraint, PerDof, RowForm, RowPair, Rows};
-use super::geometry::{ContactSurfaces, Positions, Projection, project};
-use super::keys::{ConstraintKey, SlaveKey};
+use super::geometry::{ContactSurfaces, Positions, Projection, SlaveSegments, project};
+use super::keys::ConstraintKey;
 use super::node_to_segment::{SegmentRows, rows_between, sum_of};
 use super::search::Territory;
 use super::stiffness::changes_between;
-use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, position_round_off};
-use super::tolerances::{FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, POINT_TILT};
+use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex, position_round_off};
+use super::tolerances::{
+    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, POINT_TILT,
+};
 use crate::vectors::{cross, difference, dot, length};
 
-/// A slave face with the master segments that it faces, and where it is over each.
-struct Face {
-    ends: [usize; 2],
-    segments: SmallVec<[usize; 8]>,
+/// A slave face with the master segments of one run that it faces.
+struct Face<'a> {
+    number: usize,
+    segments: &'a [usize],
 }
 
 /// Part [low, high] of a slave face that is over a master segment.
 type Cells = SmallVec<[(f64, f64, usize); 8]>;
 
-/// Adds the points of all slave nodes of a contact between start and iterate, a constraint for each node
-/// that is covered.
+/// Points of a slave face with the segments of the master that they are over.
+type FacePoints = SmallVec<[(usize, SurfacePoint); 8]>;
+
+/// The points of one side of a slave node over one run of the master.
+struct Mean {
+    run: usize,
+    /// Segment of the point of the largest hat function, and this value.
+    nearest: (usize, f64),
+    covered: f64,
+    points: Vec<SurfacePoint>,
+}
+
+/// Adds the points of all slave nodes of a contact between start and iterate, a constraint for each side of a node
+/// over each run of master segments that covers it.
 ///
 /// ```text
 /// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
 /// ```
 ///
 /// w_q is half the reference length of its cell, times the radius of the point in bodies of revolution: two Gauss points
-/// in a cell, where N_j g_q is quadratic and its product with the radius cubic. Cells end on the bisectors of the master's vertices, of the iterate and, between which rows are
-/// exact differences, of the start as well.
+/// in a cell, where N_j g_q is quadratic and its product with the radius cubic. Cells end on the bisectors of the
+/// master's vertices, of the iterate and, between which rows are exact differences, of the start as well.
 pub(super) fn find_points(
     territory: &Territory,
-    contact: usize,
     positions: [Positions; 2],
     form: RowForm,
     pairs: &mut Vec<PairTarget>,
@@ -48,74 +61,101 @@ pub(super) fn find_points(
         return;
     };
     let finder = Finder {
-        are_rings: slave.are_rings,
         surfaces,
+        slave,
         positions,
         form,
     };
-    let of_faces: Vec<Vec<SurfacePoint>> = (surfaces.slave_faces.iter().zip(&slave.ends))
-        .map(|(&ends, numbers)| finder.points(territory, ends, *numbers))
+    let of_faces: Vec<FacePoints> = (0..surfaces.slave_faces.len())
+        .map(|face| finder.points(territory, face))
         .collect();
-    for (number, (&node, faces)) in surfaces.slaves.iter().zip(&slave.at_nodes).enumerate() {
-        let mut points = Vec::new();
-        let (mut covered, mut whole) = (0.0, 0.0);
-        let mut nearest = (0.0, [0; 2]);
-        for &[face, end] in faces {
-            whole += finder.reference_weight(surfaces.slave_faces[face], 0.5, 0.5);
-            for point in &of_faces[face] {
-                let hat = if end == 0 { 1.0 - point.eta } else { point.eta };
-                let weight = point.weight * hat;
-                covered += weight;
-                let [.., a, b] = point.nodes;
-                if hat > nearest.0 {
-                    nearest = (hat, [a, b]);
-                }
-                points.push(SurfacePoint { weight, ..*point });
+    for (number, (&node, sides)) in surfaces.slaves.iter().zip(&slave.at_nodes).enumerate() {
+        let key = territory.key().plus(number);
+        for (side, faces) in sides.iter().enumerate() {
+            for mut mean in finder.means(faces, &of_faces) {
+                mean.points
+                    .iter_mut()
+                    .for_each(|q| q.weight /= mean.covered);
+                let segment = mean.nearest.0;
+                let [a, b] = surfaces.segments[segment];
+                pairs.push(PairTarget {
+                    key: ConstraintKey {
+                        slave: key,
+                        segment: 2 * mean.run + side,
+                    },
+                    target: ContactTarget::face(segment),
+                    nodes: [node, a, b, b],
+                    from: None,
+                    allowed: territory.allowed(number),
+                    points: mean.points,
+                    is_of_master: false,
+                });
             }
         }
-        if covered <= LEAST_COVER * whole {
-            continue;
-        }
-        points.iter_mut().for_each(|q| q.weight /= covered);
-        let [a, b] = nearest.1;
-        pairs.push(PairTarget {
-            key: ConstraintKey {
-                slave: SlaveKey {
-                    contact,
-                    slave: number,
-                },
-                segment: 0,
-            },
-            target: ContactTarget::face(0),
-            nodes: [node, a, b, b],
-            from: None,
-            allowed: [0.0; 2],
-            points,
-        });
     }
 }
 
 /// The points of slave faces between start and iterate.
 struct Finder<'a> {
-    are_rings: bool,
     surfaces: &'a ContactSurfaces,
+    slave: &'a SlaveSegments,
     positions: [Positions<'a>; 2],
     form: RowForm,
 }
 
 impl Finder<'_> {
-    /// Points of the face between two nodes, of the given slave numbers, with weights w_q (length).
-    fn points(
-        &self,
-        territory: &Territory,
-        ends: [usize; 2],
-        numbers: [Option<usize>; 2],
-    ) -> Vec<SurfacePoint> {
-        let face = Face {
-            ends,
-            segments: self.faced(territory, ends, numbers),
-        };
-        let [start, now] = [0, 1].map(|k| self.cells(&face, k));
+    /// The means of one side of a slave node that has some faces, with increasing runs.
+    fn means(&self, faces: &[[usize; 2]], of_faces: &[FacePoints]) -> SmallVec<[Mean; 2]> {
+        let mut means: SmallVec<[Mean; 2]> = SmallVec::new();
+        let mut whole = 0.0;
+        for &[face, end] in faces {
+            whole += self.reference_weight(face, 0.5, 0.5);
+            for (segment, point) in &of_faces[face] {
+                let hat = if end == 0 { 1.0 - point.eta } else { point.eta };
+                let run = self.slave.runs[*segment];
+                let weight = point.weight * hat;
+                let place = means.iter().position(|mean| mean.run == run);
+                let place = place.unwrap_or_else(|| {
+                    means.push(Mean {
+                        run,
+                        nearest: (*segment, 0.0),
+                        covered: 0.0,
+                        points: Vec::new(),
+                    });
+                    means.len() - 1
+                });
+                let mean = &mut means[place];
+                mean.covered += weight;
+                if hat > mean.nearest.1 {
+                    mean.nearest = (*segment, hat);
+                }
+                mean.points.push(SurfacePoint { weight, ..*point });
+            }
+        }
+        means.retain(|mean| mean.covered > LEAST_COVER * whole);
+        means.sort_by_key(|mean| mean.run);
+        means
+    }
+
+    /// Points of a face with weights w_q (length).
+    fn points(&self, territory: &Territory, face: usize) -> FacePoints {
+        let mut points = FacePoints::new();
+        let segments = self.faced(territory, face);
+        for segments in segments.chunk_by(|&i, &j| self.slave.runs[i] == self.slave.runs[j]) {
+            self.add_points(
+                &Face {
+                    number: face,
+                    segments,
+                },
+                &mut points,
+            );
+        }
+        points
+    }
+
+    /// Adds the points of a face over one run.
+    fn add_points(&self, face: &Face, points: &mut FacePoints) {
+        let [start, now] = [0, 1].map(|k| self.cells(face, k));
         let mut cuts: SmallVec<[f64; 32]> = SmallVec::new();
         let of_start = start
             .iter()
@@ -124,125 +164,180 @@ impl Finder<'_> {
             cuts.extend([low, high]);
         }
         cuts.sort_by(f64::total_cmp);
-        let mut points = Vec::new();
         for cell in cuts.windows(2) {
             let (part, middle) = (cell[1] - cell[0], f64::midpoint(cell[0], cell[1]));
             if part <= LEAST_CELL {
                 continue;
             }
-            let Some(j) = self.over(&face, &now, middle, 1) else {
+            let Some(j) = self.over(face, &now, middle, 1) else {
                 continue;
             };
             let i = match self.form {
                 RowForm::End => Some(j),
-                RowForm::DiscreteGradient => self.over(&face, &start, middle, 0),
+                RowForm::DiscreteGradient => self.over(face, &start, middle, 0),
             };
             // two Gauss points, each with half of the cell
             for side in [-1.0, 1.0] {
                 let eta = middle + side * part / 12_f64.sqrt();
-                let weight = self.reference_weight(ends, eta, part / 2.0);
-                points.push(self.point(ends, eta, weight, [i, Some(j)]));
+                let weight = self.reference_weight(face.number, eta, part / 2.0);
+                points.push(self.point(face.number, eta, weight, (i, j)));
             }
         }
-        points
     }
 
-    /// A point that was over segment i at the start and is over j now. Where its force would be tilted too far it
-    /// keeps the segment of the start.
+    /// A point that was over segment i at the start and is over j now, with its segment. Where its force would be tilted
+    /// too far it keeps the segment of the start.
     fn point(
         &self,
-        ends: [usize; 2],
+        face: usize,
         eta: f64,
         weight: f64,
-        [i, j]: [Option<usize>; 2],
-    ) -> SurfacePoint {
-        let segment = |i: usize| self.surfaces.segments[i];
-        let j = j.unwrap_or_default();
-        let point = |segment: [usize; 2], origin: Origin| SurfacePoint {
-            nodes: [ends[0], ends[1], segment[0], segment[1]],
-            eta,
-            weight,
-            origin,
+        (i, j): (Option<usize>, usize),
+    ) -> (usize, SurfacePoint) {
+        let [x1, x2] = self.face(face);
+        let over = |i: usize, origin: Origin| {
+            let [a, b] = self.segment(i);
+            let vertices = [x1, x2, a, b];
+            let point = SurfacePoint {
+                vertices,
+                eta,
+                weight,
+                origin,
+            };
+            (i, point)
         };
         let origin = match i {
-            Some(i) if i == j => return point(segment(j), Origin::Same),
-            Some(i) => Origin::Other(segment(i)),
+            Some(i) if i == j => return over(j, Origin::Same),
+            Some(i) => Origin::Other(self.segment(i)),
             None => Origin::Outside,
         };
-        let tilted = point(segment(j), origin);
-        let places = [0, 1].map(|k| tilted.places(|node| self.positions[k].of(node)));
-        let start = |i: usize| self.tangent(segment(i), 0);
+        let tilted = over(j, origin);
+        let places = [0, 1].map(|k| tilted.1.places(|node| self.positions[k].of(node)));
+        let start = |i: usize| self.tangent(self.segment(i), 0);
         let turn = i.map_or(0.0, |i| cross(start(i), start(j)).abs());
-        let kappa = tilted.tilt(places, |node| self.positions[0].of(node));
+        let kappa = tilted.1.tilt(places, |node| self.positions[0].of(node));
         match kappa.is_some_and(|kappa| kappa.abs() <= POINT_TILT.max(2.0 * turn)) {
             true => tilted,
-            false => point(segment(i.unwrap_or(j)), Origin::Same),
+            false => over(i.unwrap_or(j), Origin::Same),
         }
     }
 
-    /// Segments that a face is turned to at the start, within reach.
-    fn faced(
-        &self,
-        territory: &Territory,
-        ends: [usize; 2],
-        numbers: [Option<usize>; 2],
-    ) -> SmallVec<[usize; 8]> {
+    /// Segments that a face is turned to at the start, within reach, one run after the other.
+    fn faced(&self, territory: &Territory, face: usize) -> SmallVec<[usize; 8]> {
         let mut faced: SmallVec<[usize; 8]> = SmallVec::new();
-        for number in numbers.into_iter().flatten() {
+        let x = self.face(face).map(|vertex| self.place(vertex, 0));
+        for number in self.slave.ends[face].into_iter().flatten() {
             for candidate in territory.candidates(number) {
-                if self.faces(ends, candidate.segment) {
-                    let [a, b] = self.surfaces.segments[candidate.segment];
-                    let gaps = ends.map(|s| self.positions[0].place([s, a, b]).gap);
-                    let is_near = gaps.iter().any(|gap| gap.abs() <= candidate.reach)
-                        || gaps[0] * gaps[1] < 0.0;
-                    if is_near {
-                        faced.push(candidate.segment);
-                    }
+                let i = candidate.segment;
+                if faced.contains(&i) || !self.may_meet(face, i) || !self.faces(face, i) {
+                    continue;
+                }
+                let [a, b] = self.segment(i).map(|vertex| self.place(vertex, 0));
+                let [p, q] = x.map(|x| project(x, a, b));
+                let is_near =
+                    [p, q].iter().any(|p| p.gap.abs() <= candidate.reach) || p.gap * q.gap < 0.0;
+                if is_near && self.is_in_front(face, i, [p, q]) {
+                    faced.push(i);
                 }
             }
         }
-        faced.sort_unstable();
-        faced.dedup();
+        faced.sort_unstable_by_key(|&i| (self.slave.runs[i], i));
         faced
     }
 
-    /// Whether a face and a segment are turned to each other at the start.
-    fn faces(&self, ends: [usize; 2], segment: usize) -> bool {
-        let segment = self.surfaces.segments[segment];
-        let has_own = ends.iter().any(|node| segment.contains(node));
-        !has_own && dot(self.tangent(ends, 0), self.tangent(segment, 0)) < -FACING_COSINE
+    /// Whether a face and a segment may be slave and master: they have no common node, and where a surface touches
+    /// itself the face comes first.
+    fn may_meet(&self, face: usize, segment: usize) -> bool {
+        let ends = self.surfaces.segments[segment];
+        let has_own = (self.surfaces.slave_faces[face].iter()).any(|node| ends.contains(node));
+        let ranks = self.slave.ranks.as_ref();
+        !has_own && ranks.is_none_or(|ranks| ranks[face] < ranks[segment])
     }
 
-    /// Unit vector from the first to the second node at the start (0) or in the iterate (1).
-    fn tangent(&self, [a, b]: [usize; 2], k: usize) -> [f64; 2] {
-        let [a, b] = [a, b].map(|node| self.positions[k].of(node));
+    /// Whether a face was in front of a segment at the start, where its ends have the given projections, or has
+    /// penetrated the body through it: not the far side of a thin body, nor of one that is behind another.
+    fn is_in_front(&self, face: usize, segment: usize, [p, q]: [Projection; 2]) -> bool {
+        if p.gap.max(q.gap) >= -CLOSED_GAP * p.length {
+            return true;
+        }
+        // the middle of the part of the face that is over the segment
+        let xi = (p.xi.clamp(0.0, 1.0) + q.xi.clamp(0.0, 1.0)) / 2.0;
+        let eta = ((xi - p.xi) / (q.xi - p.xi)).clamp(0.0, 1.0);
+        let [x1, x2] = self.face(face).map(|vertex| self.place(vertex, 0));
+        let ends = self.surfaces.slave_faces[face];
+        (self.surfaces.interior).takes_in_point(
+            self.surfaces.segments[segment],
+            (between(x1, x2, eta), ends),
+            |node| self.positions[0].of(node),
+        )
+    }
+
+    /// Whether a face and a segment are turned to each other at the start.
+    fn faces(&self, face: usize, segment: usize) -> bool {
+        let [e, f] = [self.face(face), self.segment(segment)].map(|ends| self.tangent(ends, 0));
+        dot(e, f) < -FACING_COSINE
+    }
+
+    /// The vertex at a node.
+    fn vertex(&self, node: usize) -> Vertex {
+        Vertex {
+            node,
+            corners: self.slave.middles.get(&node).copied(),
+        }
+    }
+
+    /// Ends of a slave face.
+    fn face(&self, face: usize) -> [Vertex; 2] {
+        self.surfaces.slave_faces[face].map(|node| self.vertex(node))
+    }
+
+    /// Ends of a master segment.
+    fn segment(&self, segment: usize) -> [Vertex; 2] {
+        self.surfaces.segments[segment].map(|node| self.vertex(node))
+    }
+
+    /// Position at the start (0) or in the iterate (1).
+    fn place(&self, vertex: Vertex, k: usize) -> [f64; 2] {
+        vertex.place(|node| self.positions[k].of(node))
+    }
+
+    /// Unit vector from the first to the second vertex at the start (0) or in the iterate (1).
+    fn tangent(&self, ends: [Vertex; 2], k: usize) -> [f64; 2] {
+        let [a, b] = ends.map(|vertex| self.place(vertex, k));
         let e = difference(a, b);
         let length = length(e);
         e.map(|e| e / length)
     }
 
     /// The parts of a face over its segments, at the start (0) or in the iterate (1): those between the bisectors of the
-    /// vertices, or the normals at open ends.
+    /// vertices, or the normals at the ends of the run.
     ///
     /// ```text
     /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
     /// ```
     fn cells(&self, face: &Face, k: usize) -> Cells {
-        let [x1, x2] = face.ends.map(|node| self.positions[k].of(node));
+        let [x1, x2] = self.face(face.number).map(|vertex| self.place(vertex, k));
         let normal = |i: usize| {
-            let [x, y] = self.tangent(self.surfaces.segments[i], k);
+            let [x, y] = self.tangent(self.segment(i), k);
             [y, -x]
         };
-        let eta = |i: usize, vertex: usize, neighbour: Option<usize>| {
-            let neighbour = neighbour.filter(|&j| self.faces(face.ends, j));
-            let (n, other) = (normal(i), neighbour.map_or([0.0; 2], normal));
+        let eta = |i: usize, vertex: Vertex, neighbour: Option<usize>| {
+            let is_next = |j: &usize| {
+                self.slave.runs[i] == self.slave.runs[*j]
+                    && self.may_meet(face.number, *j)
+                    && self.faces(face.number, *j)
+            };
+            let (n, other) = (
+                normal(i),
+                neighbour.filter(is_next).map_or([0.0; 2], normal),
+            );
             let m = [n[0] + other[0], n[1] + other[1]];
-            let v = self.positions[k].of(vertex);
+            let v = self.place(vertex, k);
             -cross(difference(v, x1), m) / cross(difference(x1, x2), m)
         };
         let mut cells = Cells::new();
-        for &i in &face.segments {
-            let [a, b] = self.surfaces.segments[i];
+        for &i in face.segments {
+            let [a, b] = self.segment(i);
             let at_a = eta(i, a, self.surfaces.previous[i]);
             let at_b = eta(i, b, self.surfaces.next[i]);
             // the face runs against the segment
@@ -256,13 +351,13 @@ impl Finder<'_> {
 
     /// The nearest segment that a place of a face is over.
     fn over(&self, face: &Face, cells: &Cells, eta: f64, k: usize) -> Option<usize> {
-        let [x1, x2] = face.ends.map(|node| self.positions[k].of(node));
+        let [x1, x2] = self.face(face.number).map(|vertex| self.place(vertex, k));
         let x = between(x1, x2, eta);
         let over = cells
             .iter()
             .filter(|(low, high, _)| (*low..=*high).contains(&eta));
         let distance = |i: usize| {
-            let [a, b] = self.surfaces.segments[i].map(|node| self.positions[k].of(node));
+            let [a, b] = self.segment(i).map(|vertex| self.place(vertex, k));
             project(x, a, b).gap.abs()
         };
         over.map(|&(_, _, i)| i)
@@ -270,13 +365,14 @@ impl Finder<'_> {
     }
 
     /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
-    fn reference_weight(&self, [a, b]: [usize; 2], eta: f64, part: f64) -> f64 {
+    fn reference_weight(&self, face: usize, eta: f64, part: f64) -> f64 {
         let x = self.positions[0].reference();
-        let radius = match self.are_rings {
-            true => between(x[a], x[b], eta)[0],
+        let [a, b] = self.face(face).map(|vertex| vertex.place(|node| x[node]));
+        let radius = match self.slave.are_rings {
+            true => between(a, b, eta)[0],
             false => 1.0,
         };
-        length(difference(x[a], x[b])) * part * radius
+        length(difference(a, b)) * part * radius
     }
 }
 
@@ -288,13 +384,15 @@ fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
 impl SurfacePoint {
     /// Positions of the point and of a and b.
     fn places(&self, at: impl Fn(usize) -> [f64; 2]) -> [[f64; 2]; 3] {
-        let [x1, x2, a, b] = self.nodes.map(at);
+        let [x1, x2, a, b] = self.vertices.map(|vertex| vertex.place(&at));
         [between(x1, x2, self.eta), a, b]
     }
 
     fn configurations(&self, at: &Configurations) -> [[[f64; 2]; 3]; 2] {
-        let of = |[x1, x2, a, b]: [[f64; 2]; 4]| [between(x1, x2, self.eta), a, b];
-        [of(at.start(self.nodes)), of(at.iterate(self.nodes))]
+        [
+            self.places(|node| at.start([node])[0]),
+            self.places(|node| at.iterate([node])[0]),
+        ]
     }
 
     /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b;
@@ -312,7 +410,7 @@ impl SurfacePoint {
         let before = match self.origin {
             Origin::Same => return Some(0.0),
             Origin::Other(segment) => {
-                let [a, b] = segment.map(at_start);
+                let [a, b] = segment.map(|vertex| vertex.place(&at_start));
                 project(start[0], a, b).gap
             }
             Origin::Outside => p.gap.max(0.0),
@@ -345,15 +443,17 @@ impl SurfacePoint {
     }
 
     /// Places of its nodes among those of a constraint, with the parts that they have of s, a and b.
-    fn shares(&self, nodes: &[usize]) -> [(usize, usize, f64); 4] {
-        let [first, second, a, b] = self.nodes;
+    fn shares(&self, nodes: &[usize]) -> SmallVec<[(usize, usize, f64); 12]> {
         let place = |node: usize| nodes.iter().position(|&n| n == node).unwrap_or_default();
-        [
-            (place(first), 0, 1.0 - self.eta),
-            (place(second), 0, self.eta),
-            (place(a), 1, 1.0),
-            (place(b), 2, 1.0),
-        ]
+        let own = [(0, 1.0 - self.eta), (0, self.eta), (1, 1.0), (2, 1.0)];
+        let of_vertices = self.vertices.into_iter().zip(own);
+        of_vertices
+            .flat_map(|(vertex, (own, part))| {
+                let shares = vertex.shares();
+                shares.map(move |(node, share)| (node, own, part * share))
+            })
+            .map(|(node, own, share)| (place(node), own, share))
+            .collect()
     }
 }
 
@@ -369,7 +469,7 @@ pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
     }
     for point in &mut source.points {
         if let Origin::Other([a, b]) = point.origin {
-            (point.nodes[2], point.nodes[3]) = (a, b);
+            (point.vertices[2], point.vertices[3]) = (a, b);
         }
         point.origin = Origin::Same;
     }
@@ -382,18 +482,18 @@ pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
 fn nodes(source: &PairTarget) -> (SmallVec<[usize; 12]>, usize) {
     let mut nodes: SmallVec<[usize; 12]> = SmallVec::new();
     nodes.push(source.nodes[0]);
-    let mut add = |node: usize| {
-        if !nodes.contains(&node) {
-            nodes.push(node);
+    let mut slaves = 1;
+    for ends in [0..2, 2..4] {
+        let vertices = source.points.iter().flat_map(|q| &q.vertices[ends.clone()]);
+        for (node, _) in vertices.flat_map(|vertex| vertex.shares()) {
+            if !nodes.contains(&node) {
+                nodes.push(node);
+            }
         }
-        nodes.len()
-    };
-    let slave_ends = source.points.iter().flat_map(|q| [q.nodes[0], q.nodes[1]]);
-    let slaves = slave_ends.map(&mut add).last().unwrap_or(1);
-    let master_ends = source.points.iter().flat_map(|q| [q.nodes[2], q.nodes[3]]);
-    master_ends.for_each(|node| {
-        add(node);
-    });
+        if ends.start == 0 {
+            slaves = nodes.len();
+        }
+    }
     (nodes, slaves)
 }
 
@@ -432,7 +532,9 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         row.iter().zip(motions).map(|(b, d)| b * d).sum()
     };
     let [n, t, gn, gt] = sums;
-    let (mut start_gap, slip) = (gap - product(&n), product(&t));
+    let [allowed_before, allowed] = source.allowed;
+    let (mut start_gap, slip) = (gap - product(&n) + allowed_before, product(&t));
+    gap += allowed;
     // what the end of the master has come over in the increment stays, eq. (7.9)
     if at.form == RowForm::DiscreteGradient
         && (-MOST_LEFT_OVERLAP * scale..0.0).contains(&start_gap)
@@ -460,7 +562,7 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         slip,
         mu: 0.0,
         mu_varies: false,
-        shrinkage: 0.0,
+        shrinkage: allowed_before - allowed,
         scale,
         dofs,
         source,
@@ -528,8 +630,12 @@ mod tests {
 
     /// The constraint of node 1 with points over both segments; one has come from the other segment.
     fn source() -> PairTarget {
+        let vertex = |node: usize| Vertex {
+            node,
+            corners: None,
+        };
         let point = |ends: [usize; 2], eta, weight, [a, b]: [usize; 2], origin| SurfacePoint {
-            nodes: [ends[0], ends[1], a, b],
+            vertices: [ends[0], ends[1], a, b].map(vertex),
             eta,
             weight,
             origin,
@@ -538,7 +644,7 @@ mod tests {
             points: vec![
                 point([0, 1], 0.3, 0.1, [4, 5], Origin::Same),
                 point([0, 1], 0.9, 0.4, [4, 5], Origin::Same),
-                point([1, 2], 0.15, 0.3, [3, 4], Origin::Other([4, 5])),
+                point([1, 2], 0.15, 0.3, [3, 4], Origin::Other([4, 5].map(vertex))),
                 point([1, 2], 0.6, 0.2, [3, 4], Origin::Same),
             ],
             ..testing::pair(ContactTarget::face(0), [1, 4, 5, 5])
@@ -556,10 +662,11 @@ mod tests {
         let at = |node: usize| [X[node][0] + u[2 * node], X[node][1] + u[2 * node + 1]];
         let gaps = source().points.into_iter().map(|q| {
             let [x1, x2, a, b] = match q.origin {
-                Origin::Other([a, b]) if is_start => [q.nodes[0], q.nodes[1], a, b],
-                _ => q.nodes,
+                Origin::Other([a, b]) if is_start => [q.vertices[0], q.vertices[1], a, b],
+                _ => q.vertices,
             };
-            let gap = project(between(at(x1), at(x2), q.eta), at(a), at(b)).gap;
+            let [x1, x2, a, b] = [x1, x2, a, b].map(|vertex| vertex.place(at));
+            let gap = project(between(x1, x2, q.eta), a, b).gap;
             q.weight * gap
         });
         gaps.sum()

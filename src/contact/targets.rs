@@ -59,11 +59,53 @@ impl ContactTarget {
     }
 }
 
+/// A vertex of the straight lines that the surfaces are made of: a node, or where a side has a node between its corners
+/// what takes its place, so that a pressure that is linear along the side has the right forces on all its nodes.
+///
+/// ```text
+/// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Vertex {
+    /// The node.
+    pub node: usize,
+    /// Corners of the side that it is between.
+    pub corners: Option<[usize; 2]>,
+}
+
+impl Vertex {
+    /// Its nodes, each with its part in the position.
+    pub fn shares(self) -> impl Iterator<Item = (usize, f64)> {
+        let corners = self.corners.into_iter().flatten();
+        let own = if self.corners.is_some() {
+            4.0 / 3.0
+        } else {
+            1.0
+        };
+        [(self.node, own)]
+            .into_iter()
+            .chain(corners.map(|node| (node, -1.0 / 6.0)))
+    }
+
+    /// Its position.
+    #[inline]
+    pub fn place(self, at: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+        let x = at(self.node);
+        match self.corners {
+            None => x,
+            Some(corners) => {
+                let [a, b] = corners.map(at);
+                [0, 1].map(|i| 4.0 / 3.0 * x[i] - (a[i] + b[i]) / 6.0)
+            }
+        }
+    }
+}
+
 /// A point of a slave face at the line of a master segment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SurfacePoint {
     /// Ends of the slave face, and ends a and b of the master segment.
-    pub nodes: [usize; 4],
+    pub vertices: [Vertex; 4],
     /// Place on the slave face, 0 at its first end and 1 at its second.
     pub eta: f64,
     /// Part of its gap in that of the constraint, w N/c of eq. (3.18).
@@ -72,13 +114,23 @@ pub struct SurfacePoint {
     pub origin: Origin,
 }
 
+impl SurfacePoint {
+    /// Nodes whose positions it depends on; some may come twice.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.vertices
+            .into_iter()
+            .flat_map(Vertex::shares)
+            .map(|(node, _)| node)
+    }
+}
+
 /// The master segment that a point was over at the start of the increment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Origin {
     /// The same.
     Same,
     /// Another one, with these ends.
-    Other([usize; 2]),
+    Other([Vertex; 2]),
     /// None: it has come in over the end of the master surface.
     Outside,
 }
@@ -99,6 +151,8 @@ pub struct PairTarget {
     pub allowed: [f64; 2],
     /// Points whose gaps are averaged, from surface to surface; none of a node that meets a segment or corner.
     pub points: Vec<SurfacePoint>,
+    /// Whether the slave node is a corner of the contact's master.
+    pub is_of_master: bool,
 }
 
 impl PairTarget {

@@ -106,6 +106,10 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 // Contact from surface to surface.
 
+/// Cosine of 30 degrees: the turn of a surface in the reference configuration beyond which it has a corner.
+pub(crate) const CORNER_COSINE: f64 = 0.866;
+/// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface.
+pub(crate) const CORNER_DEPTH: f64 = 0.01;
 /// Cosine of the angle between a slave face and a master segment, turned to each other, up to which they take part.
 pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Part of a slave face that is no cell.

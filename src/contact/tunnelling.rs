@@ -83,7 +83,8 @@ impl NodePath<'_> {
     /// Segments that hold the node at the end.
     fn held_by(&self) -> impl Iterator<Item = usize> {
         let pairs = self.closed[1].of_slave(self.key).iter();
-        pairs.flat_map(|pair| pair.source.target.segments())
+        let of_nodes = pairs.filter(|pair| pair.source.points.is_empty());
+        of_nodes.flat_map(|pair| pair.source.target.segments())
     }
 
     fn motions(&self, segment: usize) -> [Motion; 3] {
@@ -282,10 +283,10 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let mut most = 0.0;
     for listed in search
         .slaves()
-        .filter(|listed| !listed.is_fitted() && listed.surfaces.slave_segments.is_none())
+        .filter(|listed| !listed.is_fitted() && listed.is_node_to_segment())
     {
         let slave = listed.node();
-        let Some(adjacent) = listed.surfaces.adjacent[listed.key.slave] else {
+        let Some(adjacent) = listed.surfaces.adjacent[listed.number] else {
             continue;
         };
         for candidate in listed.candidates() {

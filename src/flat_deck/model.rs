@@ -4,9 +4,9 @@
 use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff, SmallStrainModuli};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
-    Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material, Mesh, Model,
-    Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
+    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, ContactFormulation, Curve,
+    Damping, Direction, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction,
+    Material, Mesh, Model, Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -35,6 +35,10 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
         lines.card("CONTACT PROPERTY ASSIGNMENT", []);
         lines.row([String::new(), String::new(), interaction]);
+        if general.formulation != ContactFormulation::default() {
+            let formulation = set("TYPE", general.formulation.name());
+            lines.card("CONTACT FORMULATION", [formulation]);
+        }
         let reach = match general.adjust {
             Some(Adjust::Within(reach)) => Some(reach),
             _ => None,

@@ -146,6 +146,18 @@ impl Surface {
         }
     }
 
+    /// Nodes between the corners of the sides that it is made of, each with these corners.
+    pub fn middles(&self, mesh: &Mesh) -> Vec<(usize, [usize; 2])> {
+        let SurfaceKind::Faces(faces) = &self.kind else {
+            return Vec::new();
+        };
+        let middle = |face: &Face| match face.of(mesh).nodes() {
+            &[a, middle, b] => Some((middle, [a, b])),
+            _ => None,
+        };
+        faces.iter().filter_map(middle).collect()
+    }
+
     /// Nodes of the surface in order of first appearance, without duplicates.
     pub fn nodes(&self, mesh: &Mesh) -> Vec<usize> {
         let all: Vec<usize> = match &self.kind {

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, FACING_SINE, PROJECTION_BEYOND_ENDS};
-use crate::contact::{ContactSurfaces, Projection, project};
+use crate::contact::{ContactSurfaces, Projection, project, shortest_faces};
 use crate::vectors::{Circle, CircleTree, difference, distance, dot, length};
 
 /// Gap of a slave node to the segment it faces in the reference configuration.
@@ -66,19 +66,6 @@ struct Start<'m> {
 
 /// How deep behind a segment a node may lie whose overlap is pressed out (segment lengths).
 const DEEPEST_FIT: f64 = 8.0;
-
-/// Length of the shortest of some faces at each of their nodes.
-fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f64> {
-    let mut shortest = HashMap::new();
-    for &[a, b] in faces {
-        let length = distance(x[a], x[b]);
-        for node in [a, b] {
-            let least = shortest.entry(node).or_insert(length);
-            *least = length.min(*least);
-        }
-    }
-    shortest
-}
 
 impl<'m> Start<'m> {
     fn new(

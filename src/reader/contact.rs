@@ -11,9 +11,8 @@ use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
-    ImpactTime, Interaction, Mesh, Model, Reach, Surface, SurfaceKind, Wear,
+    ImpactTime, Interaction, Model, Reach, Surface, SurfaceKind, Wear,
 };
-use crate::vectors::{difference, dot, length};
 use std::collections::{HashMap, HashSet};
 
 /// Reads the contacts with their interactions.
@@ -30,10 +29,7 @@ pub(crate) fn read(
         let name = card.required("INTERACTION", cx.d);
         let interaction = name.and_then(|name| interactions.find(name, cx).cloned());
         let adjust = adjust(card, sets, cx);
-        let formulation = match card.choice("TYPE") {
-            Some("SURFACE TO SURFACE") => ContactFormulation::SurfaceToSurface,
-            _ => ContactFormulation::NodeToSegment,
-        };
+        let formulation = formulation(card);
         for row in card.rows.iter() {
             let contact = contact(row, interaction.clone(), surfaces, cx);
             report_adjusted_self_contact(contact.as_ref(), card, cx);
@@ -59,6 +55,14 @@ pub(crate) fn read(
     contacts
 }
 
+/// What `TYPE` says.
+fn formulation(card: &Card) -> ContactFormulation {
+    match card.choice("TYPE") {
+        Some("SURFACE TO SURFACE") => ContactFormulation::SurfaceToSurface,
+        _ => ContactFormulation::NodeToSegment,
+    }
+}
+
 /// Takes node to surface where contact from surface to surface cannot be used, with a warning that says why.
 pub(super) fn restrict_formulations(model: &mut Model, cx: &mut Context) {
     for number in 0..model.contacts.len() {
@@ -81,40 +85,13 @@ fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'sta
     let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));
     let has_segments = |surface: &Surface| !matches!(surface.kind, SurfaceKind::Nodes(_));
     let settings = || model.steps.iter().map(|step| &step.settings);
-    let is_general = |other: &Contact| model.surfaces[other.slave].name == ALL_EXTERIOR;
     if !is_of_faces(slave) || !has_segments(master) {
         Some("the slave surface must be made of element faces")
-    } else if contact.is_self_contact() {
-        Some("a surface that touches itself has pairs of nodes and segments")
-    } else if model.contacts.iter().any(is_general) {
-        Some("with general contact all pairs are nodes and segments")
-    } else if !contact.left_out.is_empty() {
-        Some("some of the slave nodes are tied")
-    } else if [slave, master].iter().any(|s| has_corner(s, &model.mesh)) {
-        Some(
-            "a surface turns by more than 30 degrees at a node: name its faces as surfaces of their own",
-        )
     } else if settings().any(|s| s.impact_time == ImpactTime::Event) {
         Some("impacts at their times need nodes that land on segments")
     } else {
         None
     }
-}
-
-/// Cosine of 30 degrees, the most that a surface may turn at a node.
-const CORNER_COSINE: f64 = 0.866;
-
-/// Whether a surface has a corner between two of its segments.
-fn has_corner(surface: &Surface, mesh: &Mesh) -> bool {
-    let segments = surface.segments(mesh);
-    let starting: HashMap<usize, usize> = segments.iter().map(|&[a, b]| (a, b)).collect();
-    let x = |node: usize| mesh.coordinates[node];
-    segments.iter().any(|&[a, b]| {
-        starting.get(&b).is_some_and(|&c| {
-            let (e, f) = (difference(x(a), x(b)), difference(x(b), x(c)));
-            dot(e, f) < CORNER_COSINE * length(e) * length(f)
-        })
-    })
 }
 
 /// A clearance or a node set.
@@ -499,6 +476,8 @@ fn general(
     let span = inclusions(block, cx);
     let assigned = assignment(block, interactions, cx);
     let initialization = initialization(outline, block, cx);
+    let formulations = block.parts_of("CONTACT FORMULATION");
+    cx.only_once(&formulations);
     let span = span?;
     if surfaces.names.is_defined(&Name::plain(ALL_EXTERIOR)) {
         let message = format!("the deck has a surface {ALL_EXTERIOR} of its own");
@@ -519,7 +498,9 @@ fn general(
         slave: surface,
         master: surface,
         interaction: assigned.ok()?,
-        formulation: ContactFormulation::default(),
+        formulation: formulations
+            .first()
+            .map_or_else(ContactFormulation::default, |card| formulation(card)),
         adjust,
         left_out: Vec::new(),
         is_interference_fit,

@@ -176,7 +176,7 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         r.min_gap = r.min_gap.min(end_gap(problem, solved, constraint));
         let Some(pair) = pair else { continue };
         let [pn, pt] = pair.force;
-        for (node, [fx, fy]) in constraint.slave_forces(pair.force) {
+        for (node, [fx, fy]) in constraint.forces_on_slave_surface(pair.force) {
             let x = problem.position(&solved.equilibrium.u_theta, node);
             r.force[0] += fx;
             r.force[1] += fy;

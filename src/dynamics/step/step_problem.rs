@@ -252,7 +252,8 @@ impl StepProblem<'_> {
         constraints.reserve(pairs.len());
         let moves = |pair: &&PairTarget| {
             let mut points = pair.points.iter();
-            self.unknowns.moves(&pair.nodes) || points.any(|q| self.unknowns.moves(&q.nodes))
+            self.unknowns.moves(&pair.nodes)
+                || points.any(|q| q.nodes().any(|node| self.unknowns.moves(&[node])))
         };
         for source in pairs.iter().filter(moves) {
             let constraint = Constraint::new(source.clone(), &configurations);
