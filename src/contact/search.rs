@@ -1,6 +1,10 @@
 //! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
 //! that stay valid over several increments. Section 10 of docs/theory.md, Candidate search.
 
+use std::sync::{Mutex, PoisonError};
+
+use smallvec::SmallVec;
+
 use super::geometry::{ContactSurfaces, Corners, position};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
@@ -75,6 +79,7 @@ impl<'m> Search<'m> {
             for side in [&mut territory.slaves, &mut territory.segments] {
                 side.set_travel(|node| dt * length(v(node)));
             }
+            territory.forget_faced();
         }
     }
 
@@ -266,6 +271,18 @@ pub struct Territory<'m> {
     allowed: Vec<[f64; 2]>,
     /// Whether there are some at the end of the increment.
     is_fitted: bool,
+    /// From surface to surface, the segments that faces are turned to at the start of the increment.
+    faced: Mutex<FacedAtStart>,
+}
+
+/// Segments that a slave face is turned to.
+pub(super) type Faced = SmallVec<[usize; 8]>;
+
+/// Segments that all slave faces are turned to, for the positions and candidates that they were found with.
+#[derive(Default)]
+struct FacedAtStart {
+    places: Vec<[f64; 2]>,
+    of_faces: Vec<Faced>,
 }
 
 impl<'m> Territory<'m> {
@@ -306,7 +323,28 @@ impl<'m> Territory<'m> {
             found: Vec::new(),
             allowed: Vec::new(),
             is_fitted: false,
+            faced: Mutex::default(),
         }
+    }
+
+    /// What follows from the segments that all slave faces are turned to at the start of the increment, where nodes have
+    /// these `places`: passes of one increment find them once.
+    pub(super) fn with_faced<T>(
+        &self,
+        places: impl FnOnce() -> Vec<[f64; 2]>,
+        find: impl Fn(usize) -> Faced,
+        then: impl FnOnce(&[Faced]) -> T,
+    ) -> T {
+        let mut faced = self.faced.lock().unwrap_or_else(PoisonError::into_inner);
+        let places = places();
+        if faced.places != places {
+            let faces = 0..self.contact.slave_faces.len();
+            *faced = FacedAtStart {
+                places,
+                of_faces: faces.map(find).collect(),
+            };
+        }
+        then(&faced.of_faces)
     }
 
     /// Takes the overlaps that a fit allows the slave nodes of the contact; corners, which no fit names, take the
@@ -377,6 +415,11 @@ impl<'m> Territory<'m> {
         self.slaves.is_within(&at, false) && self.segments.is_within(&at, false)
     }
 
+    fn forget_faced(&mut self) {
+        let faced = self.faced.get_mut().unwrap_or_else(PoisonError::into_inner);
+        faced.places.clear();
+    }
+
     fn extend_travel(&mut self, from: impl Fn(usize) -> [f64; 2], to: impl Fn(usize) -> [f64; 2]) {
         for side in [&mut self.slaves, &mut self.segments] {
             side.extend_travel(|node| distance(from(node), to(node)));
@@ -386,6 +429,7 @@ impl<'m> Territory<'m> {
     /// Lists the segments that each slave node can come near while all entities are within their
     /// margins.
     fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
+        self.forget_faced();
         self.slaves.draw(&at, self.skin, 0.0);
         self.segments.draw(&at, self.skin, self.reach);
         let Self {

@@ -11,11 +11,11 @@ use super::constraint::{Configurations, Constraint, PerDof, RowForm, RowPair, Ro
 use super::geometry::{ContactSurfaces, Positions, Projection, SlaveSegments, project};
 use super::keys::ConstraintKey;
 use super::node_to_segment::{SegmentRows, rows_between, sum_of};
-use super::search::Territory;
+use super::search::{Faced, Territory};
 use super::stiffness::changes_between;
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex, position_round_off};
 use super::tolerances::{
-    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, POINT_TILT,
+    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH, POINT_TILT,
 };
 use crate::vectors::{cross, difference, dot, length};
 
@@ -66,9 +66,15 @@ pub(super) fn find_points(
         positions,
         form,
     };
-    let of_faces: Vec<FacePoints> = (0..surfaces.slave_faces.len())
-        .map(|face| finder.points(territory, face))
-        .collect();
+    let of_faces: Vec<FacePoints> = territory.with_faced(
+        || finder.start_places(),
+        |face| finder.faced(territory, face),
+        |faced| {
+            (faced.iter().enumerate())
+                .map(|(face, faced)| finder.points(face, faced))
+                .collect()
+        },
+    );
     for (number, (&node, sides)) in surfaces.slaves.iter().zip(&slave.at_nodes).enumerate() {
         let key = territory.key().plus(number);
         for (side, faces) in sides.iter().enumerate() {
@@ -137,10 +143,16 @@ impl Finder<'_> {
         means
     }
 
-    /// Points of a face with weights w_q (length).
-    fn points(&self, territory: &Territory, face: usize) -> FacePoints {
+    /// Positions at the start that say which segments faces are turned to.
+    fn start_places(&self) -> Vec<[f64; 2]> {
+        let faces = self.surfaces.slave_faces.iter();
+        let ends = faces.chain(&self.surfaces.segments).flatten();
+        ends.map(|&node| self.positions[0].of(node)).collect()
+    }
+
+    /// Points of a face that is turned to some segments, with weights w_q (length).
+    fn points(&self, face: usize, segments: &[usize]) -> FacePoints {
         let mut points = FacePoints::new();
-        let segments = self.faced(territory, face);
         for segments in segments.chunk_by(|&i, &j| self.slave.runs[i] == self.slave.runs[j]) {
             self.add_points(
                 &Face {
@@ -223,8 +235,8 @@ impl Finder<'_> {
     }
 
     /// Segments that a face is turned to at the start, within reach, one run after the other.
-    fn faced(&self, territory: &Territory, face: usize) -> SmallVec<[usize; 8]> {
-        let mut faced: SmallVec<[usize; 8]> = SmallVec::new();
+    fn faced(&self, territory: &Territory, face: usize) -> Faced {
+        let mut faced = Faced::new();
         let x = self.face(face).map(|vertex| self.place(vertex, 0));
         for number in self.slave.ends[face].into_iter().flatten() {
             for candidate in territory.candidates(number) {
@@ -236,7 +248,7 @@ impl Finder<'_> {
                 let [p, q] = x.map(|x| project(x, a, b));
                 let is_near =
                     [p, q].iter().any(|p| p.gap.abs() <= candidate.reach) || p.gap * q.gap < 0.0;
-                if is_near && self.is_in_front(face, i, [p, q]) {
+                if is_near && self.is_in_front(territory, (face, i), [p, q]) {
                     faced.push(i);
                 }
             }
@@ -255,21 +267,36 @@ impl Finder<'_> {
     }
 
     /// Whether a face was in front of a segment at the start, where its ends have the given projections, or has
-    /// penetrated the body through it: not the far side of a thin body, nor of one that is behind another.
-    fn is_in_front(&self, face: usize, segment: usize, [p, q]: [Projection; 2]) -> bool {
+    /// penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
+    /// that has come in through another segment.
+    fn is_in_front(
+        &self,
+        territory: &Territory,
+        (face, segment): (usize, usize),
+        [p, q]: [Projection; 2],
+    ) -> bool {
         if p.gap.max(q.gap) >= -CLOSED_GAP * p.length {
             return true;
         }
         // the middle of the part of the face that is over the segment
-        let xi = (p.xi.clamp(0.0, 1.0) + q.xi.clamp(0.0, 1.0)) / 2.0;
+        let xi = f64::midpoint(p.xi.clamp(0.0, 1.0), q.xi.clamp(0.0, 1.0));
         let eta = ((xi - p.xi) / (q.xi - p.xi)).clamp(0.0, 1.0);
         let [x1, x2] = self.face(face).map(|vertex| self.place(vertex, 0));
+        let x = between(x1, x2, eta);
+        let [a, b] = self.segment(segment).map(|vertex| self.place(vertex, 0));
+        let depth = -project(x, a, b).gap;
+        let is_nearer = |other: usize| {
+            let [a, b] = self.segment(other).map(|vertex| self.place(vertex, 0));
+            let p = project(x, a, b);
+            (0.0..=1.0).contains(&p.xi) && (-NEARER_DEPTH * depth..0.0).contains(&p.gap)
+        };
         let ends = self.surfaces.slave_faces[face];
-        (self.surfaces.interior).takes_in_point(
-            self.surfaces.segments[segment],
-            (between(x1, x2, eta), ends),
-            |node| self.positions[0].of(node),
-        )
+        let segment = self.surfaces.segments[segment];
+        let at = |node: usize| self.positions[0].of(node);
+        let numbers = self.slave.ends[face].into_iter().flatten();
+        let mut others = numbers.flat_map(|number| territory.candidates(number));
+        (self.surfaces.interior).takes_in_point(segment, (x, ends), at)
+            && !others.any(|other| is_nearer(other.segment))
     }
 
     /// Whether a face and a segment are turned to each other at the start.

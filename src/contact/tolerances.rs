@@ -112,6 +112,8 @@ pub(crate) const CORNER_COSINE: f64 = 0.866;
 pub(crate) const CORNER_DEPTH: f64 = 0.01;
 /// Cosine of the angle between a slave face and a master segment, turned to each other, up to which they take part.
 pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Part of the depth of a face behind a segment at which it is behind another, through which it has come in.
+pub(crate) const NEARER_DEPTH: f64 = 0.5;
 /// Part of a slave face that is no cell.
 pub(crate) const LEAST_CELL: f64 = 1e-13;
 /// Part of the weight of a slave node that must be covered.
