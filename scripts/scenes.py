@@ -86,13 +86,16 @@ class Trial:
     increments: int = INCREMENTS
     elements: str = "4"
     """What follows CPE or CPS in the type of the elements."""
+    contact: str = "NODE TO SURFACE"
+    """Discretisation of contact."""
 
     def deck(self, seed: int) -> tuple[str, tuple[str, ...]]:
         """The deck of a scene and its settings."""
         scene = KINDS[self.kind](seed)
         settings = scene.settings if self.settings is None else self.settings
         scene = replace(scene, settings=settings, increments=self.increments)
-        return with_elements(scene.deck(self.material), self.elements), settings
+        text = with_elements(scene.deck(self.material), self.elements)
+        return with_formulation(text, self.contact), settings
 
     def run(self, seed: int) -> Outcome:
         """Runs a scene."""
@@ -120,6 +123,12 @@ class Trial:
                 max(overlap.corner.depth if overlap.corner else 0.0 for overlap in overlaps),
                 ran.seconds,
             )
+
+
+def with_formulation(text: str, formulation: str) -> str:
+    """A deck of general contact with another discretisation."""
+    inclusions = "*CONTACT INCLUSIONS, ALL EXTERIOR\n"
+    return text.replace(inclusions, f"{inclusions}*CONTACT FORMULATION, TYPE={formulation}\n")
 
 
 def with_elements(text: str, family: str) -> str:
@@ -218,6 +227,12 @@ def main() -> int:
         help="family of the elements, as in CPE8R",
     )
     parser.add_argument(
+        "--contact",
+        default="NODE TO SURFACE",
+        choices=["NODE TO SURFACE", "SURFACE TO SURFACE"],
+        help="discretisation of contact",
+    )
+    parser.add_argument(
         "--settings", action="append", help="of *STICKSLIP for all scenes in place of their own"
     )
     parser.add_argument("--jobs", type=command.positive_integer, default=1, help="runs at a time")
@@ -232,7 +247,7 @@ def main() -> int:
         folder = arguments.keep or Path(own)
         folder.mkdir(parents=True, exist_ok=True)
         trial = Trial(arguments.kind, arguments.material, settings, arguments.time, folder)
-        trial = replace(trial, elements=arguments.elements)
+        trial = replace(trial, elements=arguments.elements, contact=arguments.contact)
         if arguments.deck is not None:
             print(trial.deck(arguments.deck)[0], end="")
             return 0

@@ -35,8 +35,8 @@ impl SlaveKey {
 )]
 pub struct ConstraintKey {
     pub(super) slave: SlaveKey,
-    /// Segment in its contact, at a corner that before it. From surface to surface twice the number of the run of
-    /// segments, and one more on the second side of a corner.
+    /// Segment in its contact, at a corner that before it. From surface to surface the run of segments, and more on the
+    /// second side of a corner.
     pub(super) segment: usize,
 }
 

@@ -87,7 +87,7 @@ pub(super) fn find_points(
                 pairs.push(PairTarget {
                     key: ConstraintKey {
                         slave: key,
-                        segment: 2 * mean.run + side,
+                        segment: side * surfaces.segments.len() + mean.run,
                     },
                     target: ContactTarget::face(segment),
                     nodes: [node, a, b, b],

@@ -11,6 +11,7 @@ import pytest
 from bodies import ELASTIC, grid, with_section
 from stickslip import Deck, program
 from stickslip.mesh import Mesh
+from stickslip.penetration import intrusion
 from stickslip.result import Result
 
 SURFACES = "TYPE=SURFACE TO SURFACE"
@@ -85,7 +86,11 @@ PRESSED = np.array([[0.0, 0.0], [0.0, -0.01]])
 SHEARED = np.array([[0.0, 0.002], [0.0, -0.01]])
 
 
-@pytest.mark.parametrize("kinds", [("CPE4", "CPE4"), ("CPS4", "CPS4"), ("CPE3", "CPE4"), ("CPS4", "CPS3")])
+UNLIKE = [("CPE4", "CPE4"), ("CPS4", "CPS4"), ("CPE3", "CPE4"), ("CPS4", "CPS3")]
+QUADRATIC = [("CPE8", "CPE4"), ("CPE4", "CPE8"), ("CPS6", "CPS8")]
+
+
+@pytest.mark.parametrize("kinds", UNLIKE + QUADRATIC)
 @pytest.mark.parametrize(("counts", "degrees"), [((16, 7), 0.0), ((7, 16), 0.0), ((13, 8), 30.0)])
 def test_unlike_meshes_pass_the_patch_test(
     tmp_path: Path, kinds: tuple[str, str], counts: tuple[int, int], degrees: float
@@ -95,7 +100,7 @@ def test_unlike_meshes_pass_the_patch_test(
 
 
 @pytest.mark.parametrize("counts", [(16, 7), (7, 16)])
-@pytest.mark.parametrize("kinds", [("CAX4", "CAX4"), ("CAX3", "CAX4")])
+@pytest.mark.parametrize("kinds", [("CAX4", "CAX4"), ("CAX3", "CAX4"), ("CAX8", "CAX4"), ("CAX4", "CAX8")])
 def test_discs_of_unlike_mesh_pass_the_patch_test(
     tmp_path: Path, kinds: tuple[str, str], counts: tuple[int, int]
 ) -> None:
@@ -169,6 +174,7 @@ def beams() -> Deck:
         (0.02, ""),
         (0.04, ""),
         (0.02, "LANDING=RETURN"),
+        (0.02, "IMPACT TIME=EVENT"),
         (0.02, "CONTACT MASS=REDISTRIBUTED"),
         (0.02, "CONTACT MASS=REDISTRIBUTED, LANDING=RETURN"),
     ],
@@ -190,6 +196,103 @@ def test_collisions_keep_momenta_and_never_gain_energy(
     assert np.abs(energy.balance).max() < 1e-12 * energy.largest
     for values in (momentum.linear, momentum.angular):
         assert np.abs(values - values[0]).max() < 1e-12 * np.abs(values).max()
+
+
+def with_skin(mesh: Mesh) -> Mesh:
+    """A mesh of a block with a side SKIN all around."""
+    around = ("BOTTOM", "RIGHT", "TOP", "LEFT")
+    mesh.sides["SKIN"] = np.concatenate([mesh.sides[name] for name in around])
+    return mesh
+
+
+def tilted(angle: float, corner: tuple[float, float], width: float, height: float) -> Place:
+    """Places of a rectangle that is turned about its lower left corner."""
+    c, s = cos(angle), sin(angle)
+    return lambda x, y: (
+        corner[0] + c * width * x - s * height * y,
+        corner[1] + s * width * x + c * height * y,
+    )
+
+
+SCENES: dict[str, tuple[dict[str, Place], dict[str, tuple[int, int]]]] = {
+    "a corner on a face": (
+        {"A": lambda x, y: (4.0 * x - 2.0, y - 1.0), "B": tilted(0.25 * pi, (0.0, 0.02), 1.0, 1.0)},
+        {"A": (13, 5), "B": (5, 5)},
+    ),
+    "a corner below a face": (
+        {"A": lambda x, y: (2.0 * x - 1.0, y - 1.0), "B": tilted(-0.3, (-0.7, 0.5), 2.0, 1.0)},
+        {"A": (7, 5), "B": (9, 5)},
+    ),
+    "beams": (
+        {"A": lambda x, y: (4.0 * x - 2.0, 0.4 * y - 0.4), "B": tilted(0.08, (0.4, 0.03), 3.0, 0.3)},
+        {"A": (18, 2), "B": (11, 2)},
+    ),
+    "plates thinner than the reach": (
+        {"A": lambda x, y: (4.0 * x - 2.0, 0.05 * y - 0.05), "B": tilted(0.05, (-0.9, 0.03), 2.0, 0.04)},
+        {"A": (18, 1), "B": (11, 1)},
+    ),
+}
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("is_general", [False, True])
+@pytest.mark.parametrize("scene", SCENES)
+def test_whole_skins_keep_corners_out(
+    tmp_path: Path, scene: str, is_general: bool, friction: float
+) -> None:
+    """Whole skins collide: energy, momenta, and no node deeper than 0.02 of a segment."""
+    places, counts = SCENES[scene]
+    deck = Deck.titled("skins")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    for name, place in places.items():
+        mesh = with_skin(grid("CPS4", *counts[name], place))
+        add_body(deck, name, "CPS4", mesh, SKIN="S" + name)
+    if is_general:
+        deck.extend(f"*SURFACE INTERACTION, NAME=DRY\n*FRICTION\n{friction}\n*CONTACT\n")
+        deck.extend("*CONTACT INCLUSIONS, ALL EXTERIOR\n*CONTACT PROPERTY ASSIGNMENT\n, , DRY\n")
+        deck.extend(f"*CONTACT FORMULATION, {SURFACES}\n")
+    else:
+        contact(deck, "SB", "SA", friction)
+    deck.extend("*INITIAL CONDITIONS, TYPE=VELOCITY\nNB, 2, -1.\nNB, 1, 0.3\nNA, 2, 0.5\n")
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 1.6\n")
+    deck.extend("*NODE FILE, FREQUENCY=1\nU\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    assert result.run["cutbacks"] == 0
+    gains_nothing(result, "ALL_EXTERIOR" if is_general else "SB_SA")
+    momentum = result.history.momentum
+    for values in (momentum.linear, momentum.angular):
+        assert np.abs(values - values[0]).max() < 1e-12 * np.abs(values).max()
+    overlaps = intrusion.follow(result)
+    assert max(overlap.depth for overlap in overlaps) < 0.02
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_the_legs_of_a_bent_strip_are_pressed_on_each_other(tmp_path: Path, friction: float) -> None:
+    length, radius = 2.0, 0.3
+    whole = 2.0 * length + pi * radius
+
+    def place(x: float, y: float) -> tuple[float, float]:
+        way, off = x * whole, radius + 0.06 * (0.5 - y)
+        if way < length:
+            return length - way, off
+        if way < length + pi * radius:
+            angle = (way - length) / radius
+            return -off * sin(angle), off * cos(angle)
+        return way - length - pi * radius, -off
+
+    deck = Deck.titled("strip")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    add_body(deck, "A", "CPS4", with_skin(grid("CPS4", 60, 2, place)), SKIN="SA")
+    deck.extend(f"*SURFACE INTERACTION, NAME=DRY\n*FRICTION\n{friction}\n")
+    deck.extend(f"*CONTACT PAIR, INTERACTION=DRY, {SURFACES}\nSA\n")
+    deck.extend("*AMPLITUDE, NAME=RAMP\n0., 0., 1., 1.\n")
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 1.\n*BOUNDARY, AMPLITUDE=RAMP\n")
+    deck.extend("NLEFTA, 2, 2, -0.32\nNRIGHTA, 2, 2, 0.32\nNRIGHTA, 1, 1, -0.3\n")
+    deck.extend("*NODE FILE, FREQUENCY=1\nU\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    gains_nothing(result, next(iter(result.contact)))
+    assert result.run["cutbacks"] == 0
+    assert max(overlap.depth for overlap in intrusion.follow(result)) < 0.02
 
 
 def test_the_stored_formulation_is_told(tmp_path: Path) -> None:
