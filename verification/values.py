@@ -12,7 +12,10 @@ FUNCTIONS: dict[str, Any] = {
     name: getattr(np, name)
     for name in ("sin", "cos", "tan", "arcsin", "arccos", "arctan2", "sinh", "cosh", "arccosh", "exp", "log", "sqrt")
     + ("hypot", "abs", "sign", "minimum", "maximum", "where", "diff", "interp", "argmax", "argsort", "nan_to_num")
-} | {"pi": math.pi, "np": np, "max": np.max, "min": np.min, "sum": np.sum, "len": len, "range": range, "float": float, "str": str, "round": round}
+} | {
+    "pi": math.pi, "np": np, "max": np.max, "min": np.min, "sum": np.sum, "len": len, "range": range, "float": float,
+    "str": str, "round": round,
+}
 """What expressions know."""
 
 

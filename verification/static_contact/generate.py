@@ -10,7 +10,6 @@ sys.path.insert(0, str(HERE.parent))
 
 from meshes import graded, static  # noqa: E402  (first: it finds the modules of python/)
 from stickslip.cards import card, dry, elastic  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
 from stickslip.quads import Grid  # noqa: E402
 
 YOUNG, POISSON = 1000.0, 0.3
