@@ -265,13 +265,18 @@ impl Constraint {
         numbered.map(move |(k, node)| (node, [force(2 * k), force(2 * k + 1)]))
     }
 
+    /// Whether its slave node is a corner of the contact's master.
+    pub fn is_of_master(&self) -> bool {
+        self.source.is_of_master
+    }
+
     /// Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
     pub fn forces_on_slave_surface(
         &self,
         force: [f64; 2],
     ) -> impl Iterator<Item = (usize, [f64; 2])> {
         let slaves = self.slave_dofs / 2;
-        let is_of_master = self.source.is_of_master;
+        let is_of_master = self.is_of_master();
         let numbered = self.nodal_forces(force).enumerate();
         let own = numbered.filter(move |(k, _)| (*k < slaves) != is_of_master);
         own.map(|(_, force)| force)

@@ -63,7 +63,7 @@ struct LandedPair {
     key: ConstraintKey,
     /// Pt/Pn.
     ratio: f64,
-    /// Rows Gn and Gt of the end at the slave node.
+    /// Rows Gn and Gt of the end, summed over the nodes of the contact's slave surface.
     rows: [[f64; 2]; 2],
 }
 
@@ -123,7 +123,12 @@ fn landing(
     let landed = LandedPair {
         key: pair.key,
         ratio,
-        rows: [normal, tangential].map(|row| [row[0], row[1]]),
+        rows: [normal, tangential].map(|row| {
+            let own = row[..at_end.slave_dofs].chunks(2);
+            let sum = own.fold([0.0; 2], |sum, b| [sum[0] + b[0], sum[1] + b[1]]);
+            // a corner of the master is pushed the other way
+            sum.map(|b| if at_end.is_of_master() { -b } else { b })
+        }),
     };
     let force = load(normal, 1.0);
     Some((
@@ -338,7 +343,7 @@ fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
     let whole: f64 = release.opened.iter().map(|(_, force)| force[0]).sum();
     let part = |(constraint, force): &(Constraint, [f64; 2])| {
         let mut vector = [0.0; 2];
-        for (_, [x, y]) in constraint.slave_forces(*force) {
+        for (_, [x, y]) in constraint.forces_on_slave_surface(*force) {
             vector = [vector[0] + factor * x, vector[1] + factor * y];
         }
         PairReturn {

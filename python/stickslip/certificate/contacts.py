@@ -18,6 +18,10 @@ PAIRS = 2_000_000
 """Pairs of nodes and segments that are compared at a time."""
 
 
+EXACT = "NODE TO SURFACE"
+"""Discretisation that keeps every slave node out; others keep means out."""
+
+
 @dataclass(frozen=True)
 class Contact:
     """A contact of the deck."""
@@ -32,6 +36,8 @@ class Contact:
     """Whether it acts in each step."""
     body: Integers
     """Body of each node, -1 for those of rigid surfaces [N]."""
+    has_means: bool = False
+    """Whether it keeps means over faces out, and corners, in place of every slave node."""
 
     @property
     def is_constant(self) -> bool:
@@ -49,7 +55,8 @@ def contacts(result: Result) -> list[Contact]:
     for name in names:
         parts = ("slaves", "segments", "friction", "acts")
         slaves, segments, friction, acts = (result.read(f"{at}/{name}/{part}") for part in parts)
-        found.append(Contact(name, slaves, segments, friction, acts, body))
+        kind = result.file[f"history/contact/{name}"].attrs["formulation"]
+        found.append(Contact(name, slaves, segments, friction, acts, body, kind != EXACT))
     return found
 
 

@@ -400,6 +400,10 @@ class Frames:
             for name in ("gap", "reach", "complementarity", "cone", "slip"):
                 self.checks[name].skip(REASON)
             return
+        if any(contact.has_means for contact in self.contacts):
+            for name in ("gap", "reach", "complementarity", "cone", "slip"):
+                self.checks[name].skip("surface to surface keeps means out, not nodes")
+            return
         x = self.result.coordinates + frame["U"]
         force = np.linalg.norm(frame["CONTACT_FORCE"], axis=1)
         status, gaps = frame["CONTACT_STATUS"], frame["GAP"]

@@ -229,7 +229,7 @@ fn add_impulse([normal, tangential, size]: &mut [f64; 3], impulse: [f64; 2]) {
 impl ContactImpulse {
     /// Adds the normal and tangential impulse of a constraint.
     fn add(&mut self, constraint: &Constraint, [normal, tangential]: [f64; 2]) {
-        for (_, [x, y]) in constraint.slave_forces([normal, tangential]) {
+        for (_, [x, y]) in constraint.forces_on_slave_surface([normal, tangential]) {
             self.vector[0] += x;
             self.vector[1] += y;
         }

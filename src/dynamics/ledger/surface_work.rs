@@ -88,7 +88,7 @@ impl SurfaceWork {
             let Some(constraint) = constraints.get(&key).filter(|_| is_asked) else {
                 continue;
             };
-            for (node, normal) in constraint.slave_forces([1.0, 0.0]) {
+            for (node, normal) in constraint.forces_on_slave_surface([1.0, 0.0]) {
                 let area = faces.area(node, normal, |node| problem.position(u, node));
                 if area > 0.0 {
                     self.sums.work[node] += friction / area;

@@ -115,15 +115,15 @@ impl Touches {
             .acting()
             .map(|(c, pair)| (c, pair.force));
         for (constraint, impulse) in forces.chain(impulses) {
-            let (both, sign) = partners(bodies, constraint);
+            let (both, sign) = sides(bodies, constraint);
             if let Some(under_way) = self.under_way.get_mut(&both) {
-                let vectors = constraint.slave_forces(impulse);
+                let vectors = constraint.forces_on_slave_surface(impulse);
                 vectors.for_each(|(_, vector)| under_way.add(sign, vector));
             }
         }
         let opened = solved.returned.release.opened.iter().map(|(c, _)| c);
         let constraints = (solved.contact.forces.acting().map(|(c, _)| c)).chain(opened);
-        let of_keys: BTreeMap<_, _> = constraints.map(|c| (c.key, partners(bodies, c))).collect();
+        let of_keys: BTreeMap<_, _> = constraints.map(|c| (c.key, sides(bodies, c))).collect();
         for pair in &solved.returned.pairs {
             if let Some((both, sign)) = of_keys.get(&pair.key)
                 && let Some(under_way) = self.under_way.get_mut(both)
@@ -145,6 +145,19 @@ fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
         [p, q] if p <= q => ([p, q], 1.0),
         [p, q] => ([q, p], -1.0),
     }
+}
+
+/// The two partners in their order, and 1 where the slave surface of the contact is on the first, else -1.
+fn sides(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
+    let (both, sign) = partners(bodies, constraint);
+    (
+        both,
+        if constraint.is_of_master() {
+            -sign
+        } else {
+            sign
+        },
+    )
 }
 
 impl UnderWay {
