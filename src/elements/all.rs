@@ -257,6 +257,16 @@ impl Elements {
         self.connectors.iter().map(|spring| spring.energy(u)).sum()
     }
 
+    /// Number of integration points of an element.
+    pub fn points(&self, element: usize) -> usize {
+        self.element(element).points()
+    }
+
+    /// Shape of an element.
+    pub(super) fn shape(&self, element: usize) -> Shape {
+        self.kind(element).shape
+    }
+
     /// Density of an element (mass/length^3).
     pub fn density(&self, element: usize) -> f64 {
         self.kind(element).density

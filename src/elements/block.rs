@@ -509,6 +509,7 @@ impl Sums {
             principal_strain: self.principal[lane],
             plastic_strain: 0.0,
             strain_around: 0.0,
+            hourglass_energy: 0.0,
         }
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::SMatrix;
 use smallvec::SmallVec;
 
 use super::chunk::{Chunk, TangentSweep};
-use super::formulation::ElementResult;
+use super::formulation::{ElementResult, PointResults};
 use super::ring::{self, Ring};
 use super::shapes::{
     Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad4Reduced, Quad8, Quad8Reduced,
@@ -36,7 +36,7 @@ pub(super) enum AnyElement {
     Quad8(Box<Quad8>),
     /// Q8, displacement formulation with 2 x 2 points.
     Quad8Reduced(Box<Quad8Reduced>),
-    /// A ring of any of these shapes.
+    /// An element of any of these shapes with all components of the strain.
     Ring(Box<Ring>),
 }
 
@@ -62,8 +62,8 @@ impl AnyElement {
     pub fn new(model: &Model, index: usize) -> Self {
         let (element, x) = (&model.mesh.elements[index], &model.mesh.coordinates);
         let t = model.sections[element.section].thickness;
-        if element.element_type.is_ring() {
-            return Self::Ring(Box::new(Ring::new(element, x)));
+        if element.element_type.has_all_strains() {
+            return Self::Ring(Box::new(Ring::new(element, x, t)));
         }
         let nodes = &element.nodes;
         let ElementType {
@@ -145,6 +145,11 @@ impl AnyElement {
         with_element!(self, element => element.evaluate(material, u))
     }
 
+    /// Results of the points at displacements `u`, with their weights.
+    pub fn at_points(&self, material: &Committed, u: &[f64]) -> PointResults {
+        with_element!(self, element => element.at_points(material, u))
+    }
+
     /// Internal variables at the end of a motion, written to `updated`, and the energy dissipated on the way to them
     /// (force length).
     pub fn update(&self, material: &Committed, motion: Motion, updated: &mut [f64]) -> f64 {
@@ -187,7 +192,7 @@ impl AnyChunk {
             && !by_element.contains(&element_type.formulation)
             && *element_type != ElementType::CPE4R
             && *element_type != ElementType::CPS4R
-            && !element_type.is_ring()
+            && !element_type.has_all_strains()
     }
 
     /// Elements (indices) of the model of one type and section, and their law.

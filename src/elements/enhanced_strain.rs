@@ -14,9 +14,7 @@
 //! E is quadratic in the displacements, so that B(U_m) d = dE and d.F = Phi(E1) - Phi(E0) exactly. Because Phi is least
 //! in alpha, errors of the local solution enter f squared.
 
-use nalgebra::{
-    Matrix2, Matrix3, Matrix4, SMatrix, SVector, SymmetricEigen, Vector2, Vector3, Vector4,
-};
+use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 use smallvec::SmallVec;
 
@@ -24,27 +22,22 @@ use super::formulation::{
     Configuration, Formulation, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
+use super::local_solution::{LAST_STEP, least, zero};
+use super::shapes::CORNERS;
 use crate::materials::{Committed, Strains, StressAtPoints};
 
 /// Strains of the displacements and four of the element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnhancedStrain;
 
-/// Steps of the local solution, and halvings of a step.
-const MOST_STEPS: usize = 60;
-/// Step at which the local solution ends as part of the strains: its own square is round-off.
-const LAST_STEP: f64 = 1e-8;
-/// Part of the slope by which a step has to lower the energy.
-const DESCENT: f64 = 1e-4;
-
 /// The pattern (1, -1, 1, -1) of the nodes.
-fn alternating(a: usize) -> f64 {
+pub(super) fn alternating(a: usize) -> f64 {
     [1.0, -1.0][a % 2]
 }
 
 /// Natural signs r_a, s_a of a node, and of the integration point next to it.
-fn signs(a: usize) -> [f64; 2] {
-    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]][a % 4]
+pub(super) fn signs(a: usize) -> [f64; 2] {
+    CORNERS[a % 4]
 }
 
 /// Hourglass pattern and strains of an element, in the reference configuration.
@@ -152,8 +145,32 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         k
     }
 
-    /// Strains at which the energy is least with those of the displacements, eq. (2.28): Newton's method with a line
-    /// search, the eigenvalues of K_aa taken positive. NaN where it does not converge.
+    /// sum v M:S and K_aa = sum v M C M times a factor at strains of the material.
+    fn derivatives(
+        &self,
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        (strains, factor): (impl Fn(usize) -> Strains, f64),
+    ) -> (Vector4<f64>, Matrix4<f64>) {
+        let slope = self.work(element, |p| material.stress(p, &strains(p)));
+        let k = self.stiffness(element, |p| material.tangent(p, &strains(p)) * factor);
+        (slope, k)
+    }
+
+    /// Strains with alpha; no numbers without.
+    fn with(
+        &self,
+        compatible: &[Matrix2<f64>; P],
+        alpha: Option<Vector4<f64>>,
+    ) -> [Matrix2<f64>; P] {
+        match alpha {
+            Some(alpha) => self.enhanced(compatible, &alpha),
+            None => [Matrix2::from_element(f64::NAN); P],
+        }
+    }
+
+    /// Strains at which the energy is least with those of the displacements, eq. (2.28). NaN where the local solution does
+    /// not converge.
     fn least(
         &self,
         element: &Reference<N, P>,
@@ -161,30 +178,15 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         compatible: &[Matrix2<f64>; P],
     ) -> [Matrix2<f64>; P] {
         let last = LAST_STEP * largest(compatible) + f64::EPSILON;
-        let mut alpha = Vector4::zeros();
-        for _ in 0..MOST_STEPS {
-            let e = self.enhanced(compatible, &alpha);
-            let slope = self.work(element, |p| material.stress(p, &Strains::At(e[p])));
-            let k = self.stiffness(element, |p| material.tangent(p, &Strains::At(e[p])));
-            let Some(step) = descent(k, &slope) else {
-                break;
-            };
-            if step.amax() <= last {
-                return self.enhanced(compatible, &(alpha + step));
-            }
-            let change = |t: f64| {
-                let next = self.enhanced(compatible, &(alpha + step * t));
-                energy_change(element, material, &e, &next)
-            };
-            let wanted = DESCENT * slope.dot(&step);
-            let lengths = (0..MOST_STEPS).map(|halvings| 0.5_f64.powi(halvings as i32));
-            let mut lengths = lengths.filter(|&t| change(t) <= t * wanted);
-            let Some(length) = lengths.next() else {
-                break;
-            };
-            alpha += step * length;
-        }
-        [Matrix2::from_element(f64::NAN); P]
+        let derivatives = |alpha: &Vector4<f64>| {
+            let e = self.enhanced(compatible, alpha);
+            self.derivatives(element, material, (|p| Strains::At(e[p]), 1.0))
+        };
+        let change = |from: &Vector4<f64>, to: &Vector4<f64>| {
+            let [e0, e1] = [from, to].map(|alpha| self.enhanced(compatible, alpha));
+            energy_change(element, material, &e0, &e1)
+        };
+        self.with(compatible, least(derivatives, change, last))
     }
 
     /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own,
@@ -197,41 +199,18 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     ) -> [Matrix2<f64>; P] {
         let change: [Matrix2<f64>; P] = std::array::from_fn(|p| e1[p] - e0[p]);
         let last = LAST_STEP * largest(&change) + f64::EPSILON * largest(e1) + f64::MIN_POSITIVE;
-        let mut alpha = Vector4::zeros();
-        for _ in 0..MOST_STEPS {
-            let e = self.enhanced(e1, &alpha);
+        let derivatives = |alpha: &Vector4<f64>| {
+            let e = self.enhanced(e1, alpha);
             let strains = |p: usize| Strains::Between(e0[p], e[p]);
-            let slope = self.work(element, |p| viscosity.stress(p, &strains(p)));
-            let k = self.stiffness(element, |p| viscosity.tangent(p, &strains(p)) / 2.0);
-            let Some(step) = descent(k, &slope) else {
-                break;
-            };
-            alpha += step;
-            if step.amax() <= last {
-                return self.enhanced(e1, &alpha);
-            }
-        }
-        [Matrix2::from_element(f64::NAN); P]
+            self.derivatives(element, viscosity, (strains, 0.5))
+        };
+        self.with(e1, zero(derivatives, last))
     }
 }
 
 /// Largest component of strains.
 fn largest(e: &[Matrix2<f64>]) -> f64 {
     e.iter().fold(0.0, |most, e| most.max(e.amax()))
-}
-
-/// -|K|^-1 g, where |K| has the eigenvalues of K without their signs; none where they are zero or no numbers.
-fn descent(k: Matrix4<f64>, g: &Vector4<f64>) -> Option<Vector4<f64>> {
-    let step = match k.cholesky() {
-        Some(factor) => -factor.solve(g),
-        None => {
-            let pairs = SymmetricEigen::try_new(k, f64::EPSILON, 1000)?;
-            let (v, values) = (pairs.eigenvectors, pairs.eigenvalues);
-            let along = v.transpose() * g;
-            -(v * along.zip_map(&values, |g, value| g / value.abs()))
-        }
-    };
-    step.iter().all(|x| x.is_finite()).then_some(step)
 }
 
 /// sum v (W(E1) - W(E0)), with a round-off that is relative to the change of the strains.

@@ -5,6 +5,7 @@
 //! averages, largest principal strain. Sections 2 and 4 of docs/theory.md (paper eq. 12).
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
+use smallvec::SmallVec;
 
 use crate::materials::{Across, Committed, Strains, StressAtPoints};
 
@@ -89,20 +90,30 @@ pub fn work<F: Formulation, const N: usize, const P: usize>(
     work
 }
 
+/// Results of the points of an element at displacements `u`, with their weights.
+pub(super) fn at_points<F: Formulation, const N: usize, const P: usize>(
+    element: &Reference<N, P>,
+    material: &Committed,
+    u: &SMatrix<f64, 2, N>,
+) -> PointResults {
+    let weights = element.points.iter().map(|point| point.volume);
+    let mut results: PointResults = weights.map(|v| (PointResult::default(), v)).collect();
+    F::for_each_state(element, material, &Configuration::At(*u), |p, state| {
+        results[p].0 = PointResult::new(state, material, p);
+    });
+    results
+}
+
 /// Strain energy, stress and strain of an element at displacements `u`.
 pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &Committed,
     u: &SMatrix<f64, 2, N>,
 ) -> ElementResult {
-    let mut results = [PointResult::default(); P];
-    let configuration = Configuration::At(*u);
-    F::for_each_state(element, material, &configuration, |p, state| {
-        results[p] = PointResult::new(state, material, p);
-    });
-    let weights = element.points.iter().map(|point| point.volume);
-    let mut result = ElementResult::of_points(results.into_iter().zip(weights));
-    result.energy += F::hourglass_energy(element, material, &configuration);
+    let points = at_points::<F, N, P>(element, material, u);
+    let mut result = ElementResult::of_points(points.into_iter());
+    result.hourglass_energy = F::hourglass_energy(element, material, &Configuration::At(*u));
+    result.energy += result.hourglass_energy;
     result
 }
 
@@ -301,6 +312,8 @@ pub struct ElementResult {
     pub plastic_strain: f64,
     /// Green-Lagrange strain around the axis of a body of revolution; 0 in the plane.
     pub strain_around: f64,
+    /// The part of the strain energy in hourglass modes (force length).
+    pub hourglass_energy: f64,
 }
 
 /// The element with the largest principal strain.
@@ -323,6 +336,9 @@ pub fn most_strained(results: &[ElementResult]) -> Strained {
     }
     most
 }
+
+/// Results of the points of an element, with their weights (length^3).
+pub(super) type PointResults = SmallVec<[(PointResult, f64); 9]>;
 
 /// Strain energy per volume, stress and strain at one integration point.
 #[derive(Clone, Copy, Default)]
@@ -393,7 +409,26 @@ impl ElementResult {
             principal_strain: principal,
             plastic_strain: plastic / volume,
             strain_around: around / volume,
+            hourglass_energy: 0.0,
         }
+    }
+
+    /// Sum of results times factors, as of means and of values between points.
+    pub fn weighted<'a>(terms: impl Iterator<Item = (f64, &'a ElementResult)>) -> Self {
+        let mut sum = ElementResult::default();
+        for (factor, term) in terms {
+            sum.energy += factor * term.energy;
+            sum.across += factor * term.across;
+            sum.principal_strain += factor * term.principal_strain;
+            sum.plastic_strain += factor * term.plastic_strain;
+            sum.strain_around += factor * term.strain_around;
+            sum.hourglass_energy += factor * term.hourglass_energy;
+            for i in 0..3 {
+                sum.stress[i] += factor * term.stress[i];
+                sum.strain[i] += factor * term.strain[i];
+            }
+        }
+        sum
     }
 
     /// Pressure of the mean stresses, -(sxx + syy + szz)/3 (force/length^2).

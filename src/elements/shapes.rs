@@ -64,10 +64,10 @@ pub type Quad4Reduced = Solid<4, 4, 8, ReducedIntegration>;
 ///  |      |   |
 ///  0 ---- 1   +--> r
 /// ```
-const NODES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+pub(super) const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// Natural coordinates of the integration points: those of the nodes times 1/sqrt(3).
-const GAUSS: f64 = 0.577_350_269_189_625_8;
+pub(super) const GAUSS: f64 = 0.577_350_269_189_625_8;
 /// Linear shape functions (1 + GAUSS)/2 and (1 - GAUSS)/2 of an edge at its integration points, with
 /// the 1/2 of the natural derivative across.
 const NEAR: f64 = (1.0 + GAUSS) / 4.0;
@@ -138,10 +138,10 @@ fn nodal_volumes<const N: usize, const P: usize>(
 
 /// The 2 x 2 Gauss points.
 const BY_FOUR: [[f64; 2]; 4] = {
-    let mut points = NODES;
+    let mut points = CORNERS;
     let mut p = 0;
     while p < 4 {
-        points[p] = [GAUSS * NODES[p][0], GAUSS * NODES[p][1]];
+        points[p] = [GAUSS * CORNERS[p][0], GAUSS * CORNERS[p][1]];
         p += 1;
     }
     points
@@ -157,7 +157,7 @@ const fn bilinear<const P: usize>(
     while k < 4 * P {
         let (p, a) = (k / 4, k % 4);
         let [r, s] = points[p];
-        let [ra, sa] = NODES[a];
+        let [ra, sa] = CORNERS[a];
         values[p][a] = (1.0 + ra * r) * (1.0 + sa * s) / 4.0;
         natural[p][a] = [ra * (1.0 + sa * s) / 4.0, sa * (1.0 + ra * r) / 4.0];
         k += 1;
@@ -299,7 +299,7 @@ pub struct ReducedSerendipity;
 const OUTER: f64 = 0.774_596_669_241_483_4;
 
 /// The 3 x 3 Gauss points and their weights, exact up to degree 5 in r and in s.
-const DEGREE_5: ([[f64; 2]; 9], [f64; 9]) = {
+pub(super) const DEGREE_5: ([[f64; 2]; 9], [f64; 9]) = {
     let (at, of) = ([-OUTER, 0.0, OUTER], [5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0]);
     let (mut points, mut weights) = ([[0.0; 2]; 9], [0.0; 9]);
     let mut p = 0;
@@ -345,7 +345,7 @@ const fn serendipity<const P: usize>(
     while k < 4 * P {
         let (p, a) = (k / 4, k % 4);
         let [r, s] = points[p];
-        let [ra, sa] = NODES[a];
+        let [ra, sa] = CORNERS[a];
         let (x, y) = (1.0 + ra * r, 1.0 + sa * s);
         values[p][a] = x * y * (ra * r + sa * s - 1.0) / 4.0;
         natural[p][a] = [

@@ -5,7 +5,9 @@ use std::marker::PhantomData;
 
 use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
-use super::formulation::{Configuration, ElementResult, Formulation, Reference, evaluate, work};
+use super::formulation::{
+    Configuration, ElementResult, Formulation, PointResults, Reference, at_points, evaluate, work,
+};
 use crate::materials::{Committed, StressAtPoints};
 use crate::model::ElementType;
 
@@ -129,6 +131,11 @@ impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P,
     /// Strain energy, stress and strain.
     pub(super) fn evaluate(&self, material: &Committed, u: &[f64]) -> ElementResult {
         evaluate::<F, N, P>(&self.reference, material, &self.gather(u))
+    }
+
+    /// Results of the points.
+    pub(super) fn at_points(&self, material: &Committed, u: &[f64]) -> PointResults {
+        at_points::<F, N, P>(&self.reference, material, &self.gather(u))
     }
 
     /// Internal variables at the end of a motion, written to `updated`, and the energy dissipated on the way to them

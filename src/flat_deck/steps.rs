@@ -4,9 +4,10 @@
 use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{Interactions, elements_field, first_of_rigid, friction, pair_row};
 use crate::model::{
-    ALL_EXTERIOR, Amplitude, BodyForce, ContactChanges, Frames, HistorySet, Incrementation,
-    Increments, Interference, Load, Model, NamedSets, PointLoad, Pressure, Procedure, Rate,
-    RigidBody, Scheme, Settings, Step, Support, SupportMotion, TimeBase, Traction, Variation,
+    ALL_EXTERIOR, Amplitude, BodyForce, CentrifugalForce, ContactChanges, Frames, HistorySet,
+    Incrementation, Increments, Interference, Load, Model, NamedSets, PointLoad, Pressure,
+    Procedure, Rate, RigidBody, Scheme, Settings, Step, Support, SupportMotion, TimeBase, Traction,
+    Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -379,6 +380,7 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
         (asked.logarithmic_strain, "LE"),
         (asked.principal_stress, "SP"),
         (asked.pressure, "PRESS"),
+        (asked.plastic_strain, "PEEQ"),
     ];
     let of_elements = of_elements.iter().filter(|(is_asked, _)| *is_asked);
     let names: Vec<String> = of_elements.map(|(_, name)| (*name).to_owned()).collect();
@@ -394,8 +396,19 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
     }
     for asked in &sets.element_history {
         let name = named("ELSET", &sets.elements[asked.set].name);
-        lines.card("EL PRINT", [name, totals(asked)]);
-        lines.row(["S", "E", "ENER", "ELSE", "ELKE", "EVOL"].map(str::to_owned));
+        let places = [
+            (!asked.at_points && !asked.at_nodes, None),
+            (asked.at_points, Some("INTEGRATION POINTS")),
+            (asked.at_nodes, Some("NODES")),
+        ];
+        for (_, place) in places.into_iter().filter(|(is_asked, _)| *is_asked) {
+            let [name, totals] = [name.clone(), totals(asked)];
+            match place {
+                None => lines.card("EL PRINT", [name, totals]),
+                Some(place) => lines.card("EL PRINT", [name, totals, set("POSITION", place)]),
+            }
+            lines.row(["S", "E", "ENER", "ELSE", "ELKE", "EVOL"].map(str::to_owned));
+        }
     }
 }
 
@@ -425,11 +438,16 @@ impl LoadCards {
     pub fn of(step: &Step, model: &Model) -> LoadCards {
         let points = step.point_loads.iter().map(|load| point_load(load, model));
         let bodies = step.body_forces.iter().map(body_force);
+        let turned = step.centrifugal_forces.iter();
+        let turned = turned.map(|load| centrifugal_force(load, model));
         let pressures = step.pressures.iter().map(|load| pressure(load, model));
         let tractions = step.tractions.iter().map(|load| traction(load, model));
         LoadCards([
             points.collect(),
-            bodies.chain(pressures).chain(tractions).collect(),
+            (bodies.chain(turned))
+                .chain(pressures)
+                .chain(tractions)
+                .collect(),
         ])
     }
 
@@ -516,6 +534,20 @@ fn body_force(load: &Load<BodyForce>) -> Entry {
             Vec::new()
         },
         ..Entry::new(String::new(), kind, load)
+    }
+}
+
+fn centrifugal_force(load: &Load<CentrifugalForce>, model: &Model) -> Entry {
+    let CentrifugalForce { element, axis } = load.at;
+    let direction = match model.mesh.elements[element].element_type.is_ring() {
+        true => ["0.", "1.", "0."],
+        false => ["0.", "0.", "1."],
+    };
+    let place = axis.map(number).into_iter().chain([number(0.0)]);
+    Entry {
+        element: Some(element),
+        direction: place.chain(direction.map(str::to_owned)).collect(),
+        ..Entry::new(String::new(), "CENTRIF", load)
     }
 }
 

@@ -170,6 +170,11 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         Committed::new(self.law, variables)
     }
 
+    /// Whether internal variables are those of the element.
+    pub fn are_variables(&self, variables: &[f64]) -> bool {
+        self.variables == variables
+    }
+
     /// Internal variables of a point among those of the element.
     #[inline]
     fn of_point(&self, point: usize) -> Range<usize> {

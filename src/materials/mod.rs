@@ -19,7 +19,7 @@ mod polynomial;
 mod saint_venant_kirchhoff;
 mod solid;
 mod solid_laws;
-mod symmetric;
+pub mod symmetric;
 mod viscosity;
 #[cfg(test)]
 pub(crate) mod yielding;

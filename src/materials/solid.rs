@@ -36,6 +36,11 @@ pub trait RingStressAtPoints {
 
     /// Tangent of [`Self::ring_stress`] at a point, as [`RingLaw::tangent`] (force/length^2).
     fn ring_tangent(&self, point: usize, strains: &Strains<Symmetric>) -> Matrix4<f64>;
+
+    /// Whether the stress is that of a change of the strains, without a stored energy.
+    fn ring_is_viscous(&self) -> bool {
+        false
+    }
 }
 
 /// An elastic material in all components: its stored energy is a function of the strain, and all there is.

@@ -91,6 +91,10 @@ impl RingStressAtPoints for Viscosity {
             Strains::Between(e0, e1) => self.tangent_of_ring(e0, e1),
         }
     }
+
+    fn ring_is_viscous(&self) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]

@@ -41,6 +41,10 @@ pub enum Formulation {
     Enhanced,
     /// Strains of the displacements at fewer integration points.
     Reduced,
+    /// Volume strains that are linear in the element.
+    LinearPressure,
+    /// The same at fewer integration points.
+    ReducedLinearPressure,
 }
 
 /// Nodes and sides of a shape.
@@ -127,11 +131,7 @@ impl ElementType {
     /// Quadrilateral in plane stress.
     pub const CPS4: Self = Self::standard(Shape::Quad4, Plane::Stress);
     /// Quadrilateral in plane strain with mean dilatation.
-    pub const CPE4H: Self = ElementType {
-        formulation: Formulation::MeanDilatation,
-        ..Self::CPE4
-    };
-
+    pub const CPE4H: Self = Self::CPE4.with(Formulation::MeanDilatation);
     /// Quadrilateral in plane strain with enhanced strains.
     pub const CPE4I: Self = Self::CPE4.enhanced();
     /// Quadrilateral in plane stress with enhanced strains.
@@ -152,6 +152,10 @@ impl ElementType {
     pub const CPE8R: Self = Self::CPE8.reduced();
     /// Quadratic quadrilateral in plane stress, integrated with 2 x 2 points.
     pub const CPS8R: Self = Self::CPS8.reduced();
+    /// Quadratic quadrilateral in plane strain with a linear pressure.
+    pub const CPE8H: Self = Self::CPE8.with(Formulation::LinearPressure);
+    /// Quadratic quadrilateral in plane strain with a linear pressure, integrated with 2 x 2 points.
+    pub const CPE8RH: Self = Self::CPE8.with(Formulation::ReducedLinearPressure);
 
     /// Ring with the section of a triangle.
     pub const CAX3: Self = Self::standard(Shape::Tri3, Plane::Revolution);
@@ -163,14 +167,29 @@ impl ElementType {
     pub const CAX8: Self = Self::standard(Shape::Quad8, Plane::Revolution);
     /// Ring with the section of a quadratic quadrilateral, integrated with 2 x 2 points.
     pub const CAX8R: Self = Self::CAX8.reduced();
+    /// Ring with the section of a quadrilateral with mean dilatation.
+    pub const CAX4H: Self = Self::CAX4.with(Formulation::MeanDilatation);
+    /// Ring with the section of a quadrilateral with enhanced strains.
+    pub const CAX4I: Self = Self::CAX4.enhanced();
+    /// Ring with the section of a quadrilateral with one strain and hourglass stiffness.
+    pub const CAX4R: Self = Self::CAX4.reduced();
+    /// Ring with the section of a quadratic quadrilateral and a linear pressure.
+    pub const CAX8H: Self = Self::CAX8.with(Formulation::LinearPressure);
+    /// Ring with the section of a quadratic quadrilateral and a linear pressure, integrated with 2 x 2 points.
+    pub const CAX8RH: Self = Self::CAX8.with(Formulation::ReducedLinearPressure);
 
     /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 20] = [
+    pub const NAMED: [Self; 27] = [
         Self::CAX3,
         Self::CAX4,
+        Self::CAX4H,
+        Self::CAX4I,
+        Self::CAX4R,
         Self::CAX6,
         Self::CAX8,
+        Self::CAX8H,
         Self::CAX8R,
+        Self::CAX8RH,
         Self::CPE3,
         Self::CPE4,
         Self::CPE4H,
@@ -178,7 +197,9 @@ impl ElementType {
         Self::CPE4R,
         Self::CPE6,
         Self::CPE8,
+        Self::CPE8H,
         Self::CPE8R,
+        Self::CPE8RH,
         Self::CPS3,
         Self::CPS4,
         Self::CPS4I,
@@ -207,18 +228,19 @@ impl ElementType {
         }
     }
 
-    const fn enhanced(self) -> Self {
+    const fn with(self, formulation: Formulation) -> Self {
         ElementType {
-            formulation: Formulation::Enhanced,
+            formulation,
             ..self
         }
     }
 
+    const fn enhanced(self) -> Self {
+        self.with(Formulation::Enhanced)
+    }
+
     const fn reduced(self) -> Self {
-        ElementType {
-            formulation: Formulation::Reduced,
-            ..self
-        }
+        self.with(Formulation::Reduced)
     }
 
     /// The type with this name in upper case.
@@ -228,36 +250,52 @@ impl ElementType {
 
     /// Name in the deck.
     pub fn name(self) -> &'static str {
-        let reduced = self.formulation == Formulation::Reduced;
-        let mean = self.formulation == Formulation::MeanDilatation;
-        let enhanced = self.formulation == Formulation::Enhanced;
-        match (self.shape, self.plane) {
-            (Shape::Tri3, Plane::Strain) => "CPE3",
-            (Shape::Quad4, Plane::Strain) if mean => "CPE4H",
-            (Shape::Quad4, Plane::Strain) if enhanced => "CPE4I",
-            (Shape::Quad4, Plane::Strain) if reduced => "CPE4R",
-            (Shape::Quad4, Plane::Strain) => "CPE4",
-            (Shape::Tri6, Plane::Strain) => "CPE6",
-            (Shape::Quad8, Plane::Strain) if reduced => "CPE8R",
-            (Shape::Quad8, Plane::Strain) => "CPE8",
-            (Shape::Tri3, Plane::Stress) => "CPS3",
-            (Shape::Quad4, Plane::Stress) if enhanced => "CPS4I",
-            (Shape::Quad4, Plane::Stress) if reduced => "CPS4R",
-            (Shape::Quad4, Plane::Stress) => "CPS4",
-            (Shape::Tri6, Plane::Stress) => "CPS6",
-            (Shape::Quad8, Plane::Stress) if reduced => "CPS8R",
-            (Shape::Quad8, Plane::Stress) => "CPS8",
-            (Shape::Tri3, Plane::Revolution) => "CAX3",
-            (Shape::Quad4, Plane::Revolution) => "CAX4",
-            (Shape::Tri6, Plane::Revolution) => "CAX6",
-            (Shape::Quad8, Plane::Revolution) if reduced => "CAX8R",
-            (Shape::Quad8, Plane::Revolution) => "CAX8",
+        use Formulation::{
+            Enhanced, LinearPressure, MeanDilatation, Reduced, ReducedLinearPressure,
+        };
+        match (self.shape, self.plane, self.formulation) {
+            (Shape::Tri3, Plane::Strain, _) => "CPE3",
+            (Shape::Quad4, Plane::Strain, MeanDilatation) => "CPE4H",
+            (Shape::Quad4, Plane::Strain, Enhanced) => "CPE4I",
+            (Shape::Quad4, Plane::Strain, Reduced) => "CPE4R",
+            (Shape::Quad4, Plane::Strain, _) => "CPE4",
+            (Shape::Tri6, Plane::Strain, _) => "CPE6",
+            (Shape::Quad8, Plane::Strain, LinearPressure) => "CPE8H",
+            (Shape::Quad8, Plane::Strain, Reduced) => "CPE8R",
+            (Shape::Quad8, Plane::Strain, ReducedLinearPressure) => "CPE8RH",
+            (Shape::Quad8, Plane::Strain, _) => "CPE8",
+            (Shape::Tri3, Plane::Stress, _) => "CPS3",
+            (Shape::Quad4, Plane::Stress, Enhanced) => "CPS4I",
+            (Shape::Quad4, Plane::Stress, Reduced) => "CPS4R",
+            (Shape::Quad4, Plane::Stress, _) => "CPS4",
+            (Shape::Tri6, Plane::Stress, _) => "CPS6",
+            (Shape::Quad8, Plane::Stress, Reduced) => "CPS8R",
+            (Shape::Quad8, Plane::Stress, _) => "CPS8",
+            (Shape::Tri3, Plane::Revolution, _) => "CAX3",
+            (Shape::Quad4, Plane::Revolution, MeanDilatation) => "CAX4H",
+            (Shape::Quad4, Plane::Revolution, Enhanced) => "CAX4I",
+            (Shape::Quad4, Plane::Revolution, Reduced) => "CAX4R",
+            (Shape::Quad4, Plane::Revolution, _) => "CAX4",
+            (Shape::Tri6, Plane::Revolution, _) => "CAX6",
+            (Shape::Quad8, Plane::Revolution, LinearPressure) => "CAX8H",
+            (Shape::Quad8, Plane::Revolution, Reduced) => "CAX8R",
+            (Shape::Quad8, Plane::Revolution, ReducedLinearPressure) => "CAX8RH",
+            (Shape::Quad8, Plane::Revolution, _) => "CAX8",
         }
     }
 
     /// Whether it is an element of a body of revolution.
     pub fn is_ring(self) -> bool {
         self.plane == Plane::Revolution
+    }
+
+    /// Whether its strains have a component across the section too: in rings, and with a linear pressure.
+    pub fn has_all_strains(self) -> bool {
+        let pressures = [
+            Formulation::LinearPressure,
+            Formulation::ReducedLinearPressure,
+        ];
+        self.is_ring() || pressures.contains(&self.formulation)
     }
 
     /// Whether displacements within an element are quadratic: sides have a node between their corners.

@@ -32,10 +32,10 @@ pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, 
 pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
-    BodyForce, ContactChanges, ContactMass, Factorization, Frames, FrictionChange, Impact,
-    ImpactTime, Incrementation, Increments, Interference, LandingRule, LcpChoice, Load, PointLoad,
-    Pressure, Procedure, Rate, RestartOutput, Scheme, Settings, SolverChoice, Step, Support,
-    SupportMotion, Traction, Variation,
+    BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, Frames,
+    FrictionChange, Impact, ImpactTime, Incrementation, Increments, Interference, LandingRule,
+    LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme, Settings,
+    SolverChoice, Step, Support, SupportMotion, Traction, Variation,
 };
 pub use thickness::Thickness;
 pub(crate) use tie::{NEAR, nearest_of};
@@ -141,8 +141,13 @@ impl Model {
         material.wave_speed(element.element_type.plane)
     }
 
+    /// Whether accumulated plastic strains are written: where a material may flow, and where the deck names them.
+    pub fn writes_plastic_strain(&self) -> bool {
+        self.sets.fields.plastic_strain || self.has_plasticity()
+    }
+
     /// Whether a material may flow.
-    pub fn has_plasticity(&self) -> bool {
+    fn has_plasticity(&self) -> bool {
         let mut materials = self.materials.iter();
         materials.any(|material| matches!(material.law, Law::Plastic(_)))
     }

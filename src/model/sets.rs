@@ -37,6 +37,8 @@ pub struct RequestedFields {
     pub principal_stress: bool,
     /// Pressure (`PRESS`).
     pub pressure: bool,
+    /// Accumulated plastic strain (`PEEQ`), which models with metals always write.
+    pub plastic_strain: bool,
 }
 
 /// A set in the history: sums over the set, and means over nodes, are always written.
@@ -46,6 +48,10 @@ pub struct HistorySet {
     pub set: usize,
     /// Whether the values of every member are written too.
     pub each_member: bool,
+    /// Whether the values at the integration points of elements are written too.
+    pub at_points: bool,
+    /// Whether the values at the nodes of elements are written too.
+    pub at_nodes: bool,
 }
 
 /// An instance of a part. Its nodes and elements follow one another in the mesh.

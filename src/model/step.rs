@@ -20,6 +20,8 @@ pub struct Step {
     pub point_loads: Vec<Load<PointLoad>>,
     /// Body forces.
     pub body_forces: Vec<Load<BodyForce>>,
+    /// Centrifugal forces.
+    pub centrifugal_forces: Vec<Load<CentrifugalForce>>,
     /// Follower pressures.
     pub pressures: Vec<Load<Pressure>>,
     /// Dead tractions.
@@ -194,6 +196,15 @@ pub struct BodyForce {
     /// Whether the magnitude is an acceleration (GRAV: multiplied by the density) or a force per
     /// volume (BX, BY).
     pub per_mass: bool,
+}
+
+/// Centrifugal force (magnitude: square of the angular velocity, 1/time^2) of the mass of an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CentrifugalForce {
+    /// Loaded element.
+    pub element: usize,
+    /// Place of the axis in the plane, which is perpendicular to it; in bodies of revolution the axis is x = 0 (length).
+    pub axis: [f64; 2],
 }
 
 /// Follower pressure (magnitude: force/length^2, positive into the body) on the current face.

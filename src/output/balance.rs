@@ -48,6 +48,7 @@ impl Balance {
                 step.supports.is_empty()
                     && step.point_loads.is_empty()
                     && step.body_forces.is_empty()
+                    && step.centrifugal_forces.is_empty()
                     && step.pressures.is_empty()
                     && step.tractions.is_empty()
             });

@@ -614,6 +614,7 @@ mod tests {
             supports: vec![],
             point_loads: vec![],
             body_forces: vec![],
+            centrifugal_forces: vec![],
             pressures: vec![],
             tractions: vec![],
             interferences: vec![],

@@ -174,7 +174,7 @@ impl<'m> FieldGroup<'m> {
         let asked = &model.sets.fields;
         let principal = PRINCIPAL.iter().filter(|_| asked.principal_stress);
         let pressure = PRESSURE.iter().filter(|_| asked.pressure);
-        let plastic = PLASTIC.iter().filter(|_| model.has_plasticity());
+        let plastic = PLASTIC.iter().filter(|_| model.writes_plastic_strain());
         let around = AROUND.iter().filter(|_| model.mesh.is_axisymmetric());
         for &(name, meaning, of) in principal.chain(pressure).chain(plastic).chain(around) {
             self.add(name, SCALAR, varied, meaning, move |frame, v| {

@@ -1,6 +1,7 @@
 //! Group `/history`: energies and solver, nodes, elements, bodies, contacts and rigid surfaces, one row per
 //! increment, row 0 being the start; impacts, returns and touches, one row per event.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use hdf5::Group;
@@ -15,7 +16,7 @@ use crate::dynamics::{
     ReturnedImpulse, RigidReaction, SolverCounts, Touch,
 };
 use crate::elements::{
-    ConnectorState, ElementInertia, ElementResult, MeanGradient, PlacedConnector,
+    ConnectorState, ElementInertia, ElementResult, Elements, MeanGradient, PlacedConnector,
 };
 use crate::model::{
     Bodies, Contact, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set, Step,
@@ -94,9 +95,19 @@ impl<'m> History<'m> {
             history.create_nodes(&group(&nodes, &set.name)?, &set.members, asked.each_member)?;
         }
         let elements = group(&at, "elements")?;
+        let local = Arc::new(match is_local(model) {
+            true => Elements::new(model),
+            false => Elements::new(&Model::default()),
+        });
         for (asked, set) in requested(&model.sets.element_history, &model.sets.elements) {
             let at = group(&elements, &set.name)?;
             history.create_elements(&at, &set.members, asked.each_member)?;
+            if asked.at_points {
+                history.create_points(&group(&at, "points")?, &set.members, &local)?;
+            }
+            if asked.at_nodes {
+                history.create_element_nodes(&group(&at, "at_nodes")?, &set.members, &local)?;
+            }
         }
         history.table(&group(&at, "solver")?, &[], &SOLVER, |r, each| {
             each(&r.solver)
@@ -405,6 +416,84 @@ impl<'m> History<'m> {
         Ok(())
     }
 
+    /// `/history/elements/<ELSET>/points`: values at the integration points of all elements, one after the other.
+    fn create_points(
+        &mut self,
+        at: &Group,
+        elements: &'m [usize],
+        local: &Arc<Elements>,
+    ) -> hdf5::Result<()> {
+        let (mut labels, mut numbers) = (Vec::new(), Vec::new());
+        for &e in elements {
+            for number in 1..=local.points(e) {
+                labels.push(self.model.mesh.elements[e].label as i64);
+                numbers.push(number as i64);
+            }
+        }
+        let text = ("1", "element number of the deck of every point");
+        constant(at, "labels", &[labels.len()], &labels, text)?;
+        let text = ("1", "number of the point in its element, from 1");
+        constant(at, "numbers", &[numbers.len()], &numbers, text)?;
+        let local = local.clone();
+        self.create_local(at, labels.len(), move |r| {
+            let of = |&e: &usize| local.at_points(e, &r.state.u, &r.state.internal);
+            elements.iter().flat_map(of).collect()
+        })
+    }
+
+    /// `/history/elements/<ELSET>/at_nodes`: values at the nodes of the elements, the plain mean of those of all elements of
+    /// the set at a node.
+    fn create_element_nodes(
+        &mut self,
+        at: &Group,
+        elements: &'m [usize],
+        local: &Arc<Elements>,
+    ) -> hdf5::Result<()> {
+        let mut places: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let all = elements.iter().flat_map(|&e| local.nodes(e));
+        for (place, &node) in all.enumerate() {
+            places.entry(node).or_default().push(place);
+        }
+        let labels = places
+            .keys()
+            .map(|&node| self.model.mesh.node_labels[node] as i64);
+        let labels: Vec<i64> = labels.collect();
+        let text = ("1", "node numbers of the deck");
+        constant(at, "labels", &[labels.len()], &labels, text)?;
+        let local = local.clone();
+        self.create_local(at, labels.len(), move |r| {
+            let of = |&e: &usize| local.at_nodes(e, &r.state.u, &r.state.internal);
+            let own: Vec<ElementResult> = elements.iter().flat_map(of).collect();
+            let mean = |places: &Vec<usize>| {
+                let part = 1.0 / places.len() as f64;
+                ElementResult::weighted(places.iter().map(|&place| (part, &own[place])))
+            };
+            places.values().map(mean).collect()
+        })
+    }
+
+    /// The datasets of values at `count` places.
+    fn create_local(
+        &mut self,
+        at: &Group,
+        count: usize,
+        values: impl Fn(&IncrementReport) -> Vec<ElementResult> + Clone + 'm,
+    ) -> hdf5::Result<()> {
+        for &(name, dimension, text, ref value) in &LOCAL {
+            let (values, about) = (values.clone(), (dimension, text));
+            match *value {
+                Tensor(of) => self.add(at, name, &[count, 3], about, move |r, v| {
+                    v.extend(values(r).iter().flat_map(of));
+                })?,
+                Real(of) => self.add(at, name, &[count], about, move |r, v| {
+                    v.extend(values(r).iter().map(of));
+                })?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// `/history/elements/<ELSET>`; values of every element where these are asked for, and sums.
     fn create_elements(
         &mut self,
@@ -442,7 +531,7 @@ impl<'m> History<'m> {
                 v.extend(elements.iter().map(|&e| r.elements[e].strain_around));
             })?;
         }
-        if self.model.has_plasticity() {
+        if self.model.writes_plastic_strain() {
             self.add(at, "PEEQ", &count, PLASTIC_STRAIN, |r, v| {
                 v.extend(elements.iter().map(|&e| r.elements[e].plastic_strain));
             })?;
@@ -470,6 +559,14 @@ impl<'m> History<'m> {
             v.extend(of_each.iter().map(|own| own.kinetic_energy(&r.state.v)));
         })
     }
+}
+
+/// Whether values at points or nodes of elements are asked for.
+fn is_local(model: &Model) -> bool {
+    let asked = model.sets.element_history.iter();
+    asked
+        .into_iter()
+        .any(|asked| asked.at_points || asked.at_nodes)
 }
 
 /// The requested sets in the order of the model; an empty set has no history.
@@ -735,7 +832,7 @@ const MEANS_OF_NODES: [VectorEntry; 3] = [
 ];
 
 #[rustfmt::skip]
-const ELEMENT: [Entry<ElementResult>; 9] = [
+const ELEMENT: [Entry<ElementResult>; 10] = [
     ("S", STRESS.0, STRESS.1, Tensor(|e| e.stress)),
     ("E", STRAIN.0, STRAIN.1, Tensor(|e| e.strain)),
     ("S33", ACROSS.0, ACROSS.1, Real(|e| e.across)),
@@ -745,6 +842,22 @@ const ELEMENT: [Entry<ElementResult>; 9] = [
     ("SP3", "force/length^2", "largest principal value of the mean stresses", Real(|e| e.principal_stresses()[2])),
     ("PRESS", "force/length^2", "pressure -(xx + yy + zz)/3 of the mean stresses", Real(ElementResult::pressure)),
     ("ELSE", "energy", "strain energy of the element", Real(|e| e.energy)),
+    ("ELHE", "energy", "the part of it in hourglass modes", Real(|e| e.hourglass_energy)),
+];
+
+#[rustfmt::skip]
+const LOCAL: [Entry<ElementResult>; 11] = [
+    ("S", "force/length^2", "Cauchy stress xx yy xy", Tensor(|e| e.stress)),
+    ("E", "1", "Green-Lagrange strain xx yy xy (xy: the tensor component)", Tensor(|e| e.strain)),
+    ("S33", "force/length^2", "Cauchy stress across the plane, or around the axis", Real(|e| e.across)),
+    ("E33", "1", "Green-Lagrange strain around the axis of a body of revolution", Real(|e| e.strain_around)),
+    ("MISES", "force/length^2", "von Mises stress", Real(ElementResult::von_mises)),
+    ("SP1", "force/length^2", "smallest principal stress", Real(|e| e.principal_stresses()[0])),
+    ("SP2", "force/length^2", "middle principal stress", Real(|e| e.principal_stresses()[1])),
+    ("SP3", "force/length^2", "largest principal stress", Real(|e| e.principal_stresses()[2])),
+    ("PRESS", "force/length^2", "pressure -(xx + yy + zz)/3", Real(ElementResult::pressure)),
+    ("ENER", "energy/length^3", "strain energy per volume of the undeformed body, without that of hourglass modes", Real(|e| e.energy)),
+    ("PEEQ", "1", "accumulated plastic strain", Real(|e| e.plastic_strain)),
 ];
 
 #[rustfmt::skip]

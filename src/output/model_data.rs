@@ -48,7 +48,7 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
 }
 
 /// Element types and their numbers in the file, which never change.
-const TYPES: [(ElementType, u8); 20] = [
+const TYPES: [(ElementType, u8); 27] = [
     (ElementType::CPE3, 0),
     (ElementType::CPE4, 1),
     (ElementType::CPS3, 2),
@@ -69,6 +69,13 @@ const TYPES: [(ElementType, u8); 20] = [
     (ElementType::CPS4I, 17),
     (ElementType::CPE4R, 18),
     (ElementType::CPS4R, 19),
+    (ElementType::CPE8H, 20),
+    (ElementType::CPE8RH, 21),
+    (ElementType::CAX4H, 22),
+    (ElementType::CAX4I, 23),
+    (ElementType::CAX4R, 24),
+    (ElementType::CAX8H, 25),
+    (ElementType::CAX8RH, 26),
 ];
 
 /// Number of an element type in the file: as in [`TYPES`].
@@ -189,7 +196,7 @@ fn constrained(model: &Model) -> Vec<usize> {
     nodes.filter(|&n| n < model.mesh.node_count()).collect()
 }
 
-/// Nodes with a concentrated load, a pressure or a traction in any step, and those of contacts whose forces fade over a
+/// Nodes with a concentrated load, a pressure, a traction or a centrifugal force in any step, and those of contacts whose forces fade over a
 /// static step that removes them.
 fn loaded_nodes(model: &Model) -> Vec<usize> {
     let mut nodes: Vec<usize> = Vec::new();
@@ -197,6 +204,8 @@ fn loaded_nodes(model: &Model) -> Vec<usize> {
         let pressures = step.pressures.iter().map(|load| load.at.face);
         let tractions = step.tractions.iter().map(|load| load.at.face);
         nodes.extend(step.point_loads.iter().map(|load| load.at.dof / 2));
+        let turned = step.centrifugal_forces.iter().map(|load| load.at.element);
+        nodes.extend(turned.flat_map(|element| model.mesh.elements[element].nodes.iter()));
         nodes.extend((pressures.chain(tractions)).flat_map(|face| face.nodes(&model.mesh)));
         let fading = match step.procedure {
             Procedure::Static => step.contacts.removed.as_slice(),
@@ -255,7 +264,7 @@ fn indices(at: &Group, name: &str, mut found: Vec<usize>, text: &'static str) ->
 
 const SUPPORTED: &str = "indices of nodes with a support in any step";
 const CONSTRAINED: &str = "indices of nodes of equations, springs, dashpots and rigid bodies";
-const LOADED_NODES: &str = "indices of nodes with a concentrated load, a pressure, a traction or the fading force of a contact";
+const LOADED_NODES: &str = "indices of nodes with a concentrated load, a pressure, a traction, a centrifugal force or the fading force of a contact";
 const SLAVES: &str = "indices of the slave nodes";
 const LOAD_GROUPS: Meaning = (
     "1",
@@ -263,7 +272,7 @@ const LOAD_GROUPS: Meaning = (
 );
 const ELEMENT_TYPES: Meaning = (
     "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 11 CAX3, 12 CAX4, 13 CAX6, 14 CAX8, 15 CAX8R, 16 CPE4I, 17 CPS4I, 18 CPE4R, 19 CPS4R",
+    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 11 CAX3, 12 CAX4, 13 CAX6, 14 CAX8, 15 CAX8R, 16 CPE4I, 17 CPS4I, 18 CPE4R, 19 CPS4R, 20 CPE8H, 21 CPE8RH, 22 CAX4H, 23 CAX4I, 24 CAX4R, 25 CAX8H, 26 CAX8RH",
 );
 const MATERIAL: Meaning = (
     "1",

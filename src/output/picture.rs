@@ -8,7 +8,7 @@ use crate::contact::project;
 use crate::model::{
     Bodies, Element, Face, Model, Rate, Support, SupportMotion, Surface, SurfaceKind,
 };
-use crate::vectors::extents;
+use crate::vectors::{difference, extents};
 
 /// Fills of the materials, in turn.
 const FILLS: [&str; 6] = [
@@ -400,6 +400,19 @@ fn body_forces(model: &Model) -> Vec<Vector> {
         let direction = load.at.direction.map(|e| e * load.magnitude.signum());
         let vector = (middles[bodies.of_element[load.at.element]], direction);
         if load.magnitude != 0.0 && vectors.last() != Some(&vector) && !vectors.contains(&vector) {
+            vectors.push(vector);
+        }
+    }
+    for load in model.steps.iter().flat_map(|step| &step.centrifugal_forces) {
+        let of_body = middles[bodies.of_element[load.at.element]];
+        // the middle of a section of a body of revolution is beside its axis
+        let arm = match model.mesh.is_axisymmetric() {
+            true => [of_body[0], 0.0],
+            false => difference(load.at.axis, of_body),
+        };
+        let size = arm[0].hypot(arm[1]);
+        let vector = (of_body, arm.map(|arm| arm / size));
+        if load.magnitude != 0.0 && size > 0.0 && !vectors.contains(&vector) {
             vectors.push(vector);
         }
     }

@@ -6,8 +6,8 @@ use super::surfaces::{Surfaces, side_count};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    Amplitude, BodyForce, Face, Load, PointLoad, Pressure, Step, SurfaceKind, TimeBase, Traction,
-    Variation,
+    Amplitude, BodyForce, CentrifugalForce, Face, Load, PointLoad, Pressure, Step, SurfaceKind,
+    TimeBase, Traction, Variation,
 };
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -17,6 +17,7 @@ use std::collections::BTreeMap;
 pub(crate) struct LoadHistories {
     points: LoadHistory<usize, PointLoad>,
     bodies: LoadHistory<(u32, Body), BodyForce>,
+    turned: LoadHistory<u32, CentrifugalForce>,
     pressures: LoadHistory<OnFace, Pressure>,
     tractions: LoadHistory<OnFace, Traction>,
     /// By the keywords.
@@ -49,6 +50,7 @@ pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
     let mut loads = LoadHistories {
         points: LoadHistory::of(&step.point_loads, |at| at.dof),
         bodies: LoadHistory::of(&step.body_forces, |at| (at.element as u32, Body::of(at))),
+        turned: LoadHistory::of(&step.centrifugal_forces, |at| at.element as u32),
         pressures: LoadHistory::of(&step.pressures, |at| (None, at.face)),
         tractions: LoadHistory::of(&step.tractions, |at| (None, at.face)),
         operations: BTreeMap::new(),
@@ -111,6 +113,7 @@ impl LoadHistories {
         let on_surfaces = keyword == "DSLOAD";
         if !on_surfaces {
             self.bodies.clear(context, |_| true);
+            self.turned.clear(context, |_| true);
         }
         let is_meant = |(surface, _): &OnFace| surface.is_some() == on_surfaces;
         self.pressures.clear(context, is_meant);
@@ -158,8 +161,11 @@ impl LoadHistories {
         if let Some(body) = body {
             return self.body_row(row, body, &elements, source, cx);
         }
+        if key == "CENTRIF" {
+            return self.centrifugal_row(row, &elements, source, cx);
+        }
         let Some((side, is_traction)) = loaded_side(&key) else {
-            let known = "GRAV, BX, BY, P1 to P4 and TRVEC1 to TRVEC4";
+            let known = "GRAV, BX, BY, CENTRIF, P1 to P4 and TRVEC1 to TRVEC4";
             return unknown_kind(kind, known, cx);
         };
         let direction = match is_traction {
@@ -201,6 +207,62 @@ impl LoadHistories {
             };
             let key = (element as u32, body);
             self.bodies.add(key, at, magnitude, amplitude, context);
+        }
+        Some(())
+    }
+
+    /// `element or set, CENTRIF, omega^2, x, y, z, ax, ay, az`: a point of the axis and its direction
+    fn centrifugal_row(
+        &mut self,
+        row: Line,
+        elements: &[usize],
+        source: Source,
+        cx: &mut Context,
+    ) -> Option<()> {
+        row.at_most(9, cx.d);
+        let square = row.real(2, "the square of the angular velocity", cx.d)?;
+        if square < 0.0 {
+            let message = "the square of the angular velocity is negative";
+            cx.error(Code::BadDirection, row.span_at(2), message);
+            return None;
+        }
+        let is_ring = source.targets.mesh_index.mesh.is_axisymmetric();
+        let along = if is_ring {
+            [0.0, 1.0, 0.0]
+        } else {
+            [0.0, 0.0, 1.0]
+        };
+        let place = [3, 4, 5].map(|i| row.real_or(i, 0.0, cx.d));
+        let [x, y, _] = [place[0]?, place[1]?, place[2]?];
+        let has_direction = (6..9).any(|i| row.get(i).is_some_and(|field| !field.text.is_empty()));
+        let direction = match has_direction {
+            true => [6, 7, 8].map(|i| row.real_or(i, 0.0, cx.d)),
+            false => along.map(Some),
+        };
+        let direction = [direction[0]?, direction[1]?, direction[2]?];
+        let across = (0..3).filter(|&i| along[i] == 0.0 && direction[i] != 0.0);
+        let lengths = direction.iter().zip(&along).map(|(d, a)| d * a);
+        if across.count() > 0 || lengths.sum::<f64>() == 0.0 || (is_ring && x != 0.0) {
+            let (message, help) = match is_ring {
+                true => (
+                    "bodies of revolution turn around their axis alone",
+                    "write 0, 0, 0, 0, 1, 0 for the axis x = 0",
+                ),
+                false => (
+                    "the axis is not perpendicular to the plane",
+                    "its direction is 0, 0, 1",
+                ),
+            };
+            cx.error(Code::BadDirection, row.span_at(3), message)
+                .help(help);
+            return None;
+        }
+        let axis = if is_ring { [0.0; 2] } else { [x, y] };
+        for &element in elements {
+            let at = CentrifugalForce { element, axis };
+            let (amplitude, context) = (source.amplitude, source.context);
+            self.turned
+                .add(element as u32, at, square, amplitude, context);
         }
         Some(())
     }
@@ -282,6 +344,7 @@ impl LoadHistories {
     pub fn fill(&mut self, step: &mut Step, is_last: bool) {
         step.point_loads = self.points.list(is_last);
         step.body_forces = self.bodies.list(is_last);
+        step.centrifugal_forces = self.turned.list(is_last);
         step.pressures = joined(self.pressures.list(is_last), |load| load.at.face);
         step.tractions = joined(self.tractions.list(is_last), |load| load.at.face);
     }
@@ -290,6 +353,7 @@ impl LoadHistories {
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         self.points.end_step(period, total, amplitudes);
         self.bodies.end_step(period, total, amplitudes);
+        self.turned.end_step(period, total, amplitudes);
         self.pressures.end_step(period, total, amplitudes);
         self.tractions.end_step(period, total, amplitudes);
     }

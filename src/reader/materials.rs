@@ -390,7 +390,7 @@ fn d1(row: Line, index: usize, c: f64, cx: &mut Context) -> Option<f64> {
     if d1 == 0.0 {
         let message = "D1 = 0: the bulk modulus is 10000 shear moduli";
         cx.d.note(Code::Incompressible, field.span, message).help(
-            "in plane strain this needs CPE4H or CPE8R; K = 20 mu (D1 = 0.05/C10 of NEO HOOKE) is usual for rubber",
+            "in plane strain this needs CPE4H, CPE8H or CPE8R; K = 20 mu (D1 = 0.05/C10 of NEO HOOKE) is usual for rubber",
         );
         return Some(1.0 / (NEARLY_INCOMPRESSIBLE * c));
     }
@@ -405,8 +405,8 @@ fn d1(row: Line, index: usize, c: f64, cx: &mut Context) -> Option<f64> {
 
 /// What D1 is.
 const BULK: &str = "D1 = 2/K with the bulk modulus K; where it is not known, K = 20 mu (D1 = 0.05/C10 of NEO HOOKE) is \
-                    usual for rubber; D1 = 0 stands for K = 10000 mu, which is all but incompressible and needs CPE4H or \
-                    CPE8R in plane strain";
+                    usual for rubber; D1 = 0 stands for K = 10000 mu, which is all but incompressible and needs CPE4H, \
+                    CPE8H or CPE8R in plane strain";
 
 /// The damping that a card gives which may appear once, with the place of the part in proportion to the mass.
 fn damping(cards: &[&Card], cx: &mut Context) -> Option<(Damping, Span)> {

@@ -463,18 +463,15 @@ pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> 
     if let Some(kind) = ConnectorKind::from_name(&folded) {
         return Some(ElementKind::Connector(kind));
     }
-    let known = ElementType::from_name(&folded).or_else(|| unusable(name, &folded, cx));
+    let known = ElementType::from_name(&folded);
+    if known.is_none() {
+        report_unusable(name, &folded, cx);
+    }
     known.map(ElementKind::Plane)
 }
 
-/// Reports a type; lenient reading replaces reduced by full integration of 4-node elements.
-fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
-    let full = folded.strip_suffix('R').and_then(ElementType::from_name);
-    if let Some(full) = full.filter(|full| full.topology().nodes == 4 && cx.d.is_lenient()) {
-        let message = format!("{} is integrated with 2 x 2 points", name.text);
-        cx.d.warning_once(Code::ElementType, name.span, message);
-        return Some(full);
-    }
+/// Reports a type that cannot be used.
+fn report_unusable(name: Text, folded: &str, cx: &mut Context) {
     let message = format!("element type {} cannot be used", name.text);
     let error = cx.error(Code::ElementType, name.span, message);
     let meant = closest(folded, ElementType::NAMED.map(ElementType::name));
@@ -482,10 +479,9 @@ fn unusable(name: Text, folded: &str, cx: &mut Context) -> Option<ElementType> {
         Some(reason) => error.help(reason),
         None => error
             .suggest(meant)
-            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPS4R, CPE4R, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R or CPE8R, or CAX3, CAX4, \
-                 CAX6, CAX8 or CAX8R around the axis x = 0"),
+            .help("use CPS3, CPE3, CPS4, CPE4, CPS4I, CPE4I, CPS4R, CPE4R, CPE4H, CPS6, CPE6, CPS8, CPE8, CPS8R, CPE8R, CPE8H or CPE8RH, or \
+                 CAX3, CAX4, CAX4H, CAX4I, CAX4R, CAX6, CAX8, CAX8R, CAX8H or CAX8RH around the axis x = 0"),
     };
-    None
 }
 
 /// Why a type that other codes know cannot be used.
@@ -496,9 +492,13 @@ fn reason(folded: &str) -> Option<&'static str> {
             "write CPE3, CPS3, CPE4, CPE4I, CPE4R, CPE4H, CPS4, CPS4I or CPS4R: other formulations are not supported",
         )
     } else if starts(&["CPE6", "CPS6", "CPE8", "CPS8"]) && folded.len() > 4 {
-        Some("write CPE6, CPS6, CPE8, CPS8, CPE8R or CPS8R: other formulations are not supported")
+        Some(
+            "write CPE6, CPS6, CPE8, CPS8, CPE8R, CPS8R, CPE8H or CPE8RH: other formulations are not supported",
+        )
     } else if starts(&["CAX"]) {
-        Some("write CAX3, CAX4, CAX6, CAX8 or CAX8R: other formulations are not supported")
+        Some(
+            "write CAX3, CAX4, CAX4H, CAX4I, CAX4R, CAX6, CAX8, CAX8R, CAX8H or CAX8RH: other formulations are not supported",
+        )
     } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
         Some("line elements only name sides of plane elements: use T3D2 with two nodes")
     } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {

@@ -300,7 +300,17 @@ impl Histories {
         match name {
             Some(name) => {
                 if let Some(set) = family.set(name, sets, cx).filter(|_| !is_off) {
-                    self.add(family, HistorySet { set, each_member });
+                    let position = match family {
+                        MemberKind::Nodes => None,
+                        MemberKind::Elements => card.choice("POSITION"),
+                    };
+                    let asked = HistorySet {
+                        set,
+                        each_member,
+                        at_points: position == Some("INTEGRATION POINTS"),
+                        at_nodes: matches!(position, Some("NODES" | "AVERAGED AT NODES")),
+                    };
+                    self.add(family, asked);
                 }
             }
             None if is_off || card.has(family.parameter()) => {}
@@ -314,7 +324,11 @@ impl Histories {
             MemberKind::Elements => &mut self.elements,
         };
         match known.iter_mut().find(|known| known.set == asked.set) {
-            Some(known) => known.each_member |= asked.each_member,
+            Some(known) => {
+                known.each_member |= asked.each_member;
+                known.at_points |= asked.at_points;
+                known.at_nodes |= asked.at_nodes;
+            }
             None => known.push(asked),
         }
     }
@@ -331,6 +345,7 @@ impl Histories {
                 "LE" => self.fields.logarithmic_strain = true,
                 "SP" | "SP1" | "SP2" | "SP3" => self.fields.principal_stress = true,
                 "PRESS" => self.fields.pressure = true,
+                "PEEQ" => self.fields.plastic_strain = true,
                 _ => {}
             }
         }

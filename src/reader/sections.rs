@@ -116,7 +116,7 @@ impl Properties {
     }
 }
 
-/// Gives elements one volume strain each; all must be CPE4.
+/// Gives elements one volume strain each; all must be CPE4 or CAX4.
 fn set_mean_dilatation(
     elements: &[usize],
     card: &Card,
@@ -125,13 +125,12 @@ fn set_mean_dilatation(
 ) {
     for &index in elements {
         let element_type = &mut mesh_index.mesh.elements[index].element_type;
-        if *element_type == ElementType::CPE4 {
+        if [ElementType::CPE4, ElementType::CAX4].contains(element_type) {
             element_type.formulation = Formulation::MeanDilatation;
-        } else if [Formulation::Displacement, Formulation::Enhanced]
-            .contains(&element_type.formulation)
-        {
+        } else if element_type.formulation != Formulation::MeanDilatation {
             let (name, label) = (element_type.name(), mesh_index.element_name(index));
-            let message = format!("MEAN DILATATION is for CPE4: element {label} is {name}");
+            let message =
+                format!("MEAN DILATATION is for CPE4 and CAX4: element {label} is {name}");
             cx.error(Code::ElementType, card.span_of("FORMULATION"), message)
                 .help("give other elements a section of their own with FORMULATION=DISPLACEMENT");
             return;
@@ -146,12 +145,16 @@ fn report_mean_dilatation(
     mesh_index: &MeshIndex,
     cx: &mut Context,
 ) {
-    let has = |&&index: &&usize| mesh_index.mesh.elements[index].element_type == ElementType::CPE4H;
+    let of = |index: usize| mesh_index.mesh.elements[index].element_type;
+    let has = |&&index: &&usize| of(index).formulation == Formulation::MeanDilatation;
     if let Some(&index) = elements.iter().find(has) {
         let label = mesh_index.element_name(index);
-        let message = format!("element {label} is CPE4H, which has mean dilatation");
+        let message = format!(
+            "element {label} is {}, which has mean dilatation",
+            of(index)
+        );
         cx.error(Code::ElementType, card.span_of("FORMULATION"), message)
-            .help("write CPE4 for strains of the displacements, or leave FORMULATION out");
+            .help("write CPE4 or CAX4 for strains of the displacements, or leave FORMULATION out");
     }
 }
 
@@ -185,7 +188,7 @@ impl Properties {
     /// Refuses metals in elements with hourglass stiffness: it is that of an elastic material, so that they would not
     /// bend as metals that flow.
     fn refuse_metals(&self, mesh_index: &MeshIndex, cx: &mut Context) {
-        let stiffened = [ElementType::CPE4R, ElementType::CPS4R];
+        let stiffened = [ElementType::CPE4R, ElementType::CPS4R, ElementType::CAX4R];
         let elements = mesh_index.mesh.elements.iter();
         let stiffened = elements.filter(|element| stiffened.contains(&element.element_type));
         let used: Vec<_> = stiffened
@@ -194,11 +197,11 @@ impl Properties {
         for (index, (material, places)) in self.materials.iter().zip(&self.places).enumerate() {
             if matches!(material.law, Law::Plastic(_)) && used.contains(&index) {
                 let message = format!(
-                    "material {} flows in CPE4R or CPS4R elements",
+                    "material {} flows in CPE4R, CPS4R or CAX4R elements",
                     material.name
                 );
                 cx.error(Code::ElementType, places.poisson, message).help(
-                    "their hourglass stiffness is that of an elastic material: write CPE4H, CPE4I, CPS4I, CPE8R or CPS8R",
+                    "their hourglass stiffness is that of an elastic material: write CPE4H, CPE4I, CPS4I, CPE8R, CPS8R, CAX4H or CAX8R",
                 );
             }
         }
@@ -226,7 +229,7 @@ impl Properties {
                     material.name
                 );
                 cx.warning(Code::Locking, places.poisson, message)
-                    .help("CPE3, CPE4, CAX3 and CAX4 are too stiff once they flow: write CPE4H, CPE4I, CPE8R or CAX8R");
+                    .help("CPE3, CPE4, CAX3 and CAX4 are too stiff once they flow: write CPE4H, CPE4I, CPE8R, CAX4H or CAX8R");
             } else if poisson >= LOCKING {
                 let message = format!(
                     "material {} with nu = {} makes its elements lock",
@@ -235,8 +238,8 @@ impl Properties {
                 );
                 cx.warning(Code::Locking, places.poisson, message).help(
                     "CPE3, CPE4, CAX3 and CAX4 are integrated fully: from nu = 0.45 on they are too stiff, the \
-                     more so the closer nu is to 0.5; CPE4H (CPE4 with mean dilatation), CPE4I, CPE4R, CPE8R and CAX8R \
-                     are not",
+                     more so the closer nu is to 0.5; CPE4H and CAX4H (with mean dilatation), CPE4I, CAX4I, CPE4R, CAX4R, \
+                     CPE8H, CAX8H, CPE8R and CAX8R are not",
                 );
             }
         }

@@ -160,6 +160,7 @@ impl StepReader<'_> {
             supports: Vec::new(),
             point_loads: Vec::new(),
             body_forces: Vec::new(),
+            centrifugal_forces: Vec::new(),
             pressures: Vec::new(),
             tractions: Vec::new(),
             interferences: self.interferences.list(is_last),

@@ -141,6 +141,7 @@ fn steps(parts: [[&str; 2]; 3]) -> Model {
 fn loads_from_step_to_step() {
     let loads = "*CLOAD\n3, 2, 4.\n3, 2, 2.\n4, 1, 1.\n*CLOAD, AMPLITUDE=S\n4, 2, 1.\n\
                  *DLOAD\nBODY, GRAV, 9.81, 3., -4.\nBODY, BX, 2.\nBODY, P3, 3.\n\
+                 BODY, CENTRIF, 4., 1., -2., 0., 0., 0., 1.\n\
                  *DSLOAD\nTOP, P, 5.\n*DSLOAD, FOLLOWER=NO\nTOP, TRVEC, 2., 1., 1.\n\
                  *DLOAD, FOLLOWER=NO\nBODY, TRVEC2, 2., 1., 0.\n";
     let follow = "*CLOAD, AMPLITUDE=T\n3, 1, 1.\n*DLOAD, AMPLITUDE=T\nBODY, BY, 1.\n";

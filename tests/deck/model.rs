@@ -548,7 +548,12 @@ fn monitored_displacements_are_columns_of_the_status_file() {
 }
 
 fn history(set: usize, each_member: bool) -> HistorySet {
-    HistorySet { set, each_member }
+    HistorySet {
+        set,
+        each_member,
+        at_points: false,
+        at_nodes: false,
+    }
 }
 
 #[test]
@@ -573,6 +578,23 @@ fn element_histories_of_sets() {
     assert_eq!(
         asked("*EL PRINT, ELSET=BODY, TOTALS=ONLY\nELSE"),
         [history(0, false)]
+    );
+    let points = HistorySet {
+        at_points: true,
+        ..history(0, true)
+    };
+    assert_eq!(
+        asked("*EL PRINT, ELSET=BODY, POSITION=INTEGRATION POINTS\nS"),
+        [points]
+    );
+    assert_eq!(
+        asked(
+            "*EL PRINT, ELSET=BODY, POSITION=INTEGRATION POINTS\nS\n*EL PRINT, ELSET=BODY, POSITION=NODES\nS"
+        ),
+        [HistorySet {
+            at_nodes: true,
+            ..points
+        }]
     );
     assert_eq!(asked("*EL PRINT, ELSET=BODY, FREQUENCY=0\n"), []);
     assert_eq!(asked("*EL PRINT, FREQUENCY=0\n"), []);

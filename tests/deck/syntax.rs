@@ -310,19 +310,6 @@ fn cards_in_any_order() {
 }
 
 #[test]
-fn a_lenient_reader_takes_reduced_elements_as_full_ones() {
-    let lenient = Diagnostics::with_strictness(Strictness::Lenient);
-    let (mut sources, mut d) = (Sources::new(), lenient);
-    let text = SQUARE.replace("CPS4", "CAX4R");
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    assert_eq!(
-        reader::build(&deck, &mut d),
-        build(&SQUARE.replace("CPS4", "CAX4")).0
-    );
-    assert!(codes(&d).contains(&Code::ElementType));
-}
-
-#[test]
 fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
     let (old, new) = ("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC, EXPLICIT\n, 1.");
     let nodes = "1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n";

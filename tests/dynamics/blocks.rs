@@ -210,6 +210,7 @@ pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support
         supports,
         point_loads: Vec::new(),
         body_forces: Vec::new(),
+        centrifugal_forces: Vec::new(),
         pressures: Vec::new(),
         tractions: Vec::new(),
         interferences: Vec::new(),

@@ -102,7 +102,7 @@ def lame(x: Array, young: float, poisson: float, pressure: float) -> Array:
 
 @pytest.mark.parametrize(
     ("kind", "order"),
-    [("CPE3", 2), ("CPE4", 2), ("CPE4H", 2), ("CPE4I", 2), ("CPE6", 3), ("CPE8", 3), ("CPE8R", 3)],
+    [("CPE3", 2), ("CPE4", 2), ("CPE4H", 2), ("CPE4I", 2), ("CPE6", 3), ("CPE8", 3), ("CPE8R", 3), ("CPE8H", 3), ("CPE8RH", 3)],
 )
 def test_the_displacements_of_a_tube_have_the_order_of_the_element(
     tmp_path: Path, kind: str, order: int

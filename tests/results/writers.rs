@@ -53,6 +53,7 @@ pub fn model() -> Model {
                 logarithmic_strain: true,
                 principal_stress: true,
                 pressure: true,
+                plastic_strain: true,
             },
             monitored: vec![12, 1],
             instances: Vec::new(),
@@ -116,7 +117,12 @@ fn set(name: &str, members: impl IntoIterator<Item = usize>) -> Set {
 }
 
 fn asked(set: usize, each_member: bool) -> HistorySet {
-    HistorySet { set, each_member }
+    HistorySet {
+        set,
+        each_member,
+        at_points: each_member,
+        at_nodes: each_member,
+    }
 }
 
 fn surface(name: &str, kind: SurfaceKind) -> Surface {
@@ -164,6 +170,7 @@ fn step() -> Step {
         ],
         point_loads: vec![],
         body_forces: vec![],
+        centrifugal_forces: vec![],
         pressures: vec![],
         tractions: vec![],
         interferences: vec![],

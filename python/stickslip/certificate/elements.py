@@ -56,8 +56,22 @@ RINGS = {
     13: (6, False, False, False),
     14: (8, False, False, False),
     15: (8, False, False, True),
+    22: (4, False, False, False),
+    23: (4, False, False, False),
+    24: (4, False, False, False),
+    25: (8, False, False, False),
+    26: (8, False, False, True),
 }
 """The same of the element types of bodies of revolution."""
+
+PRESSURES = {20: 3, 21: 3, 22: 1, 25: 3, 26: 3}
+"""Number of functions of the volume ratio of the element types with one of their own."""
+
+HYBRID = {20: (8, False, False, False), 21: (8, False, False, True)}
+"""The same as of KINDS of those in plane strain."""
+
+ENHANCED_RING, REDUCED_RING = 23, 24
+"""Rings with enhanced strains, and with one strain and hourglass stiffness."""
 
 DUNAVANT = ((0.44594849091596489, 0.22338158967801147), (0.09157621350977074, 0.10995174365532187))
 """Place a of the points (a, a), (1 - 2 a, a) and (a, 1 - 2 a) of a triangle and their weight, of degree 4."""
@@ -448,21 +462,30 @@ def _blocks(result: Result) -> list[Block]:
     from stickslip.certificate.metals import MetalBlock
     from stickslip.certificate.reduced import ReducedBlock
     from stickslip.certificate.rings import RingBlock
+    from stickslip.certificate.whole import EnhancedRingBlock, PressureBlock, ReducedRingBlock
 
     found = []
     keys = np.stack([types.astype(np.int64), materials], axis=1)
     for kind, material in np.unique(keys[materials >= 0], axis=0):
         elements = np.flatnonzero((types == kind) & (materials == material))
-        families = ((ENHANCED, EnhancedBlock), (REDUCED, ReducedBlock), (RINGS, RingBlock))
+        families = (
+            (ENHANCED, EnhancedBlock),
+            (REDUCED, ReducedBlock),
+            (PRESSURES, PressureBlock),
+            ({ENHANCED_RING}, EnhancedRingBlock),
+            ({REDUCED_RING}, ReducedRingBlock),
+            (RINGS, RingBlock),
+        )
         of_kind = next((block for family, block in families if kind in family), Block)
         if constants["law"][material] == PLASTICITY:
             of_kind = MetalBlock
-        others = ENHANCED | REDUCED | RINGS
+        others = ENHANCED | REDUCED | HYBRID | RINGS
         count, plane_stress, mean, reduced = others[kind] if kind in others else KINDS[kind]
         nodes = np.array([result.cells[e] for e in elements]).reshape(-1, count)
         place, thick = result.coordinates[nodes], thickness[elements][:, None]
         points = _points(count, reduced)
-        gradient, area = _gradients(place, points)
+        gradient, of_section = _gradients(place, points)
+        area = of_section
         rule = _mass_points(count, kind in RINGS)
         shape, _ = _shape(count, rule[0])
         at_points, _ = _shape(count, points[0])
@@ -485,10 +508,17 @@ def _blocks(result: Result) -> list[Block]:
                 },
             )
         )
-        if kind in REDUCED:
-            found[-1].condense()
+        is_metal = of_kind is MetalBlock
         if kind in RINGS:
             found[-1].around = at_points / around[..., None]
+        elif kind in HYBRID:
+            found[-1].around = np.zeros((*area.shape, count))
+        found[-1].area = of_section
+        if kind in PRESSURES:
+            found[-1].place = np.einsum("ga,eai->egi", at_points, place)
+            found[-1].functions = PRESSURES[kind]
+        if (kind in REDUCED or kind == REDUCED_RING) and not is_metal:
+            found[-1].condense()
     return found
 
 

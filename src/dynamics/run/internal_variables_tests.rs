@@ -70,6 +70,7 @@ fn step(dt: f64, count: usize) -> Step {
         supports: vec![],
         point_loads: vec![],
         body_forces: vec![],
+        centrifugal_forces: vec![],
         pressures: vec![],
         tractions: vec![],
         interferences: vec![],

@@ -201,6 +201,7 @@ mod tests {
             supports: supports.iter().map(support).collect(),
             point_loads: vec![],
             body_forces: vec![],
+            centrifugal_forces: vec![],
             pressures: vec![],
             tractions: vec![],
             interferences: vec![],

@@ -4,7 +4,7 @@
 //! Place of a step among the times of the analysis.
 
 use crate::elements::Elements;
-use crate::model::{Load, Model, Pressure, Step, TimeBase, Variation};
+use crate::model::{Load, Model, Pressure, Step, Thickness, TimeBase, Variation};
 use crate::prepare::Redistribution;
 use crate::vectors::difference;
 
@@ -101,12 +101,14 @@ impl<'m> Loads<'m> {
         let Step {
             point_loads,
             body_forces,
+            centrifugal_forces,
             tractions,
             pressures,
             ..
         } = self.step;
         point_loads.is_empty()
             && body_forces.is_empty()
+            && centrifugal_forces.is_empty()
             && tractions.is_empty()
             && pressures.is_empty()
             && self.released.is_empty()
@@ -175,12 +177,42 @@ impl<'m> Loads<'m> {
         }
     }
 
+    /// omega² int rho N^T N (x - x_axis) dOmega, the arm in the configuration of displacements `u`, on the nodes that carry
+    /// the mass, eq. (4.27).
+    fn add_centrifugal_forces(
+        &self,
+        elements: &Elements,
+        weight: f64,
+        at: TimePoint,
+        u: &[f64],
+        r: &mut [f64],
+    ) {
+        for load in &self.step.centrifugal_forces {
+            let (element, axis) = (load.at.element, load.at.axis);
+            let factor = weight * at.magnitude(self.model, load);
+            let is_ring = elements.thickness(element) == Thickness::Around;
+            let (nodes, mass) = (elements.nodes(element), elements.mass(element));
+            for (&node, masses) in nodes.iter().zip(mass.chunks(nodes.len())) {
+                let mut force = [0.0; 2];
+                for (&other, m) in nodes.iter().zip(masses) {
+                    let x = self.model.mesh.coordinates[other];
+                    force[0] += factor * m * (x[0] + u[2 * other] - axis[0]);
+                    if !is_ring {
+                        force[1] += factor * m * (x[1] + u[2 * other + 1] - axis[1]);
+                    }
+                }
+                self.redistribution.add_force(node, force, r);
+            }
+        }
+    }
+
     fn add(&self, elements: &Elements, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
         if weight == 0.0 {
             return;
         }
         self.add_concentrated(weight, at, r);
         self.add_body_forces(elements, weight, at, r);
+        self.add_centrifugal_forces(elements, weight, at, u, r);
         for load in &self.step.tractions {
             // int N^T f^S dGamma over the reference face
             let side = load.at.face.of(&self.model.mesh);

@@ -80,6 +80,7 @@ fn followed(step: &Step) -> BTreeSet<usize> {
     });
     (of_loads(&step.point_loads))
         .chain(of_loads(&step.body_forces))
+        .chain(of_loads(&step.centrifugal_forces))
         .chain(of_loads(&step.pressures))
         .chain(of_loads(&step.tractions))
         .chain(of_loads(&step.interferences))

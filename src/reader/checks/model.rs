@@ -88,6 +88,7 @@ fn has_cause(step: &Step) -> bool {
     step.supports.iter().any(|support| moves(support.motion))
         || acts(&step.point_loads)
         || acts(&step.body_forces)
+        || acts(&step.centrifugal_forces)
         || acts(&step.pressures)
         || acts(&step.tractions)
         || !step.interferences.is_empty()
@@ -103,12 +104,14 @@ pub(crate) fn density(properties: &Properties, mesh: &Mesh, steps: &[Step], cx: 
         return;
     }
     let weighed = |material: usize, step: &Step| {
-        let mut forces = step.body_forces.iter().map(|load| &load.at);
-        forces.any(|force| {
-            let section = properties
-                .sections
-                .get(mesh.elements[force.element].section);
-            force.per_mass && section.is_some_and(|section| section.material == material)
+        let forces = step.body_forces.iter().map(|load| &load.at);
+        let weighed = forces.filter(|force| force.per_mass);
+        let turned = step.centrifugal_forces.iter();
+        let elements = weighed.map(|force| force.element);
+        let mut elements = elements.chain(turned.map(|load| load.at.element));
+        elements.any(|element| {
+            let section = properties.sections.get(mesh.elements[element].section);
+            section.is_some_and(|section| section.material == material)
         })
     };
     let materials = properties.materials.iter().zip(&properties.places);

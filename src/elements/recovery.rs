@@ -1,0 +1,120 @@
+//! Results at integration points, and between them at nodes. Section 2 of docs/theory.md, Output.
+
+use smallvec::SmallVec;
+
+use super::all::Elements;
+use super::formulation::ElementResult;
+use super::shapes::{CORNERS, DEGREE_5, GAUSS};
+use crate::model::Shape;
+
+/// Results of the integration points or the nodes of an element, energies per volume.
+pub type LocalResults = SmallVec<[ElementResult; 9]>;
+
+impl Elements {
+    /// Results at the integration points of an element at displacements `u`, with the internal variables there; energies
+    /// are per volume (force/length^2).
+    pub fn at_points(&self, element: usize, u: &[f64], variables: &[f64]) -> LocalResults {
+        let own = self.element(element);
+        let points = own.at_points(&self.material(element, variables), u);
+        let alone = points
+            .into_iter()
+            .map(|(point, _)| [(point, 1.0)].into_iter());
+        alone.map(ElementResult::of_points).collect()
+    }
+
+    /// Results at the nodes of an element: those of the points by the linear or bilinear field that is nearest to them.
+    pub fn at_nodes(&self, element: usize, u: &[f64], variables: &[f64]) -> LocalResults {
+        let points = self.at_points(element, u, variables);
+        let (shape, nodes) = (self.shape(element), self.nodes(element).len());
+        let at_node = |node: usize| {
+            let factor = |(p, point)| (share(shape, points.len(), node, p), point);
+            ElementResult::weighted(points.iter().enumerate().map(factor))
+        };
+        (0..nodes).map(at_node).collect()
+    }
+}
+
+/// Share of a point in the value at a node. In quadrilaterals, sums over the points,
+///
+/// ```text
+/// f(r, s) = sum_p f_p (1/P + r r_p/sum r² + s s_p/sum s² + r s r_p s_p/sum r² s²)
+/// ```
+///
+/// which interpolates four points and is nearest to nine; in triangles of three points 2 L - 1/3 with L of the point's corner.
+fn share(shape: Shape, points: usize, node: usize, point: usize) -> f64 {
+    let corners = shape.topology().sides.len();
+    if points == 1 {
+        return 1.0;
+    }
+    if corners == 3 {
+        let (next, is_corner) = ((node + 1) % 3, node < 3);
+        let area = match is_corner {
+            true => f64::from(u8::from(point == node)),
+            false => f64::from(u8::from(point == node - 3 || point == next)) / 2.0,
+        };
+        return 2.0 * area - 1.0 / 3.0;
+    }
+    let place = |p: usize| match points {
+        4 => CORNERS[p].map(|x| x * GAUSS),
+        _ => DEGREE_5.0[p],
+    };
+    let [r, s] = match node < 4 {
+        true => CORNERS[node],
+        false => [0, 1].map(|i| (CORNERS[node - 4][i] + CORNERS[(node - 3) % 4][i]) / 2.0),
+    };
+    let sum = |of: fn([f64; 2]) -> f64| (0..points).map(|p| of(place(p))).sum::<f64>();
+    let [rp, sp] = place(point);
+    1.0 / points as f64
+        + r * rp / sum(|[r, _]| r * r)
+        + s * sp / sum(|[_, s]| s * s)
+        + r * s * rp * sp / sum(|[r, s]| r * r * s * s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_that_are_linear_or_bilinear_are_found_at_the_nodes() {
+        let field = |[r, s]: [f64; 2]| 3.0 - 2.0 * r + 0.5 * s;
+        for (shape, points, places) in [
+            (
+                Shape::Tri6,
+                3,
+                vec![
+                    [1.0 / 6.0; 2],
+                    [2.0 / 3.0, 1.0 / 6.0],
+                    [1.0 / 6.0, 2.0 / 3.0],
+                ],
+            ),
+            (
+                Shape::Quad4,
+                4,
+                CORNERS.map(|x| x.map(|x| x * GAUSS)).to_vec(),
+            ),
+            (Shape::Quad8, 9, DEGREE_5.0.to_vec()),
+        ] {
+            let corners: Vec<[f64; 2]> = match points {
+                3 => vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+                _ => CORNERS.to_vec(),
+            };
+            let count = corners.len();
+            for node in 0..shape.topology().nodes {
+                let x = match node < count {
+                    true => corners[node],
+                    false => [0, 1].map(|i| {
+                        (corners[node - count][i] + corners[(node - count + 1) % count][i]) / 2.0
+                    }),
+                };
+                let bilinear = |x: [f64; 2]| field(x) + if points > 3 { x[0] * x[1] } else { 0.0 };
+                let found: f64 = (0..points)
+                    .map(|p| share(shape, points, node, p) * bilinear(places[p]))
+                    .sum();
+                assert!(
+                    (found - bilinear(x)).abs() < 1e-13,
+                    "{points} {node} {found}"
+                );
+            }
+        }
+    }
+}

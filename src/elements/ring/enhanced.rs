@@ -1,0 +1,339 @@
+//! Enhanced strains of a ring with the section of a four-node quadrilateral (CAX4I): as
+//! [`crate::elements::enhanced_strain`] with a fifth strain, around the axis. Section 2 of docs/theory.md.
+
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
+
+use super::points::{OfPoints, Point, as_strain, section};
+use super::{Compatible, Rows, Stresses, size};
+use crate::elements::enhanced_strain::{alternating, signs};
+use crate::elements::local_solution::{LAST_STEP, least, zero};
+use crate::elements::solid::{MAX_DOFS, MAX_NODES};
+use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
+
+/// Number of strains of the element.
+pub(super) const STRAINS: usize = 5;
+type Alpha = SVector<f64, STRAINS>;
+type Stiffness = SMatrix<f64, STRAINS, STRAINS>;
+
+/// Hourglass pattern and strains of an element, in the reference configuration.
+#[derive(Debug, Clone)]
+pub(super) struct Enhanced {
+    /// gamma of eq. (2.26), so that q = sum gamma_a u_a.
+    pub gamma: [f64; MAX_NODES],
+    /// grad h of h = r s at every point (1/length).
+    pub slope: OfPoints<Vector2<f64>>,
+    /// The strains M at every point.
+    pub strains: OfPoints<[Symmetric; STRAINS]>,
+}
+
+/// Number of nodes of the quadrilateral.
+const NODES: usize = 4;
+
+impl Enhanced {
+    /// Those of an element at its four points, b being the mean of the gradients over the area:
+    ///
+    /// ```text
+    /// g = b + gamma grad h,   M = j0 R0/(j R) T0 M_xi,   M_xi: r in 11; s in 22; r, s in 12; r s in 33
+    /// ```
+    pub fn new(points: &[Point]) -> Self {
+        let area: f64 = points.iter().map(|p| p.area).sum();
+        let volume: f64 = points.iter().map(|p| p.volume).sum();
+        let mut centre = [Vector2::zeros(); MAX_NODES];
+        let slope = |point: &Point| {
+            let nodes = (0..NODES).map(|a| point.gradient[a] * alternating(a));
+            nodes.fold(Vector2::zeros(), |sum, g| sum + g)
+        };
+        let slope: OfPoints<Vector2<f64>> = points.iter().map(slope).collect();
+        let squares: f64 = slope.iter().map(Vector2::norm_squared).sum();
+        let (mut gamma, mut inverse) = ([0.0; MAX_NODES], Matrix2::zeros());
+        for a in 0..NODES {
+            for point in points {
+                centre[a] += point.gradient[a] * (point.area / area);
+            }
+            for (point, slope) in points.iter().zip(&slope) {
+                gamma[a] += (point.gradient[a] - centre[a]).dot(slope) / squares;
+            }
+            // dxi/dX = sum n_a b_a, n_a = (r_a, s_a)/4 times 4
+            inverse += Vector2::from(signs(a)) * centre[a].transpose();
+        }
+        let of_point = |(p, point): (usize, &Point)| {
+            let ([r, s], shrunk) = (signs(p), volume / point.volume);
+            let shapes = [(r, 0.0, 0.0), (0.0, s, 0.0), (0.0, 0.0, r), (0.0, 0.0, s)];
+            let mut strains = [Symmetric::zeros(); STRAINS];
+            for (strain, (xx, yy, xy)) in strains.iter_mut().zip(shapes) {
+                let m = inverse.transpose() * Matrix2::new(xx, xy, xy, yy) * inverse * shrunk;
+                *strain = Vector4::new(m.m11, m.m22, 0.0, m.m12);
+            }
+            strains[STRAINS - 1].z = r * s * shrunk;
+            strains
+        };
+        let all = points.iter().enumerate();
+        let mut strains: OfPoints<[Symmetric; STRAINS]> = all.map(of_point).collect();
+        for k in 0..STRAINS {
+            let squares = points.iter().zip(&strains);
+            let squares = squares.map(|(p, m)| p.volume * contract(&m[k], &m[k]));
+            let size = (squares.sum::<f64>() / volume).sqrt();
+            strains.iter_mut().for_each(|m| m[k] /= size);
+        }
+        Enhanced {
+            gamma,
+            slope,
+            strains,
+        }
+    }
+
+    /// q = sum gamma_a u_a, eq. (2.26) (length).
+    pub fn q(&self, u: &[Vector2<f64>; MAX_NODES]) -> Vector2<f64> {
+        let terms = u.iter().zip(&self.gamma).map(|(u, gamma)| u * *gamma);
+        terms.fold(Vector2::zeros(), |sum, q| sum + q)
+    }
+
+    /// q halfway between two configurations.
+    pub fn q_halfway(&self, [u0, u1]: [[Vector2<f64>; MAX_NODES]; 2]) -> Vector2<f64> {
+        (self.q(&u0) + self.q(&u1)) / 2.0
+    }
+
+    /// Takes |q|²/2 grad h x grad h from the strains of displacements, eq. (2.27).
+    pub fn correct_strains(&self, u: &[Vector2<f64>; MAX_NODES], strains: &mut [Symmetric]) {
+        let half = self.q(u).norm_squared() / 2.0;
+        for (strain, s) in strains.iter_mut().zip(&self.slope) {
+            *strain -= Vector4::new(s.x * s.x, s.y * s.y, 0.0, s.x * s.y) * half;
+        }
+    }
+
+    /// Takes grad h x grad h gamma_a q from the rows of dE.
+    pub fn correct_rows(&self, q: Vector2<f64>, rows: &mut [Rows]) {
+        for (rows, s) in rows.iter_mut().zip(&self.slope) {
+            let square = Vector4::new(s.x * s.x, s.y * s.y, 0.0, 2.0 * s.x * s.y);
+            for a in 0..NODES {
+                rows[2 * a] -= square * (self.gamma[a] * q.x);
+                rows[2 * a + 1] -= square * (self.gamma[a] * q.y);
+            }
+        }
+    }
+
+    /// Takes the work of the stress on that part from the force.
+    pub fn add_force(
+        &self,
+        points: &[Point],
+        q: Vector2<f64>,
+        s: &[Symmetric],
+        force: &mut [f64; MAX_DOFS],
+    ) {
+        let along = q * self.stress_along(points, s);
+        for a in 0..NODES {
+            force[2 * a] -= along.x * self.gamma[a];
+            force[2 * a + 1] -= along.y * self.gamma[a];
+        }
+    }
+
+    /// The second derivative of that part.
+    pub fn add_geometric(&self, points: &[Point], s: &[Symmetric], k: &mut [f64]) {
+        let (d, along) = (size(k), self.stress_along(points, s));
+        for (a, b) in (0..NODES).flat_map(|a| (0..NODES).map(move |b| (a, b))) {
+            for i in 0..2 {
+                k[(2 * a + i) * d + 2 * b + i] -= along * self.gamma[a] * self.gamma[b];
+            }
+        }
+    }
+
+    /// sum v grad h . S grad h
+    fn stress_along(&self, points: &[Point], s: &[Symmetric]) -> f64 {
+        let all = points.iter().zip(s).zip(&self.slope);
+        all.map(|((point, s), slope)| point.volume * slope.dot(&(section(s) * slope)))
+            .sum()
+    }
+
+    /// The strains M of a point as columns (11, 22, 33, 2*12).
+    pub fn columns(&self, p: usize) -> SMatrix<f64, 4, STRAINS> {
+        SMatrix::from_columns(&self.strains[p].map(|m| as_strain(&m)))
+    }
+
+    /// E + M alpha; no numbers without alpha.
+    fn enhanced(&self, compatible: &[Symmetric], alpha: Option<&Alpha>) -> OfPoints<Symmetric> {
+        let of_point = |(e, m): (&Symmetric, &[Symmetric; STRAINS])| match alpha {
+            Some(alpha) => m.iter().zip(alpha.iter()).fold(*e, |e, (m, a)| e + m * *a),
+            None => Symmetric::from_element(f64::NAN),
+        };
+        compatible.iter().zip(&self.strains).map(of_point).collect()
+    }
+
+    /// sum v M:S and K_aa = sum v M C M at strains of the material.
+    fn derivatives(
+        &self,
+        points: &[Point],
+        material: &impl RingStressAtPoints,
+        (strains, factor): (impl Fn(usize) -> Strains<Symmetric>, f64),
+    ) -> (Alpha, Stiffness) {
+        let (mut slope, mut stiffness) = (Alpha::zeros(), Stiffness::zeros());
+        for (p, point) in points.iter().enumerate() {
+            let (m, strains) = (self.columns(p), strains(p));
+            slope += m.tr_mul(&material.ring_stress(p, &strains)) * point.volume;
+            let c = material.ring_tangent(p, &strains) * (point.volume * factor);
+            stiffness += m.tr_mul(&(c * m));
+        }
+        (slope, stiffness)
+    }
+
+    /// Strains at which the energy is least with those of the displacements, eq. (2.28).
+    fn least(
+        &self,
+        points: &[Point],
+        material: &impl RingStressAtPoints,
+        compatible: &[Symmetric],
+    ) -> OfPoints<Symmetric> {
+        let last = LAST_STEP * largest(compatible) + f64::EPSILON;
+        let derivatives = |alpha: &Alpha| {
+            let e = self.enhanced(compatible, Some(alpha));
+            self.derivatives(points, material, (|p| Strains::At(e[p]), 1.0))
+        };
+        let change = |from: &Alpha, to: &Alpha| {
+            let [e0, e1] = [from, to].map(|alpha| self.enhanced(compatible, Some(alpha)));
+            energy_change(points, material, &e0, &e1)
+        };
+        self.enhanced(compatible, least(derivatives, change, last).as_ref())
+    }
+
+    /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own.
+    fn of_rates(
+        &self,
+        points: &[Point],
+        viscosity: &impl RingStressAtPoints,
+        Compatible { start, end, .. }: &Compatible,
+    ) -> OfPoints<Symmetric> {
+        let changes = end.iter().zip(start).map(|(e1, e0)| e1 - e0);
+        let change = changes.fold(0.0_f64, |most, e| most.max(e.amax()));
+        let last = LAST_STEP * change + f64::EPSILON * largest(end) + f64::MIN_POSITIVE;
+        let derivatives = |alpha: &Alpha| {
+            let e = self.enhanced(end, Some(alpha));
+            let strains = |p: usize| Strains::Between(start[p], e[p]);
+            self.derivatives(points, viscosity, (strains, 0.5))
+        };
+        self.enhanced(end, zero(derivatives, last).as_ref())
+    }
+
+    /// Strains and stresses of all points, eq. (2.29) between two configurations.
+    pub fn stresses(
+        &self,
+        points: &[Point],
+        material: &impl RingStressAtPoints,
+        compatible: &Compatible,
+    ) -> Stresses {
+        let least = |e: &[Symmetric]| self.least(points, material, e);
+        let (strains, tangent_at): (OfPoints<Strains<Symmetric>>, OfPoints<Strains<Symmetric>>);
+        let mut work = None;
+        if !compatible.is_increment {
+            strains = least(&compatible.end)
+                .into_iter()
+                .map(Strains::At)
+                .collect();
+            tangent_at = strains.clone();
+        } else if material.ring_is_viscous() {
+            let end = self.of_rates(points, material, compatible);
+            strains = compatible.strains(compatible.start.iter(), end.iter());
+            tangent_at = strains.clone();
+        } else {
+            let [e0, e1] = [least(&compatible.start), least(&compatible.end)];
+            let middle = least(&compatible.halfway());
+            strains = compatible.strains(e0.iter(), e1.iter());
+            tangent_at = middle.into_iter().map(Strains::At).collect();
+            work = Some(energy_change(points, material, &e0, &e1));
+        }
+        let stresses = tangent_at.iter().enumerate();
+        let mut s: OfPoints<Symmetric> =
+            stresses.map(|(p, e)| material.ring_stress(p, e)).collect();
+        if let Some(work) = work {
+            compatible.do_work(work, points, &mut s);
+        }
+        let is_number = s.iter().all(|s| s.iter().all(|s| !s.is_nan()));
+        Stresses {
+            strains,
+            tangent_at,
+            s,
+            determinant: if is_number { f64::INFINITY } else { f64::NAN },
+        }
+    }
+
+    /// Takes K_ua K_aa^-1 K_au from the tangent, eq. (2.30).
+    pub fn condense(
+        &self,
+        points: &[Point],
+        c: impl Fn(usize) -> nalgebra::Matrix4<f64>,
+        rows: &[Rows],
+        k: &mut [f64],
+    ) {
+        let d = size(k);
+        let mut stiffness = Stiffness::zeros();
+        let mut mixed = [Alpha::zeros(); MAX_DOFS];
+        for (p, (point, rows)) in points.iter().zip(rows).enumerate() {
+            let m = self.columns(p);
+            let cm = c(p) * m * point.volume;
+            stiffness += m.tr_mul(&cm);
+            for (mixed, row) in mixed.iter_mut().zip(rows).take(d) {
+                *mixed += cm.tr_mul(row);
+            }
+        }
+        if let Some(inverse) = stiffness.try_inverse() {
+            for col in 0..d {
+                let along = inverse * mixed[col];
+                for row in 0..d {
+                    k[col * d + row] -= mixed[row].dot(&along);
+                }
+            }
+        }
+    }
+
+    /// D of an increment, what the potential has more than the stored energy: that of the points alone would have an error
+    /// of first order in alpha (force length).
+    pub fn dissipated(
+        &self,
+        points: &[Point],
+        (material, updated): (&Committed, &[f64]),
+        compatible: &Compatible,
+        stresses: &Stresses,
+    ) -> f64 {
+        if material.are_variables(updated) {
+            return 0.0;
+        }
+        let stored = |material: &Committed, compatible: &[Symmetric]| -> f64 {
+            let e = self.least(points, material, compatible);
+            let energies = points.iter().zip(&e).enumerate();
+            energies
+                .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
+                .sum()
+        };
+        let work: f64 = stresses
+            .strains
+            .iter()
+            .enumerate()
+            .map(|(p, strains)| match strains {
+                Strains::At(_) => 0.0,
+                Strains::Between(e0, e1) => {
+                    contract(&material.ring_stress(p, strains), &(e1 - e0)) * points[p].volume
+                }
+            })
+            .sum();
+        work + stored(material, &compatible.start)
+            - stored(&material.with(updated), &compatible.end)
+    }
+}
+
+/// Largest component of strains.
+fn largest(e: &[Symmetric]) -> f64 {
+    e.iter().fold(0.0, |most, e| most.max(e.amax()))
+}
+
+/// sum v (W(E1) - W(E0)), with a round-off that is relative to the change of the strains.
+fn energy_change(
+    points: &[Point],
+    material: &impl RingStressAtPoints,
+    e0: &[Symmetric],
+    e1: &[Symmetric],
+) -> f64 {
+    let all = points.iter().zip(e0.iter().zip(e1)).enumerate();
+    let terms = all.map(|(p, (point, (e0, e1)))| {
+        let s = material.ring_stress(p, &Strains::Between(*e0, *e1));
+        contract(&s, &(e1 - e0)) * point.volume
+    });
+    terms.sum()
+}

@@ -1,0 +1,244 @@
+//! The ring with the section of a four-node quadrilateral and one point (CAX4R): a potential of its hourglass modes and of
+//! the change of its strain around the axis, without which one layer of elements could tilt freely. Section 2 of
+//! docs/theory.md, One strain and hourglass stiffness.
+//!
+//! # Derivation
+//!
+//! With m the mean of grad h over the volume, F = F0 + q x (grad h - m) exactly, F0 being of the mean gradients. At small
+//! strains the element with enhanced strains has, beside the mean strain, those of H = F0^T q and of E_33 less its mean,
+//! whose energy with the mean strain is zero. Its energy with C of the law at E = 0, least in alpha, is the potential:
+//!
+//! ```text
+//! y = (H, E_33 - mean E_33 at the four points),   e = sym(H x (grad h - m)) + y_33 e_33 e_33 + M alpha
+//! Phi = V W(E0) + y.Kh y/2,   Kh = K_yy - K_ya K_aa^-1 K_ay
+//! ```
+//!
+//! y is quadratic in the displacements, so that dy = (dy/du at halfway) du exactly.
+
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+
+use super::enhanced::{Enhanced, STRAINS};
+use super::points::{Gradient, OfPoints, Path, Point};
+use super::size;
+use crate::elements::formulation::smaller;
+use crate::elements::solid::{MAX_DOFS, MAX_NODES};
+use crate::materials::{RingStressAtPoints, Strains, Symmetric};
+
+/// Number of nodes, and of points at which E_33 changes.
+const POINTS: usize = 4;
+/// Number of deformations: two hourglass modes and E_33 at the points.
+const MODES: usize = 2 + POINTS;
+type Amplitudes = SVector<f64, MODES>;
+type Stiffness = SMatrix<f64, MODES, MODES>;
+
+/// Hourglass modes of an element in the reference configuration.
+#[derive(Debug, Clone)]
+pub(super) struct Hourglass {
+    /// The element as one point: mean gradients and the volume.
+    mean: Point,
+    points: OfPoints<Point>,
+    enhanced: Enhanced,
+    /// grad h - m at every point (1/length).
+    slope: OfPoints<Vector2<f64>>,
+}
+
+/// The hourglass modes in a motion.
+pub(super) struct Modes<'a> {
+    of: &'a Hourglass,
+    stiffness: Stiffness,
+    /// Stress that does work on y (force, or force length for E_33).
+    stress: Amplitudes,
+    energy: f64,
+    /// F0 and q halfway.
+    f: Matrix2<f64>,
+    q: Vector2<f64>,
+    paths: OfPoints<Path>,
+}
+
+impl Hourglass {
+    /// Those of an element with these four points.
+    pub fn new(points: &[Point]) -> Self {
+        let enhanced = Enhanced::new(points);
+        let volume: f64 = points.iter().map(|p| p.volume).sum();
+        let mut mean = Point {
+            shape: [0.0; MAX_NODES],
+            place: Vector2::zeros(),
+            gradient: [Vector2::zeros(); MAX_NODES],
+            around: [0.0; MAX_NODES],
+            area: points.iter().map(|p| p.area).sum(),
+            volume,
+        };
+        let mut mean_slope = Vector2::zeros();
+        for (point, slope) in points.iter().zip(&enhanced.slope) {
+            let weight = point.volume / volume;
+            mean.place += point.place * weight;
+            mean_slope += slope * weight;
+            for a in 0..POINTS {
+                mean.shape[a] += point.shape[a] * weight;
+                mean.gradient[a] += point.gradient[a] * weight;
+                mean.around[a] += point.around[a] * weight;
+            }
+        }
+        Hourglass {
+            mean,
+            points: points.iter().cloned().collect(),
+            slope: enhanced.slope.iter().map(|s| s - mean_slope).collect(),
+            enhanced,
+        }
+    }
+
+    /// The element as one point.
+    pub fn mean(&self) -> &Point {
+        &self.mean
+    }
+
+    /// Mean of values at the four points.
+    fn mean_of(&self, values: impl Fn(usize) -> f64) -> f64 {
+        let all = self.points.iter().enumerate();
+        all.map(|(p, point)| point.volume * values(p)).sum::<f64>() / self.mean.volume
+    }
+
+    /// The modes of eq. (2.44) between displacements of the nodes at the start and at the end of an increment, or at one configuration.
+    pub fn modes(
+        &self,
+        material: &impl RingStressAtPoints,
+        ends: [[Vector2<f64>; MAX_NODES]; 2],
+        is_increment: bool,
+    ) -> Modes<'_> {
+        let zero = Symmetric::zeros();
+        let is_viscous = material.ring_is_viscous();
+        let at = match is_increment && is_viscous {
+            true => Strains::Between(zero, zero),
+            false => Strains::At(zero),
+        };
+        let stiffness = self.stiffness(&material.ring_tangent(0, &at));
+        let of_point = |point: &Point| {
+            let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
+            Path::new(start, end)
+        };
+        let paths: OfPoints<Path> = self.points.iter().map(of_point).collect();
+        let [(f0, q0), (f1, q1)] = ends.each_ref().map(|u| {
+            let f = self.mean.displacement_gradient(u).f();
+            (f, self.enhanced.q(u))
+        });
+        let amplitudes = |h: Vector2<f64>, gradient: fn(&Path) -> Gradient| {
+            let around = |p: usize| gradient(&paths[p]).strain().z;
+            let mean = self.mean_of(around);
+            Amplitudes::from_fn(|k, _| match k {
+                0 | 1 => h[k],
+                _ => around(k - 2) - mean,
+            })
+        };
+        let y0 = amplitudes(f0.tr_mul(&q0), |path| path.start);
+        let y1 = amplitudes(f1.tr_mul(&q1), |path| path.end);
+        let (stress, energy);
+        if is_increment {
+            // the tangent of a viscosity is that by the mean of the strains: twice that by their change
+            let along = if is_viscous { y1 - y0 } else { y0 + y1 };
+            stress = stiffness * along / 2.0;
+            energy = stress.dot(&(y1 - y0));
+        } else {
+            stress = stiffness * y1;
+            energy = stress.dot(&y1) / 2.0;
+        }
+        Modes {
+            of: self,
+            stiffness,
+            stress,
+            energy,
+            f: (f0 + f1) / 2.0,
+            q: (q0 + q1) / 2.0,
+            paths,
+        }
+    }
+
+    /// Kh of the tangent C at small strains (force/length; force and force length with E_33).
+    fn stiffness(&self, c: &nalgebra::Matrix4<f64>) -> Stiffness {
+        let (mut k, mut mixed) = (Stiffness::zeros(), SMatrix::<f64, MODES, STRAINS>::zeros());
+        let mut local = SMatrix::<f64, STRAINS, STRAINS>::zeros();
+        for (p, point) in self.points.iter().enumerate() {
+            let (s, m) = (self.slope[p], self.enhanced.columns(p));
+            let mut columns = SMatrix::<f64, 4, MODES>::zeros();
+            (columns[(0, 0)], columns[(3, 0)]) = (s.x, s.y);
+            (columns[(1, 1)], columns[(3, 1)]) = (s.y, s.x);
+            columns[(2, 2 + p)] = 1.0;
+            let stress = c * columns * point.volume;
+            k += columns.tr_mul(&stress);
+            mixed += stress.tr_mul(&m);
+            local += m.tr_mul(&(c * m * point.volume));
+        }
+        match local.try_inverse() {
+            Some(inverse) => k - mixed * inverse * mixed.transpose(),
+            None => k,
+        }
+    }
+}
+
+impl Modes<'_> {
+    /// Stored energy, or work of an increment (force length).
+    pub fn energy(&self) -> f64 {
+        self.energy
+    }
+
+    /// Smallest determinant at the four points.
+    pub fn determinant(&self) -> f64 {
+        let all = self.paths.iter().map(Path::determinant);
+        all.fold(f64::INFINITY, smaller)
+    }
+
+    /// Rows of dy by the displacements: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R less its mean.
+    fn rows(&self) -> [Amplitudes; 2 * POINTS] {
+        let Hourglass {
+            mean,
+            points,
+            enhanced,
+            ..
+        } = self.of;
+        std::array::from_fn(|j| {
+            let (a, i) = (j / 2, j % 2);
+            let around = |p: usize| match i {
+                0 => self.paths[p].halfway.stretch_around() * points[p].around[a],
+                _ => 0.0,
+            };
+            let mean_around = self.of.mean_of(around);
+            Amplitudes::from_fn(|k, _| match k {
+                0 | 1 => mean.gradient[a][k] * self.q[i] + self.f[(i, k)] * enhanced.gamma[a],
+                _ => around(k - 2) - mean_around,
+            })
+        })
+    }
+
+    /// Adds dy.f.
+    pub fn add_force(&self, force: &mut [f64; MAX_DOFS]) {
+        for (force, row) in force.iter_mut().zip(self.rows()) {
+            *force += row.dot(&self.stress);
+        }
+    }
+
+    /// Adds dy.Kh dy + f.D²y, D²H_k = b_ak gamma_b + gamma_a b_bk in both directions, D²E_33 = h_a h_b/R² in that of the
+    /// radius.
+    pub fn add_tangent(&self, k: &mut [f64]) {
+        let (d, rows) = (size(k), self.rows());
+        let Hourglass {
+            mean,
+            points,
+            enhanced,
+            ..
+        } = self.of;
+        for (col, of_col) in rows.iter().enumerate() {
+            let stress = self.stiffness * of_col;
+            for (row, of_row) in rows.iter().enumerate() {
+                k[col * d + row] += of_row.dot(&stress);
+            }
+        }
+        let along = |a: usize| mean.gradient[a].dot(&self.stress.fixed_rows::<2>(0).into_owned());
+        for (a, b) in (0..POINTS).flat_map(|a| (0..POINTS).map(move |b| (a, b))) {
+            let second = along(a) * enhanced.gamma[b] + enhanced.gamma[a] * along(b);
+            let square = |p: usize| points[p].around[a] * points[p].around[b];
+            let mean = self.of.mean_of(square);
+            let around = (0..POINTS).map(|p| self.stress[2 + p] * (square(p) - mean));
+            k[2 * a * d + 2 * b] += second + around.sum::<f64>();
+            k[(2 * a + 1) * d + 2 * b + 1] += second;
+        }
+    }
+}

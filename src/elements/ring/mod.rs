@@ -1,0 +1,641 @@
+//! Rings: elements of bodies of revolution around the axis x = 0 that move without torsion. The section of a ring is an
+//! element of the plane; its strain around the axis is that of the radial displacement. In plane strain the elements with
+//! a pressure of their own (CPE8H, CPE8RH) are rings of an infinite radius. Section 2 of docs/theory.md, Bodies of
+//! revolution.
+
+mod dilatation;
+mod enhanced;
+mod hourglass;
+mod points;
+
+use nalgebra::{Matrix4, Vector2, Vector4};
+
+use self::dilatation::Dilatation;
+use self::enhanced::Enhanced;
+use self::hourglass::Hourglass;
+use self::points::{Gradient, OfPoints, Path, Point, Points, section};
+use super::formulation::{ElementResult, PointResult, PointResults, smaller};
+use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
+use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
+use crate::model::{self, Formulation, Nodes, Thickness};
+
+/// An element with all components of the strain.
+#[derive(Debug, Clone)]
+pub(super) struct Ring {
+    nodes: Nodes,
+    points: OfPoints<Point>,
+    formulation: RingFormulation,
+}
+
+/// What the energy of an element has beside that of the strains of the displacements.
+#[derive(Debug, Clone)]
+enum RingFormulation {
+    /// Nothing.
+    Displacement,
+    /// Volume ratios of the element in place of those of the points.
+    Dilatation(Dilatation),
+    /// Strains of the element.
+    Enhanced(Box<Enhanced>),
+    /// Hourglass modes beside the one point.
+    Reduced(Box<Hourglass>),
+}
+
+/// Strains of the displacements of all points at the start and at the end of a motion, twice the same at one
+/// configuration.
+struct Compatible {
+    start: OfPoints<Symmetric>,
+    end: OfPoints<Symmetric>,
+    is_increment: bool,
+}
+
+impl Compatible {
+    /// E_m = (E0 + E1)/2
+    fn halfway(&self) -> OfPoints<Symmetric> {
+        let ends = self.start.iter().zip(&self.end);
+        ends.map(|(e0, e1)| (e0 + e1) / 2.0).collect()
+    }
+
+    /// Strains of a material from one list to another, those of the start and of the end.
+    fn strains<'a>(
+        &self,
+        start: impl Iterator<Item = &'a Symmetric>,
+        end: impl Iterator<Item = &'a Symmetric>,
+    ) -> OfPoints<Strains<Symmetric>> {
+        let of_point = |(e0, e1): (&Symmetric, &Symmetric)| match self.is_increment {
+            true => Strains::Between(*e0, *e1),
+            false => Strains::At(*e1),
+        };
+        start.zip(end).map(of_point).collect()
+    }
+
+    /// S_g = S_g + f/(sum v dE:dE) dE_g, f = work - sum v S:dE, eq. (2.29): stresses that do a work in an increment.
+    fn do_work(&self, work: f64, points: &[Point], s: &mut [Symmetric]) {
+        let changes = self.end.iter().zip(&self.start).map(|(e1, e0)| e1 - e0);
+        let changes: OfPoints<Symmetric> = changes.collect();
+        let (mut f, mut squares, mut volume) = (work, 0.0, 0.0);
+        for ((point, change), s) in points.iter().zip(&changes).zip(s.iter()) {
+            f -= contract(s, change) * point.volume;
+            squares += contract(change, change) * point.volume;
+            volume += point.volume;
+        }
+        if (squares / volume).sqrt() > f64::EPSILON {
+            for (s, change) in s.iter_mut().zip(&changes) {
+                *s += change * (f / squares);
+            }
+        }
+    }
+}
+
+/// Stresses of all points of an element in a motion.
+struct Stresses {
+    /// Strains of the material.
+    strains: OfPoints<Strains<Symmetric>>,
+    /// Strains at which the material has its tangent.
+    tangent_at: OfPoints<Strains<Symmetric>>,
+    /// Second Piola-Kirchhoff stress that does work on the strains of the displacements (force/length^2).
+    s: OfPoints<Symmetric>,
+    /// Smallest determinant met; NaN where there is no stress.
+    determinant: f64,
+}
+
+impl Stresses {
+    /// Those of the law at the strains of the displacements.
+    fn of_displacements(material: &impl RingStressAtPoints, compatible: &Compatible) -> Self {
+        let strains = compatible.strains(compatible.start.iter(), compatible.end.iter());
+        let stresses = strains.iter().enumerate();
+        Stresses {
+            s: stresses.map(|(p, e)| material.ring_stress(p, e)).collect(),
+            tangent_at: strains.clone(),
+            strains,
+            determinant: f64::INFINITY,
+        }
+    }
+}
+
+/// Rows of dE (11, 22, 33, 2*12) by the displacements of an element, one vector for each.
+type Rows = [Vector4<f64>; MAX_DOFS];
+
+impl Ring {
+    /// The element of a thickness in its section between nodes at the coordinates `x` of all nodes.
+    pub fn new(element: &model::Element, x: &[[f64; 2]], thickness: f64) -> Self {
+        let own: Vec<[f64; 2]> = element.nodes.iter().map(|&node| x[node]).collect();
+        let element_type = element.element_type;
+        let thickness = Thickness::new(element_type, thickness);
+        let mut points = Points::of_stress(element_type).map(&own, thickness);
+        let formulation = match (element_type.formulation, element_type.shape) {
+            (Formulation::MeanDilatation, _) => {
+                RingFormulation::Dilatation(Dilatation::new(&points, 1))
+            }
+            (Formulation::LinearPressure | Formulation::ReducedLinearPressure, _) => {
+                RingFormulation::Dilatation(Dilatation::new(&points, 3))
+            }
+            (Formulation::Enhanced, _) => {
+                RingFormulation::Enhanced(Box::new(Enhanced::new(&points)))
+            }
+            (Formulation::Reduced, model::Shape::Quad4) => {
+                let hourglass = Hourglass::new(&points);
+                points = OfPoints::from_elem(hourglass.mean().clone(), 1);
+                RingFormulation::Reduced(Box::new(hourglass))
+            }
+            (Formulation::Displacement | Formulation::Reduced, _) => RingFormulation::Displacement,
+        };
+        Ring {
+            nodes: element.nodes.clone(),
+            points,
+            formulation,
+        }
+    }
+
+    /// Node indices, counter-clockwise.
+    pub fn nodes(&self) -> &[usize] {
+        &self.nodes
+    }
+
+    /// Number of integration points.
+    pub fn points(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Internal force with the smallest determinant of the deformation gradient at the points:
+    ///
+    /// ```text
+    /// F_a = sum over the points of v (F S dh_a/dX + (1 + h) S_33 h_a/R e_r)      eq. (2.33)
+    /// ```
+    pub fn force(
+        &self,
+        material: &impl RingStressAtPoints,
+        motion: Motion,
+    ) -> (ElementVector, f64) {
+        let (mut force, paths) = ([0.0; MAX_DOFS], self.paths(motion));
+        let stresses = self.stresses(material, &self.compatible(&paths, motion));
+        for ((point, path), s) in self.points.iter().zip(&paths).zip(&stresses.s) {
+            let piola = path.halfway.f() * section(s) * point.volume;
+            let hoop = path.halfway.stretch_around() * s.z * point.volume;
+            for a in 0..self.nodes.len() {
+                let of_node = piola * point.gradient[a];
+                force[2 * a] += of_node.x + hoop * point.around[a];
+                force[2 * a + 1] += of_node.y;
+            }
+        }
+        let determinants = paths.iter().map(Path::determinant);
+        let mut determinant = determinants.fold(stresses.determinant, smaller);
+        match &self.formulation {
+            RingFormulation::Enhanced(enhanced) => {
+                let q = enhanced.q_halfway(self.ends(motion));
+                enhanced.add_force(&self.points, q, &stresses.s, &mut force);
+            }
+            RingFormulation::Reduced(hourglass) => {
+                let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
+                modes.add_force(&mut force);
+                determinant = smaller(determinant, modes.determinant());
+            }
+            RingFormulation::Displacement | RingFormulation::Dilatation(_) => {}
+        }
+        (force, determinant)
+    }
+
+    /// Tangent, D x D (force/length), symmetric: as that of [`super::displacement::Displacement`] with the row
+    /// (1 + h) h_a/R of B_L and the part S_33 h_a h_b/R² of the stress around the axis, eq. (2.34).
+    pub fn tangent(&self, material: &impl RingStressAtPoints, motion: Motion) -> ElementMatrix {
+        let (mut whole, paths) = ([0.0; MAX_DOFS * MAX_DOFS], self.paths(motion));
+        let d = 2 * self.nodes.len();
+        let k = &mut whole[..d * d];
+        let compatible = self.compatible(&paths, motion);
+        let stresses = self.stresses(material, &compatible);
+        let mut rows = self.rows(&paths);
+        let c = |p: usize| material.ring_tangent(p, &stresses.tangent_at[p]);
+        match &self.formulation {
+            RingFormulation::Dilatation(dilatation) => {
+                dilatation.add_tangent(&self.points, material, (&compatible, &stresses), &rows, k);
+            }
+            RingFormulation::Enhanced(enhanced) => {
+                let q = enhanced.q_halfway(self.ends(motion));
+                enhanced.correct_rows(q, &mut rows);
+                self.add_material(c, &rows, k);
+                enhanced.condense(&self.points, c, &rows, k);
+                enhanced.add_geometric(&self.points, &stresses.s, k);
+            }
+            RingFormulation::Reduced(hourglass) => {
+                self.add_material(c, &rows, k);
+                let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
+                modes.add_tangent(k);
+            }
+            RingFormulation::Displacement => self.add_material(c, &rows, k),
+        }
+        for (point, s) in self.points.iter().zip(&stresses.s) {
+            add_geometric(point, s, k);
+        }
+        whole
+    }
+
+    /// Positive part of the tangent.
+    pub fn positive_tangent(
+        &self,
+        material: &impl RingStressAtPoints,
+        motion: Motion,
+    ) -> ElementMatrix {
+        let (d, mut k) = (2 * self.nodes.len(), self.tangent(material, motion));
+        take_positive_part(&mut k[..d * d], d);
+        k
+    }
+
+    /// Work of the stress on the strains of a motion from its start to its end (force length).
+    pub fn work(&self, material: &impl RingStressAtPoints, motion: Motion) -> f64 {
+        let compatible = self.compatible(&self.paths(motion), motion);
+        let stresses = self.stresses(material, &compatible);
+        let changes = compatible.end.iter().zip(&compatible.start);
+        let all = self.points.iter().zip(&stresses.s).zip(changes);
+        let terms = all.map(|((point, s), (e1, e0))| contract(s, &(e1 - e0)) * point.volume);
+        terms.sum::<f64>() + self.hourglass_energy(material, motion)
+    }
+
+    /// Stored energy of the hourglass modes, or the work of their viscous stress (force length).
+    fn hourglass_energy(&self, material: &impl RingStressAtPoints, motion: Motion) -> f64 {
+        match &self.formulation {
+            RingFormulation::Reduced(hourglass) => hourglass
+                .modes(material, self.ends(motion), motion.start.is_some())
+                .energy(),
+            _ => 0.0,
+        }
+    }
+
+    /// Strain energy, stress and strain at displacements `u`; the stress around the axis is that across the plane:
+    ///
+    /// ```text
+    /// sigma = F S F^T/J,  sigma_33 = (1 + h)² S_33/J,  J = det F (1 + h)
+    /// ```
+    pub fn evaluate(&self, material: &Committed, u: &[f64]) -> ElementResult {
+        let mut result = ElementResult::of_points(self.at_points(material, u).into_iter());
+        result.hourglass_energy = self.hourglass_energy(material, Motion::at(u, &[]));
+        result.energy += result.hourglass_energy;
+        result
+    }
+
+    /// Results of the points, with their weights.
+    pub fn at_points(&self, material: &Committed, u: &[f64]) -> PointResults {
+        let motion = Motion::at(u, &[]);
+        let paths = self.paths(motion);
+        let stresses = self.stresses(material, &self.compatible(&paths, motion));
+        let of_point = |(p, point): (usize, &Point)| {
+            let (s, at) = (&stresses.s[p], &paths[p].end);
+            let (e, f, stretch) = (at.strain(), at.f(), at.stretch_around());
+            let determinant = f.determinant();
+            let result = PointResult {
+                energy: material.ring_energy(p, stresses.strains[p].end()),
+                sigma: f * section(s) * f.transpose() / (determinant * stretch),
+                across: s.z * stretch / determinant,
+                strain: section(&e),
+                strain_around: e.z,
+                plastic_strain: material.plastic_strain(p),
+            };
+            (result, point.volume)
+        };
+        self.points.iter().enumerate().map(of_point).collect()
+    }
+
+    /// Internal variables at the end of a motion, written to `updated`, and the energy dissipated on the way to them
+    /// (force length).
+    pub fn update(&self, material: &Committed, motion: Motion, updated: &mut [f64]) -> f64 {
+        let compatible = self.compatible(&self.paths(motion), motion);
+        let stresses = self.stresses(material, &compatible);
+        let mut dissipated = 0.0;
+        for (p, point) in self.points.iter().enumerate() {
+            dissipated += material.ring_update(p, &stresses.strains[p], updated) * point.volume;
+        }
+        match &self.formulation {
+            RingFormulation::Enhanced(enhanced) if compatible.is_increment => {
+                enhanced.dissipated(&self.points, (material, updated), &compatible, &stresses)
+            }
+            _ => dissipated,
+        }
+    }
+
+    /// Displacements of the nodes of the element at the start and at the end of a motion.
+    fn ends(&self, motion: Motion) -> [[Vector2<f64>; MAX_NODES]; 2] {
+        let gather = |u: &[f64]| {
+            let mut own = [Vector2::zeros(); MAX_NODES];
+            for (own, &node) in own.iter_mut().zip(&self.nodes) {
+                *own = Vector2::new(u[2 * node], u[2 * node + 1]);
+            }
+            own
+        };
+        [motion.start.unwrap_or(motion.end), motion.end].map(gather)
+    }
+
+    /// Displacement gradients of all points.
+    fn paths(&self, motion: Motion) -> OfPoints<Path> {
+        let ends = self.ends(motion);
+        let of_point = |point: &Point| {
+            let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
+            Path::new(start, end)
+        };
+        self.points.iter().map(of_point).collect()
+    }
+
+    fn compatible(&self, paths: &[Path], motion: Motion) -> Compatible {
+        let of = |gradient: &dyn Fn(&Path) -> Gradient| -> OfPoints<Symmetric> {
+            paths.iter().map(|path| gradient(path).strain()).collect()
+        };
+        let mut compatible = Compatible {
+            start: of(&|path| path.start),
+            end: of(&|path| path.end),
+            is_increment: motion.start.is_some(),
+        };
+        if let RingFormulation::Enhanced(enhanced) = &self.formulation {
+            let [u0, u1] = self.ends(motion);
+            enhanced.correct_strains(&u0, &mut compatible.start);
+            enhanced.correct_strains(&u1, &mut compatible.end);
+        }
+        compatible
+    }
+
+    fn stresses(&self, material: &impl RingStressAtPoints, compatible: &Compatible) -> Stresses {
+        match &self.formulation {
+            RingFormulation::Dilatation(dilatation) => {
+                dilatation.stresses(&self.points, material, compatible)
+            }
+            RingFormulation::Enhanced(enhanced) => {
+                enhanced.stresses(&self.points, material, compatible)
+            }
+            RingFormulation::Displacement | RingFormulation::Reduced(_) => {
+                Stresses::of_displacements(material, compatible)
+            }
+        }
+    }
+
+    /// Rows of dE at all points, halfway.
+    fn rows(&self, paths: &[Path]) -> OfPoints<Rows> {
+        let of_point = |(point, path): (&Point, &Path)| {
+            let (f, around) = (path.halfway.f(), path.halfway.stretch_around());
+            let mut rows = [Vector4::zeros(); MAX_DOFS];
+            for a in 0..self.nodes.len() {
+                let (g, ring) = (point.gradient[a], around * point.around[a]);
+                rows[2 * a] =
+                    Vector4::new(f.m11 * g.x, f.m12 * g.y, ring, f.m11 * g.y + f.m12 * g.x);
+                rows[2 * a + 1] =
+                    Vector4::new(f.m21 * g.x, f.m22 * g.y, 0.0, f.m21 * g.y + f.m22 * g.x);
+            }
+            rows
+        };
+        self.points.iter().zip(paths).map(of_point).collect()
+    }
+
+    /// Adds sum v B^T C B.
+    fn add_material(&self, c: impl Fn(usize) -> Matrix4<f64>, rows: &[Rows], k: &mut [f64]) {
+        for (p, (point, rows)) in self.points.iter().zip(rows).enumerate() {
+            add_products(rows, &(c(p) * point.volume), k);
+        }
+    }
+}
+
+/// Number of rows of a square matrix of an element.
+fn size(k: &[f64]) -> usize {
+    k.len().isqrt()
+}
+
+/// Adds B^T C B.
+fn add_products(rows: &Rows, c: &Matrix4<f64>, k: &mut [f64]) {
+    let d = size(k);
+    for col in 0..d {
+        let stress = c * rows[col];
+        for row in 0..d {
+            k[col * d + row] += rows[row].dot(&stress);
+        }
+    }
+}
+
+/// Adds v S : D²E of a point, the part of the stress in eq. (2.34).
+fn add_geometric(point: &Point, s: &Symmetric, k: &mut [f64]) {
+    let d = size(k);
+    let stressed = section(s) * point.volume;
+    for a in 0..d / 2 {
+        let sg = stressed * point.gradient[a];
+        for b in 0..d / 2 {
+            let of_section = point.gradient[b].dot(&sg);
+            let around = s.z * point.around[a] * point.around[b] * point.volume;
+            k[2 * a * d + 2 * b] += of_section + around;
+            k[(2 * a + 1) * d + 2 * b + 1] += of_section;
+        }
+    }
+}
+
+/// int rho h_a h_b dOmega of a ring, n x n column by column (mass).
+pub(super) fn mass(shape: model::Shape, x: &[[f64; 2]], density: f64) -> Vec<f64> {
+    let (n, points) = (x.len(), Points::of_mass(shape).map(x, Thickness::Around));
+    let entry = |k: usize| {
+        let (a, b) = (k % n, k / n);
+        let terms = points.iter().map(|p| p.shape[a] * p.shape[b] * p.volume);
+        density * terms.sum::<f64>()
+    };
+    (0..n * n).map(entry).collect()
+}
+
+/// int h_a dOmega of a ring (length^3).
+pub(super) fn nodal_volumes(shape: model::Shape, x: &[[f64; 2]]) -> [f64; MAX_NODES] {
+    let points = Points::of_mass(shape).map(x, Thickness::Around);
+    let of_node = |a: usize| points.iter().map(|p| p.shape[a] * p.volume).sum();
+    std::array::from_fn(of_node)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::shapes::tests::{QUAD8, TRI6};
+    use crate::materials::{Law, NeoHooke, Plane, Viscosity};
+    use crate::model::{Element, ElementType, Mesh};
+
+    /// Rings of all types between distorted nodes off the axis, with their nodes.
+    fn rings() -> Vec<(Ring, Mesh)> {
+        let quad = vec![[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
+        let tri = vec![[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]];
+        let types = ElementType::NAMED.into_iter();
+        let types = types.filter(|t| t.has_all_strains());
+        let ring = |element_type: ElementType| {
+            let mut x = match element_type.shape {
+                model::Shape::Tri3 => tri.clone(),
+                model::Shape::Quad4 => quad.clone(),
+                model::Shape::Tri6 => TRI6.to_vec(),
+                model::Shape::Quad8 => QUAD8.to_vec(),
+            };
+            x.iter_mut().for_each(|x| x[0] += 0.5);
+            let element = Element {
+                label: 1,
+                element_type,
+                nodes: (0..x.len()).collect(),
+                section: 0,
+            };
+            let ring = Ring::new(&element, &x, 1.0);
+            let mesh = Mesh {
+                node_labels: (1..).take(x.len()).collect(),
+                coordinates: x,
+                elements: vec![element],
+            };
+            (ring, mesh)
+        };
+        types.map(ring).collect()
+    }
+
+    fn is_ring(mesh: &Mesh) -> bool {
+        mesh.elements[0].element_type.is_ring()
+    }
+
+    fn laws() -> [Law; 2] {
+        let rubber = NeoHooke {
+            c10: 200.0,
+            d1: 2e-3,
+        };
+        [Law::elastic(1000.0, 0.3), Law::NeoHooke(rubber)]
+    }
+
+    fn displacements(n: usize, seed: usize) -> Vec<f64> {
+        let value = |i: usize| (((seed + 7 * i) * 37) % 23) as f64 / 300.0 - 0.037;
+        (0..2 * n).map(value).collect()
+    }
+
+    #[test]
+    fn volume_and_mass_are_those_of_the_ring() {
+        for (ring, mesh) in rings() {
+            let volume = mesh.volume(&mesh.elements[0], 1.0);
+            let element_type = mesh.elements[0].element_type;
+            let shape = element_type.shape;
+            let of_points: f64 = ring.points.iter().map(|p| p.volume).sum();
+            let shares = nodal_volumes(shape, &mesh.coordinates);
+            let of_mass = mass(shape, &mesh.coordinates, 3.0).iter().sum::<f64>() / 3.0;
+            let is_curved = element_type.is_quadratic();
+            // the points of stress are exact where the sides are straight
+            if !is_curved || ring.points() == 9 {
+                assert!((of_points - volume).abs() < 1e-13 * volume);
+            }
+            if !element_type.is_ring() {
+                continue;
+            }
+            let of_shares: f64 = shares.iter().sum();
+            for found in [of_shares, of_mass] {
+                assert!((found - volume).abs() < 1e-13 * volume, "{found} {volume}");
+            }
+        }
+    }
+
+    #[test]
+    fn force_is_the_derivative_of_the_energy_and_the_tangent_that_of_the_force() {
+        let h = 1e-6;
+        for (ring, mesh) in rings() {
+            let name = mesh.elements[0].element_type;
+            for law in laws() {
+                let law = law.in_plane(Plane::Revolution);
+                let c = Committed::new(&law, &[]);
+                let (n, u) = (ring.nodes.len(), displacements(ring.nodes.len(), 5));
+                let (force, det) = ring.force(&c, Motion::at(&u, &[]));
+                assert!(det > 0.0);
+                let k = ring.tangent(&c, Motion::at(&u, &[]));
+                let size = force.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+                let stiff = k.iter().fold(0.0, |most: f64, k| most.max(k.abs()));
+                for j in 0..2 * n {
+                    let moved = |by: f64| {
+                        let mut u = u.clone();
+                        u[j] += by;
+                        u
+                    };
+                    let (ahead, behind) = (moved(h), moved(-h));
+                    let energy = |u: &[f64]| ring.evaluate(&c, u).energy;
+                    let slope = (energy(&ahead) - energy(&behind)) / (2.0 * h);
+                    assert!(
+                        (slope - force[j]).abs() < 1e-7 * size,
+                        "{name} {slope} {}",
+                        force[j]
+                    );
+                    let at = |u: &[f64]| ring.force(&c, Motion::at(u, &[])).0;
+                    let (ahead, behind) = (at(&ahead), at(&behind));
+                    for i in 0..2 * n {
+                        let slope = (ahead[i] - behind[i]) / (2.0 * h);
+                        let entry = k[j * 2 * n + i];
+                        assert!((slope - entry).abs() < 1e-7 * stiff, "{name} ({i},{j})");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn between_two_configurations_the_force_does_the_work_of_the_energy() {
+        for (ring, _) in rings() {
+            for law in laws() {
+                let law = law.in_plane(Plane::Revolution);
+                let c = Committed::new(&law, &[]);
+                let n = ring.nodes.len();
+                let (u0, u1) = (displacements(n, 5), displacements(n, 11));
+                let between = Motion {
+                    start: Some(&u0),
+                    ..Motion::at(&u1, &[])
+                };
+                let (force, _) = ring.force(&c, between);
+                let work: f64 = (0..2 * n).map(|i| force[i] * (u1[i] - u0[i])).sum();
+                let energy = |u: &[f64]| ring.evaluate(&c, u).energy;
+                let change = energy(&u1) - energy(&u0);
+                let size = force.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+                assert!((work - change).abs() < 1e-13 * size, "{work} {change}");
+                assert!((ring.work(&c, between) - change).abs() < 1e-13 * size);
+                // along the axis the forces have no resultant
+                let axial: f64 = (0..n).map(|a| force[2 * a + 1]).sum();
+                assert!(axial.abs() < 1e-13 * size);
+            }
+        }
+    }
+
+    #[test]
+    fn viscosity_dissipates_what_its_force_takes() {
+        for (ring, _) in rings() {
+            let moduli = laws()[0].small_strain();
+            let v = Viscosity::new(0.3, moduli, Plane::Revolution);
+            let n = ring.nodes.len();
+            let (u0, u1) = (displacements(n, 5), displacements(n, 11));
+            let between = Motion {
+                start: Some(&u0),
+                ..Motion::at(&u1, &[])
+            };
+            let (force, _) = ring.force(&v, between);
+            let work: f64 = (0..2 * n).map(|i| force[i] * (u1[i] - u0[i])).sum();
+            assert!(work > 0.0);
+            assert!((ring.work(&v, between) - work).abs() < 1e-13 * work);
+        }
+    }
+
+    #[test]
+    fn a_ring_beyond_the_axis_or_folded_is_turned_inside_out() {
+        let (ring, mesh) = &rings()[1];
+        assert!(is_ring(mesh));
+        let law = laws()[0].in_plane(Plane::Revolution);
+        let c = Committed::new(&law, &[]);
+        // mirrored at the axis and along it: det F = 1 in the section
+        let u: Vec<f64> = mesh
+            .coordinates
+            .iter()
+            .flat_map(|x| x.map(|x| -2.0 * x))
+            .collect();
+        assert!(ring.force(&c, Motion::at(&u, &[])).1 < 0.0);
+        // pushed through the axis
+        let u = [-5.0, 0.0].repeat(4);
+        assert!(ring.force(&c, Motion::at(&u, &[])).1 < 0.0);
+    }
+
+    #[test]
+    fn a_uniform_stretch_has_the_stress_of_the_law() {
+        // F = diag(1.1, 1.1, 1.1): neo-Hooke, sigma = 2 (J - 1)/D1 I
+        let law = laws()[1].in_plane(Plane::Revolution);
+        let c = Committed::new(&law, &[]);
+        for (ring, mesh) in rings().into_iter().filter(|(_, mesh)| is_ring(mesh)) {
+            let u: Vec<f64> = mesh
+                .coordinates
+                .iter()
+                .flat_map(|x| x.map(|x| 0.1 * x))
+                .collect();
+            let result = ring.evaluate(&c, &u);
+            let p = 2.0 * (1.1_f64.powi(3) - 1.0) / 2e-3;
+            for stress in [result.stress[0], result.stress[1], result.across] {
+                assert!((stress - p).abs() < 1e-11 * p, "{stress} {p}");
+            }
+            assert!(result.stress[2].abs() < 1e-11 * p);
+            assert!((result.principal_strain - 0.105).abs() < 1e-13);
+        }
+    }
+}
