@@ -232,7 +232,8 @@ impl Constraint {
     /// The keys that its slave node has at each of its segments: at a corner, two.
     pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
         let slave = self.key.slave;
-        let own = self.is_weighted().then_some(self.key);
+        let is_own = self.is_weighted() || self.source.round.is_some();
+        let own = is_own.then_some(self.key);
         let segments = self.source.target.segments().filter(move |_| own.is_none());
         let of_segments = segments.map(move |segment| ConstraintKey { slave, segment });
         own.into_iter().chain(of_segments)

@@ -12,13 +12,16 @@
 //! body.
 
 use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 use std::sync::Arc;
 
+use super::disc::MasterArc;
 use super::tolerances::{
     CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE,
 };
 use crate::model::{
-    Contact, ContactFormulation, Element, ElementsAtNodes, Mesh, Model, SurfaceKind,
+    CircleArc, Contact, ContactFormulation, Disc, Element, ElementsAtNodes, Mesh, Model,
+    RigidProfile, SurfaceKind,
 };
 use crate::vectors::{cross, difference, dot, length};
 
@@ -92,6 +95,16 @@ impl<'a> Positions<'a> {
     }
 }
 
+impl Projection {
+    /// The same with a gap that is larger by an overlap that is allowed (length).
+    pub fn raised(self, allowed: f64) -> Self {
+        Projection {
+            gap: self.gap + allowed,
+            ..self
+        }
+    }
+}
+
 /// Position of a node: reference coordinates plus displacement.
 pub(crate) fn position(x: &[[f64; 2]], u: &[f64], node: usize) -> [f64; 2] {
     [x[node][0] + u[2 * node], x[node][1] + u[2 * node + 1]]
@@ -122,6 +135,42 @@ pub struct ContactSurfaces {
     pub slave_segments: Option<SlaveSegments>,
     /// From surface to surface, the corners of both as nodes against the segments of the other.
     pub corners: Vec<Corners>,
+    /// The disc that the slave node is the centre of.
+    pub disc: Option<Disc>,
+    /// Arcs of a rigid master, with increasing segments.
+    pub arcs: Vec<SurfaceArc>,
+}
+
+/// An arc of a rigid master.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceArc {
+    /// Its chords.
+    pub segments: Range<usize>,
+    /// Nodes at its ends.
+    pub nodes: [usize; 2],
+    /// Its centre and radius.
+    pub arc: MasterArc,
+}
+
+impl SurfaceArc {
+    /// An arc of a profile; `x` are the reference coordinates of the nodes.
+    fn new(profile: &RigidProfile, arc: &CircleArc, x: &[[f64; 2]]) -> Self {
+        let Range { start, end } = arc.segments;
+        let nodes = [profile.segments[start][0], profile.segments[end - 1][1]];
+        let [p, q] = nodes.map(|node| x[node]);
+        let (e, r) = (difference(p, q), difference(p, arc.centre));
+        // the centre is as far from p as from q
+        let (square, beta) = (dot(e, e), cross(e, r) / dot(e, e));
+        let radius = (square * (0.25 + beta * beta)).sqrt();
+        SurfaceArc {
+            segments: arc.segments.clone(),
+            nodes,
+            arc: MasterArc {
+                place: [0.5, beta],
+                radius: radius.copysign(beta),
+            },
+        }
+    }
 }
 
 /// Corners of one surface against the segments of the other.
@@ -177,7 +226,20 @@ impl ContactSurfaces {
             interior: Arc::default(),
             slave_segments: None,
             corners: Vec::new(),
+            disc: None,
+            arcs: Vec::new(),
         }
+    }
+
+    /// Radius of the disc that the slave node is the centre of (length); 0 of nodes.
+    pub fn radius(&self) -> f64 {
+        self.disc.map_or(0.0, |disc| disc.radius)
+    }
+
+    /// The arc that a segment is a chord of.
+    pub fn arc_of(&self, segment: usize) -> Option<&SurfaceArc> {
+        let at = self.arcs.partition_point(|arc| arc.segments.end <= segment);
+        self.arcs.get(at).filter(|arc| arc.segments.contains(&segment))
     }
 
     /// With the interior of the bodies behind the segments.
@@ -453,15 +515,20 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
     let interior = Arc::new(Interior::new(&model.mesh, is_behind));
     let of_contact = |contact: &Contact| {
         let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
-        let mut slaves = slave.nodes(&model.mesh);
-        slaves.retain(|node| contact.left_out.binary_search(node).is_err());
-        let surfaces = ContactSurfaces::new(
-            slaves,
-            &slave.segments(&model.mesh),
-            master.segments(&model.mesh),
-        )
-        .with_sharp_corners(&model.mesh.coordinates)
-        .with_interior(Arc::clone(&interior));
+        let (disc, x) = (model.disc(contact), &model.mesh.coordinates);
+        let own = match disc {
+            Some(_) => Vec::new(),
+            None => slave.segments(&model.mesh),
+        };
+        let segments = master.segments(&model.mesh);
+        let mut surfaces = ContactSurfaces::new(model.slave_nodes(contact), &own, segments)
+            .with_sharp_corners(x)
+            .with_interior(Arc::clone(&interior));
+        surfaces.disc = disc;
+        if let SurfaceKind::Rigid(profile) = &master.kind {
+            let arcs = profile.arcs.iter();
+            surfaces.arcs = arcs.map(|arc| SurfaceArc::new(profile, arc, x)).collect();
+        }
         if contact.formulation == ContactFormulation::SurfaceToSurface {
             let both = [slave, master].into_iter();
             let middles = both.flat_map(|surface| surface.middles(&model.mesh));

@@ -4,13 +4,16 @@ use nalgebra::DMatrix;
 
 use super::constraint::{Configurations, Constraint};
 use super::targets::PairTarget;
-use super::{node_to_corner, node_to_segment, surface_to_surface};
+use super::{disc, node_to_corner, node_to_segment, surface_to_surface};
 
 impl Constraint {
     /// The constraint of a slave node at its target.
     pub fn new(source: PairTarget, at: &Configurations) -> Self {
         if !source.points.is_empty() {
             return surface_to_surface::constraint(source, at);
+        }
+        if let Some(round) = source.round {
+            return disc::constraint(source, &round, at);
         }
         match source.target.corner {
             None => node_to_segment::constraint(source, at),
@@ -20,15 +23,21 @@ impl Constraint {
 
     /// Contact stiffness Kc of the contact force, eq. (4.12), over the dofs of the constraint (force/length).
     pub fn stiffness(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
-        match &self.source.points[..] {
-            [] => self.stiffness_of_node(force, at),
-            points => surface_to_surface::stiffness(self, points, force, at),
+        match (&self.source.points[..], &self.source.round) {
+            ([], None) => self.stiffness_of_node(force, at),
+            ([], Some(round)) => disc::stiffness(&self.source, round, force, at),
+            (points, _) => surface_to_surface::stiffness(self, points, force, at),
         }
     }
 
     /// The same constraint at the start, with the segment that holds the node there.
     pub fn at_start(&self, start: &Configurations) -> Self {
         let mut source = surface_to_surface::at_start(self.source.clone().allowing(0));
+        if let Some(round) = &mut source.round
+            && let Some(from) = round.from.take()
+        {
+            (source.nodes[1], source.nodes[2], round.arc) = (from.nodes[0], from.nodes[1], from.arc);
+        }
         if let Some([a, b]) = source.from.take() {
             (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
         }

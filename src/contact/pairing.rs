@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 
 use super::closed_pairs::ClosedPairs;
 use super::constraint::{Constraint, RowForm};
+use super::disc;
 use super::geometry::Positions;
 use super::keys::NodeAtSegment;
 use super::search::{ListedSlave, Search};
@@ -41,6 +42,14 @@ pub fn find_targets(
             if listed.number == 0 {
                 find_points(listed.territory(), [start, now], form, pairs);
             }
+            while before
+                .next_if(|pair| pair.key.slave <= listed.key)
+                .is_some()
+            {}
+            continue;
+        }
+        if listed.surfaces.disc.is_some() {
+            disc::find_targets(&listed, [start, now], pairs);
             while before
                 .next_if(|pair| pair.key.slave <= listed.key)
                 .is_some()
@@ -104,6 +113,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         allowed: listed.allowed(),
         points: Vec::new(),
         is_of_master: listed.is_of_master(),
+        round: None,
     }
 }
 

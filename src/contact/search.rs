@@ -361,10 +361,11 @@ impl<'m> Territory<'m> {
         };
     }
 
-    /// Overlap that a slave node may have at the start of the increment and at its end (length).
+    /// Overlap that a slave node may have at the start of the increment and at its end (length); less by the radius of a disc.
     pub(super) fn allowed(&self, number: usize) -> [f64; 2] {
         let of_fit = self.allowed.get(number).copied().unwrap_or_default();
-        let always = self.corners.map_or(0.0, |corners| corners.allowed[number]);
+        let of_corner = self.corners.map_or(0.0, |corners| corners.allowed[number]);
+        let always = of_corner - self.contact.radius();
         of_fit.map(|allowed| allowed + always)
     }
 
@@ -430,7 +431,7 @@ impl<'m> Territory<'m> {
     /// margins.
     fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
         self.forget_faced();
-        self.slaves.draw(&at, self.skin, 0.0);
+        self.slaves.draw(&at, self.skin, self.contact.radius());
         self.segments.draw(&at, self.skin, self.reach);
         let Self {
             contact,

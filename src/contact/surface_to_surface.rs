@@ -95,6 +95,7 @@ pub(super) fn find_points(
                     allowed: territory.allowed(number),
                     points: mean.points,
                     is_of_master: false,
+                    round: None,
                 });
             }
         }

@@ -9,6 +9,7 @@
 
 use smallvec::{SmallVec, smallvec};
 
+use super::disc::Round;
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Along, ContactSurfaces, Positions, Projection, project};
 use super::keys::ConstraintKey;
@@ -153,6 +154,8 @@ pub struct PairTarget {
     pub points: Vec<SurfacePoint>,
     /// Whether the slave node is a corner of the contact's master.
     pub is_of_master: bool,
+    /// How a disc meets the master, if the slave is the centre of one; its nodes are s, a, b and one that turns with it.
+    pub round: Option<Round>,
 }
 
 impl PairTarget {
@@ -165,6 +168,7 @@ impl PairTarget {
         PairTarget {
             from: None,
             points,
+            round: self.round.map(|round| Round { from: None, ..round }),
             ..self
         }
     }

@@ -23,6 +23,7 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
         allowed: [0.0; 2],
         points: Vec::new(),
         is_of_master: false,
+        round: None,
     }
 }
 

@@ -62,6 +62,8 @@ pub(crate) const GENTLE_SINE: f64 = 0.02;
 /// Sine of the turn at corners that a node slides across within an increment, and tangent of the tilt
 /// of the force on it.
 pub(crate) const SLIDING_SINE: f64 = 0.5;
+/// Distance beyond the end of a segment or arc, in its length, up to which a disc is over it.
+pub(crate) const END_OF_FEATURE: f64 = 1e-9;
 /// Distance beyond the end of a segment from which on a node has slid on to the next.
 pub(crate) const SLID: f64 = 1e-7;
 /// Distance from a convex corner, along the faces, within which a node meets the corner itself.

@@ -207,7 +207,10 @@ impl NodePath<'_> {
     fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
         let [a, b] = self.contact.segments[i];
         let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
-        depth <= largest(&unsolved) + self.depth * length
+        // arcs hold discs, not their chords
+        let is_chord = self.contact.disc.is_some() && self.contact.arc_of(i).is_some();
+        let part = if is_chord { NODE_DEPTH } else { self.depth };
+        depth <= largest(&unsolved) + part * length
     }
 
     /// Whether the node has crossed a segment near its end and is outside the corner there: behind the

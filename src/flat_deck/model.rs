@@ -6,7 +6,7 @@ use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff, SmallStr
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, ContactFormulation, Curve,
     Damping, Direction, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction,
-    Material, Mesh, Model, Reach, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
+    Material, Mesh, Model, Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -369,7 +369,7 @@ fn surfaces(model: &Model, lines: &mut DeckWriter) {
                     lines.row([mesh.node_labels[node].to_string()]);
                 }
             }
-            SurfaceKind::Rigid(segments) => profile(segments, mesh, lines),
+            SurfaceKind::Rigid(rigid) => profile(rigid, mesh, lines),
         }
     }
 }
@@ -380,13 +380,23 @@ fn face_fields(face: &Face, mesh: &Mesh) -> [String; 2] {
 }
 
 /// A rigid profile from its last segment to its first, as the deck gives it.
-fn profile(segments: &[[usize; 2]], mesh: &Mesh, lines: &mut DeckWriter) {
-    let mut end = None;
-    for &[to, from] in segments.iter().rev() {
+fn profile(rigid: &RigidProfile, mesh: &Mesh, lines: &mut DeckWriter) {
+    let (segments, mut arcs) = (&rigid.segments, rigid.arcs.iter().rev().peekable());
+    let (mut end, mut left) = (None, segments.len());
+    while let Some(&[_, from]) = segments[..left].last() {
         if end != Some(from) {
             lines.row(point("START", from, mesh));
         }
-        lines.row(point("LINE", to, mesh));
+        let arc = arcs.next_if(|arc| arc.segments.end == left);
+        left = arc.map_or(left - 1, |arc| arc.segments.start);
+        let [to, _] = segments[left];
+        match arc {
+            None => lines.row(point("LINE", to, mesh)),
+            Some(arc) => {
+                let centre = arc.centre.map(number);
+                lines.row(point("CIRCL", to, mesh).into_iter().chain(centre));
+            }
+        }
         end = Some(to);
     }
 }

@@ -4,6 +4,8 @@
 //!
 //! Segments run from a to b with the body on the left.
 
+use std::ops::Range;
+
 use super::Segment;
 use super::friction::Friction;
 use super::mesh::{Face, Mesh};
@@ -129,9 +131,42 @@ pub enum SurfaceKind {
     Faces(Vec<Face>),
     /// Nodes: can be slave only.
     Nodes(Vec<usize>),
-    /// Segments [a, b] between nodes without element, the rigid body on the left of the direction
-    /// from a to b: can be master only.
-    Rigid(Vec<Segment>),
+    /// A rigid profile: can be master, and slave where it is a circle.
+    Rigid(RigidProfile),
+}
+
+/// Segments of a rigid surface between nodes without element.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RigidProfile {
+    /// Segments [a, b], the rigid body on the left of the direction from a to b.
+    pub segments: Vec<Segment>,
+    /// The arcs that some of them are chords of, in the order of the segments.
+    pub arcs: Vec<CircleArc>,
+    /// Node at the centre, of the outline of a round body: all segments are chords of arcs about it, end to end all the
+    /// way round, the body inside.
+    pub centre: Option<usize>,
+}
+
+/// An arc of a rigid profile, as the deck gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CircleArc {
+    /// Its chords among the segments.
+    pub segments: Range<usize>,
+    /// Centre in the reference configuration (length).
+    pub centre: [f64; 2],
+    /// Radius (length).
+    pub radius: f64,
+}
+
+/// A rigid disc that is slave: its centre is a node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    /// Node at its centre.
+    pub centre: usize,
+    /// A node of its circle, which turns with it.
+    pub arm: usize,
+    /// Radius (length).
+    pub radius: f64,
 }
 
 impl Surface {
@@ -142,7 +177,7 @@ impl Surface {
                 faces.iter().flat_map(|face| face.segments(mesh)).collect()
             }
             SurfaceKind::Nodes(_) => Vec::new(),
-            SurfaceKind::Rigid(segments) => segments.clone(),
+            SurfaceKind::Rigid(profile) => profile.segments.clone(),
         }
     }
 
@@ -163,7 +198,10 @@ impl Surface {
         let all: Vec<usize> = match &self.kind {
             SurfaceKind::Faces(faces) => faces.iter().flat_map(|f| f.nodes(mesh)).collect(),
             SurfaceKind::Nodes(nodes) => nodes.clone(),
-            SurfaceKind::Rigid(segments) => segments.as_flattened().to_vec(),
+            SurfaceKind::Rigid(profile) => {
+                let of_segments = profile.segments.as_flattened().iter().copied();
+                of_segments.chain(profile.centre).collect()
+            }
         };
         let mut seen = vec![false; mesh.node_count()];
         all.into_iter()

@@ -22,8 +22,8 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
 pub use contact::{
-    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Equation, Hinge, Interaction, Reach,
-    RigidBody, Surface, SurfaceKind, TurningBody, Wear,
+    ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Hinge,
+    Interaction, Reach, RigidBody, RigidProfile, Surface, SurfaceKind, TurningBody, Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};
@@ -227,10 +227,33 @@ impl Model {
         own.map(at_start).sum()
     }
 
+    /// The disc that the slave surface of a contact is, if it is rigid.
+    pub fn disc(&self, contact: &Contact) -> Option<Disc> {
+        let SurfaceKind::Rigid(profile) = &self.surfaces[contact.slave].kind else {
+            return None;
+        };
+        let (circle, first) = (profile.arcs.first()?, profile.segments.first()?);
+        Some(Disc {
+            centre: profile.centre?,
+            arm: first[0],
+            radius: circle.radius,
+        })
+    }
+
+    /// Slave nodes of a contact, of a disc its centre.
+    pub fn slave_nodes(&self, contact: &Contact) -> Vec<usize> {
+        if let Some(disc) = self.disc(contact) {
+            return vec![disc.centre];
+        }
+        let mut nodes = self.surfaces[contact.slave].nodes(&self.mesh);
+        nodes.retain(|node| contact.left_out.binary_search(node).is_err());
+        nodes
+    }
+
     /// Segments [a, b] of all rigid surfaces.
     pub fn rigid_segments(&self) -> Vec<[usize; 2]> {
         let segments = self.surfaces.iter().map(|surface| match &surface.kind {
-            SurfaceKind::Rigid(segments) => segments.as_slice(),
+            SurfaceKind::Rigid(profile) => profile.segments.as_slice(),
             SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => &[],
         });
         segments.flatten().copied().collect()

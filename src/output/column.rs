@@ -195,7 +195,13 @@ impl Layout {
         // The tree of chunks is made with the first row, and stays when that is taken away.
         let is_late = self.mostly == Mostly::Late;
         let mut extents = vec![Extent::resizable(usize::from(is_late))];
-        extents.extend(self.row.iter().map(|&n| Extent::fixed(n)));
+        // a model without deformable bodies has rows of none, which chunks must not have
+        let extent = |&n: &usize| match n {
+            0 => Extent::resizable(0),
+            n => Extent::fixed(n),
+        };
+        extents.extend(self.row.iter().map(extent));
+        let chunk: Vec<usize> = self.given.iter().map(|&n| n.max(1)).collect();
         let (alloc_time, fill_time) = match is_late {
             true => (AllocTime::Early, FillTime::Never),
             false => (AllocTime::Incr, FillTime::IfSet),
@@ -206,7 +212,7 @@ impl Layout {
         }
         let dataset = builder
             .obj_track_times(false)
-            .chunk(rows_of(self.chunk_rows, &self.given))
+            .chunk(rows_of(self.chunk_rows, &chunk))
             .fill_value(T::left_out(self.mostly == Mostly::Nan))
             .alloc_time(Some(alloc_time))
             .fill_time(fill_time)

@@ -8,6 +8,7 @@ use super::frames::{DEFAULT_FRAMES, are_dense};
 use super::model_group::contact_names;
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
+use crate::diagnostics::shown;
 use crate::diagnostics::Sources;
 use crate::dynamics::rigid_inertia;
 use crate::model::{
@@ -261,7 +262,10 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         SurfaceKind::Rigid(_) => "rigid edge",
         SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => "edge",
     };
-    let nodes = counted(slave.nodes(&model.mesh).len(), "node");
+    let nodes = match model.disc(contact) {
+        Some(disc) => format!("disc of radius {}", shown(disc.radius)),
+        None => counted(slave.nodes(&model.mesh).len(), "node"),
+    };
     let edges = counted(master.segments(&model.mesh).len(), edge);
     let sides = match contact.is_self_contact() {
         true => format!("{} ({nodes}, {edges}) with itself", slave.name),

@@ -9,7 +9,10 @@ use hdf5::Group;
 use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
 use crate::materials::{Law, Polynomial};
-use crate::model::{ElementType, Material, Model, Procedure, Scheme, Segment, Step, Variation};
+use crate::model::{
+    Disc, ElementType, Material, Model, Procedure, Scheme, Segment, Step, Surface, SurfaceKind,
+    Variation,
+};
 
 /// Writes the datasets and groups into `/model`.
 pub(super) fn write(at: &Group, model: &Model) -> hdf5::Result<()> {
@@ -137,10 +140,7 @@ fn law_code(law: &Law) -> u8 {
 fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
     for ((index, contact), name) in (model.contacts.iter().enumerate()).zip(contact_names(model)) {
         let at = group(at, &name)?;
-        let takes_part = |node: &usize| contact.left_out.binary_search(node).is_err();
-        let slaves = model.surfaces[contact.slave].nodes(&model.mesh);
-        let slaves: Vec<usize> = slaves.into_iter().filter(takes_part).collect();
-        indices(&at, "slaves", slaves, SLAVES)?;
+        indices(&at, "slaves", model.slave_nodes(contact), SLAVES)?;
         let segments: Vec<Segment> = model.surfaces[contact.master].segments(&model.mesh);
         let nodes: Vec<i64> = segments.as_flattened().iter().map(|&n| n as i64).collect();
         constant(&at, "segments", &[segments.len(), 2], &nodes, SEGMENTS)?;
@@ -154,8 +154,27 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
         let acts = |step: &Step| u8::from(!step.contacts.removed.contains(&index));
         let acts: Vec<u8> = model.steps.iter().map(acts).collect();
         constant(&at, "acts", &[acts.len()], &acts, ACTS)?;
+        if let Some(disc) = model.disc(contact) {
+            write_disc(&at, disc, &model.surfaces[contact.master])?;
+        }
     }
     Ok(())
+}
+
+/// Radius of a disc that is slave, and the arcs of its master.
+fn write_disc(at: &Group, disc: Disc, master: &Surface) -> hdf5::Result<()> {
+    constant(at, "disc_radius", &[], &[disc.radius], DISC_RADIUS)?;
+    constant(at, "disc_arm", &[], &[disc.arm as i64], DISC_ARM)?;
+    let arcs = match &master.kind {
+        SurfaceKind::Rigid(profile) => profile.arcs.as_slice(),
+        _ => &[],
+    };
+    let places: Vec<[i64; 2]> = (arcs.iter().map(|arc| &arc.segments))
+        .map(|segments| [segments.start, segments.end].map(|i| i as i64))
+        .collect();
+    let centres: Vec<[f64; 2]> = arcs.iter().map(|arc| arc.centre).collect();
+    constant(at, "arcs", &[arcs.len(), 2], places.as_flattened(), ARCS)?;
+    constant(at, "arc_centres", &[arcs.len(), 2], centres.as_flattened(), ARC_CENTRES)
 }
 
 /// Procedure and scheme of every step.
@@ -303,6 +322,10 @@ const SEGMENTS: Meaning = (
     "1",
     "node indices of the master segments, its body on the left of the way from the first to the second",
 );
+const DISC_RADIUS: Meaning = ("length", "radius of the slave, a disc about its node");
+const DISC_ARM: Meaning = ("1", "index of the node that takes the turning of the disc");
+const ARCS: Meaning = ("1", "first chord of each arc of the master among its segments, and the one after the last");
+const ARC_CENTRES: Meaning = ("length", "centres of the arcs of the master in the undeformed configuration");
 const ACTS: Meaning = (
     "1",
     "whether the contact acts in each step: 1, or 0 where it is removed",

@@ -35,8 +35,12 @@ pub(super) fn gaps(
     shrinks: bool,
 ) -> Vec<InitialGap> {
     let start = Start::new(contact, x, bodies, shrinks);
-    let slaves = contact.slaves.iter();
-    slaves.filter_map(|&slave| start.gap(slave)).collect()
+    let found = contact.slaves.iter().filter_map(|&slave| start.gap(slave));
+    let of_circle = |of_centre: InitialGap| InitialGap {
+        gap: of_centre.gap - contact.radius(),
+        ..of_centre
+    };
+    found.map(of_circle).collect()
 }
 
 /// Circle about a segment with the ends beyond which a projection is still accepted.

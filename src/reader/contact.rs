@@ -171,11 +171,6 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
             format!("surface {name} is slave and master at once"),
             "for self-contact write its name once",
         )
-    } else if let SurfaceKind::Rigid(_) = slave.1.kind {
-        (
-            format!("the rigid surface {} cannot be slave", slave.1.name),
-            "a rigid surface is a master: write the other surface first",
-        )
     } else if is_of_nodes {
         (
             format!("the master surface {name} is made of nodes"),
@@ -186,6 +181,31 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
     };
     cx.error(Code::SurfaceUse, master.2, message).help(help);
     None
+}
+
+/// Reports rigid surfaces that are slaves and no discs.
+pub(super) fn check_discs(model: &Model, cx: &mut Context) {
+    for contact in &model.contacts {
+        let SurfaceKind::Rigid(profile) = &model.surfaces[contact.slave].kind else {
+            continue;
+        };
+        let name = &model.surfaces[contact.slave].name;
+        let (message, help) = if profile.centre.is_none() {
+            (
+                format!("the rigid surface {name} cannot be slave"),
+                "a rigid surface is a master: write the other surface first; or a slave that is a full circle of CIRCL \
+                 rows",
+            )
+        } else if contact.adjust.is_some() {
+            (
+                format!("the disc {name} cannot be moved on to the master before the start"),
+                "leave ADJUST out and give its place",
+            )
+        } else {
+            continue;
+        };
+        cx.error(Code::SurfaceUse, contact.span, message).help(help);
+    }
 }
 
 /// Reads all interactions.

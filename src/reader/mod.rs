@@ -144,7 +144,8 @@ fn read(cx: &mut Context) -> Model {
     };
     contact::restrict_formulations(&mut model, cx);
     let model = model;
-    let all: [&dyn Fn(&mut Context); 9] = [
+    let all: [&dyn Fn(&mut Context); 10] = [
+        &|cx| contact::check_discs(&model, cx),
         &|cx| checks::axis(&model, &mesh_index.places, cx),
         &|cx| connectors::check(&model, &mesh_index.connectors, cx),
         &|cx| checks::amplitudes(&model, &amplitudes.spans, cx),

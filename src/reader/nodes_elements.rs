@@ -298,7 +298,9 @@ impl MeshReading {
     /// elements after the last nodes, nodes at the first keyword of the deck.
     fn report_empty(&self, outline: &Outline, cx: &mut Context) {
         let mesh = &self.mesh_index.mesh;
-        let (keyword, before) = match (mesh.node_count() == 0, mesh.elements.is_empty()) {
+        // rigid bodies of mass elements need no others
+        let has_none = mesh.elements.is_empty() && self.points.is_empty();
+        let (keyword, before) = match (mesh.node_count() == 0, has_none) {
             (true, _) => ("NODE", None),
             (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
             (false, false) => return,

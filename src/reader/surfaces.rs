@@ -7,8 +7,10 @@ use super::outline::Outline;
 use super::sets::Sets;
 use crate::deck::{Card, Deck, Line, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest, shown};
-use crate::model::{ElementsAtNodes, Face, Mesh, Surface, SurfaceKind};
-use crate::vectors::{angle, difference};
+use crate::model::{
+    CircleArc, ElementsAtNodes, Face, Mesh, RigidProfile, Surface, SurfaceKind,
+};
+use crate::vectors::{angle, cross, difference, distance};
 use std::collections::{BTreeSet, HashSet};
 
 /// All surfaces.
@@ -56,7 +58,8 @@ pub(crate) fn read(
                 let first = mesh_index.mesh.node_count() + surfaces.rigid_points.len();
                 let profile = Profile::read(card, cx);
                 surfaces.rigid_points.extend(&profile.points);
-                SurfaceKind::Rigid(profile.segments(first))
+                surfaces.rigid_points.extend(profile.centre());
+                SurfaceKind::Rigid(profile.in_mesh(first))
             }
             _ => SurfaceKind::Faces(faces(card, mesh_index, sets, at_nodes, cx)),
         };
@@ -81,7 +84,7 @@ fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
     let empty = match kind {
         SurfaceKind::Faces(faces) => faces.is_empty(),
         SurfaceKind::Nodes(nodes) => nodes.is_empty(),
-        SurfaceKind::Rigid(segments) => segments.is_empty(),
+        SurfaceKind::Rigid(profile) => profile.segments.is_empty(),
     };
     if empty && !card.rows.is_empty() && !cx.d.has_errors() && !cx.deck.incomplete {
         cx.error(
@@ -272,6 +275,9 @@ const CHORD: f64 = std::f64::consts::PI / 180.0;
 /// 180 degrees, in radians.
 const ARC_ROUND_OFF: f64 = 1e-4;
 
+/// Largest difference of the centres and radii of the arcs of one circle, relative to the radius.
+const CIRCLE_ROUND_OFF: f64 = 1e-6;
+
 /// A rigid profile: points and the sides between them, with the rigid body on the right of each
 /// side.
 #[derive(Default)]
@@ -280,6 +286,8 @@ pub(crate) struct Profile {
     pub points: Vec<[f64; 2]>,
     /// Chords [from, to] between the points.
     sides: Vec<[usize; 2]>,
+    /// Arcs, which some of the sides are chords of.
+    arcs: Vec<CircleArc>,
     /// First point of the chain that is read.
     start: usize,
     /// Last point so far.
@@ -307,11 +315,38 @@ impl Profile {
         profile
     }
 
-    /// Segments between nodes of which the first point is number `first`: the body lies on the
-    /// left of the direction from a to b, so that they run from the last row to the first.
-    pub fn segments(&self, first: usize) -> Vec<[usize; 2]> {
-        let sides = self.sides.iter().rev();
-        sides.map(|[from, to]| [first + to, first + from]).collect()
+    /// The profile between nodes of which the first point is number `first`: the body lies on the
+    /// left of the direction from a to b, so that segments run from the last row to the first.
+    pub fn in_mesh(self, first: usize) -> RigidProfile {
+        let centre = self.centre().map(|_| first + self.points.len());
+        let (sides, count) = (self.sides.iter().rev(), self.sides.len());
+        let arcs = self.arcs.into_iter().rev().map(|arc| CircleArc {
+            segments: count - arc.segments.end..count - arc.segments.start,
+            ..arc
+        });
+        RigidProfile {
+            centre,
+            segments: sides.map(|[from, to]| [first + to, first + from]).collect(),
+            arcs: arcs.collect(),
+        }
+    }
+
+    /// The centre, if the profile is the outline of a round body: arcs about one centre with one radius, each from the end of
+    /// the one before, the last one to the start, the body on the right of their sides inside.
+    pub fn centre(&self) -> Option<[f64; 2]> {
+        let first = self.arcs.first()?;
+        let near = CIRCLE_ROUND_OFF * first.radius;
+        let is_alike = |arc: &CircleArc| {
+            let radius = (arc.radius - first.radius).abs();
+            distance(arc.centre, first.centre) <= near && radius <= near
+        };
+        let chords: usize = self.arcs.iter().map(|arc| arc.segments.len()).sum();
+        let mut following = self.sides.iter().cycle().skip(1);
+        let is_chain = (self.sides.iter()).all(|[_, to]| following.next().map(|side| side[0]) == Some(*to));
+        let arm = |point: usize| difference(first.centre, self.points[point]);
+        let is_inside = (self.sides.iter()).all(|&[from, to]| cross(arm(from), arm(to)) < 0.0);
+        let is_round = chords == self.sides.len() && is_chain && is_inside;
+        (is_round && self.arcs.iter().all(is_alike)).then_some(first.centre)
     }
 
     fn row(&mut self, row: Line, cx: &mut Context) -> Option<()> {
@@ -402,6 +437,7 @@ impl Profile {
         }
         // round-off must not add a chord to angles such as 90 degrees
         let count = (angle.abs() / CHORD * (1.0 - 1e-9)).ceil();
+        let first = self.sides.len();
         for k in 1..count as usize {
             let part = k as f64 / count;
             let (sin, cos) = (part * angle).sin_cos();
@@ -412,6 +448,11 @@ impl Profile {
             ]);
         }
         self.side_to(to);
+        self.arcs.push(CircleArc {
+            segments: first..self.sides.len(),
+            centre,
+            radius: f64::midpoint(r, s),
+        });
         Some(())
     }
 }

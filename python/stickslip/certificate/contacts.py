@@ -23,6 +23,19 @@ EXACT = "NODE TO SURFACE"
 
 
 @dataclass(frozen=True)
+class Disc:
+    """A rigid disc that is slave, and the arcs of its master."""
+
+    radius: float
+    arm: int
+    """The node that takes its turning."""
+    arcs: Integers
+    """First chord of each arc, and the one after the last [A, 2]."""
+    centres: Array
+    """Centres in the undeformed configuration [A, 2]."""
+
+
+@dataclass(frozen=True)
 class Contact:
     """A contact of the deck."""
 
@@ -38,6 +51,8 @@ class Contact:
     """Body of each node, -1 for those of rigid surfaces [N]."""
     has_means: bool = False
     """Whether it keeps means over faces out, and corners, in place of every slave node."""
+    disc: Disc | None = None
+    """Set where the slave is a disc."""
 
     @property
     def is_constant(self) -> bool:
@@ -55,9 +70,42 @@ def contacts(result: Result) -> list[Contact]:
     for name in names:
         parts = ("slaves", "segments", "friction", "acts")
         slaves, segments, friction, acts = (result.read(f"{at}/{name}/{part}") for part in parts)
+        disc = None
+        if f"{at}/{name}/disc_radius" in result.file:
+            radius, arm, arcs, centres = (
+                result.read(f"{at}/{name}/{part}")
+                for part in ("disc_radius", "disc_arm", "arcs", "arc_centres")
+            )
+            disc = Disc(float(radius), int(arm), arcs, centres)
         kind = result.file[f"history/contact/{name}"].attrs["formulation"]
-        found.append(Contact(name, slaves, segments, friction, acts, body, kind != EXACT))
+        found.append(Contact(name, slaves, segments, friction, acts, body, kind != EXACT, disc))
     return found
+
+
+def disc_gap(contact: Contact, disc: Disc, start: Array, x: Array) -> float:
+    """Distance of the circle of a disc from its master, in radii; `start` are the undeformed places [N, 2]."""
+    (centre,) = contact.slaves
+    s = x[centre]
+    is_chord = np.zeros(len(contact.segments), np.bool_)
+    least = np.inf
+    for (first, end), middle in zip(disc.arcs, disc.centres, strict=True):
+        is_chord[first:end] = True
+        p, q = contact.segments[first, 0], contact.segments[end - 1, 1]
+        # the centre keeps its place along and across the chord of the whole arc
+        e0, e1 = (complex(*(at[q] - at[p])) for at in (start, x))
+        place = (complex(*(middle - start[p])) / e0).imag
+        now = complex(*x[p]) + (0.5 + 1j * place) * e1
+        radius = abs(e0) * np.hypot(0.5, place)
+        arm = complex(*s) - now
+        low, high = complex(*x[p]) - now, complex(*x[q]) - now
+        part = np.angle(arm / low) / np.angle(high / low)
+        if 0.0 <= part <= 1.0:
+            least = min(least, np.sign(place) * (abs(arm) - radius))
+    a, b = (x[contact.segments[~is_chord, end]] for end in (0, 1))
+    along = b - a
+    xi = np.clip(np.einsum("si,si->s", s - a, along) / np.einsum("si,si->s", along, along), 0.0, 1.0)
+    reach = np.linalg.norm(s - a - xi[:, None] * along, axis=1)
+    return float((min(least, reach.min(initial=np.inf)) - disc.radius) / disc.radius)
 
 
 @dataclass(frozen=True)

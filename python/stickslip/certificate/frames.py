@@ -11,6 +11,7 @@ from stickslip.certificate.contacts import (
     Touch,
     contacts,
     corner_error,
+    disc_gap,
     places,
     split,
     touching,
@@ -32,6 +33,9 @@ STRESS = 1e-11
 
 GAP = 1e-9
 """Gap of a closed pair in lengths of its segment; the solver stops at 1e-10."""
+
+DISC_GAP = 1e-9
+"""Gap of a disc that touches, in radii."""
 
 TOUCH = 1e-8
 """Nodes nearer to a segment than this part of its length are on it."""
@@ -414,6 +418,8 @@ class Frames:
         if increment.start is not None:
             way = np.abs(frame["U"] - increment.start).sum(axis=1)
         contacts = [contact for contact in self.contacts if contact.acts[increment.step]]
+        contacts, discs = self._discs(contacts, x, status, f"t = {frame.time:g}")
+        closed, active = np.setdiff1d(closed, discs), np.setdiff1d(active, discs)
         touches, nearest, reached = touching(x, way, contacts, active, TOUCH)
         noise = 16 * EPS * np.abs(x).max() / self._edge
         place = f"t = {frame.time:g}"
@@ -428,18 +434,33 @@ class Frames:
         self.checks["reach"].add(
             reached[closed], BEYOND, f"{{}} of {len(closed)} closed nodes, {place}"
         )
-        opened = np.flatnonzero(status == OPEN)
+        opened = np.setdiff1d(np.flatnonzero(status == OPEN), discs)
         self.checks["gap"].add(
             np.nan_to_num(-gaps[opened]) / self._edge,
             GAP + noise,
             f"GAP, {{}} of the open nodes, {place}",
         )
         self._gap_field(x, way, status, gaps, noise, contacts, place)
-        loaded = np.flatnonzero(force > FORCE * self.force_scale)
+        loaded = np.setdiff1d(np.flatnonzero(force > FORCE * self.force_scale), discs)
         self.checks["complementarity"].add(
             nearest[loaded], TOUCH + noise, f"{{}} of {len(loaded)} loaded nodes, {place}"
         )
         self._cones(frame, increment, touches, status)
+
+    def _discs(
+        self, contacts: list[Contact], x: Array, status: Integers, place: str
+    ) -> tuple[list[Contact], Integers]:
+        """Gaps of discs; the other contacts, and the nodes whose forces may be those of discs."""
+        nodes: set[int] = set()
+        for contact in contacts:
+            if contact.disc is None:
+                continue
+            gap = disc_gap(contact, contact.disc, self.result.coordinates, x)
+            error = abs(gap) if status[contact.slaves[0]] >= STICK else max(-gap, 0.0)
+            self.checks["gap"].add(error, DISC_GAP, f"disc of {contact.name}, {place}")
+            nodes.update(contact.slaves.tolist(), contact.segments.ravel().tolist(), [contact.disc.arm])
+        others = [contact for contact in contacts if contact.disc is None]
+        return others, np.array(sorted(nodes), np.int64)
 
     def _gap_field(
         self,

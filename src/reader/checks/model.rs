@@ -200,7 +200,7 @@ pub(crate) fn fixed_slaves(model: &Model, cx: &mut Context) {
         if contact.is_self_contact() || slave.name == ALL_EXTERIOR {
             continue;
         }
-        let nodes = slave.nodes(&model.mesh);
+        let nodes = model.slave_nodes(contact);
         let fixed = nodes.iter().filter(|node| is_fixed(node)).count();
         if 2 * fixed <= nodes.len() {
             continue;

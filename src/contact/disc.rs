@@ -1,0 +1,695 @@
+//! Constraints of rigid discs, which are slaves by their centres, at segments, vertices and arcs of the master.
+//! Section 3 of docs/theory.md, Discs.
+//!
+//! A disc is a node with a radius that turns: its gap is smaller by the radius than that of its centre, and its
+//! slip is that of the point of its circle that touches.
+
+use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
+use smallvec::SmallVec;
+
+use super::constraint::{Configurations, Constraint, RowForm, RowPair};
+use super::geometry::{ContactSurfaces, Positions, Projection, SurfaceArc, project};
+use super::keys::ConstraintKey;
+use super::node_to_segment::{SegmentRows, rows_between};
+use super::search::{Candidate, ListedSlave};
+use super::stiffness::changes_between;
+use super::targets::{ContactTarget, PairTarget, position_round_off, rise};
+use super::tolerances::{END_OF_FEATURE, SLIDING_SINE};
+use crate::vectors::{angle, difference};
+
+/// How a disc meets the master.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Round {
+    /// Radius of the slave disc (length).
+    pub radius: f64,
+    /// The arc of the master that the nodes a and b move, or the vertex a, an arc without radius; none of a segment.
+    pub arc: Option<MasterArc>,
+    /// What the centre was over at the start, where that was something else.
+    pub from: Option<Feature>,
+}
+
+/// An arc about a point that moves with two nodes p and q of the master: x_c = x_p + alpha e + beta J e, e = x_q - x_p.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MasterArc {
+    /// alpha and beta.
+    pub place: [f64; 2],
+    /// Radius (length): negative where the body is outside of the circle, 0 of a vertex.
+    pub radius: f64,
+}
+
+impl MasterArc {
+    /// A vertex: the first of its nodes.
+    const VERTEX: MasterArc = MasterArc {
+        place: [0.0; 2],
+        radius: 0.0,
+    };
+
+    /// Its centre, p and q being at these places.
+    fn centre(&self, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
+        let ([alpha, beta], [x, y]) = (self.place, difference(p, q));
+        [p[0] + alpha * x - beta * y, p[1] + alpha * y + beta * x]
+    }
+
+    /// Distance of a point out of the body, p and q being at these places: |r| - R, or R - |r| in a hole.
+    fn gap(&self, s: [f64; 2], nodes: [[f64; 2]; 2]) -> f64 {
+        let [x, y] = difference(self.centre(nodes), s);
+        self.sign() * x.hypot(y) - self.radius
+    }
+
+    /// 1, or -1 of an arc whose body is outside.
+    fn sign(&self) -> f64 {
+        match self.radius < 0.0 {
+            true => -1.0,
+            false => 1.0,
+        }
+    }
+}
+
+/// A segment or an arc of the master, by its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Feature {
+    /// Ends of the segment; the nodes p and q of an arc.
+    pub nodes: [usize; 2],
+    /// The arc; none of a segment.
+    pub arc: Option<MasterArc>,
+}
+
+impl Feature {
+    /// Distance of a point out of the body (length).
+    fn gap(&self, s: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let [a, b] = self.nodes.map(at);
+        match self.arc {
+            None => project(s, a, b).gap,
+            Some(arc) => arc.gap(s, [a, b]),
+        }
+    }
+}
+
+/// Adds the targets of a disc: the segments, arcs and convex vertices that its centre is over in the iterate, and was
+/// in front of at the start.
+pub(super) fn find_targets(
+    listed: &ListedSlave,
+    positions: [Positions; 2],
+    pairs: &mut Vec<PairTarget>,
+) {
+    let Some(disc) = listed.surfaces.disc else {
+        return;
+    };
+    let (centre, allowed) = (listed.node(), listed.allowed());
+    let finder = Finder {
+        surfaces: listed.surfaces,
+        centre,
+        positions,
+    };
+    let now = finder.over(listed.candidates(), 1, allowed);
+    let start = finder.over(listed.candidates(), 0, allowed);
+    let at_start = |feature: &Feature| feature.gap(positions[0].of(centre), |n| positions[0].of(n));
+    let nearest = (start.iter()).min_by(|f, g| at_start(&f.2).total_cmp(&at_start(&g.2)));
+    for (key, segment, feature) in now {
+        if at_start(&feature) <= 0.0 {
+            continue;
+        }
+        pairs.push(PairTarget {
+            key: ConstraintKey {
+                slave: listed.key,
+                segment: key,
+            },
+            target: ContactTarget::face(segment),
+            nodes: [centre, feature.nodes[0], feature.nodes[1], disc.arm],
+            from: None,
+            allowed,
+            points: Vec::new(),
+            round: Some(Round {
+                radius: disc.radius,
+                arc: feature.arc,
+                from: nearest.map(|&(_, _, from)| from).filter(|from| *from != feature),
+            }),
+        });
+    }
+}
+
+/// The centre of a disc beside the master.
+struct Finder<'a> {
+    surfaces: &'a ContactSurfaces,
+    centre: usize,
+    positions: [Positions<'a>; 2],
+}
+
+/// Features with the numbers of their constraints, increasing, and a segment of theirs.
+type Over = SmallVec<[(usize, usize, Feature); 4]>;
+
+impl Finder<'_> {
+    /// What the centre is over and near to, at the start (0) or in the iterate (1): segments and arcs between their ends,
+    /// and vertices between the ends of two of them, or at the ends of the surface.
+    fn over(
+        &self,
+        candidates: impl Iterator<Item = Candidate>,
+        k: usize,
+        allowed: [f64; 2],
+    ) -> Over {
+        let surfaces = self.surfaces;
+        let (count, mut over) = (surfaces.segments.len(), Over::new());
+        for Candidate { segment: i, reach } in candidates {
+            let arc = surfaces.arc_of(i);
+            let mut add = |number: usize, feature: Feature| {
+                let s = self.positions[k].of(self.centre);
+                let gap = feature.gap(s, |node| self.positions[k].of(node)) + allowed[k];
+                if gap.abs() <= reach && over.iter().all(|(n, ..)| *n != number) {
+                    over.push((number, i, feature));
+                }
+            };
+            let xi = self.xi(i, k);
+            if (-END_OF_FEATURE..=1.0 + END_OF_FEATURE).contains(&xi) {
+                let number = arc.map_or(i, |arc| arc.segments.start);
+                add(number, self.feature(i));
+            }
+            let vertex = |node: usize, other: usize| Feature {
+                nodes: [node, other],
+                arc: Some(MasterArc::VERTEX),
+            };
+            let [a, b] = surfaces.segments[i];
+            let next = surfaces.next[i];
+            let is_inside = arc.is_some_and(|arc| next.is_some_and(|j| arc.segments.contains(&j)));
+            let is_before_next = || next.is_none_or(|j| self.xi(j, k) < -END_OF_FEATURE);
+            if !is_inside && xi > 1.0 + END_OF_FEATURE && is_before_next() {
+                add(count + i, vertex(b, a));
+            }
+            if surfaces.previous[i].is_none() && xi < -END_OF_FEATURE {
+                add(2 * count + i, vertex(a, b));
+            }
+        }
+        over.sort_by_key(|(number, ..)| *number);
+        over
+    }
+
+    /// The arc that a segment is a chord of, or the segment.
+    fn feature(&self, segment: usize) -> Feature {
+        match self.surfaces.arc_of(segment) {
+            Some(arc) => Feature {
+                nodes: arc.nodes,
+                arc: Some(arc.arc),
+            },
+            None => Feature {
+                nodes: self.surfaces.segments[segment],
+                arc: None,
+            },
+        }
+    }
+
+    /// Coordinate of the centre along a segment, or along the arc that it is a chord of: 0 at the start, 1 at the end.
+    fn xi(&self, segment: usize, k: usize) -> f64 {
+        let at = |node: usize| self.positions[k].of(node);
+        let Some(SurfaceArc { nodes, arc, .. }) = self.surfaces.arc_of(segment) else {
+            let [a, b] = self.surfaces.segments[segment];
+            return self.positions[k].place([self.centre, a, b]).xi;
+        };
+        let ends = nodes.map(at);
+        let arm = |x: [f64; 2]| difference(arc.centre(ends), x);
+        let [p, q, s] = [ends[0], ends[1], at(self.centre)].map(arm);
+        angle(p, s) / angle(p, q)
+    }
+}
+
+type Map = SMatrix<f64, 2, 8>;
+type Row = SVector<f64, 8>;
+
+/// J: turns by a right angle to the left.
+const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
+
+/// Positions of the centre s, of a and b, and of the node that turns with the disc, at the start and at the end.
+struct Places {
+    form: RowForm,
+    nodes: [[[f64; 2]; 4]; 2],
+}
+
+impl Places {
+    fn new(nodes: [usize; 4], at: &Configurations) -> Self {
+        Places {
+            form: at.form,
+            nodes: [at.start(nodes), at.iterate(nodes)],
+        }
+    }
+
+    /// The vectors at start and end that a map gives.
+    fn vectors(&self, map: &Map) -> [Vector2<f64>; 2] {
+        self.nodes.map(|x| map * Row::from_iterator(x.into_iter().flatten()))
+    }
+
+    /// s, a and b.
+    fn of_segment(&self) -> [[[f64; 2]; 3]; 2] {
+        self.nodes.map(|[s, a, b, _]| [s, a, b])
+    }
+
+    /// Part w of the increment at which directions are taken, z_m = z_0 + w (z_1 - z_0): the middle, or the end.
+    fn part(&self) -> f64 {
+        match self.form {
+            RowForm::End => 1.0,
+            RowForm::DiscreteGradient => 0.5,
+        }
+    }
+}
+
+/// x_b - x_a, and from the centre of the disc to the node that turns with it.
+fn arms() -> [Map; 2] {
+    let (mut e, mut arm) = (Map::zeros(), Map::zeros());
+    for i in 0..2 {
+        (e[(i, 2 + i)], e[(i, 4 + i)]) = (-1.0, 1.0);
+        (arm[(i, i)], arm[(i, 6 + i)]) = (-1.0, 1.0);
+    }
+    [e, arm]
+}
+
+/// r = x_s - x_c, from the centre of an arc.
+fn from_centre(arc: &MasterArc) -> Map {
+    let [alpha, beta] = arc.place;
+    let mut r = Map::zeros();
+    r.fixed_view_mut::<2, 2>(0, 0).copy_from(&Matrix2::identity());
+    let at_p = Matrix2::identity() * (1.0 - alpha) - J * beta;
+    let at_q = Matrix2::identity() * alpha + J * beta;
+    r.fixed_view_mut::<2, 2>(0, 2).copy_from(&-at_p);
+    r.fixed_view_mut::<2, 2>(0, 4).copy_from(&-at_q);
+    r
+}
+
+/// Rotation of a vector in the increment, its rows and the change of its force row with the end.
+///
+/// ```text
+/// T = (e_0 x e_1)/|e_m|² = (J e_m).d/|e_m|²,   d = e_1 - e_0    eq. (3.22)
+/// ```
+struct Turn {
+    value: f64,
+    force: Vector2<f64>,
+    derivative: Vector2<f64>,
+    change: Matrix2<f64>,
+}
+
+impl Turn {
+    fn new([start, end]: [Vector2<f64>; 2], part: f64) -> Self {
+        let middle = start + (end - start) * part;
+        let square = middle.norm_squared();
+        let crossed = start.perp(&end);
+        let force = J * middle / square;
+        Turn {
+            value: crossed / square,
+            force,
+            derivative: J * start / square - middle * (2.0 * part * crossed / (square * square)),
+            change: (J - force * middle.transpose() * 2.0) * (part / square),
+        }
+    }
+}
+
+/// Rows of a disc, its gap without radius and allowed overlap, the length that it is relative to, and the tilt of its force.
+struct DiscRows {
+    force: RowPair<8>,
+    derivative: RowPair<8>,
+    gap: f64,
+    scale: f64,
+    kappa: f64,
+    /// Tangential rows of the centre alone, force and derivative.
+    of_centre: [Row; 2],
+}
+
+/// The constraint of the centre s of a disc at the segment from a to b, or at an arc; nodes s, a, b and one that turns with
+/// the disc.
+pub(super) fn constraint(source: PairTarget, round: &Round, at: &Configurations) -> Constraint {
+    let rows = rows(&source, round, at);
+    let gap_and_scale = (rows.gap, rows.scale);
+    Constraint::of_nodes(source, [rows.force, rows.derivative], gap_and_scale, at)
+}
+
+fn rows(source: &PairTarget, round: &Round, at: &Configurations) -> DiscRows {
+    let places = Places::new(source.nodes, at);
+    let mut rows = match &round.arc {
+        None => at_segment(&places, round.radius),
+        Some(arc) => at_arc(&places, round.radius, arc),
+    };
+    if let Some(from) = round.from.filter(|_| at.form == RowForm::DiscreteGradient) {
+        rows.kappa = tilt(source, round, &from, &rows, at);
+        let tilted = row(&rows.force.normal) + rows.of_centre[0] * rows.kappa;
+        rows.force.normal = tilted.into();
+    }
+    rows
+}
+
+/// Tilt of the force on a disc that has come from another feature, eq. (7.6), along the way of its centre.
+fn tilt(
+    source: &PairTarget,
+    round: &Round,
+    from: &Feature,
+    rows: &DiscRows,
+    at: &Configurations,
+) -> f64 {
+    let [s, a, b, _] = source.nodes;
+    let feature = Feature {
+        nodes: [a, b],
+        arc: round.arc,
+    };
+    let centre = at.start([s])[0];
+    let start = |feature: &Feature| feature.gap(centre, |node| at.start([node])[0]) + source.allowed[0];
+    let [gap, before] = [start(&feature), start(from)];
+    let of_start = Projection {
+        gap,
+        length: rows.scale,
+        xi: 0.0,
+        tangent: [0.0; 2],
+        normal: [0.0; 2],
+    };
+    let dofs = source.nodes.map(|node| [2 * node, 2 * node + 1]);
+    let d = dofs.as_flattened().iter().map(|&dof| at.u[dof] - at.u0[dof]);
+    let way = rows.of_centre[0].dot(&Row::from_iterator(d));
+    let rise = rise(&of_start, before, centre);
+    // a force that leans too far is left as it is: what it gains is cut back
+    match way.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * way.abs() {
+        true => rise / way,
+        false => 0.0,
+    }
+}
+
+fn row(row: &[f64; 8]) -> Row {
+    Row::from_column_slice(row)
+}
+
+/// Rows at a segment: those of the centre, the slip with the turns of disc and segment.
+///
+/// ```text
+/// g = g(x_s) - rho,   Dt = L (xi1 - xi0) - rho (T_s - T_e)    eq. (3.23)
+/// ```
+fn at_segment(places: &Places, radius: f64) -> DiscRows {
+    let SegmentRows {
+        projection,
+        force,
+        derivative,
+    } = rows_between(places.of_segment(), places.form);
+    let all = |row: [f64; 6]| {
+        let mut all = Row::zeros();
+        all.fixed_rows_mut::<6>(0).copy_from_slice(&row);
+        all
+    };
+    let maps = arms();
+    let [of_segment, of_disc] = maps.map(|map| Turn::new(places.vectors(&map), places.part()));
+    let turns = |row: fn(&Turn) -> Vector2<f64>| {
+        (maps[0].transpose() * row(&of_segment) - maps[1].transpose() * row(&of_disc)) * radius
+    };
+    let of_centre = [force.tangential, derivative.tangential].map(all);
+    DiscRows {
+        force: RowPair {
+            normal: all(force.normal).into(),
+            tangential: (of_centre[0] + turns(|turn| turn.force)).into(),
+        },
+        derivative: RowPair {
+            normal: all(derivative.normal).into(),
+            tangential: (of_centre[1] + turns(|turn| turn.derivative)).into(),
+        },
+        gap: projection.gap,
+        scale: projection.length,
+        kappa: 0.0,
+        of_centre,
+    }
+}
+
+/// What the rows at an arc are made of: r at start, middle and end, m = |r_m|, and the parts of the turns of disc and arc.
+struct AtArc {
+    r: [Vector2<f64>; 2],
+    middle: Vector2<f64>,
+    m: f64,
+    part: f64,
+    sign: f64,
+    /// rho/(rho + R) and R/(rho + R)
+    shares: [f64; 2],
+    /// T_s and T_e
+    turns: [Turn; 2],
+    /// r, and the arms of disc and arc.
+    maps: [Map; 3],
+}
+
+impl AtArc {
+    fn new(places: &Places, radius: f64, arc: &MasterArc) -> Self {
+        let (part, [e, arm], r_map) = (places.part(), arms(), from_centre(arc));
+        let r = places.vectors(&r_map);
+        let middle = r[0] + (r[1] - r[0]) * part;
+        let both = radius + arc.radius;
+        AtArc {
+            r,
+            middle,
+            m: middle.norm(),
+            part,
+            sign: arc.sign(),
+            shares: [radius / both, arc.radius / both],
+            turns: [arm, e].map(|map| Turn::new(places.vectors(&map), part)),
+            maps: [r_map, arm, e],
+        }
+    }
+
+    /// T = (rho T_s + R T_e)/(rho + R)
+    fn turn(&self) -> f64 {
+        let [s, e] = &self.turns;
+        self.shares[0] * s.value + self.shares[1] * e.value
+    }
+}
+
+/// Rows at an arc of radius R about x_c, with r = x_s - x_c and m = |r_m|; the signs are others in a hole.
+///
+/// ```text
+/// g  = |r| - R - rho,   Bn = 2 r_m/(l0 + l1), or r_1/l1 of end rows
+/// Dt = (r_0 x r_1)/m - m (rho T_s + R T_e)/(rho + R)                  eq. (3.24)
+/// ```
+fn at_arc(places: &Places, radius: f64, arc: &MasterArc) -> DiscRows {
+    let own = AtArc::new(places, radius, arc);
+    let [r0, r1] = own.r;
+    let [l0, l1] = own.r.map(|r| r.norm());
+    let [to_r, to_arm, to_e] = own.maps.map(|map| map.transpose());
+    let normal = match places.form {
+        RowForm::End => r1 / l1,
+        RowForm::DiscreteGradient => (r0 + r1) / (l0 + l1),
+    };
+    let along = J * own.middle / own.m;
+    let [s, e] = &own.turns;
+    let couples = |s: Vector2<f64>, e: Vector2<f64>| {
+        (to_arm * s * own.shares[0] + to_e * e * own.shares[1]) * own.m
+    };
+    // dm = w (r_m/m).dr_1
+    let dm = own.middle * (own.part / own.m);
+    let slope = J * r0 / own.m - dm * (r0.perp(&r1) / (own.m * own.m));
+    let of_centre = [to_r * along, to_r * slope].map(|row| row * own.sign);
+    let force = of_centre[0] - couples(s.force, e.force) * own.sign;
+    let derivative = of_centre[1]
+        - (to_r * dm * own.turn() + couples(s.derivative, e.derivative)) * own.sign;
+    DiscRows {
+        force: RowPair {
+            normal: (to_r * normal * own.sign).into(),
+            tangential: force.into(),
+        },
+        derivative: RowPair {
+            normal: (to_r * r1 * (own.sign / l1)).into(),
+            tangential: derivative.into(),
+        },
+        gap: own.sign * l1 - arc.radius,
+        scale: radius + arc.radius.abs(),
+        kappa: 0.0,
+        of_centre,
+    }
+}
+
+/// Contact stiffness of a disc under the force Pn, Pt, eq. (4.12).
+pub(super) fn stiffness(
+    source: &PairTarget,
+    round: &Round,
+    [pn, pt]: [f64; 2],
+    at: &Configurations,
+) -> DMatrix<f64> {
+    let places = Places::new(source.nodes, at);
+    let rows = rows(source, round, at);
+    // the force of a tilted row is Bn^T Pn + Bt^T Pt + kappa Pn times the row of the centre
+    let leaning = rows.kappa * pn;
+    let mut k = SMatrix::<f64, 8, 8>::zeros();
+    match &round.arc {
+        None => {
+            let of_centre = changes_between(places.of_segment(), [pn, pt + leaning], at.form);
+            k.fixed_view_mut::<6, 6>(0, 0).copy_from(&of_centre);
+            for (map, sign) in arms().iter().zip([1.0, -1.0]) {
+                let turn = Turn::new(places.vectors(map), places.part());
+                k += map.transpose() * turn.change * map * (sign * round.radius * pt);
+            }
+        }
+        Some(arc) => {
+            let own = AtArc::new(&places, round.radius, arc);
+            let [r0, r1] = own.r;
+            let [l0, l1] = own.r.map(|r| r.norm());
+            let normal = match at.form {
+                RowForm::End => {
+                    Matrix2::identity() / l1 - r1 * r1.transpose() / l1.powi(3)
+                }
+                RowForm::DiscreteGradient => {
+                    let sum = l0 + l1;
+                    Matrix2::identity() / sum - (r0 + r1) * r1.transpose() / (l1 * sum * sum)
+                }
+            };
+            let dm = own.middle * (own.part / own.m);
+            let along = J * own.middle / own.m;
+            let change = J * (own.part / own.m) - along * dm.transpose() / own.m;
+            let [r, arm, e] = own.maps;
+            k += r.transpose() * (normal * pn + change * (pt + leaning)) * r * own.sign;
+            for ((map, turn), share) in [arm, e].iter().zip(&own.turns).zip(own.shares) {
+                let of_turn = turn.change * own.m * map + turn.force * dm.transpose() * r;
+                k -= map.transpose() * of_turn * (own.sign * share * pt);
+            }
+        }
+    }
+    if rows.kappa != 0.0 {
+        // dkappa = -kappa/s times the derivative of the way s
+        let [force, slope] = rows.of_centre;
+        let dofs = source.nodes.map(|node| [2 * node, 2 * node + 1]);
+        let d = dofs.as_flattened().iter().map(|&dof| at.u[dof] - at.u0[dof]);
+        let way = force.dot(&Row::from_iterator(d));
+        k -= force * slope.transpose() * (leaning / way);
+    }
+    let k = (k + k.transpose()) / 2.0;
+    DMatrix::from_column_slice(8, 8, k.as_slice())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::constraint::Rows;
+    use super::*;
+    use crate::contact::testing;
+
+    /// Centre of the disc, two nodes of the master, and a node that turns with the disc.
+    const X: [[f64; 2]; 4] = [[0.7, 1.4], [2.0, 0.1], [-0.5, -0.2], [1.3, 2.1]];
+    const U0: [f64; 8] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.04, -0.02];
+    const U1: [f64; 8] = [-0.2, -0.15, 0.3, 0.2, 0.25, -0.3, -0.1, 0.3];
+
+    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole.
+    fn sources() -> [PairTarget; 4] {
+        let arc = |beta: f64, radius: f64| MasterArc {
+            place: [0.5, beta],
+            radius,
+        };
+        let arcs = [
+            None,
+            Some(MasterArc::VERTEX),
+            Some(arc(-0.7, 1.9)),
+            Some(arc(0.4, -2.1)),
+        ];
+        arcs.map(|arc| PairTarget {
+            nodes: [0, 1, 2, 3],
+            round: Some(Round {
+                radius: 0.8,
+                arc,
+                from: None,
+            }),
+            ..testing::face()
+        })
+    }
+
+    fn between<'a>(form: RowForm, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
+        let x = &X;
+        Configurations { form, x, u0, u }
+    }
+
+    #[test]
+    fn derivative_rows_are_the_derivatives_of_gap_and_slip() {
+        for source in sources() {
+            for form in [RowForm::End, RowForm::DiscreteGradient] {
+                let of = |u: &[f64]| Constraint::new(source.clone(), &between(form, &U0, u));
+                let found = of(&U1);
+                let rows = found.derivative_rows();
+                for k in 0..8 {
+                    let [mut plus, mut minus] = [U1; 2];
+                    (plus[k], minus[k]) = (plus[k] + 1e-6, minus[k] - 1e-6);
+                    let (p, q) = (of(&plus), of(&minus));
+                    let (gap, slip) = ((p.gap - q.gap) / 2e-6, (p.slip - q.slip) / 2e-6);
+                    assert!((rows.normal[k] - gap).abs() < 1e-8, "{form:?} {k} {source:?}");
+                    let error = (rows.tangential[k] - slip).abs();
+                    assert!(error < 1e-8, "{form:?} {k} {error} {source:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn discrete_gradients_are_exact_differences_and_keep_momentum() {
+        for source in sources() {
+            let at = between(RowForm::DiscreteGradient, &U0, &U1);
+            let found = Constraint::new(source.clone(), &at);
+            let start = Constraint::new(source, &between(RowForm::End, &U0, &U0));
+            assert!((found.start_gap - start.gap).abs() < 1e-14);
+            let Rows { normal, tangential } = &found.force_rows;
+            for row in [normal, tangential] {
+                let (mut force, mut moment) = ([0.0; 2], 0.0);
+                for (node, f) in row.chunks(2).enumerate() {
+                    let middle = |i: usize| X[node][i] + (U0[2 * node + i] + U1[2 * node + i]) / 2.0;
+                    force = [force[0] + f[0], force[1] + f[1]];
+                    moment += middle(0) * f[1] - middle(1) * f[0];
+                }
+                assert!(force.iter().all(|f| f.abs() < 1e-14), "{force:?}");
+                assert!(moment.abs() < 1e-13, "{moment}");
+            }
+        }
+    }
+
+    #[test]
+    fn contact_stiffness_is_the_symmetric_derivative_of_the_nodal_forces() {
+        let force = [1.3, -0.4];
+        for source in sources() {
+            for form in [RowForm::End, RowForm::DiscreteGradient] {
+                let nodal = |u: &[f64]| {
+                    let mut forces = [0.0; 8];
+                    let constraint = Constraint::new(source.clone(), &between(form, &U0, u));
+                    constraint.add_force(force, &mut forces);
+                    forces
+                };
+                let at = between(form, &U0, &U1);
+                let found = Constraint::new(source.clone(), &at).stiffness(force, &at);
+                let quotient = |row: usize, column: usize| {
+                    let [mut plus, mut minus] = [U1; 2];
+                    (plus[column], minus[column]) = (plus[column] + 1e-6, minus[column] - 1e-6);
+                    (nodal(&plus)[row] - nodal(&minus)[row]) / 2e-6
+                };
+                for i in 0..8 {
+                    for j in 0..8 {
+                        let expected = (quotient(i, j) + quotient(j, i)) / 2.0;
+                        let error = (found[(i, j)] - expected).abs();
+                        assert!(error < 1e-7 * found.amax(), "{form:?} {i} {j} {error} {source:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_disc_that_rolls_does_not_slip() {
+        // from (0, 1) by the angle t along the floor, which runs from right to left
+        let x = [[0.0, 1.0], [5.0, 0.0], [-5.0, 0.0], [0.0, 2.0]];
+        let t = 0.3_f64;
+        let way = 2.0 * (t / 2.0).tan();
+        let u = [
+            way,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            way + t.sin(),
+            t.cos() - 1.0,
+        ];
+        let source = PairTarget {
+            nodes: [0, 1, 2, 3],
+            allowed: [-1.0; 2],
+            round: Some(Round {
+                radius: 1.0,
+                arc: None,
+                from: None,
+            }),
+            ..testing::face()
+        };
+        let at = Configurations {
+            form: RowForm::DiscreteGradient,
+            x: &x,
+            u0: &[0.0; 8],
+            u: &u,
+        };
+        let found = Constraint::new(source, &at);
+        assert!(found.gap.abs() < 1e-15);
+        assert!(found.slip.abs() < 1e-15, "{}", found.slip);
+    }
+}
