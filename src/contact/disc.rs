@@ -119,10 +119,11 @@ pub(super) fn find_targets(
             from: None,
             allowed,
             points: Vec::new(),
+            is_of_master: false,
             round: Some(Round {
                 radius: disc.radius,
                 arc: feature.arc,
-                from: nearest.map(|&(_, _, from)| from).filter(|from| *from != feature),
+                from: nearest.filter(|from| from.0 != key).map(|from| from.2),
             }),
         });
     }
@@ -160,7 +161,7 @@ impl Finder<'_> {
             };
             let xi = self.xi(i, k);
             if (-END_OF_FEATURE..=1.0 + END_OF_FEATURE).contains(&xi) {
-                let number = arc.map_or(i, |arc| arc.segments.start);
+                let number = arc.map_or(i, |arc| arc.circle);
                 add(number, self.feature(i));
             }
             let vertex = |node: usize, other: usize| Feature {

@@ -150,6 +150,8 @@ pub struct SurfaceArc {
     pub nodes: [usize; 2],
     /// Its centre and radius.
     pub arc: MasterArc,
+    /// First chord of the first arc of the same circle: what constraints are named by.
+    pub circle: usize,
 }
 
 impl SurfaceArc {
@@ -162,7 +164,9 @@ impl SurfaceArc {
         // the centre is as far from p as from q
         let (square, beta) = (dot(e, e), cross(e, r) / dot(e, e));
         let radius = (square * (0.25 + beta * beta)).sqrt();
+        let mut others = profile.arcs.iter().filter(|other| other.is_of_circle(arc));
         SurfaceArc {
+            circle: others.next().map_or(start, |first| first.segments.start),
             segments: arc.segments.clone(),
             nodes,
             arc: MasterArc {

@@ -10,6 +10,7 @@ use super::Segment;
 use super::friction::Friction;
 use super::mesh::{Face, Mesh};
 use crate::diagnostics::Span;
+use crate::vectors::distance;
 
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -156,6 +157,17 @@ pub struct CircleArc {
     pub centre: [f64; 2],
     /// Radius (length).
     pub radius: f64,
+}
+
+/// Largest difference of the centres and radii of the arcs of one circle, relative to the radius.
+const CIRCLE_ROUND_OFF: f64 = 1e-6;
+
+impl CircleArc {
+    /// Whether another arc is of the same circle.
+    pub fn is_of_circle(&self, other: &CircleArc) -> bool {
+        let apart = distance(self.centre, other.centre);
+        apart.max((self.radius - other.radius).abs()) <= CIRCLE_ROUND_OFF * other.radius
+    }
 }
 
 /// A rigid disc that is slave: its centre is a node.

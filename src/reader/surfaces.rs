@@ -10,7 +10,7 @@ use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest, shown};
 use crate::model::{
     CircleArc, ElementsAtNodes, Face, Mesh, RigidProfile, Surface, SurfaceKind,
 };
-use crate::vectors::{angle, cross, difference, distance};
+use crate::vectors::{angle, cross, difference};
 use std::collections::{BTreeSet, HashSet};
 
 /// All surfaces.
@@ -275,9 +275,6 @@ const CHORD: f64 = std::f64::consts::PI / 180.0;
 /// 180 degrees, in radians.
 const ARC_ROUND_OFF: f64 = 1e-4;
 
-/// Largest difference of the centres and radii of the arcs of one circle, relative to the radius.
-const CIRCLE_ROUND_OFF: f64 = 1e-6;
-
 /// A rigid profile: points and the sides between them, with the rigid body on the right of each
 /// side.
 #[derive(Default)]
@@ -335,18 +332,13 @@ impl Profile {
     /// the one before, the last one to the start, the body on the right of their sides inside.
     pub fn centre(&self) -> Option<[f64; 2]> {
         let first = self.arcs.first()?;
-        let near = CIRCLE_ROUND_OFF * first.radius;
-        let is_alike = |arc: &CircleArc| {
-            let radius = (arc.radius - first.radius).abs();
-            distance(arc.centre, first.centre) <= near && radius <= near
-        };
         let chords: usize = self.arcs.iter().map(|arc| arc.segments.len()).sum();
         let mut following = self.sides.iter().cycle().skip(1);
         let is_chain = (self.sides.iter()).all(|[_, to]| following.next().map(|side| side[0]) == Some(*to));
         let arm = |point: usize| difference(first.centre, self.points[point]);
         let is_inside = (self.sides.iter()).all(|&[from, to]| cross(arm(from), arm(to)) < 0.0);
         let is_round = chords == self.sides.len() && is_chain && is_inside;
-        (is_round && self.arcs.iter().all(is_alike)).then_some(first.centre)
+        (is_round && self.arcs.iter().all(|arc| arc.is_of_circle(first))).then_some(first.centre)
     }
 
     fn row(&mut self, row: Line, cx: &mut Context) -> Option<()> {

@@ -76,7 +76,7 @@ def test_a_disc_that_slides_rolls_in_the_end(tmp_path: Path, dt: float) -> None:
     body = history["rigid/DISC"]
     assert body["V"][-1][0] == pytest.approx(2 / 3, abs=1e-12)
     assert body["angular_velocity"][-1] == pytest.approx(-2 / 3, abs=1e-12)
-    assert history["energy/friction_dissipation"][-1] == pytest.approx(1 / 6, abs=1e-10)
+    assert history["energy/kinetic"][-1] == pytest.approx(1 / 3, abs=1e-12)
     assert balance(history) < 1e-12
 
 
@@ -137,11 +137,12 @@ def test_a_disc_climbs_a_kerb_and_falls_off_an_edge(tmp_path: Path, scheme: str,
     cards = [disc(1, "DISC", 0.0, 0.0), steps, FIXED, pair("DISC", "FLOOR", mu)]
     start = "*INITIAL CONDITIONS, TYPE=VELOCITY\nNDISC, 1, 5.\n" + ("NDISC, 6, -5." if mu else "")
     weight = f"*CLOAD\nNDISC, 2, {-GRAVITY!r}\n"
-    history = run(tmp_path, *cards, start.rstrip(), dt=0.01, end=4.0, scheme=scheme, loads=weight)
+    history = run(tmp_path, *cards, start.rstrip(), dt=0.01, end=8.0, scheme=scheme, loads=weight)
     centre = history["rigid/DISC/U"][:]
     assert centre[-1] == pytest.approx([centre[-1][0], -2.0], abs=1e-9)
-    total = history["energy/kinetic"][:] - history["energy/external_work"][:]
-    assert np.diff(total).max() < 1e-9 * history["energy/kinetic"][:].max()
+    if scheme == "ENERGY-MOMENTUM":
+        total = history["energy/kinetic"][:] - history["energy/external_work"][:]
+        assert np.diff(total).max() < 1e-9 * history["energy/kinetic"][:].max()
     # no point of the profile is inside of the disc
     for x, y in heights[:-1]:
         assert np.hypot(centre[:, 0] - x, centre[:, 1] - y).min() > 1.0 - 1e-9
