@@ -23,7 +23,6 @@ use super::formulation::{
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::local_solution::{LAST_STEP, least, zero};
-use super::shapes::CORNERS;
 use crate::materials::{Committed, Strains, StressAtPoints};
 
 /// Strains of the displacements and four of the element.
@@ -37,7 +36,7 @@ pub(super) fn alternating(a: usize) -> f64 {
 
 /// Natural signs r_a, s_a of a node, and of the integration point next to it.
 pub(super) fn signs(a: usize) -> [f64; 2] {
-    CORNERS[a % 4]
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]][a % 4]
 }
 
 /// Hourglass pattern and strains of an element, in the reference configuration.

@@ -1,4 +1,4 @@
-//! Results at integration points, and between them at nodes. Section 2 of docs/theory.md, Output.
+//! Results at integration points, and between them at nodes. Section 2 of docs/theory.md.
 
 use smallvec::SmallVec;
 

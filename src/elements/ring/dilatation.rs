@@ -15,7 +15,7 @@
 use nalgebra::{Matrix4, Vector4};
 
 use super::points::{OfPoints, Point, as_strain};
-use super::{Compatible, Rows, Stresses, add_products, size};
+use super::stresses::{Compatible, Rows, Stresses, add_products, size};
 use crate::elements::formulation::smaller;
 use crate::elements::solid::MAX_DOFS;
 use crate::materials::symmetric::{IDENTITY, cofactor, dyad, product};

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
 
 use super::points::{OfPoints, Point, as_strain, section};
-use super::{Compatible, Rows, Stresses, size};
+use super::stresses::{Compatible, Rows, Stresses, size};
 use crate::elements::enhanced_strain::{alternating, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};

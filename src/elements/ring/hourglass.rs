@@ -19,7 +19,7 @@ use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use super::enhanced::{Enhanced, STRAINS};
 use super::points::{Gradient, OfPoints, Path, Point};
-use super::size;
+use super::stresses::size;
 use crate::elements::formulation::smaller;
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
 use crate::materials::{RingStressAtPoints, Strains, Symmetric};

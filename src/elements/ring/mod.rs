@@ -7,6 +7,7 @@ mod dilatation;
 mod enhanced;
 mod hourglass;
 mod points;
+mod stresses;
 
 use nalgebra::{Matrix4, Vector2, Vector4};
 
@@ -14,9 +15,10 @@ use self::dilatation::Dilatation;
 use self::enhanced::Enhanced;
 use self::hourglass::Hourglass;
 use self::points::{Gradient, OfPoints, Path, Point, Points, section};
+use self::stresses::{Compatible, Rows, Stresses, add_products, size};
 use super::formulation::{ElementResult, PointResult, PointResults, smaller};
 use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
-use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
+use crate::materials::{Committed, RingStressAtPoints, Symmetric, contract};
 use crate::model::{self, Formulation, Nodes, Thickness};
 
 /// An element with all components of the strain.
@@ -39,81 +41,6 @@ enum RingFormulation {
     /// Hourglass modes beside the one point.
     Reduced(Box<Hourglass>),
 }
-
-/// Strains of the displacements of all points at the start and at the end of a motion, twice the same at one
-/// configuration.
-struct Compatible {
-    start: OfPoints<Symmetric>,
-    end: OfPoints<Symmetric>,
-    is_increment: bool,
-}
-
-impl Compatible {
-    /// E_m = (E0 + E1)/2
-    fn halfway(&self) -> OfPoints<Symmetric> {
-        let ends = self.start.iter().zip(&self.end);
-        ends.map(|(e0, e1)| (e0 + e1) / 2.0).collect()
-    }
-
-    /// Strains of a material from one list to another, those of the start and of the end.
-    fn strains<'a>(
-        &self,
-        start: impl Iterator<Item = &'a Symmetric>,
-        end: impl Iterator<Item = &'a Symmetric>,
-    ) -> OfPoints<Strains<Symmetric>> {
-        let of_point = |(e0, e1): (&Symmetric, &Symmetric)| match self.is_increment {
-            true => Strains::Between(*e0, *e1),
-            false => Strains::At(*e1),
-        };
-        start.zip(end).map(of_point).collect()
-    }
-
-    /// S_g = S_g + f/(sum v dE:dE) dE_g, f = work - sum v S:dE, eq. (2.29): stresses that do a work in an increment.
-    fn do_work(&self, work: f64, points: &[Point], s: &mut [Symmetric]) {
-        let changes = self.end.iter().zip(&self.start).map(|(e1, e0)| e1 - e0);
-        let changes: OfPoints<Symmetric> = changes.collect();
-        let (mut f, mut squares, mut volume) = (work, 0.0, 0.0);
-        for ((point, change), s) in points.iter().zip(&changes).zip(s.iter()) {
-            f -= contract(s, change) * point.volume;
-            squares += contract(change, change) * point.volume;
-            volume += point.volume;
-        }
-        if (squares / volume).sqrt() > f64::EPSILON {
-            for (s, change) in s.iter_mut().zip(&changes) {
-                *s += change * (f / squares);
-            }
-        }
-    }
-}
-
-/// Stresses of all points of an element in a motion.
-struct Stresses {
-    /// Strains of the material.
-    strains: OfPoints<Strains<Symmetric>>,
-    /// Strains at which the material has its tangent.
-    tangent_at: OfPoints<Strains<Symmetric>>,
-    /// Second Piola-Kirchhoff stress that does work on the strains of the displacements (force/length^2).
-    s: OfPoints<Symmetric>,
-    /// Smallest determinant met; NaN where there is no stress.
-    determinant: f64,
-}
-
-impl Stresses {
-    /// Those of the law at the strains of the displacements.
-    fn of_displacements(material: &impl RingStressAtPoints, compatible: &Compatible) -> Self {
-        let strains = compatible.strains(compatible.start.iter(), compatible.end.iter());
-        let stresses = strains.iter().enumerate();
-        Stresses {
-            s: stresses.map(|(p, e)| material.ring_stress(p, e)).collect(),
-            tangent_at: strains.clone(),
-            strains,
-            determinant: f64::INFINITY,
-        }
-    }
-}
-
-/// Rows of dE (11, 22, 33, 2*12) by the displacements of an element, one vector for each.
-type Rows = [Vector4<f64>; MAX_DOFS];
 
 impl Ring {
     /// The element of a thickness in its section between nodes at the coordinates `x` of all nodes.
@@ -384,22 +311,6 @@ impl Ring {
     fn add_material(&self, c: impl Fn(usize) -> Matrix4<f64>, rows: &[Rows], k: &mut [f64]) {
         for (p, (point, rows)) in self.points.iter().zip(rows).enumerate() {
             add_products(rows, &(c(p) * point.volume), k);
-        }
-    }
-}
-
-/// Number of rows of a square matrix of an element.
-fn size(k: &[f64]) -> usize {
-    k.len().isqrt()
-}
-
-/// Adds B^T C B.
-fn add_products(rows: &Rows, c: &Matrix4<f64>, k: &mut [f64]) {
-    let d = size(k);
-    for col in 0..d {
-        let stress = c * rows[col];
-        for row in 0..d {
-            k[col * d + row] += rows[row].dot(&stress);
         }
     }
 }
