@@ -35,7 +35,7 @@ enum RingFormulation {
     /// Nothing.
     Displacement,
     /// Volume ratios of the element in place of those of the points.
-    Dilatation(Dilatation),
+    Dilatation(Box<Dilatation>),
     /// Strains of the element.
     Enhanced(Box<Enhanced>),
     /// Hourglass modes beside the one point.
@@ -51,10 +51,10 @@ impl Ring {
         let mut points = Points::of_stress(element_type).map(&own, thickness);
         let formulation = match (element_type.formulation, element_type.shape) {
             (Formulation::MeanDilatation, _) => {
-                RingFormulation::Dilatation(Dilatation::new(&points, 1))
+                RingFormulation::Dilatation(Box::new(Dilatation::new(&points, 1)))
             }
             (Formulation::LinearPressure | Formulation::ReducedLinearPressure, _) => {
-                RingFormulation::Dilatation(Dilatation::new(&points, 3))
+                RingFormulation::Dilatation(Box::new(Dilatation::new(&points, 3)))
             }
             (Formulation::Enhanced, _) => {
                 RingFormulation::Enhanced(Box::new(Enhanced::new(&points)))
