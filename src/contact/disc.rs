@@ -233,7 +233,8 @@ impl Places {
 
     /// The vectors at start and end that a map gives.
     fn vectors(&self, map: &Map) -> [Vector2<f64>; 2] {
-        self.nodes.map(|x| map * Row::from_iterator(x.into_iter().flatten()))
+        self.nodes
+            .map(|x| map * Row::from_iterator(x.into_iter().flatten()))
     }
 
     /// s, a and b.
@@ -264,7 +265,8 @@ fn arms() -> [Map; 2] {
 fn from_centre(arc: &MasterArc) -> Map {
     let [alpha, beta] = arc.place;
     let mut r = Map::zeros();
-    r.fixed_view_mut::<2, 2>(0, 0).copy_from(&Matrix2::identity());
+    r.fixed_view_mut::<2, 2>(0, 0)
+        .copy_from(&Matrix2::identity());
     let at_p = Matrix2::identity() * (1.0 - alpha) - J * beta;
     let at_q = Matrix2::identity() * alpha + J * beta;
     r.fixed_view_mut::<2, 2>(0, 2).copy_from(&-at_p);
@@ -346,7 +348,8 @@ fn tilt(
         arc: round.arc,
     };
     let centre = at.start([s])[0];
-    let start = |feature: &Feature| feature.gap(centre, |node| at.start([node])[0]) + source.allowed[0];
+    let start =
+        |feature: &Feature| feature.gap(centre, |node| at.start([node])[0]) + source.allowed[0];
     let [gap, before] = [start(&feature), start(from)];
     let of_start = Projection {
         gap,
@@ -356,7 +359,10 @@ fn tilt(
         normal: [0.0; 2],
     };
     let dofs = source.nodes.map(|node| [2 * node, 2 * node + 1]);
-    let d = dofs.as_flattened().iter().map(|&dof| at.u[dof] - at.u0[dof]);
+    let d = dofs
+        .as_flattened()
+        .iter()
+        .map(|&dof| at.u[dof] - at.u0[dof]);
     let way = rows.of_centre[0].dot(&Row::from_iterator(d));
     let rise = rise(&of_start, before, centre);
     // a force that leans too far is left as it is: what it gains is cut back
@@ -473,8 +479,8 @@ fn at_arc(places: &Places, radius: f64, arc: &MasterArc) -> DiscRows {
     let slope = J * r0 / own.m - dm * (r0.perp(&r1) / (own.m * own.m));
     let of_centre = [to_r * along, to_r * slope].map(|row| row * own.sign);
     let force = of_centre[0] - couples(s.force, e.force) * own.sign;
-    let derivative = of_centre[1]
-        - (to_r * dm * own.turn() + couples(s.derivative, e.derivative)) * own.sign;
+    let derivative =
+        of_centre[1] - (to_r * dm * own.turn() + couples(s.derivative, e.derivative)) * own.sign;
     DiscRows {
         force: RowPair {
             normal: (to_r * normal * own.sign).into(),
@@ -517,9 +523,7 @@ pub(super) fn stiffness(
             let [r0, r1] = own.r;
             let [l0, l1] = own.r.map(|r| r.norm());
             let normal = match at.form {
-                RowForm::End => {
-                    Matrix2::identity() / l1 - r1 * r1.transpose() / l1.powi(3)
-                }
+                RowForm::End => Matrix2::identity() / l1 - r1 * r1.transpose() / l1.powi(3),
                 RowForm::DiscreteGradient => {
                     let sum = l0 + l1;
                     Matrix2::identity() / sum - (r0 + r1) * r1.transpose() / (l1 * sum * sum)
@@ -540,7 +544,10 @@ pub(super) fn stiffness(
         // dkappa = -kappa/s times the derivative of the way s
         let [force, slope] = rows.of_centre;
         let dofs = source.nodes.map(|node| [2 * node, 2 * node + 1]);
-        let d = dofs.as_flattened().iter().map(|&dof| at.u[dof] - at.u0[dof]);
+        let d = dofs
+            .as_flattened()
+            .iter()
+            .map(|&dof| at.u[dof] - at.u0[dof]);
         let way = force.dot(&Row::from_iterator(d));
         k -= force * slope.transpose() * (leaning / way);
     }
@@ -599,7 +606,10 @@ mod tests {
                     (plus[k], minus[k]) = (plus[k] + 1e-6, minus[k] - 1e-6);
                     let (p, q) = (of(&plus), of(&minus));
                     let (gap, slip) = ((p.gap - q.gap) / 2e-6, (p.slip - q.slip) / 2e-6);
-                    assert!((rows.normal[k] - gap).abs() < 1e-8, "{form:?} {k} {source:?}");
+                    assert!(
+                        (rows.normal[k] - gap).abs() < 1e-8,
+                        "{form:?} {k} {source:?}"
+                    );
                     let error = (rows.tangential[k] - slip).abs();
                     assert!(error < 1e-8, "{form:?} {k} {error} {source:?}");
                 }
@@ -618,7 +628,8 @@ mod tests {
             for row in [normal, tangential] {
                 let (mut force, mut moment) = ([0.0; 2], 0.0);
                 for (node, f) in row.chunks(2).enumerate() {
-                    let middle = |i: usize| X[node][i] + (U0[2 * node + i] + U1[2 * node + i]) / 2.0;
+                    let middle =
+                        |i: usize| X[node][i] + (U0[2 * node + i] + U1[2 * node + i]) / 2.0;
                     force = [force[0] + f[0], force[1] + f[1]];
                     moment += middle(0) * f[1] - middle(1) * f[0];
                 }
@@ -650,7 +661,10 @@ mod tests {
                     for j in 0..8 {
                         let expected = (quotient(i, j) + quotient(j, i)) / 2.0;
                         let error = (found[(i, j)] - expected).abs();
-                        assert!(error < 1e-7 * found.amax(), "{form:?} {i} {j} {error} {source:?}");
+                        assert!(
+                            error < 1e-7 * found.amax(),
+                            "{form:?} {i} {j} {error} {source:?}"
+                        );
                     }
                 }
             }
@@ -663,16 +677,7 @@ mod tests {
         let x = [[0.0, 1.0], [5.0, 0.0], [-5.0, 0.0], [0.0, 2.0]];
         let t = 0.3_f64;
         let way = 2.0 * (t / 2.0).tan();
-        let u = [
-            way,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            way + t.sin(),
-            t.cos() - 1.0,
-        ];
+        let u = [way, 0.0, 0.0, 0.0, 0.0, 0.0, way + t.sin(), t.cos() - 1.0];
         let source = PairTarget {
             nodes: [0, 1, 2, 3],
             allowed: [-1.0; 2],

@@ -243,7 +243,9 @@ impl ContactSurfaces {
     /// The arc that a segment is a chord of.
     pub fn arc_of(&self, segment: usize) -> Option<&SurfaceArc> {
         let at = self.arcs.partition_point(|arc| arc.segments.end <= segment);
-        self.arcs.get(at).filter(|arc| arc.segments.contains(&segment))
+        self.arcs
+            .get(at)
+            .filter(|arc| arc.segments.contains(&segment))
     }
 
     /// With the interior of the bodies behind the segments.

@@ -36,7 +36,8 @@ impl Constraint {
         if let Some(round) = &mut source.round
             && let Some(from) = round.from.take()
         {
-            (source.nodes[1], source.nodes[2], round.arc) = (from.nodes[0], from.nodes[1], from.arc);
+            (source.nodes[1], source.nodes[2], round.arc) =
+                (from.nodes[0], from.nodes[1], from.arc);
         }
         if let Some([a, b]) = source.from.take() {
             (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);

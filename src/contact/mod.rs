@@ -36,8 +36,8 @@ pub use delassus::{DelassusSpace, frictional_lcp};
 pub use disc::MasterArc;
 pub(crate) use geometry::position;
 pub use geometry::{
-    Along, ContactSurfaces, Interior, Positions, Projection, SurfaceArc, contact_surfaces,
-    project, shortest_faces,
+    Along, ContactSurfaces, Interior, Positions, Projection, SurfaceArc, contact_surfaces, project,
+    shortest_faces,
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use pairing::find_targets;

@@ -9,8 +9,8 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::disc::Round;
 use super::crossing::{Crossing, Direction, Motion, crossings};
+use super::disc::Round;
 use super::geometry::{Along, ContactSurfaces, Positions, Projection, project};
 use super::keys::ConstraintKey;
 use super::search::Candidate;
@@ -168,7 +168,10 @@ impl PairTarget {
         PairTarget {
             from: None,
             points,
-            round: self.round.map(|round| Round { from: None, ..round }),
+            round: self.round.map(|round| Round {
+                from: None,
+                ..round
+            }),
             ..self
         }
     }

@@ -6,7 +6,8 @@ use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff, SmallStr
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, ContactFormulation, Curve,
     Damping, Direction, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction,
-    Material, Mesh, Model, Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
+    Material, Mesh, Model, Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach,
+    TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.

@@ -8,8 +8,8 @@ use super::frames::{DEFAULT_FRAMES, are_dense};
 use super::model_group::contact_names;
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
-use crate::diagnostics::shown;
 use crate::diagnostics::Sources;
+use crate::diagnostics::shown;
 use crate::dynamics::rigid_inertia;
 use crate::model::{
     Connector, ConnectorLaw, Contact, ContactChanges, ContactFormulation, EdgeScales, Element,

@@ -174,7 +174,13 @@ fn write_disc(at: &Group, disc: Disc, master: &Surface) -> hdf5::Result<()> {
         .collect();
     let centres: Vec<[f64; 2]> = arcs.iter().map(|arc| arc.centre).collect();
     constant(at, "arcs", &[arcs.len(), 2], places.as_flattened(), ARCS)?;
-    constant(at, "arc_centres", &[arcs.len(), 2], centres.as_flattened(), ARC_CENTRES)
+    constant(
+        at,
+        "arc_centres",
+        &[arcs.len(), 2],
+        centres.as_flattened(),
+        ARC_CENTRES,
+    )
 }
 
 /// Procedure and scheme of every step.
@@ -324,8 +330,14 @@ const SEGMENTS: Meaning = (
 );
 const DISC_RADIUS: Meaning = ("length", "radius of the slave, a disc about its node");
 const DISC_ARM: Meaning = ("1", "index of the node that takes the turning of the disc");
-const ARCS: Meaning = ("1", "first chord of each arc of the master among its segments, and the one after the last");
-const ARC_CENTRES: Meaning = ("length", "centres of the arcs of the master in the undeformed configuration");
+const ARCS: Meaning = (
+    "1",
+    "first chord of each arc of the master among its segments, and the one after the last",
+);
+const ARC_CENTRES: Meaning = (
+    "length",
+    "centres of the arcs of the master in the undeformed configuration",
+);
 const ACTS: Meaning = (
     "1",
     "whether the contact acts in each step: 1, or 0 where it is removed",

@@ -7,9 +7,7 @@ use super::outline::Outline;
 use super::sets::Sets;
 use crate::deck::{Card, Deck, Line, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest, shown};
-use crate::model::{
-    CircleArc, ElementsAtNodes, Face, Mesh, RigidProfile, Surface, SurfaceKind,
-};
+use crate::model::{CircleArc, ElementsAtNodes, Face, Mesh, RigidProfile, Surface, SurfaceKind};
 use crate::vectors::{angle, cross, difference};
 use std::collections::{BTreeSet, HashSet};
 
@@ -334,7 +332,8 @@ impl Profile {
         let first = self.arcs.first()?;
         let chords: usize = self.arcs.iter().map(|arc| arc.segments.len()).sum();
         let mut following = self.sides.iter().cycle().skip(1);
-        let is_chain = (self.sides.iter()).all(|[_, to]| following.next().map(|side| side[0]) == Some(*to));
+        let is_chain =
+            (self.sides.iter()).all(|[_, to]| following.next().map(|side| side[0]) == Some(*to));
         let arm = |point: usize| difference(first.centre, self.points[point]);
         let is_inside = (self.sides.iter()).all(|&[from, to]| cross(arm(from), arm(to)) < 0.0);
         let is_round = chords == self.sides.len() && is_chain && is_inside;

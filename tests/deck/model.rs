@@ -858,7 +858,11 @@ fn a_rigid_surface_moves_with_its_reference_node() {
     );
     let [a, b, c] = [nodes - 3, nodes - 2, nodes - 1];
     let surface = &model.surfaces[model.contacts[0].master];
-    assert_eq!(surface.kind, SurfaceKind::Rigid(vec![[c, b], [b, a]]));
+    let SurfaceKind::Rigid(profile) = &surface.kind else {
+        panic!("{:?}", surface.kind);
+    };
+    assert_eq!(profile.segments, [[c, b], [b, a]]);
+    assert_eq!((profile.arcs.len(), profile.centre), (0, None));
     let supports = &model.steps[0].supports;
     assert!(supports.windows(2).all(|pair| pair[0].dof < pair[1].dof));
     for node in [nodes - 4, a, b, c] {
