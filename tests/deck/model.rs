@@ -1087,7 +1087,7 @@ fn a_section_and_its_element_types_agree_on_mean_dilatation() {
         (
             "CPS4",
             "MEAN DILATATION",
-            "MEAN DILATATION is for CPE4: element 7 is CPS4",
+            "MEAN DILATATION is for CPE4 and CAX4: element 7 is CPS4",
         ),
         (
             "CPE4H",
