@@ -8,82 +8,14 @@ use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use smallvec::SmallVec;
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
-use super::geometry::{ContactSurfaces, Positions, Projection, SurfaceArc, project};
+use super::geometry::{ContactSurfaces, MasterArc, Positions, Projection, SurfaceArc};
 use super::keys::ConstraintKey;
 use super::node_to_segment::{SegmentRows, rows_between};
 use super::search::{Candidate, ListedSlave};
 use super::stiffness::changes_between;
-use super::targets::{ContactTarget, PairTarget, position_round_off, rise};
+use super::targets::{ContactTarget, Feature, PairTarget, Round, position_round_off, rise};
 use super::tolerances::{END_OF_FEATURE, SLIDING_SINE};
 use crate::vectors::{angle, difference};
-
-/// How a disc meets the master.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Round {
-    /// Radius of the slave disc (length).
-    pub radius: f64,
-    /// The arc of the master that the nodes a and b move, or the vertex a, an arc without radius; none of a segment.
-    pub arc: Option<MasterArc>,
-    /// What the centre was over at the start, where that was something else.
-    pub from: Option<Feature>,
-}
-
-/// An arc about a point that moves with two nodes p and q of the master: x_c = x_p + alpha e + beta J e, e = x_q - x_p.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct MasterArc {
-    /// alpha and beta.
-    pub place: [f64; 2],
-    /// Radius (length): negative where the body is outside of the circle, 0 of a vertex.
-    pub radius: f64,
-}
-
-impl MasterArc {
-    /// A vertex: the first of its nodes.
-    const VERTEX: MasterArc = MasterArc {
-        place: [0.0; 2],
-        radius: 0.0,
-    };
-
-    /// Its centre, p and q being at these places.
-    fn centre(&self, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
-        let ([alpha, beta], [x, y]) = (self.place, difference(p, q));
-        [p[0] + alpha * x - beta * y, p[1] + alpha * y + beta * x]
-    }
-
-    /// Distance of a point out of the body, p and q being at these places: |r| - R, or R - |r| in a hole.
-    fn gap(&self, s: [f64; 2], nodes: [[f64; 2]; 2]) -> f64 {
-        let [x, y] = difference(self.centre(nodes), s);
-        self.sign() * x.hypot(y) - self.radius
-    }
-
-    /// 1, or -1 of an arc whose body is outside.
-    fn sign(&self) -> f64 {
-        match self.radius < 0.0 {
-            true => -1.0,
-            false => 1.0,
-        }
-    }
-}
-
-/// A segment or an arc of the master, by its nodes.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Feature {
-    /// Ends of the segment; the nodes p and q of an arc.
-    pub nodes: [usize; 2],
-    /// The arc; none of a segment.
-    pub arc: Option<MasterArc>,
-}
-
-impl Feature {
-    /// Distance of a point out of the body (length).
-    fn gap(&self, s: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
-        let [a, b] = self.nodes.map(at);
-        match self.arc {
-            None => project(s, a, b).gap,
-            Some(arc) => arc.gap(s, [a, b]),
-        }
-    }
-}
 
 /// Adds the targets of a disc: the segments, arcs and convex vertices that its centre is over in the iterate, and was
 /// in front of at the start.

@@ -15,7 +15,6 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::disc::MasterArc;
 use super::tolerances::{
     CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE,
 };
@@ -139,6 +138,43 @@ pub struct ContactSurfaces {
     pub disc: Option<Disc>,
     /// Arcs of a rigid master, with increasing segments.
     pub arcs: Vec<SurfaceArc>,
+}
+
+/// An arc about a point that moves with two nodes p and q of the master: x_c = x_p + alpha e + beta J e, e = x_q - x_p.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MasterArc {
+    /// alpha and beta.
+    pub place: [f64; 2],
+    /// Radius (length): negative where the body is outside of the circle, 0 of a vertex.
+    pub radius: f64,
+}
+
+impl MasterArc {
+    /// A vertex: the first of its nodes.
+    pub(super) const VERTEX: MasterArc = MasterArc {
+        place: [0.0; 2],
+        radius: 0.0,
+    };
+
+    /// Its centre, p and q being at these places.
+    pub(super) fn centre(&self, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
+        let ([alpha, beta], [x, y]) = (self.place, difference(p, q));
+        [p[0] + alpha * x - beta * y, p[1] + alpha * y + beta * x]
+    }
+
+    /// Distance of a point out of the body, p and q being at these places: |r| - R, or R - |r| in a hole.
+    pub(super) fn gap(&self, s: [f64; 2], nodes: [[f64; 2]; 2]) -> f64 {
+        let [x, y] = difference(self.centre(nodes), s);
+        self.sign() * x.hypot(y) - self.radius
+    }
+
+    /// 1, or -1 of an arc whose body is outside.
+    pub(super) fn sign(&self) -> f64 {
+        match self.radius < 0.0 {
+            true => -1.0,
+            false => 1.0,
+        }
+    }
 }
 
 /// An arc of a rigid master.

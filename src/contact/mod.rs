@@ -33,11 +33,10 @@ pub use compliance::{Compliance, Scope};
 pub use constraint::{Configurations, Constraint, PerDof, RowForm, Rows};
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub use delassus::{DelassusSpace, frictional_lcp};
-pub use disc::MasterArc;
 pub(crate) use geometry::position;
 pub use geometry::{
-    Along, ContactSurfaces, Interior, Positions, Projection, SurfaceArc, contact_surfaces, project,
-    shortest_faces,
+    Along, ContactSurfaces, Interior, MasterArc, Positions, Projection, SurfaceArc,
+    contact_surfaces, project, shortest_faces,
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use pairing::find_targets;

@@ -10,8 +10,7 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::crossing::{Crossing, Direction, Motion, crossings};
-use super::disc::Round;
-use super::geometry::{Along, ContactSurfaces, Positions, Projection, project};
+use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Projection, project};
 use super::keys::ConstraintKey;
 use super::search::Candidate;
 use super::tolerances::{
@@ -134,6 +133,37 @@ pub enum Origin {
     Other([Vertex; 2]),
     /// None: it has come in over the end of the master surface.
     Outside,
+}
+
+/// How a disc meets the master.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Round {
+    /// Radius of the slave disc (length).
+    pub radius: f64,
+    /// The arc of the master that the nodes a and b move, or the vertex a, an arc without radius; none of a segment.
+    pub arc: Option<MasterArc>,
+    /// What the centre was over at the start, where that was something else.
+    pub from: Option<Feature>,
+}
+
+/// A segment or an arc of the master, by its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Feature {
+    /// Ends of the segment; the nodes p and q of an arc.
+    pub nodes: [usize; 2],
+    /// The arc; none of a segment.
+    pub arc: Option<MasterArc>,
+}
+
+impl Feature {
+    /// Distance of a point out of the body (length).
+    pub(super) fn gap(&self, s: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let [a, b] = self.nodes.map(at);
+        match self.arc {
+            None => project(s, a, b).gap,
+            Some(arc) => arc.gap(s, [a, b]),
+        }
+    }
 }
 
 /// Which slave node meets which segment, or which corner, or what the points of its faces meet.
