@@ -188,7 +188,8 @@ class Result:
         def visit(name: str, item: object) -> None:
             top, last = name.partition("/")[0], name.rpartition("/")[2]
             other = top in EVENTS or last in ("labels", "node", "EVOL")
-            if isinstance(item, h5py.Dataset) and item.ndim > 0 and not other:
+            # rows of a model without deformable bodies may be of no values
+            if isinstance(item, h5py.Dataset) and item.ndim > 0 and 0 not in item.shape[1:] and not other:
                 found[name] = item
 
         with self.reading("history"):
@@ -210,6 +211,8 @@ class Result:
 
     def complete_rows(self, path: str) -> NDArray[Any]:
         """The complete rows of a dataset by its path in the file, which starts with `history/`."""
+        if 0 in self.file[path].shape[1:]:
+            return np.zeros((self.rows, *self.file[path].shape[1:]))
         name = path.removeprefix("history/")
         event = name.partition("/")[0]
         if name in self.histories:

@@ -107,10 +107,8 @@ def test_discs_that_collide_keep_their_momenta(tmp_path: Path, mu: float) -> Non
     assert np.abs(momentum["linear"][:] - momentum["linear"][0]).max() < 1e-13
     assert np.abs(momentum["angular"][:] - momentum["angular"][0]).max() < 1e-13
     assert energy[-1] < 0.9 * energy[0] and np.diff(energy).max() < 1e-13
-    # the plastic impact leaves no normal velocity
-    a, b = (history[f"rigid/{name}"] for name in "AB")
-    apart = b["position"][:] - a["position"][:] if "position" in a else b["center"][:] - a["center"][:]
-    assert np.linalg.norm(apart, axis=1).min() > 1.8 - 1e-12
+    a, b = (history[f"rigid/{name}/position"][:] for name in "AB")
+    assert np.linalg.norm(b - a, axis=1).min() > 1.8 - 1e-12
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -120,7 +118,9 @@ def test_a_disc_swings_in_a_hole(tmp_path: Path, scheme: str) -> None:
     weight = f"*CLOAD\nNDISC, 2, {-GRAVITY!r}\n"
     history = run(tmp_path, *cards, dt=0.01, end=3.0, scheme=scheme, loads=weight)
     centre = history["rigid/DISC/U"][:] + [2.0, 0.0]
-    assert np.abs(np.linalg.norm(centre, axis=1) - 2.0).max() < 1e-12
+    # where it turns round at the height of the start it falls freely for an increment
+    length = np.linalg.norm(centre, axis=1)
+    assert 2.0 - 1e-6 < length.min() and length.max() < 2.0 + 1e-12
     total = history["energy/kinetic"][:] - history["energy/external_work"][:]
     assert np.diff(total).max() < 1e-10
     if scheme == "ENERGY-MOMENTUM":
@@ -171,8 +171,7 @@ def test_a_cam_lifts_its_follower_as_a_circle_does(tmp_path: Path) -> None:
     middle = theta[1:] - omega / n / 2
     force = load + 2.0 * offset * omega**2 * np.cos(middle)
     (contact,) = history["contact"].values()
-    found = contact["normal_force"][1:] if "normal_force" in contact else contact["normal"][1:]
-    assert np.abs(found - force)[2:].max() < 1e-3 * force.max()
+    assert np.abs(contact["normal"][1:] - force)[2:].max() < 1e-3 * force.max()
     assert balance(history) < 1e-11
 
 
