@@ -244,9 +244,10 @@ impl Constraint {
         self.nodes().take(self.slave_dofs / 2)
     }
 
-    /// The slave nodes whose state it says: of a weighted constraint only the one that it is named by.
+    /// The slave nodes whose state it says: of a weighted constraint only the one that it is named by, of a disc its
+    /// centre.
     pub fn named_slaves(&self) -> impl Iterator<Item = usize> {
-        let count = match self.is_weighted() {
+        let count = match self.is_weighted() || self.source.round.is_some() {
             true => 1,
             false => self.slave_dofs / 2,
         };

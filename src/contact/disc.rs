@@ -149,7 +149,8 @@ type Row = SVector<f64, 8>;
 /// J: turns by a right angle to the left.
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
-/// Positions of the centre s, of a and b, and of the node that turns with the disc, at the start and at the end.
+/// Positions of the centre s, of the node that turns with the disc, and of a and b, at the start and at the end. Rows have
+/// this order, nodes of the slave first.
 struct Places {
     form: RowForm,
     nodes: [[[f64; 2]; 4]; 2],
@@ -159,7 +160,7 @@ impl Places {
     fn new(nodes: [usize; 4], at: &Configurations) -> Self {
         Places {
             form: at.form,
-            nodes: [at.start(nodes), at.iterate(nodes)],
+            nodes: [at.start(in_rows(nodes)), at.iterate(in_rows(nodes))],
         }
     }
 
@@ -171,7 +172,7 @@ impl Places {
 
     /// s, a and b.
     fn of_segment(&self) -> [[[f64; 2]; 3]; 2] {
-        self.nodes.map(|[s, a, b, _]| [s, a, b])
+        self.nodes.map(|[s, _, a, b]| [s, a, b])
     }
 
     /// Part w of the increment at which directions are taken, z_m = z_0 + w (z_1 - z_0): the middle, or the end.
@@ -187,8 +188,8 @@ impl Places {
 fn arms() -> [Map; 2] {
     let (mut e, mut arm) = (Map::zeros(), Map::zeros());
     for i in 0..2 {
-        (e[(i, 2 + i)], e[(i, 4 + i)]) = (-1.0, 1.0);
-        (arm[(i, i)], arm[(i, 6 + i)]) = (-1.0, 1.0);
+        (e[(i, 4 + i)], e[(i, 6 + i)]) = (-1.0, 1.0);
+        (arm[(i, i)], arm[(i, 2 + i)]) = (-1.0, 1.0);
     }
     [e, arm]
 }
@@ -201,8 +202,8 @@ fn from_centre(arc: &MasterArc) -> Map {
         .copy_from(&Matrix2::identity());
     let at_p = Matrix2::identity() * (1.0 - alpha) - J * beta;
     let at_q = Matrix2::identity() * alpha + J * beta;
-    r.fixed_view_mut::<2, 2>(0, 2).copy_from(&-at_p);
-    r.fixed_view_mut::<2, 2>(0, 4).copy_from(&-at_q);
+    r.fixed_view_mut::<2, 2>(0, 4).copy_from(&-at_p);
+    r.fixed_view_mut::<2, 2>(0, 6).copy_from(&-at_q);
     r
 }
 
@@ -249,7 +250,20 @@ struct DiscRows {
 pub(super) fn constraint(source: PairTarget, round: &Round, at: &Configurations) -> Constraint {
     let rows = rows(&source, round, at);
     let gap_and_scale = (rows.gap, rows.scale);
-    Constraint::of_nodes(source, [rows.force, rows.derivative], gap_and_scale, at)
+    let nodes = source.nodes;
+    let in_rows = PairTarget {
+        nodes: in_rows(nodes),
+        ..source
+    };
+    let mut all = Constraint::of_nodes(in_rows, [rows.force, rows.derivative], gap_and_scale, at);
+    all.slave_dofs = 4;
+    all.source.nodes = nodes;
+    all
+}
+
+/// The nodes s, a, b and the one that turns with the disc in the order of the rows.
+fn in_rows([s, a, b, arm]: [usize; 4]) -> [usize; 4] {
+    [s, arm, a, b]
 }
 
 fn rows(source: &PairTarget, round: &Round, at: &Configurations) -> DiscRows {
@@ -290,7 +304,7 @@ fn tilt(
         tangent: [0.0; 2],
         normal: [0.0; 2],
     };
-    let dofs = source.nodes.map(|node| [2 * node, 2 * node + 1]);
+    let dofs = in_rows(source.nodes).map(|node| [2 * node, 2 * node + 1]);
     let d = dofs
         .as_flattened()
         .iter()
@@ -319,10 +333,8 @@ fn at_segment(places: &Places, radius: f64) -> DiscRows {
         force,
         derivative,
     } = rows_between(places.of_segment(), places.form);
-    let all = |row: [f64; 6]| {
-        let mut all = Row::zeros();
-        all.fixed_rows_mut::<6>(0).copy_from_slice(&row);
-        all
+    let all = |[sx, sy, ax, ay, bx, by]: [f64; 6]| {
+        Row::from_column_slice(&[sx, sy, 0.0, 0.0, ax, ay, bx, by])
     };
     let maps = arms();
     let [of_segment, of_disc] = maps.map(|map| Turn::new(places.vectors(&map), places.part()));
@@ -444,7 +456,12 @@ pub(super) fn stiffness(
     match &round.arc {
         None => {
             let of_centre = changes_between(places.of_segment(), [pn, pt + leaning], at.form);
-            k.fixed_view_mut::<6, 6>(0, 0).copy_from(&of_centre);
+            let of_segment = [0, 1, 4, 5, 6, 7];
+            for (i, &row) in of_segment.iter().enumerate() {
+                for (j, &column) in of_segment.iter().enumerate() {
+                    k[(row, column)] = of_centre[(i, j)];
+                }
+            }
             for (map, sign) in arms().iter().zip([1.0, -1.0]) {
                 let turn = Turn::new(places.vectors(map), places.part());
                 k += map.transpose() * turn.change * map * (sign * round.radius * pt);
@@ -475,7 +492,7 @@ pub(super) fn stiffness(
     if rows.kappa != 0.0 {
         // dkappa = -kappa/s times the derivative of the way s
         let [force, slope] = rows.of_centre;
-        let dofs = source.nodes.map(|node| [2 * node, 2 * node + 1]);
+        let dofs = in_rows(source.nodes).map(|node| [2 * node, 2 * node + 1]);
         let d = dofs
             .as_flattened()
             .iter()
@@ -533,9 +550,9 @@ mod tests {
                 let of = |u: &[f64]| Constraint::new(source.clone(), &between(form, &U0, u));
                 let found = of(&U1);
                 let rows = found.derivative_rows();
-                for k in 0..8 {
+                for (k, &dof) in found.dofs.iter().enumerate() {
                     let [mut plus, mut minus] = [U1; 2];
-                    (plus[k], minus[k]) = (plus[k] + 1e-6, minus[k] - 1e-6);
+                    (plus[dof], minus[dof]) = (plus[dof] + 1e-6, minus[dof] - 1e-6);
                     let (p, q) = (of(&plus), of(&minus));
                     let (gap, slip) = ((p.gap - q.gap) / 2e-6, (p.slip - q.slip) / 2e-6);
                     assert!(
@@ -559,7 +576,8 @@ mod tests {
             let Rows { normal, tangential } = &found.force_rows;
             for row in [normal, tangential] {
                 let (mut force, mut moment) = ([0.0; 2], 0.0);
-                for (node, f) in row.chunks(2).enumerate() {
+                for (f, dofs) in row.chunks(2).zip(found.dofs.chunks(2)) {
+                    let node = dofs[0] / 2;
                     let middle =
                         |i: usize| X[node][i] + (U0[2 * node + i] + U1[2 * node + i]) / 2.0;
                     force = [force[0] + f[0], force[1] + f[1]];
@@ -589,9 +607,10 @@ mod tests {
                     (plus[column], minus[column]) = (plus[column] + 1e-6, minus[column] - 1e-6);
                     (nodal(&plus)[row] - nodal(&minus)[row]) / 2e-6
                 };
-                for i in 0..8 {
-                    for j in 0..8 {
-                        let expected = (quotient(i, j) + quotient(j, i)) / 2.0;
+                let dofs = Constraint::new(source.clone(), &at).dofs;
+                for (i, &row) in dofs.iter().enumerate() {
+                    for (j, &column) in dofs.iter().enumerate() {
+                        let expected = (quotient(row, column) + quotient(column, row)) / 2.0;
                         let error = (found[(i, j)] - expected).abs();
                         assert!(
                             error < 1e-7 * found.amax(),

@@ -440,7 +440,7 @@ class Frames:
             GAP + noise,
             f"GAP, {{}} of the open nodes, {place}",
         )
-        self._gap_field(x, way, status, gaps, noise, contacts, place)
+        self._gap_field(x, way, opened, gaps, noise, contacts, place)
         loaded = np.setdiff1d(np.flatnonzero(force > FORCE * self.force_scale), discs)
         self.checks["complementarity"].add(
             nearest[loaded], TOUCH + noise, f"{{}} of {len(loaded)} loaded nodes, {place}"
@@ -466,14 +466,14 @@ class Frames:
         self,
         x: Array,
         way: Array,
-        status: Integers,
+        opened: Integers,
         gaps: Array,
         noise: float,
         contacts: list[Contact],
         place: str,
     ) -> None:
         """GAP is the distance from the line of some segment."""
-        asked = np.flatnonzero((status == OPEN) & np.isfinite(gaps))
+        asked = opened[np.isfinite(gaps[opened])]
         off = np.full(len(x), np.inf)
         bound = 1e-8 + noise
         for contact in contacts:
