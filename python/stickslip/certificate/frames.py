@@ -307,8 +307,9 @@ class Frames:
                     *(np.append(o.slaves, o.segments.ravel()) for o in others),
                 ]
             )
-            if not np.isin(contact.slaves, alone).any():
-                total = force[contact.slaves].sum(axis=0)
+            slaves = contact.slaves if contact.disc is None else np.append(contact.slaves, contact.disc.arm)
+            if not np.isin(slaves, alone).any():
+                total = force[slaves].sum(axis=0)
                 stored = self.result.contact[contact.name]["force"][increment.row]
                 check.add(
                     np.abs(total - stored).max() / size,
