@@ -130,21 +130,22 @@ class Result:
     @cached_property
     def in_cells(self) -> Integers:
         """Nodes of elements."""
-        return np.unique(np.concatenate(self.cells))
+        return np.unique(np.concatenate([*self.cells, np.empty(0, np.int64)]))
 
     @cached_property
     def edge_length(self) -> float:
         """Median distance of the nodes that follow each other around elements of the undeformed mesh."""
         pairs = [(self.coordinates[one], np.roll(one, -1)) for one in self.outlines]
         way = [place - self.coordinates[after] for place, after in pairs]
-        return float(np.median(np.linalg.norm(np.concatenate(way), axis=1)))
+        return float(np.median(np.linalg.norm(np.concatenate(way), axis=1))) if way else np.inf
 
     @cached_property
     def boundary(self) -> Integers:
         """Straight lines between nodes that belong to one element only, [edges, 2] node indices, body on the left."""
         pairs = (zip(one, np.roll(one, -1)) for one in self.outlines)
         edges = {(int(a), int(b)) for one in pairs for a, b in one}
-        return np.array(sorted(edge for edge in edges if edge[::-1] not in edges))
+        single = sorted(edge for edge in edges if edge[::-1] not in edges)
+        return np.array(single, np.int64).reshape(-1, 2)
 
     @cached_property
     def body(self) -> Integers:

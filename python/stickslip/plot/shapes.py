@@ -154,11 +154,12 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
 
 
 def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array, Array]:
-    """Lower left and upper right corner of the box that holds the deformable bodies, with a margin.
+    """Lower left and upper right corner of the box that holds the deformable bodies, or all without them, with a margin.
 
     Corners of rigid surfaces are in it where they are near: at most AROUND sizes of the box away.
     """
-    positions = [results.frames[frame].positions[results.in_cells] for results, frame in shown]
+    bodies = [one.in_cells if one.cells else np.unique(one.rigid) for one, _ in shown]
+    positions = [one.frames[frame].positions[nodes] for nodes, (one, frame) in zip(bodies, shown, strict=True)]
     if arrows is not None:
         positions += [arrows.tips(*each) for each in shown]
     low = np.min([place.min(axis=0) for place in positions], axis=0)
