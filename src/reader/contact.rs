@@ -193,8 +193,8 @@ pub(super) fn check_discs(model: &Model, cx: &mut Context) {
         let (message, help) = if profile.centre.is_none() {
             (
                 format!("the rigid surface {name} cannot be slave"),
-                "a rigid surface is a master: write the other surface first; or a slave that is a full circle of CIRCL \
-                 rows",
+                "a rigid surface is a master: write the other surface first; only a full circle of \
+                 CIRCL rows can be slave",
             )
         } else if contact.adjust.is_some() {
             (
