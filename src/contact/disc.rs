@@ -1,8 +1,8 @@
 //! Constraints of rigid discs, which are slaves by their centres, at segments, vertices and arcs of the master.
 //! Section 3 of docs/theory.md, Discs.
 //!
-//! A disc is a node with a radius that turns: its gap is smaller by the radius than that of its centre, and its
-//! slip is that of the point of its circle that touches.
+//! A disc is a node with a radius that turns. Its gap is smaller by the radius than the gap of its centre. Its slip
+//! is the slip of the point of its circle that touches.
 
 use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use smallvec::SmallVec;
