@@ -16,9 +16,6 @@ from stickslip.errors import Fault
 
 Array = NDArray[np.float64]
 
-OUTLINES = ("START", "LINE")
-"""First fields of the rows of rigid surfaces; arcs are chords in flat decks."""
-
 ANGLE = "6"
 """The direction of angles and moments."""
 
@@ -40,9 +37,13 @@ def with_points(deck: Deck, place: Callable[[Array], Array]) -> Deck:
         if card.keyword != "NODE" and not _is_profile(card):
             return card
         points = [place(_numbers(row[1:3])) for row in card.rows]
-        if _is_profile(card) and card.rows[0][1:] == card.rows[-1][1:]:
+        if _is_profile(card) and card.rows[0][1:3] == card.rows[-1][1:3]:
             points[-1] = points[0]  # a closed profile stays closed
-        return _with_rows(card, [[row[0], *_written(at)] for row, at in zip(card.rows, points)])
+        rows = []
+        for row, at in zip(card.rows, points):
+            centre = _written(place(_numbers(row[3:5]))) if row[0] == "CIRCL" else []
+            rows.append([row[0], *_written(at), *centre])
+        return _with_rows(card, rows)
 
     return _each(deck, change)
 
@@ -98,8 +99,10 @@ def _mirrored(deck: Deck) -> Deck:
                 faces[label] = {"1": "1"} | dict(zip(others, reversed(others)))
             return _with_rows(card, rows)
         if _is_profile(card):
-            points = [row[1:] for row in reversed(card.rows)]
-            return _with_rows(card, [[OUTLINES[i > 0], *point] for i, point in enumerate(points)])
+            # a line or an arc leads back to where it came from, about the same centre
+            back = list(zip(card.rows[1:], card.rows))[::-1]
+            rows = [[row[0], *before[1:3], *row[3:5]] for row, before in back]
+            return _with_rows(card, [["START", *card.rows[-1][1:3]], *rows])
         return _with_faces(card, faces)
 
     return _each(deck, change)
