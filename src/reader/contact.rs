@@ -183,6 +183,22 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
     None
 }
 
+/// Keeps the arcs of rigid surfaces where discs may meet them; nodes meet their chords.
+pub(super) fn keep_arcs_for_discs(model: &mut Model) {
+    let has_discs = model
+        .contacts
+        .iter()
+        .any(|contact| model.disc(contact).is_some());
+    for surface in &mut model.surfaces {
+        if let SurfaceKind::Rigid(profile) = &mut surface.kind
+            && !has_discs
+            && profile.centre.is_none()
+        {
+            profile.arcs.clear();
+        }
+    }
+}
+
 /// Reports rigid surfaces that are slaves and no discs.
 pub(super) fn check_discs(model: &Model, cx: &mut Context) {
     for contact in &model.contacts {

@@ -143,6 +143,7 @@ fn read(cx: &mut Context) -> Model {
         restarts: steps.restarts,
     };
     contact::restrict_formulations(&mut model, cx);
+    contact::keep_arcs_for_discs(&mut model);
     let model = model;
     let all: [&dyn Fn(&mut Context); 10] = [
         &|cx| contact::check_discs(&model, cx),
