@@ -31,9 +31,12 @@ class Unchangeable(Fault):
 
 
 def with_points(deck: Deck, place: Callable[[Array], Array]) -> Deck:
-    """The deck with other coordinates of all nodes and points of rigid surfaces."""
+    """The deck with other coordinates of all nodes, points of rigid surfaces and axes of centrifugal loads."""
 
     def change(card: Card) -> Card:
+        if card.keyword == "DLOAD":
+            rows = [_about(row, place) if row[1] == "CENTRIF" else row for row in card.rows]
+            return _with_rows(card, rows)
         if card.keyword != "NODE" and not _is_profile(card):
             return card
         points = [place(_numbers(row[1:3])) for row in card.rows]
@@ -46,6 +49,11 @@ def with_points(deck: Deck, place: Callable[[Array], Array]) -> Deck:
         return _with_rows(card, rows)
 
     return _each(deck, change)
+
+
+def _about(row: list[str], place: Callable[[Array], Array]) -> list[str]:
+    """The row of a centrifugal load with its axis elsewhere."""
+    return [*row[:3], *_written(place(_numbers(row[3:5]))), *row[5:]]
 
 
 def size(deck: Deck) -> float:
