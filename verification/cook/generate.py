@@ -9,7 +9,7 @@ from meshes import Block, dead, prints, static  # noqa: E402  (first: it finds t
 from stickslip.cards import card, elastic  # noqa: E402
 
 
-def write(folder: Path, kind: str, n: int, force: float = 1e-4) -> None:
+def write(folder: Path, kind: str, n: int, force: float = 1e-4, poisson: float = 1 / 3) -> None:
     """The membrane of n x n cells; a small force gives the linear answer."""
 
     def place(i: int, j: int) -> tuple[float, float]:
@@ -23,7 +23,7 @@ def write(folder: Path, kind: str, n: int, force: float = 1e-4) -> None:
         membrane.nset("HELD", "left"),
         card("NSET, NSET=MIDDLE", (membrane.node(2 * n, n),)),
         membrane.surface("END", "right"),
-        elastic(1.0, 1 / 3, 1.0, "MEMBRANE"),
+        elastic(1.0, poisson, 1.0, "MEMBRANE"),
         card("BOUNDARY", ("HELD", 1, 2)),
         static(dead("END", force / 16, 0.0, 1.0), prints("MIDDLE"), dt=0.25 if force > 0.1 else 1.0),
     ]
