@@ -2,6 +2,7 @@
 
 use super::boundary::{Targets, row_dofs};
 use super::context::Context;
+use super::mesh_index::PointKind;
 use super::surfaces::{Surfaces, side_count};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
@@ -159,6 +160,9 @@ impl LoadHistories {
             _ => None,
         };
         if let Some(body) = body {
+            if body == Body::Gravity {
+                warn_of_masses(row, source.targets, cx);
+            }
             return self.body_row(row, body, &elements, source, cx);
         }
         if key == "CENTRIF" {
@@ -376,6 +380,23 @@ fn loaded_side(kind: &str) -> Option<(usize, bool)> {
         .iter()
         .position(|side| *side == number)?;
     Some((side, is_traction))
+}
+
+/// Warns that gravity leaves out the masses at nodes, of which there are some among the elements of a row.
+fn warn_of_masses(row: Line, targets: Targets, cx: &mut Context) {
+    let Targets {
+        mesh_index, sets, ..
+    } = targets;
+    let all = || (0..mesh_index.points.len()).collect();
+    let points = row
+        .get(0)
+        .map_or_else(all, |field| sets.points_of(field, mesh_index, cx));
+    let is_mass = |point: &usize| mesh_index.points[*point].kind == PointKind::Mass;
+    if points.iter().any(is_mass) {
+        let message = "gravity does not act on elements of the type MASS";
+        cx.d.warning_once(Code::IgnoredParameter, row.span(), message)
+            .help("give their weight with *CLOAD at the nodes");
+    }
 }
 
 fn gravity_direction(row: Line, magnitude: f64, cx: &mut Context) -> Option<[f64; 2]> {

@@ -73,6 +73,18 @@ fn static_steps_without_weight_need_no_density() {
     assert!(found(&moved).contains(&Code::IncompleteMaterial));
 }
 
+#[test]
+fn gravity_tells_that_it_leaves_out_masses_at_nodes() {
+    let found = |target: &str| {
+        let mass = "*ELEMENT, TYPE=MASS, ELSET=EM\n9, 3\n*MASS, ELSET=EM\n1.\n*STEP";
+        let load = format!("*DLOAD\n{target}, GRAV, 9.81, 0., -1.\n*NODE PRINT");
+        let deck = SQUARE.replacen("*STEP", mass, 1);
+        codes(&change(&deck, "*NODE PRINT", &load)).contains(&Code::IgnoredParameter)
+    };
+    assert!(found("") && found("EM"));
+    assert!(!found("BODY"));
+}
+
 /// The square without its load.
 fn unloaded() -> String {
     SQUARE.replacen("3, 2, 4.", "3, 2, 0.", 1)
