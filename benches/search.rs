@@ -13,8 +13,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use scenes::{DISC, lattice};
 use stickslip::contact::{
-    ClosedPairs, Positions, RowForm, Search, SlaveNode, all_segments, find_penetration,
-    find_targets,
+    ClosedPairs, Pairing, Positions, RowForm, Search, SlaveNode, all_segments, find_penetration,
 };
 
 /// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and
@@ -63,19 +62,19 @@ fn main() {
         });
         group.throughput(Throughput::Elements(n as u64));
         search.cover(&u);
-        let mut pairs = Vec::new();
+        let mut pairing = Pairing::default();
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                find_targets(
+                pairing.begin();
+                pairing.find(
                     &search,
                     [&u, &u],
                     &[],
                     (&ClosedPairs::default(), None),
                     RowForm::DiscreteGradient,
-                    &mut pairs,
                 );
-                pairs.len()
+                pairing.pairs.len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
@@ -84,7 +83,13 @@ fn main() {
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
             bencher.iter(|| {
                 search.cover_path(&u, &moved);
-                find_penetration(&search, [&u, black_box(&moved)], [&closed; 2], &unsolved)
+                find_penetration(
+                    &search,
+                    &Pairing::default(),
+                    [&u, black_box(&moved)],
+                    [&closed; 2],
+                    &unsolved,
+                )
             });
         });
         if n <= 1_000 {
