@@ -13,7 +13,7 @@ use super::keys::ConstraintKey;
 use super::node_to_segment::{SegmentRows, rows_between, sum_of};
 use super::search::{Faced, Territory};
 use super::stiffness::changes_between;
-use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex, position_round_off};
+use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex};
 use super::tolerances::{
     CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH, POINT_TILT,
 };
@@ -198,8 +198,7 @@ impl Finder<'_> {
         }
     }
 
-    /// A point that was over segment i at the start and is over j now, with its segment. Where its force would be tilted
-    /// too far it keeps the segment of the start.
+    /// A point that was over segment i at the start and is over j now, with its segment.
     fn point(
         &self,
         face: usize,
@@ -224,15 +223,7 @@ impl Finder<'_> {
             Some(i) => Origin::Other(self.segment(i)),
             None => Origin::Outside,
         };
-        let tilted = over(j, origin);
-        let places = [0, 1].map(|k| tilted.1.places(|node| self.positions[k].of(node)));
-        let start = |i: usize| self.tangent(self.segment(i), 0);
-        let turn = i.map_or(0.0, |i| cross(start(i), start(j)).abs());
-        let kappa = tilted.1.tilt(places, |node| self.positions[0].of(node));
-        match kappa.is_some_and(|kappa| kappa.abs() <= POINT_TILT.max(2.0 * turn)) {
-            true => tilted,
-            false => over(i.unwrap_or(j), Origin::Same),
-        }
+        over(j, origin)
     }
 
     /// Segments that a face is turned to at the start, within reach, one run after the other.
@@ -423,51 +414,38 @@ impl SurfacePoint {
         ]
     }
 
-    /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b;
-    /// none of a point that has not moved along j.
-    ///
-    /// ```text
-    /// kappa = (g0_j - g0_i)/s,   g0_i = max(g0_j, 0) of a point that was over none    eq. (7.8)
-    /// ```
+    /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b.
     fn tilt(
         &self,
         [start, end]: [[[f64; 2]; 3]; 2],
         at_start: impl Fn(usize) -> [f64; 2],
-    ) -> Option<f64> {
+    ) -> Tilt {
         let [p, q] = [start, end].map(|[s, a, b]| project(s, a, b));
-        let before = match self.origin {
-            Origin::Same => return Some(0.0),
+        let (before, turn) = match self.origin {
+            Origin::Same => return Tilt::default(),
             Origin::Other(segment) => {
                 let [a, b] = segment.map(|vertex| vertex.place(&at_start));
-                project(start[0], a, b).gap
+                let from = project(start[0], a, b);
+                (from.gap, cross(from.tangent, p.tangent).abs())
             }
-            Origin::Outside => p.gap.max(0.0),
+            Origin::Outside => (p.gap.max(0.0), 0.0),
         };
-        let rise = p.gap - before;
-        let slip = slip(&p, &q);
-        let is_slip = slip.abs() > position_round_off(start[0]);
-        match rise == 0.0 {
-            true => Some(0.0),
-            false => is_slip.then(|| rise / slip),
-        }
+        Tilt::new(p.gap - before, slip(&p, &q), POINT_TILT.max(2.0 * turn))
     }
 
     /// Projection and rows over the point, a and b, the force row tilted, eq. (7.8); and the tilt.
-    fn rows(&self, at: &Configurations) -> (SegmentRows, f64) {
+    fn rows(&self, at: &Configurations) -> (SegmentRows, Tilt) {
         let places = self.configurations(at);
         let mut rows = rows_between(places, at.form);
-        let kappa = match at.form {
-            RowForm::End => 0.0,
-            RowForm::DiscreteGradient => {
-                let tilt = self.tilt(places, |node| at.start([node])[0]);
-                tilt.unwrap_or(0.0)
-            }
+        let tilt = match at.form {
+            RowForm::End => Tilt::default(),
+            RowForm::DiscreteGradient => self.tilt(places, |node| at.start([node])[0]),
         };
-        if kappa != 0.0 {
+        if tilt.kappa != 0.0 {
             let RowPair { normal, tangential } = rows.force;
-            rows.force.normal = sum_of(1.0, &normal, kappa, &tangential);
+            rows.force.normal = sum_of(1.0, &normal, tilt.kappa, &tangential);
         }
-        (rows, kappa)
+        (rows, tilt)
     }
 
     /// Places of its nodes among those of a constraint, with the parts that they have of s, a and b.
@@ -482,6 +460,35 @@ impl SurfacePoint {
             })
             .map(|(node, own, share)| (place(node), own, share))
             .collect()
+    }
+}
+
+/// Tilt of the force at a point, and its derivative with respect to the slip (1/length).
+#[derive(Debug, Clone, Copy, Default)]
+struct Tilt {
+    kappa: f64,
+    slope: f64,
+}
+
+impl Tilt {
+    /// That of a rise g0_j - g0_i over a slip s, at most `most`.
+    ///
+    /// ```text
+    /// kappa = (g0_j - g0_i)/s,   kappa <- most^2/kappa   where |kappa| > most    eq. (7.8)
+    /// ```
+    fn new(rise: f64, slip: f64, most: f64) -> Self {
+        match rise.abs() <= most * slip.abs() {
+            true if rise == 0.0 => Tilt::default(),
+            true => Tilt {
+                kappa: rise / slip,
+                slope: -rise / (slip * slip),
+            },
+            false => {
+                let slope = most * most / rise;
+                let kappa = slope * slip;
+                Tilt { kappa, slope }
+            }
+        }
     }
 }
 
@@ -609,18 +616,17 @@ pub(super) fn stiffness(
     let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
     for point in points {
         let places = point.configurations(at);
-        let (rows, kappa) = point.rows(at);
+        let (rows, Tilt { kappa, slope }) = point.rows(at);
         let [pn, pt] = [pn, pt].map(|p| point.weight * p);
         let mut own: Matrix6<f64> = changes_between(places, [pn, pt + kappa * pn], at.form);
-        if kappa != 0.0 {
-            // dkappa = -kappa/s Gt
-            let [p, q] = places.map(|[s, a, b]| project(s, a, b));
+        if slope != 0.0 {
+            // dkappa = (dkappa/ds) Gt
             let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
-            let (force, slope) = (
+            let (force, change) = (
                 column(rows.force.tangential),
                 column(rows.derivative.tangential),
             );
-            own -= force * slope.transpose() * (pn * kappa / slip(&p, &q));
+            own += force * change.transpose() * (pn * slope);
         }
         let shares = point.shares(&nodes);
         for &(row, i, p) in &shares {
