@@ -260,7 +260,7 @@ impl Finder<'_> {
 
     /// Whether a face was in front of a segment at the start, where its ends have the given projections, or has
     /// penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
-    /// that has come in through another segment.
+    /// that has come in through another segment or lies on it.
     fn is_in_front(
         &self,
         territory: &Territory,
@@ -280,7 +280,9 @@ impl Finder<'_> {
         let is_nearer = |other: usize| {
             let [a, b] = self.segment(other).map(|vertex| self.place(vertex, 0));
             let p = project(x, a, b);
-            (0.0..=1.0).contains(&p.xi) && (-NEARER_DEPTH * depth..0.0).contains(&p.gap)
+            let on_it = CLOSED_GAP * p.length;
+            (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&p.xi)
+                && (-NEARER_DEPTH * depth..=on_it).contains(&p.gap)
         };
         let ends = self.surfaces.slave_faces[face];
         let segment = self.surfaces.segments[segment];
