@@ -16,6 +16,7 @@ use super::stiffness::changes_between;
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex};
 use super::tolerances::{
     CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH, POINT_TILT,
+    SIDE_BY_SIDE,
 };
 use crate::vectors::{cross, difference, dot, length};
 
@@ -258,8 +259,8 @@ impl Finder<'_> {
         !has_own && ranks.is_none_or(|ranks| ranks[face] < ranks[segment])
     }
 
-    /// Whether a face was in front of a segment at the start, where its ends have the given projections, or has
-    /// penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
+    /// Whether a face was in front of a segment at the start, where its ends have the given projections, or of another
+    /// from which it may slide on to this one, or has penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
     /// that has come in through another segment or lies on it.
     fn is_in_front(
         &self,
@@ -284,13 +285,23 @@ impl Finder<'_> {
             (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&p.xi)
                 && (-NEARER_DEPTH * depth..=on_it).contains(&p.gap)
         };
+        // it is in front of a segment before or after, from which it may slide on to this one
+        let is_beside = |other: usize| {
+            let [a, b] = self.segment(other).map(|vertex| self.place(vertex, 0));
+            let p = project(x, a, b);
+            self.slave.runs[other] == self.slave.runs[segment]
+                && (-SIDE_BY_SIDE..=1.0 + SIDE_BY_SIDE).contains(&p.xi)
+                && p.gap >= -CLOSED_GAP * p.length
+                && self.faces(face, other)
+        };
+        let numbers = || self.slave.ends[face].into_iter().flatten();
+        let others = || numbers().flat_map(|number| territory.candidates(number));
         let ends = self.surfaces.slave_faces[face];
-        let segment = self.surfaces.segments[segment];
+        let own = self.surfaces.segments[segment];
         let at = |node: usize| self.positions[0].of(node);
-        let numbers = self.slave.ends[face].into_iter().flatten();
-        let mut others = numbers.flat_map(|number| territory.candidates(number));
-        (self.surfaces.interior).takes_in_point(segment, (x, ends), at)
-            && !others.any(|other| is_nearer(other.segment))
+        let is_inside = || (self.surfaces.interior).takes_in_point(own, (x, ends), at);
+        others().any(|other| is_beside(other.segment))
+            || (is_inside() && !others().any(|other| is_nearer(other.segment)))
     }
 
     /// Whether a face and a segment are turned to each other at the start.

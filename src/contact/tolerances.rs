@@ -119,6 +119,8 @@ pub(crate) const CORNER_DEPTH: f64 = 0.01;
 pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Part of the depth of a face behind a segment at which it is behind another, through which it has come in.
 pub(crate) const NEARER_DEPTH: f64 = 0.5;
+/// Distance beyond the ends of a segment, in its length, up to which a face is beside it.
+pub(crate) const SIDE_BY_SIDE: f64 = 1.0;
 /// Part of a slave face that is no cell.
 pub(crate) const LEAST_CELL: f64 = 1e-13;
 /// Part of the weight of a slave node that must be covered.
