@@ -254,6 +254,17 @@ impl Constraint {
         self.nodes().take(count)
     }
 
+    /// The master nodes of a weighted constraint, each with |Bn| there: the part of the normal force that it takes.
+    pub fn shares_of_masters(&self) -> impl Iterator<Item = (usize, f64)> {
+        let normal = &self.force_rows.normal;
+        let first = match self.is_weighted() {
+            true => self.slave_dofs,
+            false => self.dofs.len(),
+        };
+        let places = (first..self.dofs.len()).step_by(2);
+        places.map(|k| (self.dofs[k] / 2, normal[k].hypot(normal[k + 1])))
+    }
+
     /// Whether its gap is a mean over points of slave faces.
     pub fn is_weighted(&self) -> bool {
         !self.source.points.is_empty()

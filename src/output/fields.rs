@@ -278,7 +278,7 @@ const TIME: Meaning = ("time", "time of the frame");
 const FIRST_ROW: Meaning = ("1", "first row of the frame");
 const STATUS: Meaning = (
     "1",
-    "contact status as slave: 0 none, 1 open, 2 stick, 3 slip",
+    "contact status, as slave, or as master of means: 0 none, 1 open, 2 stick, 3 slip",
 );
 const MASS: Meaning = (
     "1",
@@ -335,11 +335,11 @@ const NODAL: [NodalField; 8] = [
     ("RF", IN_SPACE, Mostly::Zero, "force", "support reaction", |f| &f.nodal.reaction),
     ("CONTACT_FORCE", IN_SPACE, Mostly::Zero, "force", "contact force on the node", |f| &f.nodal.contact_force),
     ("GAP", SCALAR, Mostly::Nan, "length",
-     "gap of the slave node to its segment, NaN without candidate", |f| &f.nodal.gap),
+     "gap of the slave node to its segment, or mean gap, NaN without candidate", |f| &f.nodal.gap),
     ("CONTACT_PRESSURE", SCALAR, Mostly::Nan, "force/length^2",
-     "contact pressure at slave nodes, NaN at others", |f| &f.nodal.pressure),
+     "contact pressure at slave nodes, and at masters of means, NaN at others", |f| &f.nodal.pressure),
     ("SLIP", SCALAR, Mostly::Nan, "length",
-     "slip accumulated since the start at slave nodes, NaN at others", |f| &f.nodal.slip),
+     "slip accumulated since the start at slave nodes, and at masters of means, NaN at others", |f| &f.nodal.slip),
 ];
 
 /// A field that a deck has to ask for.

@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use super::nodal_results::MasterMeans;
 use super::pair_work::PairWork;
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{Constraint, ConstraintKey, Search, crossed_edges};
@@ -176,18 +177,21 @@ impl ContactLedger {
         }
     }
 
-    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes; where a node has several
-    /// pairs, the largest.
+    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes, and their mean to that of master nodes, eq. (9.16);
+    /// where a node has several pairs, the largest.
     fn slide(&mut self, solved: &Solved) {
         let mut increments = vec![0.0_f64; self.slip.len()];
+        let mut of_masters = MasterMeans::new(self.slip.len());
         for (constraint, _) in solved.contact.forces.acting() {
             let slip = constraint.tangential_motion(&solved.d).abs();
+            of_masters.add(constraint, slip);
             for node in constraint.named_slaves() {
                 increments[node] = increments[node].max(slip);
             }
         }
-        for (slip, increment) in self.slip.iter_mut().zip(increments) {
-            *slip += increment;
+        let increments = increments.into_iter().zip(of_masters.values());
+        for (slip, (increment, mean)) in self.slip.iter_mut().zip(increments) {
+            *slip += increment.max(mean);
         }
     }
 }

@@ -59,8 +59,10 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         mass: node_masses(problem),
         ..NodalResults::default()
     };
+    let mut of_masters = MasterMeans::new(dofs / 2);
     for (constraint, pair) in solved.contact.forces.iter() {
         let gap = end_gap(problem, solved, constraint);
+        of_masters.add(constraint, gap);
         let status = match pair.map(|pair| pair.state) {
             None => NodeStatus::Open,
             Some(ContactState::Stick) => NodeStatus::Stick,
@@ -70,8 +72,45 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
             results.gap[slave] = results.gap[slave].min(gap);
             results.status[slave] = results.status[slave].max(status);
         }
+        for (node, _) in (constraint.shares_of_masters()).filter(|(_, share)| *share > 0.0) {
+            results.status[node] = results.status[node].max(status);
+        }
+    }
+    for (gap, mean) in results.gap.iter_mut().zip(of_masters.values()) {
+        *gap = gap.min(mean);
     }
     results
+}
+
+/// Means at the master nodes of weighted constraints, by the parts of their normal forces that the nodes take.
+///
+/// ```text
+/// g = sum_j |Bn_j| g_j / sum_j |Bn_j|    eq. (9.16)
+/// ```
+pub(super) struct MasterMeans {
+    sums: Vec<[f64; 2]>,
+}
+
+impl MasterMeans {
+    pub fn new(nodes: usize) -> Self {
+        MasterMeans {
+            sums: vec![[0.0; 2]; nodes],
+        }
+    }
+
+    /// Adds a value of a constraint at its master nodes.
+    pub fn add(&mut self, constraint: &Constraint, value: f64) {
+        for (node, share) in constraint.shares_of_masters() {
+            let [sum, whole] = &mut self.sums[node];
+            *sum += share * value;
+            *whole += share;
+        }
+    }
+
+    /// The mean at every node, NaN where there is none.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        self.sums.iter().map(|[sum, whole]| sum / whole)
+    }
 }
 
 /// Mean coefficient of friction by Pn: a first one, and Pn with Pn times what the others differ from it.
@@ -105,6 +144,9 @@ fn friction_coefficients(problem: &StepProblem, forces: &ContactForces) -> Vec<f
     for (constraint, pair) in forces.acting() {
         for node in constraint.named_slaves() {
             means[node].add(constraint.mu, pair.force[0]);
+        }
+        for (node, share) in constraint.shares_of_masters() {
+            means[node].add(constraint.mu, share * pair.force[0]);
         }
     }
     means.iter().map(MeanCoefficient::value).collect()
@@ -291,7 +333,7 @@ fn impact_time(motions: &[Motion; 3], dt: f64) -> f64 {
 }
 
 /// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`; NaN
-/// without area, and at all nodes but slave nodes.
+/// without area, and at all nodes but those of slave surfaces, and of masters that meet them face to face.
 ///
 /// ```text
 /// N = sum Bn^T Pn,  p = |N|/A    eq. (9.8)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::model::{Face, Model, Segment, SurfaceKind, Thickness};
+use crate::model::{ContactFormulation, Face, Model, Segment, SurfaceKind, Thickness};
 
 /// A segment of a face on which a slave node takes pressure.
 struct SlaveFace {
@@ -17,15 +17,15 @@ struct SlaveFace {
 
 /// The slave nodes of all contacts with their faces.
 pub(crate) struct SlaveFaces {
-    /// 0 at slave nodes, NaN at others, `N` entries.
+    /// 0 at slave nodes, and at master nodes of contact from surface to surface, NaN at others, `N` entries.
     pub start: Vec<f64>,
     /// With increasing nodes.
     faces: Vec<SlaveFace>,
 }
 
 impl SlaveFaces {
-    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their
-    /// elements.
+    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their elements. Master
+    /// nodes of contact from surface to surface that are no slaves have those of the master surfaces.
     pub fn new(model: &Model) -> Self {
         let mesh = &model.mesh;
         let (mut start, mut own) = (vec![f64::NAN; mesh.node_count()], BTreeSet::new());
@@ -68,6 +68,21 @@ impl SlaveFaces {
         if is_bare.contains(&true) {
             let exterior = mesh.exterior_faces().into_iter();
             faces.extend(exterior.flat_map(|face| slave_faces(&face, &|node| is_bare[node])));
+        }
+        let is_slave: Vec<bool> = start.iter().map(|start| !start.is_nan()).collect();
+        let mut of_masters = BTreeSet::new();
+        for contact in &model.contacts {
+            let master = &model.surfaces[contact.master].kind;
+            if let (ContactFormulation::SurfaceToSurface, SurfaceKind::Faces(faces)) =
+                (contact.formulation, master)
+            {
+                of_masters.extend(faces.iter().copied());
+            }
+        }
+        let of_masters = (of_masters.iter()).flat_map(|face| slave_faces(face, &|node| !is_slave[node]));
+        for face in of_masters {
+            start[face.node] = 0.0;
+            faces.push(face);
         }
         faces.sort_by_key(|face| face.node);
         SlaveFaces { start, faces }
