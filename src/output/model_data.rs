@@ -10,7 +10,8 @@ use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
 use crate::materials::{Law, Polynomial};
 use crate::model::{
-    Disc, ElementType, Material, Model, Procedure, Scheme, Segment, Step, Surface, SurfaceKind,
+    ContactFormulation, Disc, ElementType, Material, Model, Procedure, Scheme, Segment, Step, Surface,
+    SurfaceKind,
     Variation,
 };
 
@@ -136,14 +137,28 @@ fn law_code(law: &Law) -> u8 {
     }
 }
 
+/// Node indices of the segments of a surface.
+fn write_segments(
+    at: &Group,
+    name: &str,
+    model: &Model,
+    surface: usize,
+    meaning: Meaning,
+) -> hdf5::Result<()> {
+    let segments: Vec<Segment> = model.surfaces[surface].segments(&model.mesh);
+    let nodes: Vec<i64> = segments.as_flattened().iter().map(|&n| n as i64).collect();
+    constant(at, name, &[segments.len(), 2], &nodes, meaning)
+}
+
 /// Slave nodes, master segments and friction of every contact, under the names of `/history/contact`.
 fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
     for ((index, contact), name) in (model.contacts.iter().enumerate()).zip(contact_names(model)) {
         let at = group(at, &name)?;
         indices(&at, "slaves", model.slave_nodes(contact), SLAVES)?;
-        let segments: Vec<Segment> = model.surfaces[contact.master].segments(&model.mesh);
-        let nodes: Vec<i64> = segments.as_flattened().iter().map(|&n| n as i64).collect();
-        constant(&at, "segments", &[segments.len(), 2], &nodes, SEGMENTS)?;
+        write_segments(&at, "segments", model, contact.master, SEGMENTS)?;
+        if contact.formulation == ContactFormulation::SurfaceToSurface {
+            write_segments(&at, "slave_faces", model, contact.slave, SLAVE_FACES)?;
+        }
         constant(
             &at,
             "friction",
@@ -327,6 +342,10 @@ const BETA: Meaning = ("time", "damping in proportion to the elasticity");
 const SEGMENTS: Meaning = (
     "1",
     "node indices of the master segments, its body on the left of the way from the first to the second",
+);
+const SLAVE_FACES: Meaning = (
+    "1",
+    "node indices of the slave faces, their body on the left of the way from the first to the second",
 );
 const DISC_RADIUS: Meaning = ("length", "radius of the slave, a disc about its node");
 const DISC_ARM: Meaning = ("1", "index of the node that takes the turning of the disc");

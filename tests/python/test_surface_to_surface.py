@@ -1,5 +1,6 @@
 """Contact from surface to surface: patch tests of unlike meshes, momenta and energy, and what it is refused for."""
 
+import shutil
 import subprocess
 from collections.abc import Callable
 from math import cos, pi, sin
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 from bodies import ELASTIC, grid, with_section
 from stickslip import Deck, program
+from stickslip.certificate.certify import certify
 from stickslip.mesh import Mesh
 from stickslip.penetration import intrusion
 from stickslip.result import Result
@@ -49,9 +51,10 @@ def patch(
     degrees: float,
     friction: float,
     contact_kind: str = SURFACES,
+    slope: float = 0.0,
 ) -> float:
     """Largest deviation of the stresses of two blocks from those of a homogeneous displacement gradient in a frame turned by
-    some degrees, beside the largest stress. All nodes but those between the blocks are moved as the gradient says."""
+    some degrees, beside the largest stress; the surface between them has a slope. All nodes but those between the blocks are moved as the gradient says."""
     c, s = cos(degrees * pi / 180.0), sin(degrees * pi / 180.0)
     turn = np.array([[c, -s], [s, c]])
     deck = Deck.titled("patch")
@@ -63,7 +66,7 @@ def patch(
     ):
 
         def place(x: float, y: float) -> tuple[float, float]:
-            return tuple(turn @ np.array([spaced(x) if name == "A" else x, low + y]))
+            return tuple(turn @ np.array([spaced(x) if name == "A" else x, low + y + slope * x]))
 
         mesh = grid(kind, count, 3, place)
         between = {"A": "NTOP", "B": "NBOTTOM"}[name]
@@ -105,6 +108,9 @@ def test_discs_of_unlike_mesh_pass_the_patch_test(
     tmp_path: Path, kinds: tuple[str, str], counts: tuple[int, int]
 ) -> None:
     assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.0) < 1e-11
+    # on a cone the same stress has a part along the surface, and friction holds it
+    assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.9, slope=0.3) < 1e-11
+    assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.01, slope=0.3) > 1e-3
 
 
 def test_nodes_on_segments_do_not(tmp_path: Path) -> None:
@@ -397,3 +403,86 @@ def test_sheared_blocks_with_an_overhang_need_no_cutback(
     if scheme == "ENERGY-MOMENTUM":
         total = energy.kinetic + energy.strain - energy.external_work
         assert np.diff(total).max() < 1e-13 * energy.largest
+
+
+def wall(courses: int) -> Deck:
+    """A wall of bricks in bond on a floor, with joints, under its weight."""
+    deck = Deck.titled("wall")
+    deck.extend("*MATERIAL, NAME=M\n*ELASTIC\n1.E6, 0.2\n*DENSITY\n1.\n")
+    floor = grid("CPS4", courses * 2 + 2, 1, lambda x, y: (0.225 * (courses + 1) * x - 0.1, 0.1 * y - 0.1))
+    add_body(deck, "FLOOR", "CPS4", floor)
+    for course in range(courses):
+        for k in range(courses):
+            left, low = 0.202 * k + 0.101 * (course % 2), 1e-5 * (course + 1) + 0.1 * course
+
+            def place(x: float, y: float) -> tuple[float, float]:
+                return left + 0.2 * x, low + 0.1 * y
+
+            add_body(deck, f"B{course}{k}", "CPS4", grid("CPS4", 4, 2, place))
+    deck.extend("*SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.6\n*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n")
+    deck.extend(f"*CONTACT FORMULATION, {SURFACES}\n*CONTACT PROPERTY ASSIGNMENT\n, , DRY\n")
+    deck.extend("*BOUNDARY\nNFLOOR, 1, 2\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.001, 0.02\n")
+    deck.extend("*DLOAD\n, GRAV, 10., 0., -1.\n*END STEP\n")
+    return deck
+
+
+def test_a_wall_of_bricks_needs_no_cutback(tmp_path: Path) -> None:
+    """Tips of bricks lie on the brick above, whose far end is not what they are behind."""
+    result = program.run(wall(3).write(tmp_path / "deck.inp"), tmp_path)
+    assert result.run["cutbacks"] == 0
+    assert result.history.solver.passes.max() < 10
+    gains_nothing(result, "ALL_EXTERIOR")
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+@pytest.mark.parametrize("make", [rings, beams])
+def test_both_sides_show_pressure_slip_and_state(
+    tmp_path: Path, make: Callable[[], Deck], friction: float
+) -> None:
+    deck = make()
+    contact(deck, "SB", "SA", friction)
+    deck.extend("*INITIAL CONDITIONS, TYPE=VELOCITY\nNB, 2, -1.\nNB, 1, 0.3\nNA, 2, 0.5\n")
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 0.4\n*NODE FILE, FREQUENCY=1\nU\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    certificate = certify(result)
+    assert certificate.holds, certificate.table()
+    told = {check.name: check.count for check in certificate.checks}
+    assert told["gap"] > 0 and told["cone"] > len(result.frames)
+    assert (told["slip"] > 0) == (friction > 0.0)
+    seen = 0
+    for before, frame in zip(result.frames, list(result.frames)[1:]):
+        status, slip = frame["CONTACT_STATUS"], frame["SLIP"]
+        pressed = np.linalg.norm(frame["CONTACT_FORCE"], axis=1) > 0.0
+        for side in ("A", "B"):
+            nodes = result.node_set("N" + side)
+            own = nodes[pressed[nodes]]
+            assert (status[own] >= 2).all()
+            assert (frame["CONTACT_PRESSURE"][own] > 0.0).all()
+            step = (slip - before["SLIP"])[own]
+            assert (step >= 0.0).all()
+            if friction == 0.0 and len(own):
+                assert step.max() > 0.0
+            seen += len(own)
+    assert seen > 40
+
+
+def test_forces_out_of_the_cone_and_means_off_their_masters_are_found(tmp_path: Path) -> None:
+    deck = rings()
+    contact(deck, "SB", "SA", 0.3)
+    deck.extend("*INITIAL CONDITIONS, TYPE=VELOCITY\nNB, 2, -1.\nNB, 1, 0.3\nNA, 2, 0.5\n")
+    deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 0.2\n*NODE FILE, FREQUENCY=1\nU\n*END STEP\n")
+    program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+
+    def failing(field: str, amount: float) -> list[str]:
+        path = shutil.copy(tmp_path / "deck.vtkhdf", tmp_path / "spoiled.vtkhdf")
+        with h5py.File(path, "r+") as file:
+            values = file[f"VTKHDF/PointData/{field}"]
+            closed = np.flatnonzero(file["VTKHDF/PointData/CONTACT_STATUS"][:] >= 2)
+            slaves = file["model/contacts/SB_SA/slaves"][:]
+            nodes = len(file["model/coordinates"])
+            row = int(closed[np.isin(closed % nodes, slaves)][-1])
+            values[row] += amount * np.abs(values[:][closed]).max()
+        return [check.name for check in certify(path).checks if not check.holds]
+
+    assert "gap" in failing("GAP", 1e6)
+    assert "cone" in failing("CONTACT_FORCE", 0.1)

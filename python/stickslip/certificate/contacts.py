@@ -51,6 +51,8 @@ class Contact:
     """Body of each node, -1 for those of rigid surfaces [N]."""
     has_means: bool = False
     """Whether it keeps means over faces out, and corners, in place of every slave node."""
+    faces: Integers | None = None
+    """Slave faces of means [F, 2], their body on the left."""
     disc: Disc | None = None
     """Set where the slave is a disc."""
 
@@ -78,7 +80,10 @@ def contacts(result: Result) -> list[Contact]:
             )
             disc = Disc(float(radius), int(arm), arcs, centres)
         kind = result.file[f"history/contact/{name}"].attrs["formulation"]
-        found.append(Contact(name, slaves, segments, friction, acts, body, kind != EXACT, disc))
+        faces = None if kind == EXACT else result.read(f"{at}/{name}/slave_faces")
+        found.append(
+            Contact(name, slaves, segments, friction, acts, body, kind != EXACT, faces, disc)
+        )
     return found
 
 

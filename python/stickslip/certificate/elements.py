@@ -392,6 +392,19 @@ class Elements:
         self.keeps = np.array([0.0, 1.0]) if is_axisymmetric(result) else np.ones(2)
         """Directions in which the momentum of a body may differ from zero."""
 
+    def middles(self) -> dict[int, tuple[int, int]]:
+        """The ends of the sides that have a node between them, by this node."""
+        found = {}
+        for block in self.blocks:
+            corners = block.nodes.shape[1] // 2
+            if block.nodes.shape[1] not in (6, 8):
+                continue
+            for k in range(corners):
+                ends = block.nodes[:, [k, (k + 1) % corners]]
+                rows = zip(block.nodes[:, corners + k].tolist(), ends.tolist(), strict=True)
+                found.update({middle: (a, b) for middle, (a, b) in rows})
+        return found
+
     def mass(self) -> Array:
         """Mass of each body."""
         return self._of_bodies([block.mass.sum(axis=(1, 2)) for block in self.blocks])

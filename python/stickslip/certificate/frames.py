@@ -16,7 +16,8 @@ from stickslip.certificate.contacts import (
     split,
     touching,
 )
-from stickslip.certificate.elements import EPS, Elements
+from stickslip.certificate.elements import EPS, Elements, is_axisymmetric
+from stickslip.certificate.means import Mean, Means
 from stickslip.certificate.rings import RingBlock
 from stickslip.certificate.fits import REASON, Fits
 from stickslip.frame import Frame
@@ -49,6 +50,15 @@ CONE = 1e-8
 EULER = 3
 """The backward Euler rule among the schemes of /model/steps."""
 
+MEANS = 1e-7
+"""The same of the forces of means, which a matrix of hat functions tells from the nodal forces."""
+
+NEAR = 0.5
+"""Mean gaps up to these lengths are compared: the search for contacts decides which segments further ones reach."""
+
+LEFT = 0.02
+"""Mean gap that the motion of points may leave, in lengths; and what corners have means for."""
+
 FORCE = 1e-9
 """Contact forces below this part of the largest one are none."""
 
@@ -78,6 +88,11 @@ class Frames:
         self.checks = checks
         self.elements = Elements(result)
         self.contacts = contacts(result)
+        self.means = {
+            contact.name: Means(contact, contact.faces, result.coordinates, self.elements.middles(), is_axisymmetric(result))
+            for contact in self.contacts
+            if contact.faces is not None and not np.array_equal(contact.faces, contact.segments)
+        }
         self.time = result.history["time"]
         self.fits = Fits(result)
         self.supported = result.read("model/supported_nodes")
@@ -405,10 +420,6 @@ class Frames:
             for name in ("gap", "reach", "complementarity", "cone", "slip"):
                 self.checks[name].skip(REASON)
             return
-        if any(contact.has_means for contact in self.contacts):
-            for name in ("gap", "reach", "complementarity", "cone", "slip"):
-                self.checks[name].skip("surface to surface keeps means out, not nodes")
-            return
         x = self.result.coordinates + frame["U"]
         force = np.linalg.norm(frame["CONTACT_FORCE"], axis=1)
         status, gaps = frame["CONTACT_STATUS"], frame["GAP"]
@@ -419,6 +430,14 @@ class Frames:
         if increment.start is not None:
             way = np.abs(frame["U"] - increment.start).sum(axis=1)
         contacts = [contact for contact in self.contacts if contact.acts[increment.step]]
+        contacts, others = self._means(frame, increment, contacts), contacts
+        for contact in others:
+            if contact.has_means:
+                nodes = np.append(contact.slaves, contact.segments.ravel())
+                closed, active = np.setdiff1d(closed, nodes), np.setdiff1d(active, nodes)
+                status = status.copy()
+                status[nodes] = 0
+                force[nodes] = 0.0
         contacts, discs = self._discs(contacts, x, status, f"t = {frame.time:g}")
         closed, active = np.setdiff1d(closed, discs), np.setdiff1d(active, discs)
         touches, nearest, reached = touching(x, way, contacts, active, TOUCH)
@@ -447,6 +466,86 @@ class Frames:
             nearest[loaded], TOUCH + noise, f"{{}} of {len(loaded)} loaded nodes, {place}"
         )
         self._cones(frame, increment, touches, status)
+
+    def _means(
+        self, frame: Frame, increment: Increment, contacts: list[Contact]
+    ) -> list[Contact]:
+        """Mean gaps, cones and slips from surface to surface; the other contacts."""
+        x1 = self.result.coordinates + frame["U"]
+        start = increment.start
+        x0 = x1 if start is None else self.result.coordinates + start
+        told = start is not None and bool(self._start_is_told(frame, increment).all())
+        force, status, gaps = frame["CONTACT_FORCE"], frame["CONTACT_STATUS"], frame["GAP"]
+        noise = 16 * EPS * np.abs(x1).max() / self._edge
+        for contact in contacts:
+            if not contact.has_means:
+                continue
+            means = self.means.get(contact.name)
+            if means is None:
+                for name in ("gap", "complementarity", "cone", "slip"):
+                    self.checks[name].skip("means of surfaces that touch themselves are left out")
+                continue
+            asked = contact.slaves[np.isfinite(gaps[contact.slaves])]
+            found = list(means.means(x0, x1, asked, told and increment.scheme == 1))
+            closed = []
+            least: dict[int, Mean] = {}
+            for mean in found:
+                if mean.node not in least or mean.gap < least[mean.node].gap:
+                    least[mean.node] = mean
+            for node, mean in least.items():
+                label = self.result.node_labels[node]
+                at = f"mean at node {label}, t = {frame.time:g}"
+                if node not in means.corners and gaps[node] <= NEAR * self._edge:
+                    stored = abs(mean.gap - gaps[node]) / self._edge
+                    self.checks["gap"].add(stored, TOUCH + noise, f"GAP, {at}")
+                # what is left at the ends of masters, eq. (7.9)
+                is_exact = told and not mean.moved and node not in means.corners
+                bound = GAP if is_exact else LEFT
+                self.checks["gap"].add(-mean.gap / self._edge, bound + noise, at)
+                if status[node] >= STICK and node not in means.corners:
+                    self.checks["gap"].add(mean.gap / self._edge, bound + noise, at)
+            for mean in found:
+                is_near = abs(mean.gap) <= (GAP + noise if not mean.moved else LEFT) * self._edge
+                if status[mean.node] >= STICK and (is_near or mean is least[mean.node]):
+                    closed.append(mean)
+            if not closed:
+                continue
+            if not told and increment.scheme != 0:
+                self.checks["cone"].skip("frames whose start the file does not tell are left out")
+                continue
+            if self._is_shared(contact):
+                self.checks["cone"].skip("nodes of means that are in several contacts are left out")
+                continue
+            self._mean_cones(means, closed, frame, told)
+        return [contact for contact in contacts if not contact.has_means]
+
+    def _is_shared(self, contact: Contact) -> bool:
+        """Whether the slave nodes of a contact are in other contacts too."""
+        others = [one for one in self.contacts if one is not contact]
+        nodes = [np.append(one.slaves, one.segments.ravel()) for one in others]
+        return bool(nodes) and bool(np.isin(contact.slaves, np.concatenate(nodes)).any())
+
+    def _mean_cones(self, means: Means, closed: list[Mean], frame: Frame, told: bool) -> None:
+        """The forces of closed means: what nodal forces they leave, the cone, and slips."""
+        forces, is_told, left = means.forces(closed, frame["CONTACT_FORCE"])
+        place = f"{means.contact.name}, t = {frame.time:g}"
+        self.checks["cone"].add(left / self.force_scale, MEANS, f"forces of no mean, {place}")
+        friction = float(means.contact.friction.max())
+        x = np.abs(self.result.coordinates + frame["U"]).max()
+        noise = 64 * EPS * x / self._edge
+        for mean, (normal, tangential), one in zip(closed, forces, is_told, strict=True):
+            if not one:
+                continue
+            at = f"mean at node {self.result.node_labels[mean.node]}, t = {frame.time:g}"
+            outside = max(abs(tangential) - friction * normal, -normal)
+            self.checks["cone"].add(outside / self.force_scale, MEANS, at)
+            if not told or not means.contact.is_constant or friction == 0.0:
+                continue
+            room = friction * normal - abs(tangential)
+            if room > 1e-6 * self.force_scale:
+                self.checks["slip"].add(abs(mean.slip) / self._edge, SLIP + noise, at)
+            elif abs(mean.slip) / self._edge > SLIP + noise:
+                self.checks["slip"].add(float(mean.slip * tangential > 0.0), 0.0, at)
 
     def _discs(
         self, contacts: list[Contact], x: Array, status: Integers, place: str

@@ -1,0 +1,312 @@
+"""Means of gaps from surface to surface, eqs (3.18) to (3.20), and the forces of their constraints, from positions alone."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from stickslip.certificate.contacts import Contact
+from stickslip.result import Array, Integers
+
+CORNER = 0.866
+"""Cosine of the turn from which on a surface has a corner."""
+
+FACING = np.sqrt(0.5)
+"""Cosine of the angle up to which a face takes part against a segment."""
+
+REACH = 4.0
+"""Lengths of a face up to which it takes part."""
+
+DEPTH = 0.5
+"""Lengths of a segment up to which a face behind it has come in through it."""
+
+TILT = 0.3
+"""Tilt that is not bounded, eq. (7.8)."""
+
+COVER = 1e-6
+"""Part of the weight of a node that must be covered."""
+
+ROUND_OFF = 1e-9
+"""Part of forces that is none."""
+
+GAUSS = 1.0 / np.sqrt(12.0)
+
+Vertex = tuple[tuple[int, float], ...]
+"""Nodes with their parts in the place of the end of a face, eq. (3.21)."""
+
+
+@dataclass
+class Point:
+    """A point of a face over a segment."""
+
+    face: int
+    eta: float
+    weight: float
+    segment: int
+    before: int | None
+    """The segment at the start, none of a point that has come in."""
+    gap: float
+    slip: float
+    rows: tuple[Array, Array]
+    """What a unit normal and a unit tangential force are there."""
+
+
+@dataclass
+class Mean:
+    """The constraint of one side of a slave node over a run of the master."""
+
+    node: int
+    gap: float = 0.0
+    slip: float = 0.0
+    moved: bool = False
+    """Whether points have changed their segment, or the covered part has."""
+    points: list[tuple[float, Point]] = field(default_factory=list)
+    """With their weights, which sum to one."""
+
+
+def _turned(e: Array) -> Array:
+    """The normal of a direction, to its right."""
+    return np.array([e[1], -e[0]])
+
+
+def _cross(a: Array, b: Array) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+class Means:
+    """The means of a contact between two surfaces."""
+
+    def __init__(self, contact: Contact, faces: Integers, x: Array, middles: dict[int, tuple[int, int]], rings: bool) -> None:
+        self.contact = contact
+        self.faces, self.segments = faces, contact.segments
+        self.x, self.middles, self.rings = x, middles, rings
+        self.starting = {int(a): i for i, (a, _) in enumerate(self.segments)}
+        self.ending = {int(b): i for i, (_, b) in enumerate(self.segments)}
+        tangents = self._tangents(self.segments, x)
+        self.run = np.arange(len(self.segments))
+        for _ in self.segments:
+            before = self.run.copy()
+            for i, (_, b) in enumerate(self.segments):
+                j = self.starting.get(int(b))
+                if j is not None and tangents[i] @ tangents[j] >= CORNER:
+                    self.run[i] = self.run[j] = min(self.run[i], self.run[j])
+            if (before == self.run).all():
+                break
+        own = self._tangents(faces, x)
+        self.sides: dict[int, list[list[tuple[int, int]]]] = {int(n): [] for n in contact.slaves}
+        for face, ends in enumerate(faces):
+            for end, node in enumerate(ends):
+                if int(node) in self.sides:
+                    self.sides[int(node)].append([(face, end)])
+        self.corners: set[int] = set()
+        for node, sides in self.sides.items():
+            if len(sides) == 2 and own[sides[0][0][0]] @ own[sides[1][0][0]] >= CORNER:
+                self.sides[node] = [sides[0] + sides[1]]
+            else:
+                self.corners.add(node)
+        self.master_corners = [
+            int(b)
+            for i, (_, b) in enumerate(self.segments)
+            if (j := self.starting.get(int(b))) is None or tangents[i] @ tangents[j] < CORNER
+        ] + [int(a) for a, _ in self.segments if int(a) not in self.ending]
+
+    def vertex(self, node: int) -> Vertex:
+        """The nodes that the place of an end of a face is made of."""
+        ends = self.middles.get(node)
+        if ends is None:
+            return ((node, 1.0),)
+        return ((node, 4.0 / 3.0), (ends[0], -1.0 / 6.0), (ends[1], -1.0 / 6.0))
+
+    def _place(self, node: int, x: Array) -> Array:
+        return sum((part * x[n] for n, part in self.vertex(int(node))), np.zeros(2))
+
+    def _ends(self, pairs: Integers, x: Array) -> tuple[Array, Array]:
+        a, b = (np.array([self._place(node, x) for node in pairs[:, k]]).reshape(-1, 2) for k in (0, 1))
+        return a, b
+
+    def _tangents(self, pairs: Integers, x: Array) -> Array:
+        a, b = self._ends(pairs, x)
+        return (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
+
+    def means(self, x0: Array, x1: Array, nodes: Integers, halfway: bool) -> Iterator[Mean]:
+        """The means of some slave nodes between two positions; `halfway`: rows of the energy-momentum form."""
+        self.at = [(x, *self._ends(self.segments, x), self._tangents(self.segments, x)) for x in (x0, x1)]
+        points: dict[int, list[Point]] = {}
+        for node in nodes:
+            for side in self.sides[int(node)]:
+                found: dict[int, Mean] = {}
+                whole = 0.0
+                for face, end in side:
+                    if face not in points:
+                        points[face] = list(self._points(face, halfway))
+                    whole += self._weight(face, 0.5, 0.5)
+                    for q in points[face]:
+                        hat = (1.0 - q.eta, q.eta)[end]
+                        mean = found.setdefault(int(self.run[q.segment]), Mean(int(node)))
+                        mean.points.append((q.weight * hat, q))
+                for mean in found.values():
+                    covered = sum(weight for weight, _ in mean.points)
+                    if covered <= COVER * whole:
+                        continue
+                    mean.points = [(weight / covered, q) for weight, q in mean.points]
+                    mean.gap = sum(weight * q.gap for weight, q in mean.points)
+                    mean.slip = sum(weight * q.slip for weight, q in mean.points)
+                    mean.moved = any(q.before != q.segment for _, q in mean.points)
+                    mean.moved |= abs(covered - whole) > 1e-9 * whole
+                    yield mean
+
+    def _weight(self, face: int, eta: float, part: float) -> float:
+        a, b = (self._place(node, self.x) for node in self.faces[face])
+        radius = (1.0 - eta) * a[0] + eta * b[0] if self.rings else 1.0
+        return float(np.linalg.norm(b - a) * part * radius)
+
+    def _points(self, face: int, halfway: bool) -> Iterator[Point]:
+        """The points of a face: two in each cell, which bisectors of the start and of the end bound."""
+        faced = self._faced(face)
+        for run in sorted({int(self.run[i]) for i in faced}):
+            own = [i for i in faced if self.run[i] == run]
+            cells = [self._cells(face, own, k) for k in (0, 1)]
+            cuts = sorted({c for of in (cells if halfway else cells[1:]) for low, high, _ in of for c in (low, high)})
+            for low, high in zip(cuts, cuts[1:]):
+                middle = (low + high) / 2.0
+                j, i = (self._over(face, cells[k], middle, k) for k in (1, 0))
+                if high - low <= 1e-13 or j is None:
+                    continue
+                for sign in (-1.0, 1.0):
+                    eta = middle + sign * (high - low) * GAUSS
+                    weight = self._weight(face, eta, (high - low) / 2.0)
+                    yield self._point(face, eta, weight, i, j, halfway)
+
+    def _faced(self, face: int) -> list[int]:
+        """Segments that a face is turned to at the start, within reach, and not behind."""
+        x, a, b, t = self.at[0]
+        p, q = (self._place(node, x) for node in self.faces[face])
+        e = (q - p) / np.linalg.norm(q - p)
+        length = np.linalg.norm(b - a, axis=1)
+        gaps = np.stack([(r - a)[:, 0] * t[:, 1] - (r - a)[:, 1] * t[:, 0] for r in (p, q)])
+        near = (np.abs(gaps).min(axis=0) <= REACH * np.maximum(length, np.linalg.norm(q - p))) | (gaps[0] * gaps[1] < 0.0)
+        front = gaps.max(axis=0) >= -DEPTH * length
+        apart = ~np.isin(self.segments, self.faces[face]).any(axis=1)
+        xi = np.stack([((r - a) * t).sum(axis=1) / length for r in (p, q)])
+        beside = (xi.max(axis=0) > -2.0) & (xi.min(axis=0) < 3.0)
+        return [int(i) for i in np.flatnonzero((t @ e < -FACING) & near & front & apart & beside)]
+
+    def _cells(self, face: int, segments: list[int], k: int) -> list[tuple[float, float, int]]:
+        """Parts of a face over segments, eq. (3.19)."""
+        x, a, b, t = self.at[k]
+        p, q = (self._place(node, x) for node in self.faces[face])
+        start = self.at[0]
+        e = self._place(self.faces[face][1], start[0]) - self._place(self.faces[face][0], start[0])
+        e = e / np.linalg.norm(e)
+
+        def eta(i: int, v: Array, other: int | None) -> float:
+            m = _turned(t[i])
+            if other is not None and self.run[other] == self.run[i] and start[3][other] @ e < -FACING:
+                if not np.isin(self.segments[other], self.faces[face]).any():
+                    m = m + _turned(t[other])
+            return -_cross(p - v, m) / _cross(q - p, m)
+
+        cells = []
+        for i in segments:
+            low = max(eta(i, b[i], self.starting.get(int(self.segments[i, 1]))), 0.0)
+            high = min(eta(i, a[i], self.ending.get(int(self.segments[i, 0]))), 1.0)
+            if low < high:
+                cells.append((low, high, i))
+        return cells
+
+    def _over(self, face: int, cells: list[tuple[float, float, int]], eta: float, k: int) -> int | None:
+        """The nearest segment that a place of a face is over."""
+        x, a, _, t = self.at[k]
+        p, q = (self._place(node, x) for node in self.faces[face])
+        at = (1.0 - eta) * p + eta * q
+        over = [i for low, high, i in cells if low <= eta <= high]
+        return min(over, key=lambda i: abs(_cross(at - a[i], t[i])), default=None)
+
+    def _point(self, face: int, eta: float, weight: float, i: int | None, j: int, halfway: bool) -> Point:
+        """A point with its gap and slip, and what forces are there, eqs (3.4), (7.2), (7.3) and (7.8)."""
+        s, r, e, length, t = [], [], [], [], []
+        for x, a, b, tangents in self.at:
+            p, q = (self._place(node, x) for node in self.faces[face])
+            s.append((1.0 - eta) * p + eta * q)
+            r.append(s[-1] - a[j])
+            e.append(b[j] - a[j])
+            length.append(float(np.linalg.norm(e[-1])))
+            t.append(tangents[j])
+        gaps = [_cross(r[k], t[k]) for k in (0, 1)]
+        xi = [float(r[k] @ t[k]) / length[k] for k in (0, 1)]
+        if not halfway:
+            x0, x1 = self.at[0], self.at[1]
+            d = s[1] - s[0] - (1.0 - xi[1]) * (x1[1][j] - x0[1][j]) - xi[1] * (x1[2][j] - x0[2][j])
+            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (_turned(t[1]), t[1]))
+        mean = (e[0] + e[1]) / 2.0
+        slip = (length[0] + length[1]) / 2.0 * (xi[1] - xi[0])
+        normal = _turned(mean) * (1.0 / length[0] + 1.0 / length[1]) / 2.0
+        tangential = mean * (length[0] + length[1]) / 4.0 * (1.0 / length[0] ** 2 + 1.0 / length[1] ** 2)
+        if i != j:
+            before, most = max(gaps[0], 0.0), TILT
+            if i is not None:
+                _, a, _, tangents = self.at[0]
+                before = _cross(s[0] - a[i], tangents[i])
+                most = max(TILT, 2.0 * abs(_cross(tangents[i], tangents[j])))
+            rise = gaps[0] - before
+            if abs(rise) <= most * abs(slip):
+                normal = normal + (rise / slip if rise else 0.0) * tangential
+            else:
+                normal = normal + most**2 * slip / rise * tangential
+        return Point(face, eta, weight, j, i, gaps[1], slip, (normal, tangential))
+
+    def forces(self, means: list[Mean], force: Array) -> tuple[Array, Array, float]:
+        """Normal and tangential forces [J, 2] of means whose nodal forces on the slave are given, whether each is told
+        [J], and what of the forces they leave.
+
+        Where the means alone do not explain the nodal forces, corners have forces of their own, of any direction: at those
+        of the slave, and under those of the master. Forces are not told that these would change.
+        """
+        rows: dict[tuple[int, int], dict[int, float]] = {}
+        own: set[int] = set()
+        for k, mean in enumerate(means):
+            for weight, q in mean.points:
+                for end, part in zip(self.faces[q.face], (1.0 - q.eta, q.eta)):
+                    for node, share in self.vertex(int(end)):
+                        own.add(node)
+                        for c, row in enumerate(q.rows):
+                            for d in (0, 1):
+                                column = rows.setdefault((node, d), {})
+                                column[2 * k + c] = column.get(2 * k + c, 0.0) + weight * part * share * row[d]
+        free: list[dict[int, float]] = [{n: 1.0} for n in self.corners & own]
+        x = self.at[1][0]
+        for corner in self.master_corners:
+            for face in {q.face for mean in means for _, q in mean.points}:
+                p, q = (self._place(node, x) for node in self.faces[face])
+                e = q - p
+                eta = float((x[corner] - p) @ e / (e @ e))
+                if 0.0 <= eta <= 1.0 and abs(_cross(x[corner] - p, e)) <= 0.05 * float(e @ e):
+                    ends = zip(self.faces[face], (1.0 - eta, eta))
+                    free.append({n: part * share for end, part in ends for n, share in self.vertex(int(end))})
+        nodes = sorted(own)
+        place = {node: k for k, node in enumerate(nodes)}
+        matrix = np.zeros((2 * len(nodes), 2 * (len(means) + len(free))))
+        for (node, d), columns in rows.items():
+            for column, value in columns.items():
+                matrix[2 * place[node] + d, column] = value
+        for k, shares in enumerate(free):
+            for node, part in shares.items():
+                for d in (0, 1):
+                    matrix[2 * place[node] + d, 2 * (len(means) + k) + d] = part
+        right = force[nodes].ravel()
+        count = 2 * len(means)
+        found, left = _fit(matrix[:, :count], right)
+        if left <= ROUND_OFF * np.abs(right).max(initial=0.0):
+            return found.reshape(-1, 2), np.ones(len(means), np.bool_), left
+        found, left = _fit(matrix, right)
+        # what corners may add to the forces of means
+        _, values, vectors = np.linalg.svd(matrix)
+        rank = int((values > ROUND_OFF * values.max()).sum())
+        open_to = np.abs(vectors[rank:, :count]).max(axis=0, initial=0.0).reshape(-1, 2).max(axis=1)
+        return found[:count].reshape(-1, 2), open_to <= ROUND_OFF, left
+
+
+def _fit(matrix: Array, right: Array) -> tuple[Array, float]:
+    """The unknowns that come nearest to the right side, and what they leave of it."""
+    found = np.linalg.lstsq(matrix, right, rcond=None)[0]
+    return found, float(np.abs(matrix @ found - right).max(initial=0.0))
