@@ -15,8 +15,8 @@ use super::search::{Faced, Territory};
 use super::stiffness::changes_between;
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex};
 use super::tolerances::{
-    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH, POINT_TILT,
-    SIDE_BY_SIDE,
+    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH,
+    POINT_TILT, SIDE_BY_SIDE,
 };
 use crate::vectors::{cross, difference, dot, length};
 
@@ -428,11 +428,7 @@ impl SurfacePoint {
     }
 
     /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b.
-    fn tilt(
-        &self,
-        [start, end]: [[[f64; 2]; 3]; 2],
-        at_start: impl Fn(usize) -> [f64; 2],
-    ) -> Tilt {
+    fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
         let [p, q] = [start, end].map(|[s, a, b]| project(s, a, b));
         let (before, turn) = match self.origin {
             Origin::Same => return Tilt::default(),

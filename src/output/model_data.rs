@@ -10,9 +10,8 @@ use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
 use crate::materials::{Law, Polynomial};
 use crate::model::{
-    ContactFormulation, Disc, ElementType, Material, Model, Procedure, Scheme, Segment, Step, Surface,
-    SurfaceKind,
-    Variation,
+    ContactFormulation, Disc, ElementType, Material, Model, Procedure, Scheme, Segment, Step,
+    Surface, SurfaceKind, Variation,
 };
 
 /// Writes the datasets and groups into `/model`.

@@ -79,7 +79,8 @@ impl SlaveFaces {
                 of_masters.extend(faces.iter().copied());
             }
         }
-        let of_masters = (of_masters.iter()).flat_map(|face| slave_faces(face, &|node| !is_slave[node]));
+        let of_masters =
+            (of_masters.iter()).flat_map(|face| slave_faces(face, &|node| !is_slave[node]));
         for face in of_masters {
             start[face.node] = 0.0;
             faces.push(face);
