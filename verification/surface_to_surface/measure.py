@@ -102,6 +102,25 @@ def draw_ironing(study: runner.Study) -> None:
     style.save(figure, study.output / "ironing.png")
 
 
+def check_blocks(study: runner.Study) -> None:
+    """Checks cutbacks and passes of sheared blocks, and tabulates them."""
+    passes = {run.name: int(result.history.solver.passes.sum()) for run, result in study.group("blocks")}
+    rows = []
+    for run, result in study.group("blocks"):
+        name, kind = run.name.rsplit("_", 1)
+        if kind != "STS" or f"{name}_NTS" not in passes:
+            continue
+        other = passes[f"{name}_NTS"]
+        study.check("cutbacks of sheared blocks", run.name, result.run["cutbacks"])
+        study.check(
+            "passes of sheared blocks beside those of node to surface",
+            run.name,
+            passes[run.name] / other,
+        )
+        rows.append((name, passes[run.name], other))
+    study.table("Passes of sheared blocks", ("case", "surface to surface", "node to surface"), rows)
+
+
 def measure(study: runner.Study) -> None:
     """Checks, tabulates and draws what the runs give."""
     for run in study.runs:
@@ -117,5 +136,6 @@ def measure(study: runner.Study) -> None:
             ratio = found[f"{name}_STS"][0] / found[f"{name}_NTS"][0]
             kind = "oscillation of the horizontal force beside that of node to surface"
             study.check(kind, f"{name}_STS", ratio)
+    check_blocks(study)
     if study.draws:
         draw_ironing(study)
