@@ -5,9 +5,13 @@ mod block;
 mod blocks;
 mod frictional;
 mod general;
+mod means;
 #[allow(dead_code)] // shared with the benches
 mod problems;
 mod properties;
 mod random;
+#[allow(dead_code)] // shared with tests/dynamics, which use all of it
+#[path = "../dynamics/blocks.rs"]
+mod rectangles;
 #[allow(dead_code)] // shared with the benches
 mod tableau;
