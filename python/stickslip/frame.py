@@ -22,13 +22,16 @@ LARGEST = 1e150
 ROUND_OFF = 1e-9
 """Times that differ by this part of the duration are the same."""
 
+AT_NODES = "_AT_NODES"
+"""End of the names of fields of elements at nodes, `S_AT_NODES` and others."""
+
 
 @dataclass(frozen=True)
 class Frame(Mapping[str, Any]):
     """Fields by name at one time: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of elements.
 
     Vectors lose their third component, which is 0. Stresses and strains are means over the
-    elements, (xx, yy, xy).
+    elements, (xx, yy, xy); so are the values at nodes, `frame["S_AT_NODES"]` [N, 3].
     """
 
     result: "Result"
@@ -52,7 +55,8 @@ class Frame(Mapping[str, Any]):
         kind = self.result.frames.kind(name)
         rows = self.full(name)
         if kind == "PointData":
-            return rows[:, :2] if rows.ndim == 2 else rows
+            is_vector = rows.ndim == 2 and not name.endswith(AT_NODES)
+            return rows[:, :2] if is_vector else rows
         return rows[: len(self.result.cells)]
 
     def full(self, name: str) -> NDArray[Any]:

@@ -355,6 +355,8 @@ pub(super) struct PointResult {
     pub strain_around: f64,
     /// Accumulated plastic strain.
     pub plastic_strain: f64,
+    /// Displacement gradient H in the plane.
+    pub gradient: Matrix2<f64>,
 }
 
 impl PointResult {
@@ -369,6 +371,7 @@ impl PointResult {
             strain: green_lagrange(&state.h),
             strain_around: 0.0,
             plastic_strain: material.plastic_strain(point),
+            gradient: state.h,
         }
     }
 

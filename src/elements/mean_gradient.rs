@@ -45,37 +45,48 @@ impl MeanGradient {
         }
     }
 
-    /// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration, ln V with V^2 = F F^T of the
-    /// mean deformation gradient F = I + H, at displacements `u`, 2 N entries (length):
-    ///
-    /// ```text
-    /// F F^T = B = I + G,   G = H + H^T + H H^T,   m = tr B/2,   D = B - m I,   d = sqrt(-det D)
-    /// ln V = 1/2 (ln det F I + artanh(d/m)/d D)
-    /// ```
-    ///
-    /// NaN where F turns the element inside out.
+    /// Logarithmic strain of the mean displacement gradient at displacements `u`, 2 N entries (length), as
+    /// [`logarithmic_strain`].
     pub fn logarithmic_strain(&self, u: &[f64]) -> [f64; 3] {
         let mut h = Matrix2::zeros();
         for (&node, w) in self.nodes.iter().zip(&self.weights) {
             let [x, y] = [u[2 * node], u[2 * node + 1]];
             h += Matrix2::new(x * w[0], x * w[1], y * w[0], y * w[1]);
         }
-        let g = h + h.transpose() + h * h.transpose();
-        let m = 1.0 + g.trace() / 2.0;
-        let half = (g.m11 - g.m22) / 2.0;
-        let d = half.hypot(g.m12);
-        let factor = if d == 0.0 {
-            1.0 / m
-        } else {
-            (d / m).atanh() / d
-        };
-        let mean = (h.trace() + h.determinant()).ln_1p() / 2.0;
-        [
-            mean + factor * half / 2.0,
-            mean - factor * half / 2.0,
-            factor * g.m12 / 2.0,
-        ]
+        logarithmic_strain(&h)
     }
+}
+
+/// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration, ln V with V^2 = F F^T of the
+/// deformation gradient F = I + H:
+///
+/// ```text
+/// F F^T = B = I + G,   G = H + H^T + H H^T,   m = tr B/2,   D = B - m I,   d = sqrt(-det D)
+/// ln V = 1/2 (ln det F I + artanh(d/m)/d D)
+/// ```
+///
+/// NaN where F turns the element inside out.
+pub(super) fn logarithmic_strain(h: &Matrix2<f64>) -> [f64; 3] {
+    let g = h + h.transpose() + h * h.transpose();
+    let m = 1.0 + g.trace() / 2.0;
+    let half = (g.m11 - g.m22) / 2.0;
+    let d = half.hypot(g.m12);
+    let factor = if d == 0.0 {
+        1.0 / m
+    } else {
+        (d / m).atanh() / d
+    };
+    let mean = (h.trace() + h.determinant()).ln_1p() / 2.0;
+    [
+        mean + factor * half / 2.0,
+        mean - factor * half / 2.0,
+        factor * g.m12 / 2.0,
+    ]
+}
+
+/// Logarithmic strain of a principal direction whose Green-Lagrange strain is `e`, ln(1 + 2 e)/2.
+pub fn logarithmic_of(e: f64) -> f64 {
+    (2.0 * e).ln_1p() / 2.0
 }
 
 #[cfg(test)]

@@ -25,6 +25,6 @@ pub use all::{Elements, Inverted, Updated};
 pub use connector::{ConnectorState, PlacedConnector};
 pub use element::ElementInertia;
 pub use formulation::{ElementResult, Strained, most_strained};
-pub use mean_gradient::MeanGradient;
-pub use recovery::LocalResults;
+pub use mean_gradient::{MeanGradient, logarithmic_of};
+pub use recovery::{ElementNodes, LocalResult};
 pub use solid::{Increment, Motion, TangentPart};

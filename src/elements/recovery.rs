@@ -1,25 +1,66 @@
 //! Results at integration points, and between them at nodes. Section 2 of docs/theory.md.
 
+use std::collections::BTreeMap;
+
 use smallvec::SmallVec;
 
 use super::all::Elements;
-use super::formulation::ElementResult;
+use super::formulation::{ElementResult, PointResult};
+use super::mean_gradient::{logarithmic_of, logarithmic_strain};
 use super::shapes::{CORNERS, DEGREE_5, GAUSS};
 use crate::model::Shape;
 
-/// Results of the integration points or the nodes of an element, energies per volume.
-pub type LocalResults = SmallVec<[ElementResult; 9]>;
+/// Results at a place: an integration point or a node.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LocalResult {
+    /// Stress, strain and energy there; the energy is per volume (force/length^2), without that of hourglass modes.
+    pub result: ElementResult,
+    /// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration.
+    pub logarithmic_strain: [f64; 3],
+    /// Logarithmic strain around the axis of a body of revolution; 0 in the plane.
+    pub logarithmic_around: f64,
+}
+
+impl LocalResult {
+    /// Sum of results times factors, as of means and of values between points.
+    pub fn weighted<'a>(terms: impl Iterator<Item = (f64, &'a LocalResult)> + Clone) -> Self {
+        let own = terms.clone().map(|(factor, term)| (factor, &term.result));
+        let mut sum = LocalResult {
+            result: ElementResult::weighted(own),
+            ..LocalResult::default()
+        };
+        for (factor, term) in terms {
+            sum.logarithmic_around += factor * term.logarithmic_around;
+            for (sum, strain) in sum
+                .logarithmic_strain
+                .iter_mut()
+                .zip(term.logarithmic_strain)
+            {
+                *sum += factor * strain;
+            }
+        }
+        sum
+    }
+}
+
+/// Results of the integration points or the nodes of an element.
+pub type LocalResults = SmallVec<[LocalResult; 9]>;
 
 impl Elements {
-    /// Results at the integration points of an element at displacements `u`, with the internal variables there; energies
-    /// are per volume (force/length^2).
+    /// Results at the integration points of an element at displacements `u`, with the internal variables there; zero in
+    /// elements of rigid bodies.
     pub fn at_points(&self, element: usize, u: &[f64], variables: &[f64]) -> LocalResults {
         let own = self.element(element);
+        if self.is_rigid(element) {
+            return SmallVec::from_elem(LocalResult::default(), own.points());
+        }
         let points = own.at_points(&self.material(element, variables), u);
-        let alone = points
-            .into_iter()
-            .map(|(point, _)| [(point, 1.0)].into_iter());
-        alone.map(ElementResult::of_points).collect()
+        let local = |(point, _): (PointResult, f64)| LocalResult {
+            logarithmic_strain: logarithmic_strain(&point.gradient),
+            logarithmic_around: logarithmic_of(point.strain_around),
+            result: ElementResult::of_points([(point, 1.0)].into_iter()),
+        };
+        points.into_iter().map(local).collect()
     }
 
     /// Results at the nodes of an element: those of the points by the linear or bilinear field that is nearest to them.
@@ -28,9 +69,49 @@ impl Elements {
         let (shape, nodes) = (self.shape(element), self.nodes(element).len());
         let at_node = |node: usize| {
             let factor = |(p, point)| (share(shape, points.len(), node, p), point);
-            ElementResult::weighted(points.iter().enumerate().map(factor))
+            LocalResult::weighted(points.iter().enumerate().map(factor))
         };
         (0..nodes).map(at_node).collect()
+    }
+}
+
+/// Nodes of elements, and the values there of all elements at a node.
+pub struct ElementNodes {
+    /// Elements (indices).
+    elements: Vec<usize>,
+    /// Their nodes (indices), increasing, each with the places of its values among those of all elements.
+    places: BTreeMap<usize, Vec<usize>>,
+}
+
+impl ElementNodes {
+    /// Nodes of the given elements (indices).
+    pub fn new(all: &Elements, elements: &[usize]) -> Self {
+        let mut places: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let nodes = elements.iter().flat_map(|&e| all.nodes(e));
+        for (place, &node) in nodes.enumerate() {
+            places.entry(node).or_default().push(place);
+        }
+        ElementNodes {
+            elements: elements.to_vec(),
+            places,
+        }
+    }
+
+    /// The nodes (indices), increasing.
+    pub fn nodes(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.places.keys().copied()
+    }
+
+    /// Results at the nodes, one after the other: plain means of the elements at a node, whose weights are positive
+    /// whatever the shape.
+    pub fn results(&self, all: &Elements, u: &[f64], variables: &[f64]) -> Vec<LocalResult> {
+        let of = |&element: &usize| all.at_nodes(element, u, variables);
+        let own: Vec<LocalResult> = self.elements.iter().flat_map(of).collect();
+        let mean = |places: &Vec<usize>| {
+            let part = 1.0 / places.len() as f64;
+            LocalResult::weighted(places.iter().map(|&place| (part, &own[place])))
+        };
+        self.places.values().map(mean).collect()
     }
 }
 

@@ -5,9 +5,9 @@ use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{Interactions, elements_field, first_of_rigid, friction, pair_row};
 use crate::model::{
     ALL_EXTERIOR, Amplitude, BodyForce, CentrifugalForce, ContactChanges, Frames, HistorySet,
-    Incrementation, Increments, Interference, Load, Model, NamedSets, PointLoad, Pressure,
-    Procedure, Rate, RigidBody, Scheme, Settings, Step, Support, SupportMotion, TimeBase, Traction,
-    Variation,
+    Incrementation, Increments, Interference, Load, Model, NamedSets, NodalVariable, PointLoad,
+    Pressure, Procedure, Rate, RigidBody, Scheme, Settings, Step, Support, SupportMotion, TimeBase,
+    Traction, Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -370,7 +370,7 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut DeckWriter) {
 }
 
 fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
-    let asked = sets.fields;
+    let asked = &sets.fields;
     if asked.concentrated_load {
         lines.card("NODE FILE", []);
         lines.row(["CF".to_owned()]);
@@ -386,6 +386,14 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
     let names: Vec<String> = of_elements.map(|(_, name)| (*name).to_owned()).collect();
     if !names.is_empty() {
         lines.card("EL FILE", []);
+        lines.row(names);
+    }
+    let at_nodes = NodalVariable::ALL
+        .iter()
+        .filter(|(v, _)| asked.at_nodes.contains(v));
+    let names: Vec<String> = at_nodes.map(|(_, name)| (*name).to_owned()).collect();
+    if !names.is_empty() {
+        lines.card("EL FILE", [set("POSITION", "NODES")]);
         lines.row(names);
     }
     let totals = |asked: &HistorySet| set("TOTALS", if asked.each_member { "YES" } else { "ONLY" });

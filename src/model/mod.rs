@@ -29,7 +29,9 @@ pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};
 pub(crate) use mesh::sides;
 pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, Set};
-pub use sets::{HistorySet, Instance, NamedSets, RequestedFields, element_name, node_name};
+pub use sets::{
+    HistorySet, Instance, NamedSets, NodalVariable, RequestedFields, element_name, node_name,
+};
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
     BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, Frames,

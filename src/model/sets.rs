@@ -3,6 +3,8 @@
 //! and elements are theirs, and the numbers these have in the part. The numbers of the mesh are then the
 //! program's own, each once.
 
+use std::collections::BTreeSet;
+
 use super::mesh::{Mesh, Set};
 
 /// The sets of a model.
@@ -25,7 +27,7 @@ pub struct NamedSets {
 }
 
 /// Fields of the frames that a deck has to ask for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RequestedFields {
     /// Concentrated loads (`CF`).
     pub concentrated_load: bool,
@@ -39,6 +41,50 @@ pub struct RequestedFields {
     pub pressure: bool,
     /// Accumulated plastic strain (`PEEQ`), which models with metals always write.
     pub plastic_strain: bool,
+    /// What is written at nodes beside the means over elements (`POSITION=NODES`).
+    pub at_nodes: BTreeSet<NodalVariable>,
+}
+
+/// Variables of elements that frames can have at nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum NodalVariable {
+    /// Cauchy stress and its von Mises value.
+    Stress,
+    /// Green-Lagrange strain.
+    Strain,
+    /// Logarithmic strain.
+    LogarithmicStrain,
+    /// Principal stresses.
+    PrincipalStress,
+    /// Pressure.
+    Pressure,
+    /// Strain energy over volume.
+    EnergyDensity,
+    /// Accumulated plastic strain.
+    PlasticStrain,
+}
+
+impl NodalVariable {
+    /// All of them, with their names in decks.
+    pub const ALL: [(NodalVariable, &'static str); 7] = [
+        (NodalVariable::Stress, "S"),
+        (NodalVariable::Strain, "E"),
+        (NodalVariable::LogarithmicStrain, "LE"),
+        (NodalVariable::PrincipalStress, "SP"),
+        (NodalVariable::Pressure, "PRESS"),
+        (NodalVariable::EnergyDensity, "ENER"),
+        (NodalVariable::PlasticStrain, "PEEQ"),
+    ];
+
+    /// That of a name in a deck, of a component as `S11` too.
+    pub fn named(name: &str) -> Option<Self> {
+        let whole = match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
+            "MISES" => "S",
+            whole => whole,
+        };
+        let mut all = Self::ALL.into_iter();
+        all.find_map(|(variable, own)| (own == whole).then_some(variable))
+    }
 }
 
 /// A set in the history: sums over the set, and means over nodes, are always written.

@@ -1,15 +1,18 @@
 //! Group `/VTKHDF`: the field frames, as a temporal unstructured grid with a fixed mesh.
 
 use std::iter::repeat_n;
+use std::rc::Rc;
+use std::sync::Arc;
 
 use hdf5::Group;
 use hdf5::types::FixedAscii;
 
 use super::column::{Columns, Layout, Meaning, Mostly, Number, constant, group, set_attribute};
 use super::frames::{Frame, expected_frames};
+use super::local::Local;
 use super::model_group::{body_numbers, connectivity};
-use crate::elements::{ElementResult, MeanGradient};
-use crate::model::{Bodies, Interaction, Mesh, Model};
+use crate::elements::{ElementResult, Elements, LocalResult, MeanGradient, logarithmic_of};
+use crate::model::{Bodies, Interaction, Mesh, Model, NodalVariable};
 
 /// Cell type of VTK of a rigid segment.
 const VTK_LINE: u8 = 3;
@@ -18,7 +21,11 @@ const VTK_LINE: u8 = 3;
 const CHUNK_FRAMES: usize = 32;
 
 /// Creates the group with the reference mesh and no frame; returns the datasets that grow with the frames.
-pub(crate) fn create<'m>(root: &Group, model: &Model) -> hdf5::Result<Columns<'m, Frame>> {
+pub(crate) fn create<'m>(
+    root: &Group,
+    model: &Model,
+    local: &Arc<Elements>,
+) -> hdf5::Result<Columns<'m, Frame>> {
     let grid = group(root, "VTKHDF")?;
     write_type(&grid)?;
     let lines = model.rigid_segments();
@@ -43,6 +50,7 @@ pub(crate) fn create<'m>(root: &Group, model: &Model) -> hdf5::Result<Columns<'m
     };
     let mut points = fields_of("Point", model.mesh.node_count(), steps)?;
     points.create_points(model)?;
+    points.create_at_nodes(model, local)?;
     let cells = model.mesh.elements.len() + lines.len();
     let mut cells = fields_of("Cell", cells, points.columns)?;
     cells.create_cells(model, lines.len())?;
@@ -150,6 +158,52 @@ impl<'m> FieldGroup<'m> {
         Ok(())
     }
 
+    /// Creates the fields of elements at nodes; nodes without elements have NaN.
+    fn create_at_nodes(&mut self, model: &Model, elements: &Arc<Elements>) -> hdf5::Result<()> {
+        let asked = &model.sets.fields.at_nodes;
+        if asked.is_empty() {
+            return Ok(());
+        }
+        let members: Vec<usize> = (0..model.mesh.elements.len()).collect();
+        let local = Rc::new(Local::at_nodes(elements, &members));
+        let (nodes, count): (Rc<[usize]>, _) = (local.nodes().into(), self.rows);
+        let is_ring = model.mesh.is_axisymmetric();
+        let is_there = |name: &str| is_ring || !["E33_AT_NODES", "LE33_AT_NODES"].contains(&name);
+        let tensors = AT_NODES.iter().filter(|field| asked.contains(&field.0));
+        for &(_, name, meaning, of) in tensors {
+            let (local, nodes) = (local.clone(), nodes.clone());
+            self.add(
+                name,
+                PLANE_TENSOR,
+                Mostly::Varied,
+                meaning,
+                move |frame, v| {
+                    let first = v.len();
+                    v.resize(first + 3 * count, f64::NAN);
+                    let own = local.of(frame.index, &frame.state);
+                    for (&node, result) in nodes.iter().zip(own.iter()) {
+                        v[first + 3 * node..first + 3 * node + 3].copy_from_slice(&of(result));
+                    }
+                },
+            )?;
+        }
+        let scalars = SCALARS_AT_NODES
+            .iter()
+            .filter(|field| asked.contains(&field.0));
+        for &(_, name, meaning, of) in scalars.filter(|field| is_there(field.1)) {
+            let (local, nodes) = (local.clone(), nodes.clone());
+            self.add(name, SCALAR, Mostly::Varied, meaning, move |frame, v| {
+                let first = v.len();
+                v.resize(first + count, f64::NAN);
+                let own = local.of(frame.index, &frame.state);
+                for (&node, result) in nodes.iter().zip(own.iter()) {
+                    v[first + node] = of(result);
+                }
+            })?;
+        }
+        Ok(())
+    }
+
     /// Creates the fields of cells; `lines` rigid segments are the last of them and have NaN.
     fn create_cells(&mut self, model: &Model, lines: usize) -> hdf5::Result<()> {
         let bodies = Bodies::new(&model.mesh).of_element.into_iter().map(Some);
@@ -206,6 +260,23 @@ impl<'m> FieldGroup<'m> {
                     v.extend(repeat_n(f64::NAN, 3 * lines));
                 },
             )?;
+            if model.mesh.is_axisymmetric() {
+                self.add(
+                    "LE33",
+                    SCALAR,
+                    varied,
+                    LOGARITHMIC_AROUND,
+                    move |frame, v| {
+                        v.extend(
+                            frame
+                                .elements
+                                .iter()
+                                .map(|e| logarithmic_of(e.strain_around)),
+                        );
+                        v.extend(repeat_n(f64::NAN, lines));
+                    },
+                )?;
+            }
         }
         Ok(())
     }
@@ -386,6 +457,52 @@ const PLASTIC: [ElementField<f64>; 1] = [("PEEQ", PLASTIC_STRAIN, |e| e.plastic_
 
 /// A field of bodies of revolution.
 const AROUND: [ElementField<f64>; 1] = [("E33", STRAIN_AROUND, |e| e.strain_around)];
+
+/// A field of elements at nodes: what asks for it, name, meaning and value.
+type FieldAtNodes<T> = (NodalVariable, &'static str, Meaning, fn(&LocalResult) -> T);
+
+#[rustfmt::skip]
+const AT_NODES: [FieldAtNodes<[f64; 3]>; 3] = [
+    (NodalVariable::Stress, "S_AT_NODES", ("force/length^2", "Cauchy stress xx yy xy at nodes, mean of the elements there"),
+     |e| e.result.stress),
+    (NodalVariable::Strain, "E_AT_NODES",
+     ("1", "Green-Lagrange strain xx yy xy (xy: tensor component) at nodes, mean of the elements there"),
+     |e| e.result.strain),
+    (NodalVariable::LogarithmicStrain, "LE_AT_NODES",
+     ("1", "logarithmic strain xx yy xy (xy: tensor component) at nodes, mean of the elements there"),
+     |e| e.logarithmic_strain),
+];
+
+#[rustfmt::skip]
+const SCALARS_AT_NODES: [FieldAtNodes<f64>; 10] = [
+    (NodalVariable::Stress, "S33_AT_NODES",
+     ("force/length^2", "Cauchy stress across the thickness at nodes, mean of the elements there"), |e| e.result.across),
+    (NodalVariable::Stress, "MISES_AT_NODES",
+     ("force/length^2", "von Mises stress of the stresses at nodes"), |e| e.result.von_mises()),
+    (NodalVariable::PrincipalStress, "SP1_AT_NODES",
+     ("force/length^2", "smallest principal value of the stresses at nodes"), |e| e.result.principal_stresses()[0]),
+    (NodalVariable::PrincipalStress, "SP2_AT_NODES",
+     ("force/length^2", "middle principal value of the stresses at nodes"), |e| e.result.principal_stresses()[1]),
+    (NodalVariable::PrincipalStress, "SP3_AT_NODES",
+     ("force/length^2", "largest principal value of the stresses at nodes"), |e| e.result.principal_stresses()[2]),
+    (NodalVariable::Pressure, "PRESS_AT_NODES",
+     ("force/length^2", "pressure -(xx + yy + zz)/3 of the stresses at nodes"), |e| e.result.pressure()),
+    (NodalVariable::EnergyDensity, "ENER_AT_NODES",
+     ("energy/length^3", "strain energy over undeformed volume at nodes, without that of hourglass modes"),
+     |e| e.result.energy),
+    (NodalVariable::PlasticStrain, "PEEQ_AT_NODES",
+     ("1", "accumulated plastic strain at nodes, mean of the elements there"), |e| e.result.plastic_strain),
+    (NodalVariable::Strain, "E33_AT_NODES",
+     ("1", "Green-Lagrange strain around the axis at nodes, mean of the elements there"), |e| e.result.strain_around),
+    (NodalVariable::LogarithmicStrain, "LE33_AT_NODES",
+     ("1", "logarithmic strain around the axis at nodes, mean of the elements there"), |e| e.logarithmic_around),
+];
+
+/// Meaning of `LE33`.
+pub(super) const LOGARITHMIC_AROUND: Meaning = (
+    "1",
+    "logarithmic strain around the axis, of the element's mean E33",
+);
 
 /// Meaning of `E33`.
 pub(super) const STRAIN_AROUND: Meaning = (

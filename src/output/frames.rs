@@ -182,6 +182,7 @@ impl Frame {
         self.state.u.clone_from(&state.u);
         self.state.v.clone_from(&state.v);
         self.state.a.clone_from(&state.a);
+        self.state.internal.clone_from(&state.internal);
         self.nodal.reaction.clone_from(&nodal.reaction);
         self.nodal.concentrated.clone_from(&nodal.concentrated);
         self.nodal.tie_force.clone_from(&nodal.tie_force);

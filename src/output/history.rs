@@ -1,14 +1,15 @@
 //! Group `/history`: energies and solver, nodes, elements, bodies, contacts and rigid surfaces, one row per
 //! increment, row 0 being the start; impacts, returns and touches, one row per event.
 
-use std::collections::BTreeMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use hdf5::Group;
 
 use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group, text_attribute};
 use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
-use super::fields::{PLASTIC_STRAIN, STRAIN_AROUND};
+use super::fields::{LOGARITHMIC_AROUND, PLASTIC_STRAIN, STRAIN_AROUND};
+use super::local::Local;
 use super::model_group::contact_names;
 use super::strain::SmallStrainElements;
 use crate::dynamics::{
@@ -16,7 +17,8 @@ use crate::dynamics::{
     ReturnedImpulse, RigidReaction, SolverCounts, Touch,
 };
 use crate::elements::{
-    ConnectorState, ElementInertia, ElementResult, Elements, MeanGradient, PlacedConnector,
+    ConnectorState, ElementInertia, ElementResult, Elements, LocalResult, MeanGradient,
+    PlacedConnector, logarithmic_of,
 };
 use crate::model::{
     Bodies, Contact, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set, Step,
@@ -50,7 +52,11 @@ pub(crate) struct History<'m> {
 
 impl<'m> History<'m> {
     /// Creates the group without rows.
-    pub fn create(root: &Group, model: &'m Model) -> hdf5::Result<Columns<'m, IncrementReport>> {
+    pub fn create(
+        root: &Group,
+        model: &'m Model,
+        local: &Arc<Elements>,
+    ) -> hdf5::Result<Columns<'m, IncrementReport>> {
         let at = group(root, "history")?;
         let mut history = History {
             model,
@@ -95,18 +101,14 @@ impl<'m> History<'m> {
             history.create_nodes(&group(&nodes, &set.name)?, &set.members, asked.each_member)?;
         }
         let elements = group(&at, "elements")?;
-        let local = Arc::new(match is_local(model) {
-            true => Elements::new(model),
-            false => Elements::new(&Model::default()),
-        });
         for (asked, set) in requested(&model.sets.element_history, &model.sets.elements) {
             let at = group(&elements, &set.name)?;
             history.create_elements(&at, &set.members, asked.each_member)?;
             if asked.at_points {
-                history.create_points(&group(&at, "points")?, &set.members, &local)?;
+                history.create_points(&group(&at, "points")?, &set.members, local)?;
             }
             if asked.at_nodes {
-                history.create_element_nodes(&group(&at, "at_nodes")?, &set.members, &local)?;
+                history.create_element_nodes(&group(&at, "at_nodes")?, &set.members, local)?;
             }
         }
         history.table(&group(&at, "solver")?, &[], &SOLVER, |r, each| {
@@ -434,11 +436,7 @@ impl<'m> History<'m> {
         constant(at, "labels", &[labels.len()], &labels, text)?;
         let text = ("1", "number of the point in its element, from 1");
         constant(at, "numbers", &[numbers.len()], &numbers, text)?;
-        let local = local.clone();
-        self.create_local(at, labels.len(), move |r| {
-            let of = |&e: &usize| local.at_points(e, &r.state.u, &r.state.internal);
-            elements.iter().flat_map(of).collect()
-        })
+        self.create_local(at, labels.len(), Local::at_points(local, elements))
     }
 
     /// `/history/elements/<ELSET>/at_nodes`: values at the nodes of the elements, the plain mean of those of all elements of
@@ -449,44 +447,27 @@ impl<'m> History<'m> {
         elements: &'m [usize],
         local: &Arc<Elements>,
     ) -> hdf5::Result<()> {
-        let mut places: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        let all = elements.iter().flat_map(|&e| local.nodes(e));
-        for (place, &node) in all.enumerate() {
-            places.entry(node).or_default().push(place);
-        }
-        let labels = places
-            .keys()
-            .map(|&node| self.model.mesh.node_labels[node] as i64);
-        let labels: Vec<i64> = labels.collect();
+        let local = Local::at_nodes(local, elements);
+        let nodes = local.nodes().into_iter();
+        let labels: Vec<i64> = nodes
+            .map(|node| self.model.mesh.node_labels[node] as i64)
+            .collect();
         let text = ("1", "node numbers of the deck");
         constant(at, "labels", &[labels.len()], &labels, text)?;
-        let local = local.clone();
-        self.create_local(at, labels.len(), move |r| {
-            let of = |&e: &usize| local.at_nodes(e, &r.state.u, &r.state.internal);
-            let own: Vec<ElementResult> = elements.iter().flat_map(of).collect();
-            let mean = |places: &Vec<usize>| {
-                let part = 1.0 / places.len() as f64;
-                ElementResult::weighted(places.iter().map(|&place| (part, &own[place])))
-            };
-            places.values().map(mean).collect()
-        })
+        self.create_local(at, labels.len(), local)
     }
 
     /// The datasets of values at `count` places.
-    fn create_local(
-        &mut self,
-        at: &Group,
-        count: usize,
-        values: impl Fn(&IncrementReport) -> Vec<ElementResult> + Clone + 'm,
-    ) -> hdf5::Result<()> {
+    fn create_local(&mut self, at: &Group, count: usize, local: Local) -> hdf5::Result<()> {
+        let local = Rc::new(local);
         for &(name, dimension, text, ref value) in &LOCAL {
-            let (values, about) = (values.clone(), (dimension, text));
+            let (local, about) = (local.clone(), (dimension, text));
             match *value {
                 Tensor(of) => self.add(at, name, &[count, 3], about, move |r, v| {
-                    v.extend(values(r).iter().flat_map(of));
+                    v.extend(local.of(r.increment, &r.state).iter().flat_map(of));
                 })?,
                 Real(of) => self.add(at, name, &[count], about, move |r, v| {
-                    v.extend(values(r).iter().map(of));
+                    v.extend(local.of(r.increment, &r.state).iter().map(of));
                 })?,
                 _ => {}
             }
@@ -530,6 +511,10 @@ impl<'m> History<'m> {
             self.add(at, "E33", &count, STRAIN_AROUND, |r, v| {
                 v.extend(elements.iter().map(|&e| r.elements[e].strain_around));
             })?;
+            self.add(at, "LE33", &count, LOGARITHMIC_AROUND, |r, v| {
+                let around = elements.iter().map(|&e| r.elements[e].strain_around);
+                v.extend(around.map(logarithmic_of));
+            })?;
         }
         if self.model.writes_plastic_strain() {
             self.add(at, "PEEQ", &count, PLASTIC_STRAIN, |r, v| {
@@ -559,14 +544,6 @@ impl<'m> History<'m> {
             v.extend(of_each.iter().map(|own| own.kinetic_energy(&r.state.v)));
         })
     }
-}
-
-/// Whether values at points or nodes of elements are asked for.
-fn is_local(model: &Model) -> bool {
-    let asked = model.sets.element_history.iter();
-    asked
-        .into_iter()
-        .any(|asked| asked.at_points || asked.at_nodes)
 }
 
 /// The requested sets in the order of the model; an empty set has no history.
@@ -846,18 +823,20 @@ const ELEMENT: [Entry<ElementResult>; 10] = [
 ];
 
 #[rustfmt::skip]
-const LOCAL: [Entry<ElementResult>; 11] = [
-    ("S", "force/length^2", "Cauchy stress xx yy xy", Tensor(|e| e.stress)),
-    ("E", "1", "Green-Lagrange strain xx yy xy (xy: the tensor component)", Tensor(|e| e.strain)),
-    ("S33", "force/length^2", "Cauchy stress across the plane, or around the axis", Real(|e| e.across)),
-    ("E33", "1", "Green-Lagrange strain around the axis of a body of revolution", Real(|e| e.strain_around)),
-    ("MISES", "force/length^2", "von Mises stress", Real(ElementResult::von_mises)),
-    ("SP1", "force/length^2", "smallest principal stress", Real(|e| e.principal_stresses()[0])),
-    ("SP2", "force/length^2", "middle principal stress", Real(|e| e.principal_stresses()[1])),
-    ("SP3", "force/length^2", "largest principal stress", Real(|e| e.principal_stresses()[2])),
-    ("PRESS", "force/length^2", "pressure -(xx + yy + zz)/3", Real(ElementResult::pressure)),
-    ("ENER", "energy/length^3", "strain energy per volume of the undeformed body, without that of hourglass modes", Real(|e| e.energy)),
-    ("PEEQ", "1", "accumulated plastic strain", Real(|e| e.plastic_strain)),
+const LOCAL: [Entry<LocalResult>; 13] = [
+    ("S", "force/length^2", "Cauchy stress xx yy xy", Tensor(|e| e.result.stress)),
+    ("E", "1", "Green-Lagrange strain xx yy xy (xy: the tensor component)", Tensor(|e| e.result.strain)),
+    ("LE", "1", "logarithmic strain xx yy xy (xy: the tensor component)", Tensor(|e| e.logarithmic_strain)),
+    ("S33", "force/length^2", "Cauchy stress across the plane, or around the axis", Real(|e| e.result.across)),
+    ("E33", "1", "Green-Lagrange strain around the axis of a body of revolution", Real(|e| e.result.strain_around)),
+    ("LE33", "1", "logarithmic strain around the axis of a body of revolution", Real(|e| e.logarithmic_around)),
+    ("MISES", "force/length^2", "von Mises stress", Real(|e| e.result.von_mises())),
+    ("SP1", "force/length^2", "smallest principal stress", Real(|e| e.result.principal_stresses()[0])),
+    ("SP2", "force/length^2", "middle principal stress", Real(|e| e.result.principal_stresses()[1])),
+    ("SP3", "force/length^2", "largest principal stress", Real(|e| e.result.principal_stresses()[2])),
+    ("PRESS", "force/length^2", "pressure -(xx + yy + zz)/3", Real(|e| e.result.pressure())),
+    ("ENER", "energy/length^3", "strain energy per volume of the undeformed body, without that of hourglass modes", Real(|e| e.result.energy)),
+    ("PEEQ", "1", "accumulated plastic strain", Real(|e| e.result.plastic_strain)),
 ];
 
 #[rustfmt::skip]

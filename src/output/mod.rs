@@ -18,6 +18,7 @@ mod format;
 mod frames;
 mod history;
 mod job;
+mod local;
 mod memory;
 mod model_data;
 mod model_group;

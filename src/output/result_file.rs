@@ -13,6 +13,7 @@ use super::error::{at, io_error};
 use super::fields;
 use super::frames::Frame;
 use super::history::History;
+use super::local;
 use super::run_record::{RecordWriter, RunRecord};
 use super::space::Space;
 use crate::archive::Archive;
@@ -63,8 +64,9 @@ impl<'m> ResultFile<'m> {
         let parts = || {
             super::model_group::write(&file, model)?;
             super::model_data::write(&file.group("model")?, model)?;
-            let fields = fields::create(&file, model)?;
-            let history = History::create(&file, model)?;
+            let local = local::elements(model);
+            let fields = fields::create(&file, model, &local)?;
+            let history = History::create(&file, model, &local)?;
             let checks = checks::create(&file.group("history")?, model)?;
             let record = RecordWriter::create(&file, record)?;
             file.flush()?;

@@ -8,16 +8,16 @@ use super::names::Named;
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, shown};
-use crate::model::{Frames, HistorySet, RequestedFields, RestartOutput, TimeBase};
+use crate::model::{Frames, HistorySet, NodalVariable, RequestedFields, RestartOutput, TimeBase};
 
 /// Variables that the result file holds.
 const WRITTEN: &[&str] = &[
     "U", "V", "A", "RF", "CF", "UT", "VT", "AT", "S11", "S22", "S33", "S12", "MISES", "E11", "E22",
-    "E33", "E12", "LE11", "LE22", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2", "CF1",
-    "CF2", "S", "PEEQ", "SP", "SP1", "SP2", "SP3", "PRESS", "E", "LE", "ENER", "ELSE", "ELKE",
-    "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS", "CDIS", "CSTR", "CELS", "CF", "CFN", "CFS",
-    "CFT", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS", "COPEN", "CSLIP1", "ALLKE", "ALLSE", "ALLIE",
-    "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
+    "E33", "E12", "LE11", "LE22", "LE33", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2",
+    "CF1", "CF2", "S", "PEEQ", "SP", "SP1", "SP2", "SP3", "PRESS", "E", "LE", "ENER", "ELSE",
+    "ELKE", "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS", "CDIS", "CSTR", "CELS", "CF", "CFN",
+    "CFS", "CFT", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS", "COPEN", "CSLIP1", "ALLKE", "ALLSE",
+    "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
 ];
 
 /// Output requests of the deck so far.
@@ -338,11 +338,16 @@ impl Histories {
         if card.keyword.name.starts_with("CONTACT") {
             return;
         }
+        let is_at_nodes = card.keyword.name.starts_with("EL")
+            && matches!(card.choice("POSITION"), Some("NODES" | "AVERAGED AT NODES"));
         for field in card.rows.iter().flat_map(Line::fields) {
-            match field.name_key().as_str() {
+            let name = field.name_key();
+            let variable = NodalVariable::named(name.as_str()).filter(|_| is_at_nodes);
+            self.fields.at_nodes.extend(variable);
+            match name.as_str() {
                 "CF" => self.fields.concentrated_load = true,
                 "ENER" => self.fields.energy_density = true,
-                "LE" => self.fields.logarithmic_strain = true,
+                "LE" | "LE11" | "LE22" | "LE33" | "LE12" => self.fields.logarithmic_strain = true,
                 "SP" | "SP1" | "SP2" | "SP3" => self.fields.principal_stress = true,
                 "PRESS" => self.fields.pressure = true,
                 "PEEQ" => self.fields.plastic_strain = true,

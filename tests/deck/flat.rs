@@ -286,6 +286,7 @@ fn settings_and_times_of_every_kind() {
         "*NODE FILE\nCF\n",
         "*EL FILE\nLE\n*NODE FILE\nU, CF\n",
         "*EL FILE\nS, ENER\n",
+        "*EL FILE, POSITION=NODES\nMISES, E\n",
     ] {
         round_trip(read(&square("", fields)));
     }

@@ -568,6 +568,20 @@ fn totals_only_leaves_out_the_nodes_unless_another_card_wants_them() {
 }
 
 #[test]
+fn fields_at_nodes_are_those_named_with_the_position() {
+    let asked = |text| with("", text).sets.fields;
+    assert!(asked("*EL FILE\nS, LE").at_nodes.is_empty());
+    let fields =
+        asked("*OUTPUT, FIELD\n*ELEMENT OUTPUT, POSITION=AVERAGED AT NODES\nS11, LE, PEEQ, ELSE");
+    let named = [
+        NodalVariable::Stress,
+        NodalVariable::LogarithmicStrain,
+        NodalVariable::PlasticStrain,
+    ];
+    assert!(fields.at_nodes.iter().eq(&named) && fields.logarithmic_strain);
+}
+
+#[test]
 fn element_histories_of_sets() {
     let asked = |text| with("", text).sets.element_history;
     assert_eq!(asked("*OUTPUT, FIELD\n*ELEMENT OUTPUT, ELSET=BODY\nS"), []);

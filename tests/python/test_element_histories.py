@@ -45,6 +45,8 @@ S, E, ENER, ELSE, ELKE, EVOL
 CF
 *EL FILE
 ENER, LE, SP, PRESS
+*EL FILE, POSITION=NODES
+S, LE, E, PRESS
 *END STEP
 """
 
@@ -59,6 +61,7 @@ def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
         body = {name: group[name][:] for name in group if name != "sum"}
         fields = {name: file["VTKHDF/CellData"][name][:] for name in ("ENER", "LE", *STRESSES)}
         loads = file["VTKHDF/PointData/CF"][:]
+        at_nodes = {name: file[f"VTKHDF/PointData/{name}_AT_NODES"][-4:] for name in ("S", "LE", "E", "PRESS", "MISES")}
     assert body["labels"] == [7]
     assert np.allclose(body["EVOL"], [1.0], rtol=1e-14)
     cauchy = np.array([26.4 * 1.2, 8.8 / 1.2, 0.0])
@@ -80,6 +83,8 @@ def test_a_stretched_element(tmp_path: Path, job: Job) -> None:
     assert np.allclose(body["LE"][-1, 0], strain, rtol=1e-12, atol=1e-13)
     assert np.allclose(fields["LE"][-1], strain, rtol=1e-12, atol=1e-13)
     assert np.allclose(fields["ENER"][-1], density, rtol=1e-12)
+    for name, values in at_nodes.items():
+        assert np.allclose(values, body[name][-1], rtol=1e-12, atol=1e-12), name
     assert np.array_equal(loads[-4:], [[0.0] * 3] * 3 + [[0.0, 3.0, 0.0]])
     for energy in ("ELSE", "ELKE"):
         assert np.array_equal(total[energy], body[energy][:, 0])

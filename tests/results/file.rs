@@ -125,6 +125,8 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/history/elements/SQUARES/points/PRESS", vec![I, 8]),
         ("/history/elements/SQUARES/points/ENER", vec![I, 8]),
         ("/history/elements/SQUARES/points/PEEQ", vec![I, 8]),
+        ("/history/elements/SQUARES/points/LE", vec![I, 8, 3]),
+        ("/history/elements/SQUARES/points/LE33", vec![I, 8]),
         ("/history/elements/SQUARES/points/labels", vec![8]),
         ("/history/elements/SQUARES/at_nodes/S", vec![I, 6, 3]),
         ("/history/elements/SQUARES/at_nodes/E", vec![I, 6, 3]),
@@ -137,6 +139,8 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/history/elements/SQUARES/at_nodes/PRESS", vec![I, 6]),
         ("/history/elements/SQUARES/at_nodes/ENER", vec![I, 6]),
         ("/history/elements/SQUARES/at_nodes/PEEQ", vec![I, 6]),
+        ("/history/elements/SQUARES/at_nodes/LE", vec![I, 6, 3]),
+        ("/history/elements/SQUARES/at_nodes/LE33", vec![I, 6]),
         ("/history/elements/SQUARES/at_nodes/labels", vec![6]),
         ("/history/elements/SQUARES/points/numbers", vec![8]),
         ("/VTKHDF/CellData/PEEQ", vec![F * E]),
@@ -208,6 +212,21 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
     let each = |names: &[&'static str], shape: Vec<usize>| -> Vec<_> {
         names.iter().map(|&name| (name, shape.clone())).collect()
     };
+    shapes.extend(each(
+        &[
+            "/VTKHDF/PointData/S_AT_NODES",
+            "/VTKHDF/PointData/LE_AT_NODES",
+        ],
+        vec![F * N, 3],
+    ));
+    shapes.extend(each(
+        &[
+            "/VTKHDF/PointData/S33_AT_NODES",
+            "/VTKHDF/PointData/MISES_AT_NODES",
+        ],
+        vec![F * N],
+    ));
+    shapes.extend(each(&AT_NODES_OFFSETS, vec![F]));
     shapes.extend(each(&POINT_VECTORS, vec![F * N, 3]));
     shapes.extend(each(&POINT_VECTOR_OFFSETS, vec![F]));
     shapes.extend(each(&PER_INCREMENT, vec![I]));
@@ -221,6 +240,13 @@ const POINT_VECTORS: [&str; 5] = [
     "/VTKHDF/PointData/A",
     "/VTKHDF/PointData/RF",
     "/VTKHDF/PointData/CONTACT_FORCE",
+];
+
+const AT_NODES_OFFSETS: [&str; 4] = [
+    "/VTKHDF/Steps/PointDataOffsets/S_AT_NODES",
+    "/VTKHDF/Steps/PointDataOffsets/S33_AT_NODES",
+    "/VTKHDF/Steps/PointDataOffsets/MISES_AT_NODES",
+    "/VTKHDF/Steps/PointDataOffsets/LE_AT_NODES",
 ];
 
 const POINT_VECTOR_OFFSETS: [&str; 5] = [

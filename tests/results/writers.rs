@@ -22,8 +22,8 @@ use stickslip::materials::Law;
 use stickslip::model::{
     Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face, Frames,
     Friction, HistorySet, Incrementation, Increments, Interaction, Material, Mesh, Model,
-    NamedSets, Procedure, RequestedFields, Section, Set, Settings, Step, Support, SupportMotion,
-    Surface, SurfaceKind,
+    NamedSets, NodalVariable, Procedure, RequestedFields, Section, Set, Settings, Step, Support,
+    SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -54,6 +54,7 @@ pub fn model() -> Model {
                 principal_stress: true,
                 pressure: true,
                 plastic_strain: true,
+                at_nodes: [NodalVariable::Stress, NodalVariable::LogarithmicStrain].into(),
             },
             monitored: vec![12, 1],
             instances: Vec::new(),

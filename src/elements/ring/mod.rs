@@ -214,6 +214,7 @@ impl Ring {
                 strain: section(&e),
                 strain_around: e.z,
                 plastic_strain: material.plastic_strain(p),
+                gradient: at.h,
             };
             (result, point.volume)
         };

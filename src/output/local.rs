@@ -1,0 +1,82 @@
+//! Results at the points and nodes of elements, computed once for all datasets of an increment or a frame.
+
+use std::cell::{Ref, RefCell};
+use std::sync::Arc;
+
+use crate::dynamics::State;
+use crate::elements::{ElementNodes, Elements, LocalResult};
+use crate::model::{HistorySet, Model};
+
+/// Where results are.
+enum Places {
+    /// At the integration points of elements (indices), one element after the other.
+    Points(Vec<usize>),
+    /// At the nodes of elements.
+    Nodes(ElementNodes),
+}
+
+/// Results at places of elements.
+pub(super) struct Local {
+    elements: Arc<Elements>,
+    places: Places,
+    /// The latest results, and what they are of.
+    latest: RefCell<(Option<usize>, Vec<LocalResult>)>,
+}
+
+impl Local {
+    fn new(elements: &Arc<Elements>, places: Places) -> Self {
+        Local {
+            elements: elements.clone(),
+            places,
+            latest: RefCell::default(),
+        }
+    }
+
+    /// At the integration points of the `members` (indices), one element after the other.
+    pub fn at_points(elements: &Arc<Elements>, members: &[usize]) -> Self {
+        Self::new(elements, Places::Points(members.to_vec()))
+    }
+
+    /// At the nodes of the `members` (indices), whose indices increase.
+    pub fn at_nodes(elements: &Arc<Elements>, members: &[usize]) -> Self {
+        Self::new(
+            elements,
+            Places::Nodes(ElementNodes::new(elements, members)),
+        )
+    }
+
+    /// The nodes (indices); none of integration points.
+    pub fn nodes(&self) -> Vec<usize> {
+        match &self.places {
+            Places::Points(_) => Vec::new(),
+            Places::Nodes(nodes) => nodes.nodes().collect(),
+        }
+    }
+
+    /// Results of the increment or frame of a number, whose state is given.
+    pub fn of(&self, number: usize, state: &State) -> Ref<'_, [LocalResult]> {
+        if self.latest.borrow().0 != Some(number) {
+            let (all, State { u, internal, .. }) = (&self.elements, state);
+            let results = match &self.places {
+                Places::Points(members) => {
+                    let of = |&e: &usize| all.at_points(e, u, internal);
+                    members.iter().flat_map(of).collect()
+                }
+                Places::Nodes(nodes) => nodes.results(all, u, internal),
+            };
+            *self.latest.borrow_mut() = (Some(number), results);
+        }
+        Ref::map(self.latest.borrow(), |(_, results)| &results[..])
+    }
+}
+
+/// The elements of a model if values at their points or nodes are asked for, else none.
+pub(super) fn elements(model: &Model) -> Arc<Elements> {
+    let in_history = |asked: &HistorySet| asked.at_points || asked.at_nodes;
+    let sets = &model.sets;
+    let is_asked = !sets.fields.at_nodes.is_empty() || sets.element_history.iter().any(in_history);
+    Arc::new(match is_asked {
+        true => Elements::new(model),
+        false => Elements::new(&Model::default()),
+    })
+}
