@@ -12,7 +12,7 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use stickslip::elements::{Elements, Motion, TangentPart};
 use stickslip::linear::{Assembled, Transformation};
-use stickslip::materials::{Law, NeoHooke, Polynomial};
+use stickslip::materials::{Law, NeoHooke, Plastic, Polynomial};
 use stickslip::model::{Damping, Element, ElementType, Formulation, Material, Model, Section};
 
 /// A unit square of n x n quadrilaterals, or twice as many triangles.
@@ -83,7 +83,7 @@ fn wave(n: usize, nodes: usize, k: f64) -> Vec<f64> {
 }
 
 /// Laws of the same moduli at small strains.
-fn laws() -> [(&'static str, Law); 4] {
+fn laws() -> [(&'static str, Law); 5] {
     let neo_hooke = NeoHooke::of_small_strain(Law::elastic(1e4, 0.3).small_strain());
     let NeoHooke { c10, d1 } = neo_hooke;
     let polynomial = |shape: [f64; 3], c01| {
@@ -101,6 +101,14 @@ fn laws() -> [(&'static str, Law); 4] {
             polynomial([0.75 * c10, 0.0, 0.0], 0.25 * c10),
         ),
         ("Yeoh", polynomial([c10, -0.1 * c10, 0.1 * c10], 0.0)),
+        (
+            "metal",
+            Law::Plastic(Plastic {
+                moduli: Law::elastic(1e4, 0.3).small_strain(),
+                hardening: [[0.0, 50.0], [1.0, 100.0]].into(),
+                kinematic: 0.0,
+            }),
+        ),
     ]
 }
 
@@ -110,7 +118,7 @@ fn types_and_laws(criterion: &mut Criterion) {
         formulation: Formulation::MeanDilatation,
         ..ElementType::CPE4
     };
-    const TYPES: [ElementType; 9] = [
+    const TYPES: [ElementType; 17] = [
         ElementType::CPE3,
         ElementType::CPE4,
         MEAN_DILATATION,
@@ -120,6 +128,14 @@ fn types_and_laws(criterion: &mut Criterion) {
         ElementType::CPS4,
         ElementType::CPS8,
         ElementType::CPS8R,
+        ElementType::CPE4I,
+        ElementType::CPE4R,
+        ElementType::CPE8RH,
+        ElementType::CAX4,
+        ElementType::CAX4H,
+        ElementType::CAX4I,
+        ElementType::CAX4R,
+        ElementType::CAX8R,
     ];
     let n = 32;
     let mut group = criterion.benchmark_group("types and laws");
@@ -133,9 +149,10 @@ fn types_and_laws(criterion: &mut Criterion) {
         let model = grid(n, element_type, law);
         let elements = Elements::new(&model);
         let [u0, u1] = [1.3, 2.9].map(|k| wave(n, model.mesh.node_count(), k));
+        let committed = elements.initial_variables();
         let between = Motion {
             start: Some(&u0),
-            ..Motion::at(&u1, &[])
+            ..Motion::at(&u1, &committed)
         };
         let mut force = vec![0.0; u1.len()];
         group.throughput(Throughput::Elements(elements.len() as u64));

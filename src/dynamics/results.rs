@@ -126,6 +126,8 @@ pub struct Energy {
     pub kinetic: f64,
     /// Strain energy W.
     pub strain: f64,
+    /// The part of it in hourglass modes.
+    pub hourglass: f64,
     /// Work of the loads and of the supports' prescribed motion.
     pub external_work: f64,
     /// Work of the normal contact forces.

@@ -14,7 +14,7 @@ use super::damping::ElementDamping;
 use super::element::{AnyChunk, AnyElement, Geometry};
 use super::formulation::ElementResult;
 use super::solid::{ElementMatrix, ElementVector, Increment, MAX_NODES, Motion, TangentPart};
-use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw};
+use crate::materials::{Committed, PlaneLaw};
 use crate::model::{Element, ElementType, Model, Shape, Thickness};
 
 /// What the elements of one section and type have in common.
@@ -181,7 +181,7 @@ impl Elements {
         self.places[index] = (number, Place::Part(part));
         let element = AnyElement::new(model, index);
         let first = self.variable_count();
-        let variables = first..first + element.points() * kind.law.variables();
+        let variables = first..first + element.variables(&kind.law);
         self.parts.push(Part {
             index,
             element,

@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 
 use super::chunk::{Chunk, TangentSweep};
 use super::formulation::{ElementResult, PointResults};
+use super::hourglass::variables;
 use super::ring::{self, Ring};
 use super::shapes::{
     Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad4Reduced, Quad8, Quad8Reduced,
@@ -107,6 +108,19 @@ impl AnyElement {
     /// Number of integration points.
     pub fn points(&self) -> usize {
         with_element!(self, element => element.points())
+    }
+
+    /// Number of internal variables of all points and hourglass modes with a law.
+    pub fn variables(&self, law: &PlaneLaw) -> usize {
+        let of_modes = match self {
+            AnyElement::Quad4Reduced(_) => variables(2),
+            AnyElement::Ring(ring) => ring.hourglass_variables(),
+            _ => 0,
+        };
+        let of_point = law.variables();
+        // at the start all are zero
+        let is_metal = law.yield_stress(&vec![0.0; of_point]).is_some();
+        self.points() * of_point + if is_metal { of_modes } else { 0 }
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.

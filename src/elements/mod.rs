@@ -12,6 +12,7 @@ mod displacement;
 mod element;
 mod enhanced_strain;
 mod formulation;
+mod hourglass;
 mod local_solution;
 mod mean_dilatation;
 mod mean_gradient;

@@ -20,23 +20,27 @@ use super::formulation::{
     Configuration, Formulation, Point, PointState, Reference, add_geometric, determinant,
     green_lagrange, smaller, strain_displacement,
 };
-use crate::materials::{Strains, StressAtPoints};
+use super::hourglass::{Amplitudes, HourglassPotential};
+use crate::materials::{Committed, Strains, StressAtPoints};
 
 /// One strain of the element and hourglass stiffness. All points of the quadrilateral have that strain: they give the
 /// weights and the hourglass modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReducedIntegration;
 
-/// What the hourglass modes of a configuration give, H.Kh H/2 of eq. (2.42) and its stress.
+/// What the hourglass modes of a configuration give, the potential of eq. (2.42) and its stress.
 struct Hourglass {
-    /// Kh (force/length).
-    stiffness: Matrix2<f64>,
+    potential: HourglassPotential<2>,
+    /// H, at one configuration or at the start and at the end.
+    amplitudes: Amplitudes<2>,
+    /// Volume (length^3) and modulus E' of the plane (force/length^2).
+    sizes: [f64; 2],
     /// F0 and q at the displacements of the strain-displacement matrix.
     f: Matrix2<f64>,
     q: Vector2<f64>,
     /// Stress f that does work on H (force).
     stress: Vector2<f64>,
-    /// Energy, or work between two configurations of a viscosity (force length).
+    /// Energy, or work between two configurations (force length).
     energy: f64,
 }
 
@@ -47,46 +51,37 @@ impl Hourglass {
         material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> Self {
-        let zero = Matrix2::zeros();
-        let strains = match configuration {
-            Configuration::Between(..) if material.is_viscous() => Strains::Between(zero, zero),
-            _ => Strains::At(zero),
+        let c = match configuration {
+            // a viscosity has no stress at one configuration
+            Configuration::At(_) if material.is_viscous() => Matrix3::zeros(),
+            _ => material.initial_tangent(),
         };
-        let stiffness = stiffness(element, modes, &material.tangent(0, &strains));
+        let sizes = [element.volume(), c.m11 - c.m12 * c.m12 / c.m22];
+        let stiffness = stiffness(element, modes, &c);
+        let potential = HourglassPotential::new(stiffness, sizes, material.yielding(P));
         let of = |u: &SMatrix<f64, 2, N>| (Matrix2::identity() + u * modes.mean, u * modes.gamma);
         let h = |(f, q): (Matrix2<f64>, Vector2<f64>)| f.tr_mul(&q);
-        match configuration {
-            Configuration::At(u) => {
-                let (f, q) = of(u);
-                let stress = stiffness * h((f, q));
-                let energy = stress.dot(&h((f, q))) / 2.0;
-                Hourglass {
-                    stiffness,
-                    f,
-                    q,
-                    stress,
-                    energy,
-                }
-            }
+        let (u, amplitudes) = match configuration {
+            Configuration::At(u) => (*u, Amplitudes::At(h(of(u)))),
             Configuration::Between(u0, u1) => {
-                let (f, q) = of(&((u0 + u1) / 2.0));
                 let [h0, h1] = [u0, u1].map(|u| h(of(u)));
                 // the tangent of a viscosity is that by the mean of the strains: twice that by their change
-                let along = if material.is_viscous() {
-                    h1 - h0
-                } else {
-                    h0 + h1
+                let amplitudes = match material.is_viscous() {
+                    true => Amplitudes::Change(h0, h1),
+                    false => Amplitudes::Between(h0, h1),
                 };
-                let stress = stiffness * along / 2.0;
-                let energy = stress.dot(&(h1 - h0));
-                Hourglass {
-                    stiffness,
-                    f,
-                    q,
-                    stress,
-                    energy,
-                }
+                ((u0 + u1) / 2.0, amplitudes)
             }
+        };
+        let ((f, q), (stress, energy)) = (of(&u), potential.stress(&amplitudes));
+        Hourglass {
+            potential,
+            amplitudes,
+            sizes,
+            f,
+            q,
+            stress,
+            energy,
         }
     }
 
@@ -200,6 +195,30 @@ impl Formulation for ReducedIntegration {
         (force, least)
     }
 
+    /// The variables of the one strain at all points, and those of the hourglass modes of a metal behind them.
+    fn update<const N: usize, const P: usize>(
+        element: &Reference<N, P>,
+        material: &Committed,
+        configuration: &Configuration<N>,
+        updated: &mut [f64],
+    ) -> f64 {
+        let modes = Modes::new(element);
+        let state = state(&modes, material, configuration);
+        let mut dissipated = 0.0;
+        for (p, point) in element.points.iter().enumerate() {
+            dissipated += material.update(p, &state.strains, updated) * point.volume;
+        }
+        let after = material.with(updated);
+        let Some((yield_stress, own)) = after.yielding(P) else {
+            return dissipated;
+        };
+        let strength = [yield_stress, after.used_strength(state.strains.end())];
+        let first = updated.len() - own.len();
+        let hourglass = Hourglass::new(element, &modes, material, configuration);
+        let (end, own) = (hourglass.amplitudes.end(), &mut updated[first..]);
+        dissipated + (hourglass.potential).update(end, hourglass.sizes, strength, own)
+    }
+
     fn hourglass_energy<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
@@ -225,7 +244,7 @@ impl Formulation for ReducedIntegration {
         add_geometric(&mut k, &point, &state.s);
         let hourglass = Hourglass::new(element, &modes, material, configuration);
         let rows = hourglass.rows::<N, P, D>(&modes);
-        k += rows.transpose() * (hourglass.stiffness * rows);
+        k += rows.transpose() * (hourglass.potential.tangent(&hourglass.amplitudes) * rows);
         let along = modes.mean * hourglass.stress;
         for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {
             let second = along[a] * modes.gamma[b] + modes.gamma[a] * along[b];
@@ -243,7 +262,7 @@ mod tests {
     use crate::elements::block::Shape;
     use crate::elements::formulation::evaluate;
     use crate::elements::shapes::Quadrilateral;
-    use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
+    use crate::materials::{Law, NeoHooke, Plane, PlaneLaw};
     use nalgebra::SVector;
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];

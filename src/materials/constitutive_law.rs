@@ -63,6 +63,16 @@ pub trait ConstitutiveLaw {
     fn plastic_strain(&self, _z: &[f64]) -> f64 {
         0.0
     }
+
+    /// Yield stress of a metal (force/length^2).
+    fn yield_stress(&self, _z: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// Part of the yield stress that a strain uses of a metal, 1 where it flows.
+    fn used_strength(&self, _e: &Matrix2<f64>, _z: &[f64]) -> f64 {
+        0.0
+    }
 }
 
 /// A stress that follows from the strains at the integration points of one element: that of its
@@ -77,5 +87,17 @@ pub trait StressAtPoints {
     /// Whether the stress is that of a change of the strains, without a stored energy.
     fn is_viscous(&self) -> bool {
         false
+    }
+
+    /// Tangent at no strain without internal variables; that of no change of the strains where the stress is that of a
+    /// change (force/length^2).
+    fn initial_tangent(&self) -> Matrix3<f64> {
+        let zero = Matrix2::zeros();
+        self.tangent(0, &Strains::Between(zero, zero))
+    }
+
+    /// Yield stress of a metal at the first point (force/length^2), and the variables behind those of the points.
+    fn yielding(&self, _points: usize) -> Option<(f64, &[f64])> {
+        None
     }
 }

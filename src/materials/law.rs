@@ -146,6 +146,14 @@ impl ConstitutiveLaw for PlaneLaw {
     fn plastic_strain(&self, z: &[f64]) -> f64 {
         of_each!(self, law => law.plastic_strain(z))
     }
+
+    fn yield_stress(&self, z: &[f64]) -> Option<f64> {
+        of_each!(self, law => law.yield_stress(z))
+    }
+
+    fn used_strength(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
+        of_each!(self, law => ConstitutiveLaw::used_strength(law, e, z))
+    }
 }
 
 /// A law with the internal variables that the last accepted increment has committed at the integration points of an
@@ -197,6 +205,18 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         self.law.across(e, self.at(point))
     }
 
+    /// Part of the yield stress that a strain of the first point uses, with its own variables.
+    pub fn used_strength(&self, e: &Matrix2<f64>) -> f64 {
+        self.law.used_strength(e, self.at(0))
+    }
+
+    /// The variables behind those of the points, and the yield stress of the first point.
+    fn beyond(&self, points: usize) -> Option<(f64, &[f64])> {
+        let yield_stress = self.law.yield_stress(self.at(0))?;
+        let own = self.variables.get(points * self.law.variables()..)?;
+        (!own.is_empty()).then_some((yield_stress, own))
+    }
+
     /// Accumulated plastic strain of a point.
     pub fn plastic_strain(&self, point: usize) -> f64 {
         self.law.plastic_strain(self.at(point))
@@ -224,12 +244,26 @@ impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
     fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64> {
         self.law.tangent(strains, self.at(point))
     }
+
+    fn initial_tangent(&self) -> Matrix3<f64> {
+        let z0: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.law.variables());
+        self.law.tangent(&Strains::At(Matrix2::zeros()), &z0)
+    }
+
+    fn yielding(&self, points: usize) -> Option<(f64, &[f64])> {
+        self.beyond(points)
+    }
 }
 
 impl Committed<'_> {
     /// Stored energy W(E, z) of a point of a ring per volume (force/length^2).
     pub fn ring_energy(&self, point: usize, e: &Symmetric) -> f64 {
         self.law.of_ring().stored_energy(e, self.at(point))
+    }
+
+    /// As [`Self::used_strength`] of a ring.
+    pub fn ring_used_strength(&self, e: &Symmetric) -> f64 {
+        self.law.of_ring().used_strength(e, self.at(0))
     }
 
     /// As [`Self::update`] at a point of a ring.
@@ -246,6 +280,16 @@ impl Committed<'_> {
 }
 
 impl RingStressAtPoints for Committed<'_> {
+    fn ring_initial_tangent(&self) -> Matrix4<f64> {
+        let z0: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.law.variables());
+        let zero = Strains::At(Symmetric::zeros());
+        self.law.of_ring().tangent(&zero, &z0)
+    }
+
+    fn ring_yielding(&self, points: usize) -> Option<(f64, &[f64])> {
+        self.beyond(points)
+    }
+
     fn ring_stress(&self, point: usize, strains: &Strains<Symmetric>) -> Symmetric {
         let z0 = self.at(point);
         let mut z1: SmallVec<[f64; 8]> = SmallVec::from_slice(z0);

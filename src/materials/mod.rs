@@ -13,6 +13,7 @@ mod hyperelastic;
 pub mod lanes;
 mod law;
 mod neo_hooke;
+mod neo_hooke_lanes;
 mod plane;
 mod plastic;
 mod polynomial;

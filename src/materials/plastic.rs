@@ -151,10 +151,14 @@ impl Plastic {
         }
     }
 
+    /// xi = 2 mu dev E_h - 2/3 H_k A (force/length^2).
+    fn relative_stress(&self, strain: &Symmetric, state: &State) -> Symmetric {
+        deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
+    }
+
     /// Flow from a trial strain, which makes the potential of eq. (2.38) least.
     fn flow(&self, strain: &Symmetric, state: &State) -> Flow {
-        let shear = 2.0 * self.shear();
-        let xi = deviator(strain) * shear - state.back * (2.0 / 3.0 * self.kinematic);
+        let xi = self.relative_stress(strain, state);
         let size = contract(&xi, &xi).sqrt();
         let q = 1.5_f64.sqrt() * size;
         if q <= self.yield_stress(state.slip) {
@@ -684,6 +688,14 @@ impl ConstitutiveLaw for PlanePlastic {
     fn plastic_strain(&self, z: &[f64]) -> f64 {
         self.law.state(z).slip
     }
+
+    fn yield_stress(&self, z: &[f64]) -> Option<f64> {
+        Some(self.law.yield_stress(self.law.state(z).slip))
+    }
+
+    fn used_strength(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
+        RingLaw::used_strength(self, &self.potential(z).complete(e), z)
+    }
 }
 
 impl RingLaw for PlanePlastic {
@@ -702,6 +714,15 @@ impl RingLaw for PlanePlastic {
 
     fn dissipation(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> f64 {
         self.dissipated(strains.end(), z0)
+    }
+
+    /// q/sigma_y of the trial strain.
+    fn used_strength(&self, e: &Symmetric, z: &[f64]) -> f64 {
+        let state = self.law.state(z);
+        let xi = self
+            .law
+            .relative_stress(&self.law.trial(e, &state).strain, &state);
+        (1.5 * contract(&xi, &xi)).sqrt() / self.law.yield_stress(state.slip)
     }
 }
 

@@ -26,6 +26,11 @@ pub trait RingLaw {
     fn dissipation(&self, _strains: &Strains<Symmetric>, _z0: &[f64]) -> f64 {
         0.0
     }
+
+    /// As [`super::ConstitutiveLaw::used_strength`].
+    fn used_strength(&self, _e: &Symmetric, _z: &[f64]) -> f64 {
+        0.0
+    }
 }
 
 /// A stress that follows from the strains at the integration points of one ring: that of its material, or that of its
@@ -40,6 +45,17 @@ pub trait RingStressAtPoints {
     /// Whether the stress is that of a change of the strains, without a stored energy.
     fn ring_is_viscous(&self) -> bool {
         false
+    }
+
+    /// As [`super::StressAtPoints::initial_tangent`] (force/length^2).
+    fn ring_initial_tangent(&self) -> Matrix4<f64> {
+        let zero = Symmetric::zeros();
+        self.ring_tangent(0, &Strains::Between(zero, zero))
+    }
+
+    /// As [`super::StressAtPoints::yielding`].
+    fn ring_yielding(&self, _points: usize) -> Option<(f64, &[f64])> {
+        None
     }
 }
 

@@ -284,6 +284,11 @@ impl ElementType {
         }
     }
 
+    /// Whether it has one strain and a potential of its hourglass modes.
+    pub fn has_hourglass_modes(&self) -> bool {
+        self.formulation == Formulation::Reduced && self.shape == Shape::Quad4
+    }
+
     /// Whether it is an element of a body of revolution.
     pub fn is_ring(self) -> bool {
         self.plane == Plane::Revolution

@@ -148,6 +148,12 @@ impl Model {
         self.sets.fields.plastic_strain || self.has_plasticity()
     }
 
+    /// Whether elements have hourglass modes.
+    pub fn has_hourglass_modes(&self) -> bool {
+        let mut elements = self.mesh.elements.iter();
+        elements.any(|element| element.element_type.has_hourglass_modes())
+    }
+
     /// Whether a material may flow.
     fn has_plasticity(&self) -> bool {
         let mut materials = self.materials.iter();

@@ -1,7 +1,7 @@
 //! The energy balance of a run, the energy that contact puts in, and the momentum of a model without forces from outside,
 //! increment by increment. Sections 7 and 9 of docs/theory.md.
 
-use super::warnings::{Losses, part};
+use super::warnings::{Losses, hourglass_part, part};
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Connector, Equation, Model};
@@ -13,6 +13,9 @@ pub(crate) struct Balance {
     pub largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
+    /// Largest energy of hourglass modes so far, and largest strain energy with what the materials have dissipated.
+    hourglass: f64,
+    internal: f64,
     /// The last energies.
     last: Energy,
     /// Normal work of nodes that took the place of others so far.
@@ -75,6 +78,9 @@ impl Balance {
             self.largest = larger(self.largest, energy.abs());
         }
         self.worst = larger(self.worst, balance.abs());
+        self.hourglass = larger(self.hourglass, report.energy.hourglass);
+        let internal = strain + report.energy.material_dissipation;
+        self.internal = larger(self.internal, internal);
         if self.free {
             let most = (2.0 * self.mass * kinetic).sqrt();
             self.momentum = larger(self.momentum, most);
@@ -104,6 +110,11 @@ impl Balance {
     /// `balance` as a part of the largest energy so far.
     pub fn relative(&self, balance: f64) -> f64 {
         part(balance, self.largest)
+    }
+
+    /// Largest energy of hourglass modes as a part of the largest strain energy.
+    pub fn hourglass(&self) -> f64 {
+        hourglass_part([self.hourglass, self.internal], self.largest)
     }
 
     /// The worst balance so far as a part of the largest energy.

@@ -229,8 +229,14 @@ impl<'m> FieldGroup<'m> {
         let principal = PRINCIPAL.iter().filter(|_| asked.principal_stress);
         let pressure = PRESSURE.iter().filter(|_| asked.pressure);
         let plastic = PLASTIC.iter().filter(|_| model.writes_plastic_strain());
+        let hourglass = HOURGLASS.iter().filter(|_| model.has_hourglass_modes());
         let around = AROUND.iter().filter(|_| model.mesh.is_axisymmetric());
-        for &(name, meaning, of) in principal.chain(pressure).chain(plastic).chain(around) {
+        for &(name, meaning, of) in principal
+            .chain(pressure)
+            .chain(plastic)
+            .chain(hourglass)
+            .chain(around)
+        {
             self.add(name, SCALAR, varied, meaning, move |frame, v| {
                 v.extend(frame.elements.iter().map(of));
                 v.extend(repeat_n(f64::NAN, lines));
@@ -454,6 +460,13 @@ const PRINCIPAL: [ElementField<f64>; 3] = [
 
 /// A field of models with metals.
 const PLASTIC: [ElementField<f64>; 1] = [("PEEQ", PLASTIC_STRAIN, |e| e.plastic_strain)];
+
+/// A field of models with elements of one strain.
+const HOURGLASS: [ElementField<f64>; 1] = [(
+    "ELHE",
+    ("energy", "strain energy of the element in hourglass modes"),
+    |e| e.hourglass_energy,
+)];
 
 /// A field of bodies of revolution.
 const AROUND: [ElementField<f64>; 1] = [("E33", STRAIN_AROUND, |e| e.strain_around)];

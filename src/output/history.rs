@@ -75,9 +75,14 @@ impl<'m> History<'m> {
                 values.push(r.truncation_error.unwrap_or(f64::NAN));
             })?;
         }
-        history.table(&group(&at, "energy")?, &[], &ENERGY, |r, each| {
-            each(&r.energy)
-        })?;
+        let energy = group(&at, "energy")?;
+        history.table(&energy, &[], &ENERGY, |r, each| each(&r.energy))?;
+        if model.has_hourglass_modes() {
+            let meaning = ("energy", "the part of the strain energy in hourglass modes");
+            history.add(&energy, "hourglass", &[], meaning, |r, v| {
+                v.push(r.energy.hourglass);
+            })?;
+        }
         history.create_momentum(&group(&at, "momentum")?)?;
         let bodies = [Bodies::new(&model.mesh).count];
         history.table(&group(&at, "bodies")?, &bodies, &BODY, |r, each| {

@@ -172,6 +172,7 @@ impl Monitor {
             balance: self.balance.worst(),
             losses: self.balance.losses(),
             strain: None,
+            hourglass: self.balance.hourglass(),
             open: match self.time > 0.0 {
                 true => never_closed(&contacts),
                 false => Vec::new(),

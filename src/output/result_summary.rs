@@ -12,7 +12,7 @@ use super::error::{FileError, regular_file};
 use super::format::{bytes, counted, general, label, scientific, wrap};
 use super::model_group::BodyTimes;
 use super::run_record::UNFINISHED;
-use super::warnings::{Findings, Losses, Touches, never_closed, part};
+use super::warnings::{Findings, Losses, Touches, hourglass_part, never_closed, part};
 use crate::dynamics::{Energy, Touch};
 use crate::linear::{larger, largest};
 use crate::model::ContactFormulation;
@@ -285,12 +285,23 @@ fn read_findings(
         .iter()
         .find_map(|name| column(&history, &format!("strain/{name}")).ok());
     let kinetic: Vec<f64> = column(&history, "energy/kinetic").unwrap_or_default();
+    let energy = |name: &str| -> Vec<f64> {
+        column(&history, &format!("energy/{name}")).unwrap_or_default()
+    };
+    let hourglass = energy("hourglass");
+    let stored = energy("strain")
+        .into_iter()
+        .zip(energy("material_dissipation"));
+    let internal: Vec<f64> = stored
+        .map(|(strain, dissipated)| strain + dissipated)
+        .collect();
     let moving = increments.iter().zip(&kinetic).filter(|(_, t)| **t != 0.0);
     let dt = moving.map(|(dt, _)| *dt).fold(0.0, larger);
     Ok(Findings {
         balance,
         losses,
         strain: strain.map(|strain| largest(&strain)),
+        hourglass: hourglass_part([largest(&hourglass), largest(&internal)], largest_energy),
         open: match times.last().is_some_and(|time| *time > 0.0) {
             true => read_open(&history.group("contact")?)?,
             false => Vec::new(),

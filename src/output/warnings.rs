@@ -15,6 +15,20 @@ const MANY: f64 = 100.0;
 /// Number of increments that resolve the longest period well.
 const ENOUGH: f64 = 20.0;
 
+/// Energy of hourglass modes, as a part of the strain energy, above which a run is warned about.
+const HOURGLASS: f64 = 0.05;
+/// Part of the largest energy of a run below which its strain energy does not matter.
+const SMALL: f64 = 1e-3;
+
+/// Largest energy of hourglass modes as a part of the largest strain energy, with what materials have dissipated; 0 where that
+/// is small beside the largest energy of the run.
+pub(super) fn hourglass_part([hourglass, internal]: [f64; 2], largest: f64) -> f64 {
+    match internal > SMALL * largest {
+        true => hourglass / internal,
+        false => 0.0,
+    }
+}
+
 /// Figures of a whole run that warnings are made from.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Findings {
@@ -24,6 +38,8 @@ pub(crate) struct Findings {
     pub losses: Losses,
     /// Largest principal strain in a material for small strains, where it is known.
     pub strain: Option<f64>,
+    /// Largest energy of hourglass modes as a part of the largest strain energy; 0 where that does not matter.
+    pub hourglass: f64,
     /// Names of the contacts that never closed, sorted.
     pub open: Vec<String>,
     /// The touches that matter.
@@ -47,6 +63,7 @@ impl Findings {
             self.touches.brief_text(),
             self.touches.narrow_text(),
             self.strain_text(),
+            self.hourglass_text(),
             self.long_text(),
             self.short_text(),
         ];
@@ -66,6 +83,18 @@ impl Findings {
                  TOLERANCE of *STICKSLIP or the increment",
                 scientific(self.balance, 1),
                 scientific(BALANCE, 0),
+            )
+        })
+    }
+
+    fn hourglass_text(&self) -> Option<String> {
+        (self.hourglass > HOURGLASS).then(|| {
+            format!(
+                "hourglass modes of CPE4R, CPS4R or CAX4R hold up to {} % of the strain energy, above {} %, so that their \
+                 stresses show only a part of the bending: choose several elements across what bends, or CPE4I, \
+                 CPS4I, CAX4I, CPE8R, CPS8R or CAX8R",
+                general(100.0 * self.hourglass, 2),
+                general(100.0 * HOURGLASS, 1),
             )
         })
     }
@@ -395,6 +424,7 @@ mod tests {
                 ..Losses::default()
             },
             strain: Some(0.1),
+            hourglass: 0.04,
             open: vec![],
             touches: Touches::default(),
             dt: 0.1,

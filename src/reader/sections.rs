@@ -40,7 +40,6 @@ pub(super) fn read(
     report_without_section(complete, mesh_index, cx);
     drafts.report_without_law(&properties.sections, cx);
     (properties.materials, properties.places) = drafts.complete(cx);
-    properties.refuse_metals(mesh_index, cx);
     properties.report_locking(mesh_index, cx);
     properties
 }
@@ -183,28 +182,6 @@ impl Properties {
     /// Material (index) of an element.
     fn material_of(&self, element: &Element) -> Option<usize> {
         Some(self.sections.get(element.section)?.material)
-    }
-
-    /// Refuses metals in elements with hourglass stiffness: it is that of an elastic material, so that they would not
-    /// bend as metals that flow.
-    fn refuse_metals(&self, mesh_index: &MeshIndex, cx: &mut Context) {
-        let stiffened = [ElementType::CPE4R, ElementType::CPS4R, ElementType::CAX4R];
-        let elements = mesh_index.mesh.elements.iter();
-        let stiffened = elements.filter(|element| stiffened.contains(&element.element_type));
-        let used: Vec<_> = stiffened
-            .filter_map(|element| self.material_of(element))
-            .collect();
-        for (index, (material, places)) in self.materials.iter().zip(&self.places).enumerate() {
-            if matches!(material.law, Law::Plastic(_)) && used.contains(&index) {
-                let message = format!(
-                    "material {} flows in CPE4R, CPS4R or CAX4R elements",
-                    material.name
-                );
-                cx.error(Code::ElementType, places.poisson, message).help(
-                    "their hourglass stiffness is that of an elastic material: write CPE4H, CPE4I, CPS4I, CPE8R, CPS8R, CAX4H or CAX8R",
-                );
-            }
-        }
     }
 
     /// Warns about nearly incompressible materials, at their Poisson's ratios; in

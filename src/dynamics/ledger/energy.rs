@@ -179,6 +179,7 @@ impl Ledger {
         let e = &mut self.energy;
         let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
         e.strain = strain_energy(problem, end, &self.elements);
+        e.hourglass = self.elements.iter().map(|e| e.hourglass_energy).sum();
         e.kinetic = dot(&end.v, &self.momentum) / 2.0;
         if !problem.integration.has_rates {
             self.enter_equilibrium(problem, start, solved, strain0)?;

@@ -21,14 +21,15 @@ use super::enhanced::{Enhanced, STRAINS};
 use super::points::{Gradient, OfPoints, Path, Point};
 use super::stresses::size;
 use crate::elements::formulation::smaller;
+use crate::elements::hourglass::{Amplitudes, HourglassPotential};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
-use crate::materials::{RingStressAtPoints, Strains, Symmetric};
+use crate::materials::{Committed, RingStressAtPoints, Symmetric};
 
 /// Number of nodes, and of points at which E_33 changes.
 const POINTS: usize = 4;
 /// Number of deformations: two hourglass modes and E_33 at the points.
-const MODES: usize = 2 + POINTS;
-type Amplitudes = SVector<f64, MODES>;
+pub(super) const MODES: usize = 2 + POINTS;
+type Deformation = SVector<f64, MODES>;
 type Stiffness = SMatrix<f64, MODES, MODES>;
 
 /// Hourglass modes of an element in the reference configuration.
@@ -45,9 +46,13 @@ pub(super) struct Hourglass {
 /// The hourglass modes in a motion.
 pub(super) struct Modes<'a> {
     of: &'a Hourglass,
-    stiffness: Stiffness,
+    potential: HourglassPotential<MODES>,
+    /// y, at one configuration or at the start and at the end.
+    amplitudes: Amplitudes<MODES>,
+    /// Volume (length^3) and modulus E' of the section (force/length^2).
+    sizes: [f64; 2],
     /// Stress that does work on y (force, or force length for E_33).
-    stress: Amplitudes,
+    stress: Deformation,
     energy: f64,
     /// F0 and q halfway.
     f: Matrix2<f64>,
@@ -105,13 +110,15 @@ impl Hourglass {
         ends: [[Vector2<f64>; MAX_NODES]; 2],
         is_increment: bool,
     ) -> Modes<'_> {
-        let zero = Symmetric::zeros();
         let is_viscous = material.ring_is_viscous();
-        let at = match is_increment && is_viscous {
-            true => Strains::Between(zero, zero),
-            false => Strains::At(zero),
+        let c = match is_viscous && !is_increment {
+            // a viscosity has no stress at one configuration
+            true => nalgebra::Matrix4::zeros(),
+            false => material.ring_initial_tangent(),
         };
-        let stiffness = self.stiffness(&material.ring_tangent(0, &at));
+        let sizes = [self.mean.volume, c.m11 - c.m12 * c.m12 / c.m22];
+        let yielding = material.ring_yielding(1);
+        let potential = HourglassPotential::new(self.stiffness(&c), sizes, yielding);
         let of_point = |point: &Point| {
             let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
             Path::new(start, end)
@@ -121,29 +128,28 @@ impl Hourglass {
             let f = self.mean.displacement_gradient(u).f();
             (f, self.enhanced.q(u))
         });
-        let amplitudes = |h: Vector2<f64>, gradient: fn(&Path) -> Gradient| {
+        let y = |h: Vector2<f64>, gradient: fn(&Path) -> Gradient| {
             let around = |p: usize| gradient(&paths[p]).strain().z;
             let mean = self.mean_of(around);
-            Amplitudes::from_fn(|k, _| match k {
+            Deformation::from_fn(|k, _| match k {
                 0 | 1 => h[k],
                 _ => around(k - 2) - mean,
             })
         };
-        let y0 = amplitudes(f0.tr_mul(&q0), |path| path.start);
-        let y1 = amplitudes(f1.tr_mul(&q1), |path| path.end);
-        let (stress, energy);
-        if is_increment {
+        let y0 = y(f0.tr_mul(&q0), |path| path.start);
+        let y1 = y(f1.tr_mul(&q1), |path| path.end);
+        let amplitudes = match (is_increment, is_viscous) {
+            (false, _) => Amplitudes::At(y1),
             // the tangent of a viscosity is that by the mean of the strains: twice that by their change
-            let along = if is_viscous { y1 - y0 } else { y0 + y1 };
-            stress = stiffness * along / 2.0;
-            energy = stress.dot(&(y1 - y0));
-        } else {
-            stress = stiffness * y1;
-            energy = stress.dot(&y1) / 2.0;
-        }
+            (true, true) => Amplitudes::Change(y0, y1),
+            (true, false) => Amplitudes::Between(y0, y1),
+        };
+        let (stress, energy) = potential.stress(&amplitudes);
         Modes {
             of: self,
-            stiffness,
+            potential,
+            amplitudes,
+            sizes,
             stress,
             energy,
             f: (f0 + f1) / 2.0,
@@ -180,6 +186,16 @@ impl Modes<'_> {
         self.energy
     }
 
+    /// Writes the variables of a metal's modes behind those of the point, as that is after the increment, and returns
+    /// what is dissipated (force length).
+    pub fn update(&self, after: &Committed, e: &Symmetric, own: &mut [f64]) -> f64 {
+        let Some((yield_stress, _)) = after.ring_yielding(1) else {
+            return 0.0;
+        };
+        let strength = [yield_stress, after.ring_used_strength(e)];
+        (self.potential).update(self.amplitudes.end(), self.sizes, strength, own)
+    }
+
     /// Smallest determinant at the four points.
     pub fn determinant(&self) -> f64 {
         let all = self.paths.iter().map(Path::determinant);
@@ -187,7 +203,7 @@ impl Modes<'_> {
     }
 
     /// Rows of dy by the displacements: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R less its mean.
-    fn rows(&self) -> [Amplitudes; 2 * POINTS] {
+    fn rows(&self) -> [Deformation; 2 * POINTS] {
         let Hourglass {
             mean,
             points,
@@ -201,7 +217,7 @@ impl Modes<'_> {
                 _ => 0.0,
             };
             let mean_around = self.of.mean_of(around);
-            Amplitudes::from_fn(|k, _| match k {
+            Deformation::from_fn(|k, _| match k {
                 0 | 1 => mean.gradient[a][k] * self.q[i] + self.f[(i, k)] * enhanced.gamma[a],
                 _ => around(k - 2) - mean_around,
             })
@@ -219,6 +235,7 @@ impl Modes<'_> {
     /// radius.
     pub fn add_tangent(&self, k: &mut [f64]) {
         let (d, rows) = (size(k), self.rows());
+        let stiffness = self.potential.tangent(&self.amplitudes);
         let Hourglass {
             mean,
             points,
@@ -226,7 +243,7 @@ impl Modes<'_> {
             ..
         } = self.of;
         for (col, of_col) in rows.iter().enumerate() {
-            let stress = self.stiffness * of_col;
+            let stress = stiffness * of_col;
             for (row, of_row) in rows.iter().enumerate() {
                 k[col * d + row] += of_row.dot(&stress);
             }

@@ -13,10 +13,11 @@ use nalgebra::{Matrix4, Vector2, Vector4};
 
 use self::dilatation::Dilatation;
 use self::enhanced::Enhanced;
-use self::hourglass::Hourglass;
+use self::hourglass::{Hourglass, MODES};
 use self::points::{Gradient, OfPoints, Path, Point, Points, section};
 use self::stresses::{Compatible, Rows, Stresses, add_products, size};
 use super::formulation::{ElementResult, PointResult, PointResults, smaller};
+use super::hourglass::variables;
 use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
 use crate::materials::{Committed, RingStressAtPoints, Symmetric, contract};
 use crate::model::{self, Formulation, Nodes, Thickness};
@@ -234,7 +235,22 @@ impl Ring {
             RingFormulation::Enhanced(enhanced) if compatible.is_increment => {
                 enhanced.dissipated(&self.points, (material, updated), &compatible, &stresses)
             }
+            RingFormulation::Reduced(hourglass) => {
+                let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
+                let before = updated.to_vec();
+                let first = before.len().saturating_sub(self.hourglass_variables());
+                let (after, own) = (material.with(&before), &mut updated[first..]);
+                dissipated + modes.update(&after, stresses.strains[0].end(), own)
+            }
             _ => dissipated,
+        }
+    }
+
+    /// Internal variables of the hourglass modes, in metals.
+    pub fn hourglass_variables(&self) -> usize {
+        match &self.formulation {
+            RingFormulation::Reduced(_) => variables(MODES),
+            _ => 0,
         }
     }
 
