@@ -521,7 +521,6 @@ def _blocks(result: Result) -> list[Block]:
                 },
             )
         )
-        is_metal = of_kind is MetalBlock
         if kind in RINGS:
             found[-1].around = at_points / around[..., None]
         elif kind in HYBRID:
@@ -530,7 +529,7 @@ def _blocks(result: Result) -> list[Block]:
         if kind in PRESSURES:
             found[-1].place = np.einsum("ga,eai->egi", at_points, place)
             found[-1].functions = PRESSURES[kind]
-        if (kind in REDUCED or kind == REDUCED_RING) and not is_metal:
+        if kind in REDUCED or kind == REDUCED_RING:
             found[-1].condense()
     return found
 

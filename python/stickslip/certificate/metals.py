@@ -9,6 +9,12 @@ from stickslip.result import Array
 class MetalBlock(Block):
     """Elements whose stresses are not known from the displacements."""
 
+    def condense(self) -> None:
+        """Replaces the points of elements with one strain by one."""
+        volume = self.weight.sum(axis=1, keepdims=True)
+        self.gradient = np.einsum("eg,egai->eai", self.weight / volume, self.gradient)[:, None]
+        self.weight = volume
+
     def energy(self, u: Array) -> Array:
         """Nothing that is known."""
         return np.zeros(len(self.elements))
