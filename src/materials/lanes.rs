@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn cube_roots_are_round_off_away() {
-        let mut x = 1e-300;
+        let mut x = 1e-300_f64;
         while x < 1e300 {
             let near_one = 1.0 + 1e-3 * x.ln().sin();
             let all = [x, near_one];

@@ -13,7 +13,8 @@ LAWS = {
     "neo-hooke": card("HYPERELASTIC, NEO HOOKE", (1923.0, 2.4e-4)),
     "mooney": card("HYPERELASTIC, MOONEY-RIVLIN", (1500.0, 423.0, 2.4e-4)),
     "yeoh": card("HYPERELASTIC, YEOH", (1923.0, -100.0, 50.0, 2.4e-4, 2.4e-4, 2.4e-4)),
-    "plastic": card("ELASTIC", (1e4, 0.3)) + card("PLASTIC", (200.0, 0.0), (300.0, 1.0)),
+    "plastic": card("ELASTIC", (1e4, 0.3)) + card("PLASTIC", (10.0, 0.0), (20.0, 0.1)),
+    "kinematic": card("ELASTIC", (1e4, 0.3)) + card("PLASTIC, HARDENING=KINEMATIC", (10.0, 0.0), (20.0, 0.1)),
 }
 
 
