@@ -11,7 +11,7 @@ pub(super) const LAST_STEP: f64 = 1e-8;
 const DESCENT: f64 = 1e-4;
 
 /// Values that make an energy least, eq. (2.28), from zero on: Newton's method with a line search, the eigenvalues of the
-/// stiffness taken positive. A whole step that halves the slope is taken too. `derivatives` gives slope and stiffness, `change` the energy of the second values less that
+/// stiffness taken positive. `derivatives` gives slope and stiffness, `change` the energy of the second values less that
 /// of the first; the solution ends with a step of the size `last`. None where it does not converge.
 pub(super) fn least<const A: usize>(
     derivatives: impl Fn(&SVector<f64, A>) -> (SVector<f64, A>, SMatrix<f64, A, A>),
@@ -26,17 +26,9 @@ pub(super) fn least<const A: usize>(
             return Some(alpha + step);
         }
         let wanted = DESCENT * slope.dot(&step);
-        let lowers = |t: f64| change(&alpha, &(alpha + step * t)) <= t * wanted;
-        // near the end what a step lowers can be round-off of the energy, which the slope still sees
-        let flattens = || derivatives(&(alpha + step)).0.norm() <= slope.norm() / 2.0;
-        let length = match lowers(1.0) || flattens() {
-            true => 1.0,
-            false => {
-                let mut lengths = (1..MOST_STEPS).map(|halvings| 0.5_f64.powi(halvings as i32));
-                lengths.find(|&t| lowers(t))?
-            }
-        };
-        alpha += step * length;
+        let lengths = (0..MOST_STEPS).map(|halvings| 0.5_f64.powi(halvings as i32));
+        let mut lengths = lengths.filter(|&t| change(&alpha, &(alpha + step * t)) <= t * wanted);
+        alpha += step * lengths.next()?;
     }
     None
 }
