@@ -114,21 +114,28 @@ fn contact_changes([before, now]: [&ContactChanges; 2], model: &Model, lines: &m
     let mut written = Vec::new();
     for (index, contact) in model.contacts.iter().enumerate() {
         let own = &contact.interaction;
-        let in_step = |changes: &'_ ContactChanges| {
+        let changes = [before, now].map(|changes| {
             let mut of_step = changes.friction.iter();
-            let change = of_step.find(|change| change.contact == index);
-            change.map_or(own.friction.clone(), |change| change.friction.clone())
-        };
-        let [before, now] = [before, now].map(in_step);
+            of_step.find(|change| change.contact == index)
+        });
+        let [before, now] = changes
+            .map(|change| change.map_or(own.friction.clone(), |change| change.friction.clone()));
         if before == now || written.contains(own) {
             continue;
         }
         written.push(own.clone());
+        let former = changes[1].and_then(|change| change.from.as_ref());
+        let amplitude = former.and_then(|from| from.amplitude);
+        let amplitude = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
         let parameter = set("INTERACTION", interactions.name(own));
+        let parameters: Vec<String> = [parameter].into_iter().chain(amplitude).collect();
         match now == own.friction {
-            true => lines.card("CHANGE FRICTION", [parameter, "RESET".to_owned()]),
+            true => {
+                let reset = ["RESET".to_owned()];
+                lines.card_of("CHANGE FRICTION", &[&parameters[..], &reset].concat());
+            }
             false => {
-                lines.card("CHANGE FRICTION", [parameter]);
+                lines.card_of("CHANGE FRICTION", &parameters);
                 friction(&now, lines);
             }
         }

@@ -103,6 +103,29 @@ impl Amplitude {
         }
     }
 
+    /// Two values that all its values lie between.
+    pub fn bounds(&self) -> [f64; 2] {
+        match &self.curve {
+            Curve::Linear(points) | Curve::SmoothStep(points) => {
+                let least_and_most =
+                    |[least, most]: [f64; 2], p: &(f64, f64)| [least.min(p.1), most.max(p.1)];
+                let none = [f64::INFINITY, f64::NEG_INFINITY];
+                points.iter().fold(none, least_and_most)
+            }
+            Curve::Signal { base, signal, .. } => {
+                let [below, above] = match signal {
+                    Signal::Periodic { harmonics, .. } => {
+                        let size: f64 = harmonics.iter().map(|(a, b)| a.hypot(*b)).sum();
+                        [-size, size]
+                    }
+                    Signal::Decay { size, .. } => [size.min(0.0), size.max(0.0)],
+                    Signal::Modulated { size, .. } => [-size.abs(), size.abs()],
+                };
+                [base + below, base + above]
+            }
+        }
+    }
+
     fn value_and_rate(&self, t: f64) -> [f64; 2] {
         match &self.curve {
             Curve::Linear(points) => in_table(points, t, |x| [x, 1.0]),

@@ -34,10 +34,10 @@ pub use sets::{
 };
 pub use side::{Segment, Side, SideNodes};
 pub use step::{
-    BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, Frames,
-    FrictionChange, Impact, ImpactTime, Incrementation, Increments, Interference, LandingRule,
-    LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme, Settings,
-    SolverChoice, Step, Support, SupportMotion, Traction, Variation,
+    BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, FormerFriction,
+    Frames, FrictionChange, Impact, ImpactTime, Incrementation, Increments, Interference,
+    LandingRule, LcpChoice, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme,
+    Settings, SolverChoice, Step, Support, SupportMotion, Traction, Variation,
 };
 pub use thickness::Thickness;
 pub(crate) use tie::{NEAR, nearest_of};

@@ -48,16 +48,30 @@ pub struct ContactChanges {
 pub struct FrictionChange {
     /// The contact (index).
     pub contact: usize,
-    /// Its friction, at the end of the step where the coefficient ramps.
+    /// Its friction, in the end where another one gives way to it.
     pub friction: Friction,
-    /// Friction at the start of the step whose coefficient ramps over it.
-    pub from: Option<Friction>,
+    /// Friction that gives way to it.
+    pub from: Option<FormerFriction>,
+}
+
+/// Friction that gives way to another one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FormerFriction {
+    /// The friction.
+    pub friction: Friction,
+    /// Amplitude (index) whose value, from 0 to 1, is the part that has given way; without, it grows linearly over the
+    /// step from 0 to 1.
+    pub amplitude: Option<usize>,
 }
 
 impl ContactChanges {
     /// Whether a coefficient of friction ramps over the step.
     pub fn ramp(&self) -> bool {
-        self.friction.iter().any(|change| change.from.is_some())
+        let mut former = self
+            .friction
+            .iter()
+            .filter_map(|change| change.from.as_ref());
+        former.any(|former| former.amplitude.is_none())
     }
 }
 

@@ -197,10 +197,10 @@ fn contact_changes(
         .iter()
         .map(|&contact| format!("{} removed", names[contact]));
     let friction = friction.iter().map(|change| {
-        let when = if change.from.is_some() {
-            " at the end"
-        } else {
-            ""
+        let when = match change.from.as_ref().map(|from| from.amplitude) {
+            None => String::new(),
+            Some(None) => " at the end".to_owned(),
+            Some(Some(index)) => format!(" as {} says", model.amplitudes[index].name),
         };
         format!("{} {}{when}", names[change.contact], change.friction)
     });

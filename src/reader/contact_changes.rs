@@ -1,30 +1,55 @@
 //! `*CHANGE FRICTION` and `*MODEL CHANGE`: the contacts of a deck from step to step.
 
+use super::amplitudes::Amplitudes;
 use super::contact::friction_of;
 use super::context::Context;
 use super::loads::StepContext;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Line, Text};
-use crate::diagnostics::Code;
-use crate::model::{Contact, ContactChanges, Friction, FrictionChange};
+use crate::diagnostics::{Code, Span, shown};
+use crate::model::{
+    Amplitude, Contact, ContactChanges, FormerFriction, Friction, FrictionChange, TimeBase,
+};
+
+/// Difference from 1 of an amplitude that has brought a change to its end.
+const AT_ITS_END: f64 = 1e-12;
 
 /// What the steps so far have made of the contacts.
 pub(crate) struct ContactHistory<'a> {
     contacts: &'a [Contact],
-    /// Friction of each at the end of the last step.
+    amplitudes: &'a Amplitudes,
+    /// Friction of each, in the end where a change is under way.
     friction: Vec<Friction>,
+    /// Changes under way by amplitudes.
+    under_way: Vec<Option<UnderWay>>,
     /// Those that do not act, increasing.
     removed: Vec<usize>,
+    /// Total time at which the step starts, and duration of the step before.
+    start: f64,
+    last_period: f64,
+}
+
+/// A change of friction that follows an amplitude.
+#[derive(Clone)]
+struct UnderWay {
+    from: Friction,
+    amplitude: usize,
+    /// Place of the amplitude's name.
+    span: Span,
 }
 
 impl<'a> ContactHistory<'a> {
     /// Contacts before the first step.
-    pub fn new(contacts: &'a [Contact]) -> Self {
+    pub fn new(contacts: &'a [Contact], amplitudes: &'a Amplitudes) -> Self {
         let friction = |contact: &Contact| contact.interaction.friction.clone();
         ContactHistory {
             contacts,
+            amplitudes,
             friction: contacts.iter().map(friction).collect(),
+            under_way: vec![None; contacts.len()],
             removed: Vec::new(),
+            start: 0.0,
+            last_period: 0.0,
         }
     }
 
@@ -37,12 +62,13 @@ impl<'a> ContactHistory<'a> {
         cx: &mut Context,
     ) -> ContactChanges {
         let before = self.friction.clone();
+        self.end_changes(|curve| curve.time == TimeBase::Step, cx);
         for (index, card) in cards.iter().enumerate() {
             match card.keyword.name {
                 "CHANGE FRICTION" => {
                     let next = cards.get(index + 1).copied();
                     let given = next.filter(|next| next.keyword.name == "FRICTION");
-                    self.change_friction(card, given, cx);
+                    self.change_friction(card, given, &before, cx);
                 }
                 "MODEL CHANGE" => self.model_change(card, surfaces, cx),
                 _ => {}
@@ -51,12 +77,21 @@ impl<'a> ContactHistory<'a> {
         let numbered = self.contacts.iter().zip(before).enumerate();
         let changes = numbered.filter_map(|(contact, (own, before))| {
             let friction = self.friction[contact].clone();
-            let ramps = context.ramp && before.ramps_to(&friction);
-            let differs = ramps || friction != own.interaction.friction;
-            differs.then(|| FrictionChange {
+            let from = match &self.under_way[contact] {
+                Some(change) => Some(FormerFriction {
+                    friction: change.from.clone(),
+                    amplitude: Some(change.amplitude),
+                }),
+                None => (context.ramp && before.ramps_to(&friction)).then_some(FormerFriction {
+                    friction: before,
+                    amplitude: None,
+                }),
+            };
+            let differs = from.is_some() || friction != own.interaction.friction;
+            differs.then_some(FrictionChange {
                 contact,
                 friction,
-                from: ramps.then_some(before),
+                from,
             })
         });
         ContactChanges {
@@ -66,7 +101,13 @@ impl<'a> ContactHistory<'a> {
     }
 
     /// The friction under `*CHANGE FRICTION` for the contacts of an interaction, or with RESET that of the model.
-    fn change_friction(&mut self, card: &Card, given: Option<&Card>, cx: &mut Context) {
+    fn change_friction(
+        &mut self,
+        card: &Card,
+        given: Option<&Card>,
+        before: &[Friction],
+        cx: &mut Context,
+    ) {
         let Some(name) = card.required("INTERACTION", cx.d) else {
             return;
         };
@@ -93,21 +134,81 @@ impl<'a> ContactHistory<'a> {
         let Some(wanted) = name.name(cx.d) else {
             return;
         };
-        let mut found = false;
-        for (contact, now) in self.contacts.iter().zip(&mut self.friction) {
-            if wanted.key == contact.interaction.name {
-                found = true;
-                let own = &contact.interaction.friction;
-                *now = friction.clone().unwrap_or_else(|| own.clone());
-            }
+        let Ok(amplitude) = self.amplitudes.of(card, cx) else {
+            return;
+        };
+        let span = card.span_of("AMPLITUDE");
+        if let Some(curve) = amplitude.and_then(|index| self.amplitudes.named.all.get(index)) {
+            check_parts(curve, span, cx);
         }
-        if !found {
+        let contacts = self.contacts.iter().enumerate();
+        let meant = contacts.filter(|(_, contact)| wanted.key == contact.interaction.name);
+        let meant: Vec<usize> = meant.map(|(contact, _)| contact).collect();
+        let mut follows = amplitude.is_none();
+        for &contact in &meant {
+            if let Some(change) = self.under_way[contact].take() {
+                self.check_end(&change, cx);
+            }
+            let own = &self.contacts[contact].interaction.friction;
+            let now = friction.clone().unwrap_or_else(|| own.clone());
+            let from = before[contact].clone();
+            if let Some(amplitude) = amplitude.filter(|_| from.ramps_to(&now)) {
+                follows = true;
+                self.under_way[contact] = Some(UnderWay {
+                    from,
+                    amplitude,
+                    span,
+                });
+            }
+            self.friction[contact] = now;
+        }
+        if !follows && !meant.is_empty() {
+            let message = "AMPLITUDE has no effect: the coefficient stays, or changes at once";
+            cx.d.warning(Code::IgnoredParameter, span, message);
+        }
+        if meant.is_empty() {
             let mut known: Vec<&str> = (self.contacts.iter())
                 .map(|contact| contact.interaction.name.as_str())
                 .filter(|name| !name.is_empty())
                 .collect();
             known.dedup();
             cx.undefined("surface interaction of a contact", name, known.into_iter());
+        }
+    }
+
+    /// Ends a step of this duration.
+    pub fn end_step(&mut self, period: f64) {
+        self.start += period;
+        self.last_period = period;
+    }
+
+    /// Ends changes under way with some amplitudes.
+    fn end_changes(&mut self, ends: impl Fn(&Amplitude) -> bool, cx: &mut Context) {
+        for contact in 0..self.under_way.len() {
+            let curve = |change: &UnderWay| self.amplitudes.named.all.get(change.amplitude);
+            let change = self.under_way[contact].take_if(|change| curve(change).is_some_and(&ends));
+            if let Some(change) = change {
+                self.check_end(&change, cx);
+            }
+        }
+    }
+
+    /// A change by an amplitude must be complete at the end of the step before.
+    fn check_end(&self, change: &UnderWay, cx: &mut Context) {
+        let Some(curve) = self.amplitudes.named.all.get(change.amplitude) else {
+            return;
+        };
+        let last = curve.at(match curve.time {
+            TimeBase::Step => self.last_period,
+            TimeBase::Total => self.start,
+        });
+        if (last - 1.0).abs() > AT_ITS_END {
+            let message = format!(
+                "this amplitude ends at {}, with a part of the change",
+                shown(last)
+            );
+            cx.error(Code::ContactChange, change.span, message)
+                .help("let it end at 1, and give under *FRICTION what the coefficient ends at");
         }
     }
 
@@ -163,5 +264,19 @@ impl<'a> ContactHistory<'a> {
                 .help("write slave and master as on the data line of *CONTACT PAIR");
         }
         found
+    }
+}
+
+/// The values of an amplitude are parts of a change.
+fn check_parts(curve: &Amplitude, span: Span, cx: &mut Context) {
+    let [least, most] = curve.bounds();
+    if least < 0.0 || most > 1.0 {
+        let message = format!(
+            "the values of this amplitude go from {} to {}",
+            shown(least),
+            shown(most)
+        );
+        cx.error(Code::ContactChange, span, message)
+            .help("they are parts of the change of friction: 0 is none of it, 1 the whole");
     }
 }

@@ -47,7 +47,7 @@ pub(crate) fn read(
         has_contacts: ["CONTACT PAIR", "CONTACT"]
             .iter()
             .any(|keyword| !outline.model_cards(keyword).is_empty()),
-        changes: ContactHistory::new(contacts),
+        changes: ContactHistory::new(contacts, targets.amplitudes),
         settings: Settings::default(),
         supports: Supports::default(),
         support_operation: Operation::default(),
@@ -173,6 +173,7 @@ impl StepReader<'_> {
 
     fn end(&mut self, period: f64) {
         self.start += period;
+        self.changes.end_step(period);
         let all = &self.targets.amplitudes.named.all;
         self.supports.end_step(period, all);
         self.loads.end_step(period, self.start, all);

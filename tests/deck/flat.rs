@@ -84,6 +84,31 @@ fn a_deck_by_hand() {
 }
 
 #[test]
+fn friction_that_follows_an_amplitude() {
+    let deck = include_str!("../decks/friction.inp");
+    for (time, carried) in [("STEP TIME", None), ("TOTAL TIME", Some(0))] {
+        let curve = format!("*AMPLITUDE, NAME=A, TIME={time}\n0., 0., 0.1, 1.\n");
+        let card = "*CHANGE FRICTION, INTERACTION=";
+        let text = deck
+            .replacen("*STEP", &format!("{curve}*STEP"), 1)
+            .replacen(
+                &format!("{card}SLIDES"),
+                &format!("{card}SLIDES, AMPLITUDE=A"),
+                1,
+            );
+        let model = read(&text);
+        let amplitude = |step: usize| {
+            let change = &model.steps[step].contacts.friction[0];
+            change.from.as_ref().and_then(|from| from.amplitude)
+        };
+        assert_eq!([2, 3].map(amplitude), [Some(0), carried], "{time}");
+        let written = round_trip(model);
+        let cards = written.matches("INTERACTION=SLIDES, AMPLITUDE=A");
+        assert_eq!(cards.count(), 1, "{written}");
+    }
+}
+
+#[test]
 fn titles_of_any_length() {
     let long = "a title  of many words, *one with a star ".repeat(9);
     for title in [

@@ -323,7 +323,11 @@ fn contacts_change_from_step_to_step() {
     let of_step = |number: usize| {
         let changes = &model.steps[number - 1].contacts;
         let friction = (changes.friction.iter())
-            .map(|change| (change.contact, change.friction.clone(), change.from.clone()))
+            .map(|change| {
+                let from = change.from.clone();
+                let from = from.map(|from| (from.friction, from.amplitude));
+                (change.contact, change.friction.clone(), from)
+            })
             .collect::<Vec<_>>();
         (friction, changes.removed.clone())
     };
@@ -335,7 +339,7 @@ fn contacts_change_from_step_to_step() {
     };
     // what never slips ramps to nothing
     let slippery = Friction::constant(0.1);
-    let ramped = (0, slippery.clone(), Some(own[0].clone()));
+    let ramped = (0, slippery.clone(), Some((own[0].clone(), None)));
     assert_eq!(
         of_step(3),
         (vec![ramped, (1, falling.into(), None)], vec![])

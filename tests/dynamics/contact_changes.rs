@@ -2,8 +2,8 @@
 
 use stickslip::dynamics::{Cause, Outcome};
 use stickslip::model::{
-    ContactChanges, Friction, FrictionChange, FrictionLaw, Model, Procedure, Scheme, Step,
-    Variation,
+    Amplitude, ContactChanges, Curve, FormerFriction, Friction, FrictionChange, FrictionLaw, Model,
+    Procedure, Scheme, Step, TimeBase, Variation,
 };
 
 use crate::blocks::{Block, Keep, SCHEMES, run, run_to_end};
@@ -36,7 +36,10 @@ fn friction(friction: Friction, from: Option<Friction>) -> ContactChanges {
         friction: vec![FrictionChange {
             contact: 0,
             friction,
-            from,
+            from: from.map(|friction| FormerFriction {
+                friction,
+                amplitude: None,
+            }),
         }],
     }
 }
@@ -86,6 +89,48 @@ fn a_block_slides_off_when_the_friction_is_changed() {
             assert!(largest < 0.015, "{scheme:?} {from:?}: {largest}");
             assert!(last.energy.balance.abs() < 1e-9);
         }
+    }
+}
+
+#[test]
+fn friction_follows_an_amplitude() {
+    // from 0.5 to 0.1 in the first half of 0.4, and back again to 0.5 in the rest
+    let slope = slope().1;
+    let mu = |t: f64| 0.1 + 0.4 * (t / 0.2 - 1.0).abs();
+    for scheme in SCHEMES {
+        let changes = friction(Friction::constant(0.1), Some(Friction::constant(0.5)));
+        let (mut model, _) = two_steps(scheme, 200, changes);
+        for change in &mut model.steps[1].contacts.friction {
+            change.from.as_mut().expect("it ramps").amplitude = Some(model.amplitudes.len());
+        }
+        model.amplitudes.push(Amplitude {
+            name: "TO AND FRO".into(),
+            time: TimeBase::Step,
+            curve: Curve::Linear(vec![(0.0, 0.0), (0.2, 1.0), (0.4, 0.0)]),
+        });
+        let (keep, _) = run_to_end(&model);
+        // m v' = m g (sin - mu cos) while it slides
+        let (mut v, mut largest, mut dissipated) = (0.0_f64, 0.0_f64, 0.0);
+        for report in &keep.reports {
+            if report.step == 2 {
+                let t = report.step_time;
+                let found = report.contacts[0].friction_coefficient;
+                assert!(found.is_nan() || (found - mu(t)).abs() < 1e-12, "{found}");
+                // the middle of the increment of 0.002
+                let a = GRAVITY * (slope[0] + slope[1] * mu(t - 0.001));
+                v = (v + 0.002 * a).max(0.0);
+            }
+            largest = largest.max((report.momentum.linear[0] / 2.0 - v).abs());
+            let energy = &report.energy;
+            assert!(energy.balance.abs() < 1e-9);
+            assert!(
+                energy.friction_dissipation >= dissipated - 1e-12,
+                "{scheme:?}"
+            );
+            dissipated = energy.friction_dissipation;
+        }
+        println!("{scheme:?}: largest error of the speed {largest:.2e} beside {v:.2e}");
+        assert!(v > 0.05 && largest < 0.015, "{scheme:?}: {largest} {v}");
     }
 }
 

@@ -1,14 +1,15 @@
 //! Coefficients of friction of the pairs in the increments of a step. Section 3 of docs/theory.md, Friction that
 //! depends on slip rate and pressure.
 
-use super::loads::Interval;
+use super::loads::{Interval, TimePoint};
 use super::slave_faces::SlaveFaces;
 use crate::contact::{ClosedPairs, Constraint, position};
 use crate::lcp::ContactState;
-use crate::model::{Friction, Model, Step};
+use crate::model::{FormerFriction, Friction, Model, Step};
 
 /// Friction of the contacts in a step.
 pub(crate) struct Frictions<'m> {
+    model: &'m Model,
     of_contacts: Vec<Course<'m>>,
     /// Where the pressure counts.
     faces: Option<SlaveFaces>,
@@ -17,13 +18,14 @@ pub(crate) struct Frictions<'m> {
 /// Friction of a contact.
 struct Course<'m> {
     friction: &'m Friction,
-    /// That of the start of the step, where its coefficient ramps to that of the end.
-    from: Option<&'m Friction>,
+    /// One that gives way to it.
+    from: Option<&'m FormerFriction>,
 }
 
 impl Course<'_> {
     fn all(&self) -> impl Iterator<Item = &Friction> {
-        [Some(self.friction), self.from].into_iter().flatten()
+        let from = self.from.map(|from| &from.friction);
+        [Some(self.friction), from].into_iter().flatten()
     }
 
     fn is_constant(&self) -> bool {
@@ -34,10 +36,16 @@ impl Course<'_> {
         self.all().any(Friction::depends_on_pressure)
     }
 
-    /// Coefficient at a slip rate, none at rest, under a pressure, at the part `ramped` of the step.
-    fn at(&self, rate: Option<f64>, pressure: f64, ramped: f64) -> f64 {
+    /// Coefficient at a slip rate, none at rest, under a pressure, at a time.
+    fn at(&self, rate: Option<f64>, pressure: f64, (time, model): (TimePoint, &Model)) -> f64 {
         match (self.from, rate) {
-            (Some(from), _) => self.friction.on_the_way((from, ramped), rate, pressure),
+            (Some(from), _) => {
+                let part = match from.amplitude {
+                    Some(index) => time.amplitude(model, index),
+                    None => time.ramped(),
+                };
+                (self.friction).on_the_way((&from.friction, part), rate, pressure)
+            }
             (None, None) => self.friction.at_rest(pressure),
             (None, Some(rate)) => self.friction.at(rate, pressure),
         }
@@ -60,6 +68,7 @@ impl<'m> Frictions<'m> {
         }
         let counts = of_contacts.iter().any(Course::depends_on_pressure);
         Frictions {
+            model,
             faces: counts.then(|| SlaveFaces::new(model)),
             of_contacts,
         }
@@ -104,7 +113,7 @@ impl<'m> Frictions<'m> {
             let slides =
                 constraint.mu_varies && closed.state(constraint.key) != ContactState::Stick;
             let rate = slides.then(|| constraint.slip / interval.dt);
-            constraint.mu = friction.at(rate, pressure, interval.end.ramped());
+            constraint.mu = friction.at(rate, pressure, (interval.end, self.model));
         }
     }
 }
