@@ -96,6 +96,8 @@ def _card(card: Card, units: Units) -> Card:
     entry = TABLE.get(card.keyword)
     if entry is None:
         raise Unscalable(f"this card cannot be rescaled: {card.head}")
+    if card.keyword in ("SPRING", "DASHPOT") and card.rows and card.rows[0][0] == "6":
+        raise Unscalable(f"moments of springs and dashpots cannot be rescaled: {card.head}")
     if "anything" in entry:
         return card
     head = [_parameter(card, part, entry["parameters"], units) for part in fields(card.head)[1:]]

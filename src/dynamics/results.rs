@@ -16,7 +16,7 @@ use std::time::Duration;
 use std::{fmt, io};
 
 use crate::contact::{ClosedPairs, Constraint};
-use crate::elements::{ElementResult, Inverted, Strained};
+use crate::elements::{ConnectorState, ElementResult, Inverted, Strained};
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
 
@@ -277,6 +277,8 @@ pub struct IncrementReport {
     pub bodies: Vec<BodyResult>,
     /// Reactions, one per rigid surface with a reference node.
     pub rigid: Vec<RigidReaction>,
+    /// Springs and dashpots, in the order of the model.
+    pub connectors: Vec<ConnectorState>,
     /// Largest principal strain.
     pub strain: Strained,
     /// Resultants, one per contact of the model.
@@ -313,6 +315,7 @@ impl IncrementReport {
             momentum: self.momentum,
             bodies: self.bodies.clone(),
             rigid: self.rigid.clone(),
+            connectors: self.connectors.clone(),
             strain: self.strain,
             contacts: self.contacts.clone(),
             solver: self.solver,

@@ -9,7 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use rayon::prelude::*;
 
 use super::chunk::{MAX_CHUNK, TangentSweep};
-use super::connector::PlacedConnector;
+use super::connector::{ConnectorState, PlacedConnector};
 use super::damping::ElementDamping;
 use super::element::{AnyChunk, AnyElement, Geometry};
 use super::formulation::ElementResult;
@@ -160,7 +160,7 @@ impl Elements {
             let damping = ElementDamping::new(|rho| all.geometry(index).mass(rho), material, plane);
             all.damped.extend(damping.map(|damping| (index, damping)));
         }
-        let placed = |connector| PlacedConnector::new(connector, &model.mesh.coordinates);
+        let placed = |connector| PlacedConnector::new(connector, model);
         all.connectors = model.connectors.iter().map(placed).collect();
         all
     }
@@ -250,6 +250,20 @@ impl Elements {
     pub fn connected(&self) -> impl Iterator<Item = &[usize]> {
         let elements = (0..self.len()).map(|element| self.nodes(element));
         elements.chain(self.connectors.iter().map(PlacedConnector::nodes))
+    }
+
+    /// Takes in the lengths of bodies that turn, by the pairs of dofs that their angles belong to.
+    pub fn measure_angles(&mut self, lengths: impl Iterator<Item = (usize, f64)>) {
+        for (pair, length) in lengths {
+            let connectors = self.connectors.iter_mut();
+            connectors.for_each(|connector| connector.measure_angle(pair, length));
+        }
+    }
+
+    /// All springs and dashpots at displacements `u` and velocities `v`.
+    pub fn connector_states(&self, u: &[f64], v: &[f64]) -> Vec<ConnectorState> {
+        let all = self.connectors.iter();
+        all.map(|connector| connector.state(u, v)).collect()
     }
 
     /// Energy that all springs store at displacements `u` (force length).

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 use smallvec::SmallVec;
 
 use super::solid::{Increment, Motion, TangentPart};
-use crate::model::{Connector, ConnectorLaw, Direction};
+use crate::model::{Connector, ConnectorLaw, Direction, Model};
 
 /// Two entries for each node.
 pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
@@ -25,14 +25,26 @@ struct Elongation {
     line: Option<(Vector2<f64>, f64)>,
 }
 
+/// From start to end of a motion.
+struct Between {
+    /// Elongations at both.
+    ends: [f64; 2],
+    /// Vector g at each node with g.d = l1 - l0.
+    gradient: [Vector2<f64>; 2],
+    /// Derivative of l1 by the increment d at each node.
+    derivative: [Vector2<f64>; 2],
+    /// Derivative of g by the increment at each node, between angles.
+    bend: [f64; 2],
+}
+
 /// A connector at a time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ConnectorState {
-    /// Elongation (length).
+    /// Elongation (length); between angles their difference.
     pub elongation: f64,
-    /// Rate of the elongation (length/time).
+    /// Rate of the elongation (length/time or 1/time).
     pub rate: f64,
-    /// Force, positive where it pulls its nodes together (force).
+    /// Force, positive where it pulls its nodes together (force), or moment (force length).
     pub force: f64,
 }
 
@@ -40,27 +52,51 @@ pub struct ConnectorState {
 #[derive(Debug, Clone)]
 pub struct PlacedConnector {
     connector: Connector,
+    /// Its nodes; between angles the pairs of dofs that the angles belong to.
+    nodes: SmallVec<[usize; 2]>,
+    /// Between angles the lengths L of their bodies: dofs hold L theta.
+    lengths: [f64; 2],
     /// X_2 - X_1 of the reference configuration (length).
     reference: Vector2<f64>,
 }
 
 impl PlacedConnector {
-    /// A connector between nodes at the coordinates `x`.
-    pub fn new(connector: &Connector, x: &[[f64; 2]]) -> Self {
-        let at = |node: usize| Vector2::from(x[node]);
+    /// A connector of a model.
+    pub fn new(connector: &Connector, model: &Model) -> Self {
+        let at = |node: usize| Vector2::from(model.mesh.coordinates[node]);
+        let angle_at = |node: &usize| {
+            let mut bodies = model.turning_bodies();
+            let found = bodies.find(|(body, _)| body.reference == *node);
+            found.map_or(*node, |(_, turning)| model.angle_of(turning) / 2)
+        };
+        let nodes = match connector.direction {
+            Direction::Angle => connector.nodes.iter().map(angle_at).collect(),
+            Direction::Line | Direction::Fixed(_) => connector.nodes.clone(),
+        };
         let reference = match connector.nodes[..] {
             [a, b] => at(b) - at(a),
             _ => Vector2::zeros(),
         };
         PlacedConnector {
             connector: connector.clone(),
+            nodes,
+            lengths: [1.0; 2],
             reference,
         }
     }
 
-    /// Its nodes.
+    /// Its nodes; between angles the pairs of dofs that the angles belong to.
     pub(super) fn nodes(&self) -> &[usize] {
-        &self.connector.nodes
+        &self.nodes
+    }
+
+    /// Takes in the length of the body whose angle is the first dof of a pair.
+    pub(super) fn measure_angle(&mut self, pair: usize, length: f64) {
+        if self.connector.direction == Direction::Angle {
+            let all = self.nodes.iter().zip(&mut self.lengths);
+            let own = all.filter(|(node, _)| **node == pair);
+            own.for_each(|(_, own)| *own = length);
+        }
     }
 
     /// Whether it is a dashpot.
@@ -107,6 +143,15 @@ impl PlacedConnector {
                     line: None,
                 }
             }
+            (Direction::Angle, nodes) => {
+                let [a, b] = self.lengths.map(|length| 1.0 / length);
+                let angle = |k: usize, part: f64| nodes.get(k).map_or(0.0, |n| u[2 * n] * part);
+                Elongation {
+                    value: angle(0, a) - angle(1, b),
+                    gradient: [Vector2::x() * a, -Vector2::x() * b],
+                    line: None,
+                }
+            }
             (Direction::Line, _) => Elongation {
                 value: 0.0,
                 gradient: [Vector2::zeros(); 2],
@@ -119,18 +164,41 @@ impl PlacedConnector {
     /// discrete gradient of the elongation, eq. (2.20):
     ///
     /// ```text
-    /// along a line  (r0 + r1)/(|r0| + |r1|)
+    /// along a line    (r0 + r1)/(|r0| + |r1|)
+    /// between angles  dtheta/(L c),  c = 2 tan(dtheta/2)
     /// ```
-    fn between(&self, u0: &[f64], u1: &[f64]) -> ([f64; 2], [Vector2<f64>; 2]) {
+    fn between(&self, u0: &[f64], u1: &[f64]) -> Between {
         let [start, end] = [self.at(u0), self.at(u1)];
-        let gradient = match (start.line, end.line) {
-            (Some((r0, l0)), Some((r1, l1))) => {
-                let n = (r0 + r1) / (l0 + l1);
-                [-n, n]
-            }
-            _ => end.gradient,
+        let mut between = Between {
+            ends: [start.value, end.value],
+            gradient: end.gradient,
+            derivative: end.gradient,
+            bend: [0.0; 2],
         };
-        ([start.value, end.value], gradient)
+        if let (Some((r0, l0)), Some((r1, l1))) = (start.line, end.line) {
+            let n = (r0 + r1) / (l0 + l1);
+            between.gradient = [-n, n];
+        }
+        if self.connector.direction == Direction::Angle {
+            for (k, &node) in self.nodes.iter().enumerate() {
+                let half = (u1[2 * node] - u0[2 * node]) / self.lengths[k] / 2.0;
+                // dtheta/c and d theta_1/dc = 1/(1 + c²/4)
+                let (mean, slope) = match half {
+                    0.0 => (1.0, 1.0),
+                    half => (half / half.tan(), half.cos().powi(2)),
+                };
+                // d(dtheta/c)/dc = (slope - mean)/c
+                let bend = if half.abs() < f64::EPSILON.sqrt() {
+                    0.0
+                } else {
+                    (slope - mean) / (2.0 * half.tan() * self.lengths[k])
+                };
+                between.bend[k] = end.gradient[k].x * bend;
+                between.gradient[k] *= mean;
+                between.derivative[k] *= slope;
+            }
+        }
+        between
     }
 
     fn vector(&self, factor: f64, gradient: &[Vector2<f64>; 2]) -> ConnectorVector {
@@ -162,12 +230,17 @@ impl PlacedConnector {
         if self.is_dashpot() {
             return self.vector(0.0, &[Vector2::zeros(); 2]);
         }
-        match motion.start {
-            Some(start) => {
-                let ([l0, l1], gradient) = self.between(start, motion.end);
-                self.vector(curve.mean(l0, l1), &gradient)
+        match (motion.start, motion.increment) {
+            (Some(start), _) => {
+                let between = self.between(start, motion.end);
+                let [l0, l1] = between.ends;
+                self.vector(curve.mean(l0, l1), &between.gradient)
             }
-            None => {
+            (None, Some([u0, u1])) if self.connector.direction == Direction::Angle => {
+                let gradient = self.between(u0, u1).gradient;
+                self.vector(curve.at(self.at(motion.end).value), &gradient)
+            }
+            (None, _) => {
                 let at = self.at(motion.end);
                 self.vector(curve.at(at.value), &at.gradient)
             }
@@ -182,15 +255,19 @@ impl PlacedConnector {
             return self.matrix(|_, _| Matrix2::zeros());
         }
         let at = self.at(motion.end);
+        let (mut derivative, mut bend) = (at.gradient, [0.0; 2]);
         let (slope, force, direction, length) = match motion.start {
             Some(start) => {
-                let ([l0, l1], gradient) = self.between(start, motion.end);
+                let between = self.between(start, motion.end);
+                let [l0, l1] = between.ends;
+                derivative = between.derivative;
+                bend = between.bend.map(|bend| 2.0 * bend);
                 let length = match (self.at(start).line, at.line) {
                     (Some((_, l0)), Some((_, l1))) => (l0 + l1) / 2.0,
                     _ => f64::INFINITY,
                 };
                 let slope = 2.0 * curve.mean_slope(l0, l1);
-                (slope, curve.mean(l0, l1), gradient, length)
+                (slope, curve.mean(l0, l1), between.gradient, length)
             }
             None => {
                 let length = at.line.map_or(f64::INFINITY, |(_, l)| l);
@@ -207,12 +284,17 @@ impl PlacedConnector {
             TangentPart::Positive => (slope.max(0.0), (force / length).max(0.0)),
         };
         let fixed = at.line.is_none();
+        let own = |k: f64| match part {
+            TangentPart::Whole => k,
+            TangentPart::Positive => k.max(0.0),
+        };
         self.matrix(|a, b| {
             // F' g g1^T + F/l (1 - g g1^T), its symmetric part
-            let both = direction[a] * at.gradient[b].transpose();
-            let both = (both + at.gradient[a] * direction[b].transpose()) / 2.0;
+            let both = direction[a] * derivative[b].transpose();
+            let both = (both + derivative[a] * direction[b].transpose()) / 2.0;
             let sign = if a == b { 1.0 } else { -1.0 };
             match fixed {
+                true if a == b => slope * both + Matrix2::new(own(force * bend[a]), 0.0, 0.0, 0.0),
                 true => slope * both,
                 false => (slope - geometric) * both + Matrix2::identity() * (sign * geometric),
             }
@@ -230,21 +312,23 @@ impl PlacedConnector {
     /// Impulse of a dashpot in an increment of length `dt`, dt F((l1 - l0)/dt) along the discrete gradient, eq.
     /// (2.22) (force time).
     pub(super) fn impulse(&self, [u0, u1]: Increment, dt: f64) -> ConnectorVector {
-        let ([l0, l1], gradient) = self.between(u0, u1);
+        let between = self.between(u0, u1);
+        let [l0, l1] = between.ends;
         let force = self.connector.curve.at((l1 - l0) / dt);
-        self.vector(dt * force, &gradient)
+        self.vector(dt * force, &between.gradient)
     }
 
     /// Energy that a dashpot dissipates in an increment of length `dt`, times `dt`: (l1 - l0) F dt.
     pub(super) fn work(&self, [u0, u1]: Increment, dt: f64) -> f64 {
-        let ([l0, l1], _) = self.between(u0, u1);
+        let [l0, l1] = self.between(u0, u1).ends;
         (l1 - l0) * dt * self.connector.curve.at((l1 - l0) / dt)
     }
 
     /// Damping matrix of a dashpot, dF/dv g g^T, the part of eq. (2.22) that is never indefinite
     /// (force time/length).
     pub(super) fn damping(&self, [u0, u1]: Increment, dt: f64) -> ConnectorMatrix {
-        let ([l0, l1], gradient) = self.between(u0, u1);
+        let between = self.between(u0, u1);
+        let ([l0, l1], gradient) = (between.ends, between.gradient);
         let slope = self.connector.curve.slope((l1 - l0) / dt).max(0.0);
         self.matrix(|a, b| slope * gradient[a] * gradient[b].transpose())
     }
@@ -262,6 +346,8 @@ mod tests {
     fn connectors(law: ConnectorLaw) -> Vec<PlacedConnector> {
         let table = ForceCurve::Table(vec![[-2.0, -3.0], [-0.05, -0.5], [0.1, 0.4], [2.0, 1.0]]);
         let directions = [Direction::Line, Direction::Fixed([0, 1])];
+        let mut model = Model::default();
+        model.mesh.coordinates = X.to_vec();
         let of = |direction| {
             [ForceCurve::Linear(7.0), table.clone()].map(|curve| {
                 let nodes = SmallVec::from_slice(&[0, 1]);
@@ -272,7 +358,7 @@ mod tests {
                     law,
                     curve,
                 };
-                PlacedConnector::new(&connector, &X)
+                PlacedConnector::new(&connector, &model)
             })
         };
         let mut all: Vec<PlacedConnector> = directions.into_iter().flat_map(of).collect();

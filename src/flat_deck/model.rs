@@ -575,9 +575,14 @@ fn write_connectors(model: &Model, lines: &mut DeckWriter) {
             ForceCurve::Linear(_) => lines.card(keyword, [set_of]),
             ForceCurve::Table(_) => lines.card(keyword, [set_of, "NONLINEAR".to_owned()]),
         }
-        if let Direction::Fixed(both) = direction {
+        let directions = match direction {
+            Direction::Line => None,
+            Direction::Fixed(both) => Some(both.map(|axis| axis + 1)),
+            Direction::Angle => Some([6; 2]),
+        };
+        if let Some(both) = directions {
             let count = group[0].nodes.len();
-            lines.row(both.iter().take(count).map(|axis| (axis + 1).to_string()));
+            lines.row(both.iter().take(count).map(usize::to_string));
         }
         match curve {
             ForceCurve::Linear(factor) => lines.row([number(*factor)]),

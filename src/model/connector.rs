@@ -22,7 +22,7 @@ impl Connector {
     /// Whether its forces on its nodes have no resultant.
     pub fn has_no_resultant(&self) -> bool {
         let alike = match self.direction {
-            Direction::Line => true,
+            Direction::Line | Direction::Angle => true,
             Direction::Fixed([first, second]) => first == second,
         };
         alike && self.nodes.len() == 2
@@ -36,8 +36,8 @@ impl Connector {
         };
         let form = match (self.direction, self.nodes.len()) {
             (Direction::Line, _) => "A",
-            (Direction::Fixed(_), 1) => "1",
-            (Direction::Fixed(_), _) => "2",
+            (_, 1) => "1",
+            (_, _) => "2",
         };
         format!("{family}{form}")
     }
@@ -51,6 +51,9 @@ pub enum Direction {
     /// The displacement of the first node in the first direction (0 = x, 1 = y) less that of the second node
     /// in the second.
     Fixed([usize; 2]),
+    /// The angle of the rigid body whose reference node the first node is, less that of the body of the second; its force
+    /// is a moment.
+    Angle,
 }
 
 /// What the force of a connector follows.
@@ -62,7 +65,7 @@ pub enum ConnectorLaw {
     Dashpot,
 }
 
-/// Force over an elongation (length) or its rate (length/time).
+/// Force over an elongation (length) or its rate (length/time); between angles moment over an angle or its rate (1/time).
 #[derive(Debug, Clone, PartialEq)]
 pub enum ForceCurve {
     /// In proportion, with this factor: k (force/length) or c (force time/length).

@@ -18,10 +18,11 @@ use crate::dynamics::{
 };
 use crate::elements::{
     ConnectorState, ElementInertia, ElementResult, Elements, LocalResult, MeanGradient,
-    PlacedConnector, logarithmic_of,
+    logarithmic_of,
 };
 use crate::model::{
-    Bodies, Contact, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set, Step,
+    Bodies, Contact, Direction, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set,
+    Step,
 };
 use crate::vectors::cross;
 
@@ -251,29 +252,33 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// `/history/connectors`: springs and dashpots; absent where there are none.
+    /// `/history/connectors`: springs and dashpots, and `/history/rotary_connectors`: those between angles; absent where
+    /// there are none.
     fn create_connectors(&mut self, at: &Group) -> hdf5::Result<()> {
-        let Model {
-            connectors, mesh, ..
-        } = self.model;
-        if connectors.is_empty() {
-            return Ok(());
-        }
-        let (at, count) = (group(at, "connectors")?, [connectors.len()]);
-        let labels: Vec<i64> = connectors.iter().map(|c| c.label as i64).collect();
-        let text = (
-            "1",
-            "element numbers of the springs and dashpots in the deck",
-        );
-        constant(&at, "labels", &count, &labels, text)?;
-        let placed = |c| PlacedConnector::new(c, &mesh.coordinates);
-        let placed: Arc<[PlacedConnector]> = connectors.iter().map(placed).collect();
-        for (name, dimension, text, of) in CONNECTOR {
-            let placed = placed.clone();
-            self.add(&at, name, &count, (dimension, text), move |r, v| {
-                let states = placed.iter().map(|c| c.state(&r.state.u, &r.state.v));
-                v.extend(states.map(|state| of(&state)));
-            })?;
+        let connectors = &self.model.connectors;
+        for (name, is_rotary, entries) in [
+            ("connectors", false, CONNECTOR),
+            ("rotary_connectors", true, ROTARY_CONNECTOR),
+        ] {
+            let all = connectors.iter().enumerate();
+            let own = all.filter(|(_, c)| (c.direction == Direction::Angle) == is_rotary);
+            let (places, labels): (Vec<usize>, Vec<i64>) =
+                own.map(|(place, c)| (place, c.label as i64)).unzip();
+            if places.is_empty() {
+                continue;
+            }
+            let (at, count) = (group(at, name)?, [places.len()]);
+            let text = (
+                "1",
+                "element numbers of the springs and dashpots in the deck",
+            );
+            constant(&at, "labels", &count, &labels, text)?;
+            for (name, dimension, text, of) in entries {
+                let places = places.clone();
+                self.add(&at, name, &count, (dimension, text), move |r, v| {
+                    v.extend(places.iter().map(|&place| of(&r.connectors[place])));
+                })?;
+            }
         }
         Ok(())
     }
@@ -586,6 +591,13 @@ const CONNECTOR: [(&str, &str, &str, OfConnector); 3] = [
     ("elongation", "length", "elongation", |c| c.elongation),
     ("rate", "length/time", "rate of the elongation", |c| c.rate),
     ("force", "force", "force, positive where it pulls the nodes together", |c| c.force),
+];
+
+#[rustfmt::skip]
+const ROTARY_CONNECTOR: [(&str, &str, &str, OfConnector); 3] = [
+    ("angle", "1", "angle (rad), or the difference of two", |c| c.elongation),
+    ("rate", "1/time", "rate of the angle", |c| c.rate),
+    ("moment", "force*length", "moment, positive where it turns the angle back", |c| c.force),
 ];
 
 #[rustfmt::skip]

@@ -142,7 +142,8 @@ fn card_of(
             .help("give springs and dashpots of each type a set and a card of their own");
         return;
     }
-    let Some((direction, curve)) = force(card, kind, cx) else {
+    let all_elements: Vec<&ConnectorElement> = elements().collect();
+    let Some((direction, curve)) = force(card, (kind, &all_elements), targets, cx) else {
         return;
     };
     for &k in members {
@@ -168,7 +169,12 @@ fn card_of(
 
 /// Direction and force that the rows of a card give: the directions of nodes first, but for types that act along a
 /// line.
-fn force(card: &Card, kind: ConnectorKind, cx: &mut Context) -> Option<(Direction, ForceCurve)> {
+fn force(
+    card: &Card,
+    (kind, elements): (ConnectorKind, &[&ConnectorElement]),
+    targets: Targets,
+    cx: &mut Context,
+) -> Option<(Direction, ForceCurve)> {
     let mut rows = card.rows.iter().peekable();
     let is_blank = |row: &Line| row.fields().all(|field| field.is_empty());
     let direction = match kind.form {
@@ -176,7 +182,7 @@ fn force(card: &Card, kind: ConnectorKind, cx: &mut Context) -> Option<(Directio
             rows.next_if(is_blank);
             Some(Direction::Line)
         }
-        _ => rows.next().and_then(|row| directions(row, kind, cx)),
+        _ => (rows.next()).and_then(|row| directions(row, (kind, elements), targets, cx)),
     };
     let Some(first) = rows.next() else {
         if !card.faulty {
@@ -199,21 +205,49 @@ fn force(card: &Card, kind: ConnectorKind, cx: &mut Context) -> Option<(Directio
 }
 
 /// `direction of node 1, direction of node 2`
-fn directions(row: Line, kind: ConnectorKind, cx: &mut Context) -> Option<Direction> {
+fn directions(
+    row: Line,
+    (kind, elements): (ConnectorKind, &[&ConnectorElement]),
+    targets: Targets,
+    cx: &mut Context,
+) -> Option<Direction> {
     row.at_most(kind.nodes(), cx.d);
     let mut both = [0; 2];
+    let mut angles = 0;
     for (k, axis) in both.iter_mut().take(kind.nodes()).enumerate() {
-        let field = row.required(k, "the direction, 1 or 2", cx.d)?;
-        *axis = match boundary::direction(field, cx)? {
-            boundary::Direction::Plane(axis) => axis,
-            boundary::Direction::Rotation | boundary::Direction::OutOfPlane => {
-                let message = "only directions 1 and 2 lie in the plane";
+        let field = row.required(k, "the direction, 1, 2 or 6", cx.d)?;
+        match boundary::direction(field, cx)? {
+            boundary::Direction::Plane(of_node) => *axis = of_node,
+            boundary::Direction::Rotation => {
+                angles += 1;
+                let mut nodes = elements.iter().filter_map(|element| element.nodes.get(k));
+                if let Some(&node) = nodes.find(|&&node| targets.angle_at(node).is_none()) {
+                    let message = format!(
+                        "node {} has no direction 6: it is no reference node of a rigid body that turns",
+                        targets.mesh_index.node_name(node)
+                    );
+                    cx.error(Code::BadDof, field.span, message);
+                    return None;
+                }
+            }
+            boundary::Direction::OutOfPlane => {
+                let message = "only directions 1 and 2 lie in the plane, and direction 6 at the reference node \
+                               of a rigid body";
                 cx.error(Code::BadDof, field.span, message);
                 return None;
             }
-        };
+        }
     }
-    Some(Direction::Fixed(both))
+    match angles {
+        0 => Some(Direction::Fixed(both)),
+        _ if angles == kind.nodes() => Some(Direction::Angle),
+        _ => {
+            let message = "an angle and a displacement have no difference";
+            cx.error(Code::BadDof, row.span(), message)
+                .help("write 6, 6 for a moment between two bodies");
+            None
+        }
+    }
 }
 
 /// `k`, for springs the stiffness, for dashpots the coefficient.

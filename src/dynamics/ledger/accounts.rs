@@ -211,6 +211,7 @@ impl Accounts {
                 ..momentum(problem, u, p)
             },
             bodies: self.bodies.results(problem, &moving),
+            connectors: problem.elements.connector_states(u, v),
             ..IncrementReport::default()
         }
     }

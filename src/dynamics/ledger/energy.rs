@@ -323,7 +323,7 @@ impl Ledger {
         // d.(F0 + F1)/2 - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;
-        e.numerical_dissipation += EndForces::trapezoid(d, [&before.internal, &end.internal])
+        e.numerical_dissipation += EndForces::trapezoid(&way, [&before.internal, &end.internal])
             - (e.strain - strain0)
             - dissipated
             - kept;

@@ -305,6 +305,7 @@ impl StepProblem<'_> {
             ..
         } = equilibrium;
         (self.integration).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
+        (self.unknowns.turning).correct_angles(d, self.integration.theta2, u_theta);
         let motion = self.integration.motion(start, u, u_theta);
         self.elements.write_internal_force(motion, internal)?;
         if self.has_damping() {
@@ -465,9 +466,10 @@ impl<'m> Discretization<'m> {
     /// The discretization of a model.
     pub fn new(prepared: &'m PreparedModel) -> Self {
         let model = &prepared.model;
-        let elements = Elements::new(model);
+        let mut elements = Elements::new(model);
         let redistribution = &prepared.redistribution;
         let turning = TurningBody::all(model, &elements);
+        elements.measure_angles(turning.iter().map(|body| (body.spin / 2, body.length)));
         let mut coordinates = model.mesh.coordinates.clone();
         for body in &turning {
             let centre = body.centre_from(coordinates[body.reference]);

@@ -311,6 +311,14 @@ impl<'m> Turning<'m> {
         }
     }
 
+    /// Makes displacements of the angles with a part of the increment s = L c those with this part of their differences.
+    pub fn correct_angles(&self, d: &[f64], part: f64, u: &mut [f64]) {
+        for body in self.bodies {
+            let half = d[body.spin] / body.length / 2.0;
+            u[body.spin] += part * (body.length * (2.0 * half.atan()) - d[body.spin]);
+        }
+    }
+
     /// The increment `d` with the differences L (theta_1 - theta_0) of the angles in place of s = L c.
     pub fn way(&self, d: &[f64]) -> Vec<f64> {
         let mut way = d.to_vec();

@@ -216,6 +216,8 @@ fn free_dofs(
         (free[2 * node], free[2 * node + 1]) = (true, true);
     }
     turning.followers().for_each(|[dof, ..]| free[dof] = false);
+    let angles = turning.bodies.iter().map(|body| body.spin);
+    angles.for_each(|angle| free[angle + 1] = false);
     turning.leading().for_each(|dof| free[dof] = true);
     let has_element = free.clone();
     for equation in equations.iter().filter(|e| has_element[e.dof]) {
