@@ -182,3 +182,30 @@ def test_a_flat_deck_has_the_springs(tmp_path: Path) -> None:
     done = subprocess.run([binary(), "flatten", deck], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert "TYPE=SPRINGA" in done.stdout and "TYPE=DASHPOT2" in done.stdout
+
+
+@pytest.mark.parametrize("rows", ["3.", "-2., -30.\n-0.5, -1.\n0.5, 1.\n2., 30."])
+@pytest.mark.parametrize("kind", ["SPRING1", "SPRING2"])
+def test_a_torsion_spring_swings_rigid_bodies_and_keeps_their_energy(
+    tmp_path: Path, kind: str, rows: str
+) -> None:
+    """One body against the ground, or two against each other, of inertia 0.5; linear or a table."""
+    nodes, directions = ("1, 3", "6, 6") if kind == "SPRING2" else ("1", "6")
+    option = ", NONLINEAR" if "\n" in rows else ""
+    cards = f"""*NODE\n1, 0., 0.\n2, 1., 0.\n3, 3., 0.\n4, 3., 2.\n*NSET, NSET=A\n2\n*NSET, NSET=B\n4
+*ELEMENT, TYPE=ROTARYI, ELSET=ER\n20, 1\n21, 3\n*ROTARY INERTIA, ELSET=ER\n0., 0., 0.5
+*ELEMENT, TYPE=MASS, ELSET=EM\n10, 1\n11, 3\n*MASS, ELSET=EM\n2.
+*RIGID BODY, REF NODE=1, PIN NSET=A\n*RIGID BODY, REF NODE=3, PIN NSET=B
+*ELEMENT, TYPE={kind}, ELSET=S\n50, {nodes}\n*SPRING, ELSET=S{option}\n{directions}\n{rows}
+*BOUNDARY\n1, 1, 2\n3, 1, 2\n*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 6, 1.5"""
+    history = run(tmp_path, cards, dt=0.05, end=20.0)
+    energy = history["energy/kinetic"][:] + history["energy/strain"][:]
+    assert np.abs(energy - energy[0]).max() < 1e-11 * energy[0]
+    assert balance(history) < 1e-11
+    angle, moment = (history["rotary_connectors"][name][:, 0] for name in ("angle", "moment"))
+    assert angle.max() > 0.4
+    if not option:
+        assert np.abs(moment - 3.0 * angle).max() < 1e-12
+        # its largest angle is the first rate over the frequency
+        omega = math.sqrt(3.0 / 0.5 * (2.0 if kind == "SPRING2" else 1.0))
+        assert abs(angle.max() * omega / 1.5 - 1.0) < 2e-3

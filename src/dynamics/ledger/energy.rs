@@ -252,7 +252,8 @@ impl Ledger {
         e.release_loss += loss;
         e.external_work += load_work + returned.support_work;
         // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5), W1 that before the rest
-        let (u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
+        let (mut u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
+        turning.turn([&start.u, d], &mut u1);
         let damping = match problem.has_damping() {
             true => (problem.elements).damping_dissipation([&start.u, &u1], d, dt),
             false => 0.0,
