@@ -231,6 +231,7 @@ pub fn report(k: usize) -> IncrementReport {
         }],
         landings: if k == 4 { vec![landing()] } else { vec![] },
         returns: vec![],
+        connectors: vec![],
         touches: vec![],
         solver: SolverCounts {
             passes: 2,
