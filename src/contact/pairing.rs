@@ -30,6 +30,8 @@ pub struct Pairing {
     way: f64,
     /// What every slave node had around it when its targets were found.
     clearances: Vec<Clearance>,
+    /// Overrun up to which targets were kept in the last iterate (segment lengths).
+    kept: Option<f64>,
 }
 
 /// Distance of a slave node from all that it may touch.
@@ -82,6 +84,7 @@ impl Pairing {
     ) {
         let [start, now] = [u0, u].map(|u| Positions::new(search.coordinates(), u));
         self.advance(u);
+        self.kept = kept;
         let Pairing {
             pairs,
             last,
@@ -132,14 +135,9 @@ impl Pairing {
             while let Some(pair) = before.next_if(|pair| pair.key.slave <= listed.key) {
                 own.push(pair.target);
             }
-            let keeps = !own.is_empty() && (kept.is_some() || found.is_empty());
-            if keeps {
-                keep(&node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
-            }
             while last.next_if(|pair| pair.key.slave <= listed.key).is_some() {}
-            for &target in if keeps { &own } else { &found } {
-                pairs.push(pair_target(&listed, target));
-            }
+            let targets = with_kept(&node, found, own, kept);
+            pairs.extend(targets.iter().map(|target| pair_target(&listed, *target)));
         }
         drop(last);
         remove_twins(pairs);
@@ -147,21 +145,27 @@ impl Pairing {
 
     /// The nodes that kept their targets in the last iterate U, and carry no force, with the pairs that they have in it.
     pub fn renewed(
-        &mut self,
+        &self,
         search: &Search,
         u0: &[f64],
         [held, closed]: [&ClosedPairs; 2],
     ) -> (Vec<SlaveKey>, Vec<PairTarget>) {
         let [start, now] = [u0, &self.u].map(|u| Positions::new(search.coordinates(), u));
         let (mut slaves, mut pairs) = (Vec::new(), Vec::new());
+        let mut last = self.pairs.iter().peekable();
         for (listed, clearance) in search.slaves().zip(&self.clearances) {
+            let mut own = Targets::new();
+            while let Some(pair) = last.next_if(|pair| pair.key.slave <= listed.key) {
+                own.push(pair.target);
+            }
             let has_kept = clearance.way < self.way && clearance.keeps(self.way);
             if has_kept && closed.of_slave(listed.key).is_empty() {
                 let held_by = holding(&listed, held);
                 let node = slave_node(&listed, [start, now], &held_by);
                 let found = node.targets(listed.candidates());
+                let targets = with_kept(&node, found, own, self.kept);
                 slaves.push(listed.key);
-                pairs.extend(found.iter().map(|target| pair_target(&listed, *target)));
+                pairs.extend(targets.iter().map(|target| pair_target(&listed, *target)));
             }
         }
         remove_twins(&mut pairs);
@@ -223,6 +227,15 @@ fn largest_motion([from, to]: [&[f64]; 2], common: [f64; 2]) -> f64 {
         dot(d, d)
     });
     squares.fold(0.0, larger).sqrt()
+}
+
+/// The targets found, with those among the `own` ones of the pass before that the node keeps.
+fn with_kept(node: &SlaveNode, found: Targets, mut own: Targets, kept: Option<f64>) -> Targets {
+    if own.is_empty() || (kept.is_none() && !found.is_empty()) {
+        return found;
+    }
+    keep(node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
+    own
 }
 
 /// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the

@@ -46,7 +46,7 @@ impl MeanGradient {
     }
 
     /// Logarithmic strain of the mean displacement gradient at displacements `u`, 2 N entries (length), as
-    /// [`logarithmic_strain`].
+    /// `logarithmic_strain`.
     pub fn logarithmic_strain(&self, u: &[f64]) -> [f64; 3] {
         let mut h = Matrix2::zeros();
         for (&node, w) in self.nodes.iter().zip(&self.weights) {
