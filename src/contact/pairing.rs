@@ -12,7 +12,7 @@ use super::keys::{NodeAtSegment, SlaveKey};
 use super::search::{ListedSlave, Search};
 use super::surface_to_surface::find_points;
 use super::targets::{ContactTarget, PairTarget, SlaveNode, Targets};
-use super::tolerances::{KEEPING_MOTION, KEPT_BEYOND_ENDS};
+use super::tolerances::{FAR, KEEPING_MOTION, KEPT_BEYOND_ENDS};
 use crate::linear::{larger, largest};
 use crate::vectors::{difference, dot};
 
@@ -41,6 +41,8 @@ struct Clearance {
     distance: f64,
     /// The way until then (length).
     way: f64,
+    /// Whether it is no small part of an element.
+    is_far: bool,
 }
 
 impl Clearance {
@@ -48,11 +50,12 @@ impl Clearance {
     const NONE: Self = Clearance {
         distance: 0.0,
         way: 0.0,
+        is_far: false,
     };
 
     /// Whether the node may keep its targets.
     fn keeps(self, way: f64) -> bool {
-        way - self.way < KEEPING_MOTION * self.distance
+        self.is_far && way - self.way < KEEPING_MOTION * self.distance
     }
 }
 
@@ -126,10 +129,12 @@ impl Pairing {
             let held_by = holding(&listed, held);
             let node = slave_node(&listed, [start, now], &held_by);
             let found = node.targets(listed.candidates());
-            let distance = node.distance(listed.candidates()).min(listed.least_reach());
+            let reach = listed.least_reach();
+            let distance = node.distance(listed.candidates()).min(reach) - largest(&node.allowed);
             clearances[k] = Clearance {
-                distance: distance - largest(&node.allowed),
+                distance,
                 way: *way,
+                is_far: distance >= FAR * reach,
             };
             let mut own = Targets::new();
             while let Some(pair) = before.next_if(|pair| pair.key.slave <= listed.key) {

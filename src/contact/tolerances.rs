@@ -43,6 +43,9 @@ pub(crate) const SEARCH_MARGIN_PER_MOTION: f64 = 2.0;
 
 // Selection of targets.
 
+/// Distance of a slave node from all that it may touch, as a part of the distance within which nodes pair, from which on it is
+/// far: a quarter of a mean segment.
+pub(crate) const FAR: f64 = 0.125;
 /// Motion of all nodes, as a part of the distance of a slave node from all that it may touch, up to which the node keeps
 /// its targets from pass to pass.
 pub(crate) const KEEPING_MOTION: f64 = 0.25;
