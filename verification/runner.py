@@ -192,17 +192,18 @@ class Study:
             reference, source = float(row.value[0]), f"[{row.tag}] {row.source}"
         self.checks.append(Check(run, limit.name, value, limit, reference, source))
 
-    def check_run(self, name: str, edge: float, accuracy: str = "") -> None:
+    def check_run(self, name: str, edge: float, accuracy: str = "", place: str = "") -> None:
         """What every run has to satisfy; `edge` is the length of the smallest element edge.
 
-        `accuracy` is added to the name of the energy balance: for runs with a limit of their own.
+        `accuracy` is added to the name of the energy balance, `place` to that of the deepest gap: for runs with limits of
+        their own.
         """
         results = self.results[name]
         failed = int((results.history.solver["converged"] == 0).sum())
         self.check("increments not converged", name, failed)
         if results.contact:
             gaps = [np.nan_to_num(contact.min_gap) for contact in results.contact.values()]
-            self.check("deepest gap / element size", name, min(float(np.min(gaps)), 0.0) / edge)
+            self.check(f"deepest gap / element size{place}", name, min(float(np.min(gaps)), 0.0) / edge)
             cones = [contact.cone_violation for contact in results.contact.values()]
             self.check("violation of Coulomb's cone", name, float(np.max(cones)))
         energy = results.history.energy
