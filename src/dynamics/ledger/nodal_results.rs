@@ -109,7 +109,12 @@ impl MasterMeans {
 
     /// The mean at every node, NaN where there is none.
     pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.sums.iter().map(|[sum, whole]| sum / whole)
+        let mean = |[sum, whole]: &[f64; 2]| match *whole > 0.0 {
+            true => sum / whole,
+            // 0/0 has a sign that depends on the processor
+            false => f64::NAN,
+        };
+        self.sums.iter().map(mean)
     }
 }
 
