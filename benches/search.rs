@@ -13,7 +13,8 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use scenes::{DISC, lattice};
 use stickslip::contact::{
-    ClosedPairs, Pairing, Positions, RowForm, Search, SlaveNode, all_segments, find_penetration,
+    ClosedPairs, Positions, RowForm, Search, SlaveNode, all_segments, find_penetration,
+    find_targets,
 };
 
 /// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and
@@ -62,19 +63,19 @@ fn main() {
         });
         group.throughput(Throughput::Elements(n as u64));
         search.cover(&u);
-        let mut pairing = Pairing::default();
+        let mut pairs = Vec::new();
         group.bench_function(BenchmarkId::new("pairs", n), |bencher| {
             bencher.iter(|| {
                 search.cover(black_box(&u));
-                pairing.begin();
-                pairing.find(
+                find_targets(
                     &search,
                     [&u, &u],
                     &[],
                     (&ClosedPairs::default(), None),
                     RowForm::DiscreteGradient,
+                    &mut pairs,
                 );
-                pairing.pairs.len()
+                pairs.len()
             });
         });
         let moved: Vec<f64> = (0..u.len()).map(|i| 1e-3 * (i as f64).sin()).collect();
@@ -83,13 +84,7 @@ fn main() {
         group.bench_function(BenchmarkId::new("ways", n), |bencher| {
             bencher.iter(|| {
                 search.cover_path(&u, &moved);
-                find_penetration(
-                    &search,
-                    &Pairing::default(),
-                    [&u, black_box(&moved)],
-                    [&closed; 2],
-                    &unsolved,
-                )
+                find_penetration(&search, [&u, black_box(&moved)], [&closed; 2], &unsolved)
             });
         });
         if n <= 1_000 {

@@ -39,7 +39,7 @@ pub use geometry::{
     contact_surfaces, project, shortest_faces,
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
-pub use pairing::Pairing;
+pub use pairing::find_targets;
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal};
 pub use tunnelling::{crossed_edges, find_penetration};

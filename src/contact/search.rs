@@ -227,11 +227,6 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         self.territory.allowed(self.number)
     }
 
-    /// Distance within which its candidates are all segments (length).
-    pub(super) fn least_reach(&self) -> f64 {
-        self.territory.reach
-    }
-
     /// Whether it is a corner of the contact's master.
     pub fn is_of_master(&self) -> bool {
         (self.territory.corners).is_some_and(|corners| corners.are_of_master)

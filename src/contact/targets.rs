@@ -654,19 +654,6 @@ impl SlaveNode<'_> {
         is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
     }
 
-    /// Distance of the node from the nearest of some segments (length).
-    pub(crate) fn distance(&self, candidates: impl Iterator<Item = Candidate>) -> f64 {
-        let s = self.position();
-        let square = |candidate: Candidate| {
-            let [a, b] = self.surfaces.segments[candidate.segment].map(|n| self.now.of(n));
-            let [r, e] = [difference(a, s), difference(a, b)];
-            let xi = (dot(r, e) / dot(e, e)).clamp(0.0, 1.0);
-            let d = [0, 1].map(|i| r[i] - xi * e[i]);
-            dot(d, d)
-        };
-        candidates.map(square).fold(f64::INFINITY, f64::min).sqrt()
-    }
-
     /// Whether the node belongs to the body behind the segment: it is on the far side of a thin
     /// body.
     pub(crate) fn was_far_side(&self, segment: usize) -> bool {

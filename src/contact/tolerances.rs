@@ -43,12 +43,6 @@ pub(crate) const SEARCH_MARGIN_PER_MOTION: f64 = 2.0;
 
 // Selection of targets.
 
-/// Distance of a slave node from all that it may touch, as a part of the distance within which nodes pair, from which on it is
-/// far: a quarter of a mean segment.
-pub(crate) const FAR: f64 = 0.125;
-/// Motion of all nodes, as a part of the distance of a slave node from all that it may touch, up to which the node keeps
-/// its targets from pass to pass.
-pub(crate) const KEEPING_MOTION: f64 = 0.25;
 /// Gap, in absolute value, below which a node counts as closed at the start of an increment: a
 /// closed gap is zero to the tolerance of the passes.
 pub(crate) const CLOSED_GAP: f64 = 1e-9;

@@ -9,7 +9,6 @@ use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Along, ContactSurfaces, Projection, position, project};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
-use super::pairing::Pairing;
 use super::search::Search;
 use super::targets::raised;
 use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END};
@@ -19,31 +18,24 @@ use crate::vectors::{cross, difference};
 /// The first slave node that penetrates a body on its straight path from the displacements `u0` to
 /// `u1`, if there is one, with the segment through which it has entered. The search must cover the paths; `closed` are the pairs in contact before
 /// the increment and at its end; `unsolved` is the error of every node's displacement that the
-/// tolerance of the increment allows (length), a depth that does not count. The pairing of the passes knows which nodes
-/// are far from everything.
+/// tolerance of the increment allows (length), a depth that does not count.
 ///
 /// A node may enter through a segment at which it carries a force, or leave again in contact: the
 /// straight path of a node that slides round a corner cuts the corner.
 pub fn find_penetration(
     search: &Search,
-    pairing: &Pairing,
     [u0, u1]: [&[f64]; 2],
     closed: [&ClosedPairs; 2],
     unsolved: &[f64],
 ) -> Option<NodeAtSegment> {
     let x = search.coordinates();
     let mut events = Vec::new();
-    let is_free = pairing.free_paths([u0, u1]);
-    for (k, listed) in search.slaves().enumerate() {
-        if is_free(k) {
-            continue;
-        }
+    for listed in search.slaves() {
         let path = NodePath {
             contact: listed.surfaces,
             x,
             u: [u0, u1],
             slave: listed.node(),
-            ends: [u0, u1].map(|u| position(x, u, listed.node())),
             key: listed.key,
             closed,
             unsolved,
@@ -72,8 +64,6 @@ struct NodePath<'a> {
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
-    /// Its positions at the start and at the end.
-    ends: [[f64; 2]; 2],
     key: SlaveKey,
     /// Closed pairs before the increment and at its end.
     closed: [&'a ClosedPairs; 2],
@@ -98,15 +88,12 @@ impl NodePath<'_> {
     }
 
     fn motions(&self, segment: usize) -> [Motion; 3] {
-        let of_end = |node: usize| {
+        let [a, b] = self.contact.segments[segment];
+        let motions = [self.slave, a, b].map(|node| {
             let [from, to] = self.u.map(|u| position(self.x, u, node));
             Motion::straight(from, to)
-        };
-        let [a, b] = self.contact.segments[segment].map(of_end);
-        raised(
-            [Motion::straight(self.ends[0], self.ends[1]), a, b],
-            self.allowed,
-        )
+        });
+        raised(motions, self.allowed)
     }
 
     /// Projection on a segment at a fraction of the path.
@@ -148,9 +135,6 @@ impl NodePath<'_> {
         let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
         let others = segments.filter(|i| !is_own(i));
         let is_behind = |&i: &usize| {
-            if self.ends_in_front(i) {
-                return false;
-            }
             let p = self.project(i, 1.0);
             (0.0..=1.0).contains(&p.xi)
                 && p.gap < 0.0
@@ -168,12 +152,6 @@ impl NodePath<'_> {
         };
         let is_held = self.held_by().any(|held| held == i);
         (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
-    }
-
-    /// Whether the node is clearly in front of a segment at the end, where no fit lets it overlap.
-    fn ends_in_front(&self, i: usize) -> bool {
-        let [a, b] = self.contact.segments[i].map(|node| position(self.x, self.u[1], node));
-        self.allowed == [0.0; 2] && cross(difference(a, self.ends[1]), difference(a, b)) > 0.0
     }
 
     /// Whether the node belongs to the body behind a segment at the end.

@@ -3,7 +3,6 @@
 use super::closed_pairs::ClosedPairs;
 use super::geometry::ContactSurfaces;
 use super::keys::NodeAtSegment;
-use super::pairing::Pairing;
 use super::search::Search;
 use super::testing::{closed_pair, key};
 use super::tunnelling::find_penetration;
@@ -31,7 +30,6 @@ fn passes_of(closed: bool, from: [f64; 2], to: [f64; 2], contact: Contact) -> Op
     search.cover_path(&u0, &u1);
     find_penetration(
         &search,
-        &Pairing::default(),
         [&u0, &u1],
         contact.closed().each_ref(),
         &vec![0.0; x.len()],
@@ -108,14 +106,7 @@ fn what_other_bodies_leave_unsolved_is_no_excuse() {
         let mut unsolved = vec![0.0; x.len()];
         unsolved[fast] = 0.2;
         let closed = FREE.closed();
-        find_penetration(
-            &search,
-            &Pairing::default(),
-            [&u0, &u1],
-            closed.each_ref(),
-            &unsolved,
-        )
-        .map(
+        find_penetration(&search, [&u0, &u1], closed.each_ref(), &unsolved).map(
             |NodeAtSegment {
                  nodes: [_, a, b], ..
              }| [a, b],
@@ -206,13 +197,7 @@ fn a_hollow_corner_holds_a_node_with_both_sides() {
         let mut search = Search::new(&contacts, &x);
         search.cover_path(&u0, &u1);
         let closed = held(true, 0).closed();
-        find_penetration(
-            &search,
-            &Pairing::default(),
-            [&u0, &u1],
-            closed.each_ref(),
-            &[0.0; 4],
-        )
+        find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4])
     };
     let through = NodeAtSegment {
         key: key(0, 1),
@@ -242,24 +227,12 @@ fn a_node_may_not_end_inside_a_vertex_that_has_become_a_hollow() {
     let closed = LEAVES.closed();
     let u1 = move_to(end);
     search.cover_path(&u0, &u1);
-    let entry = find_penetration(
-        &search,
-        &Pairing::default(),
-        [&u0, &u1],
-        closed.each_ref(),
-        &[0.0; 4],
-    );
+    let entry = find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4]);
     assert_eq!(entry.map(|p| p.nodes), Some([0, 2, 3]));
     // in the concave corner
     let above = [[-0.2, -0.2], end[1], end[2], end[3]];
     let u1 = move_to(above);
     search.cover_path(&u0, &u1);
-    let entry = find_penetration(
-        &search,
-        &Pairing::default(),
-        [&u0, &u1],
-        closed.each_ref(),
-        &[0.0; 4],
-    );
+    let entry = find_penetration(&search, [&u0, &u1], closed.each_ref(), &[0.0; 4]);
     assert_eq!(entry, None);
 }

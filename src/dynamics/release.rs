@@ -126,7 +126,6 @@ impl Releasing<'_, '_> {
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;
         let (way, mut found) = ([start.as_slice(), u], Vec::new());
-        self.workspace.pairing.begin();
         (self.workspace).constraints(
             self.problem,
             way,

@@ -4,7 +4,7 @@ use crate::random::Random;
 use crate::rectangles as blocks;
 use nalgebra::DMatrix;
 use stickslip::contact::{
-    ClosedPairs, Configurations, Constraint, Pairing, RowForm, Rows, Search, contact_surfaces,
+    ClosedPairs, Configurations, Constraint, RowForm, Rows, Search, contact_surfaces, find_targets,
 };
 use stickslip::lcp::{FrictionalLcp, LcpMethod, solve_frictional};
 use stickslip::model::{ContactFormulation, Model};
@@ -44,19 +44,16 @@ fn constraints(
     let surfaces = contact_surfaces(model, bodies);
     let mut search = Search::new(&surfaces, x);
     search.cover_path(&u0, &u);
-    let (form, mut pairing) = (RowForm::DiscreteGradient, Pairing::default());
+    let (form, mut pairs) = (RowForm::DiscreteGradient, Vec::new());
     let none = (&ClosedPairs::default(), None);
-    pairing.find(&search, [&u0, &u], &[], none, form);
+    find_targets(&search, [&u0, &u], &[], none, form, &mut pairs);
     let at = Configurations {
         form,
         x,
         u0: &u0,
         u: &u,
     };
-    let made = pairing
-        .pairs
-        .into_iter()
-        .map(|pair| Constraint::new(pair, &at));
+    let made = pairs.into_iter().map(|pair| Constraint::new(pair, &at));
     made.filter(Constraint::is_weighted).collect()
 }
 

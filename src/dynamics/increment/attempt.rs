@@ -322,7 +322,6 @@ impl<'m> Attempt<'_, 'm> {
         let mut free = FreePasses::default();
         let mut has_no_pairs = true;
         v.equilibrium.hinges.clear();
-        self.workspace.pairing.begin();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
         let mut d = match self.guess {
             Some(path) => path.displacement(dt),
@@ -751,8 +750,6 @@ impl<'m> Attempt<'_, 'm> {
         v: &mut Vectors,
         is_balanced: bool,
     ) -> Result<Solved, Cause> {
-        let from = (self.start, self.interval);
-        contact.renew(self.problem, self.workspace, from, &v.u, self.set);
         contact.take_left_out(self.problem, &v.u);
         let v0p = (contact.impulses).velocity(self.problem, self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);

@@ -63,35 +63,6 @@ impl ContactStates {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Finds the targets anew of slave nodes that kept them from an earlier pass than that of the last iterate U: their
-    /// gaps are results.
-    pub fn renew(
-        &mut self,
-        problem: &StepProblem,
-        workspace: &mut Workspace,
-        (start, interval): (&State, Interval),
-        u: &[f64],
-        set: ConstraintSet,
-    ) {
-        let (found, closed) = (&mut self.found, &self.forces.closed);
-        let increment = [&start.u[..], u];
-        let slaves =
-            workspace.renewed_constraints(problem, increment, [&start.contact, closed], found);
-        (problem.frictions).give(problem.coordinates, (&start.u[..], interval, closed), found);
-        let mut left_out = Vec::new();
-        set.split(problem.positions(&start.u), found, &mut left_out);
-        let is_as_found =
-            |constraint: &Constraint| slaves.binary_search(&constraint.key.slave()).is_err();
-        for (all, new) in [
-            (&mut self.forces.constraints, found),
-            (&mut self.left_out, &mut left_out),
-        ] {
-            all.retain(is_as_found);
-            all.append(new);
-            all.sort_by_key(|constraint| constraint.key);
-        }
-    }
-
     /// Takes the constraints that did not count among the others at the end of an increment, without those that a free
     /// node past a corner, or at it, is behind: the line of the segment that it came from.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {

@@ -8,7 +8,7 @@ use super::pins::Pins;
 use super::step_problem::{StepProblem, difference, sum};
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
-    ClosedPairs, Constraint, NodeAtSegment, Pairing, Search, SlaveKey, find_penetration,
+    ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_penetration, find_targets,
 };
 use crate::dynamics::results::State;
 use crate::elements::Motion;
@@ -21,8 +21,8 @@ pub(crate) struct Workspace<'m> {
     pub meter: Meter,
     /// What holds rigid motions in K*.
     pub pins: Pins,
-    /// The pairs from pass to pass.
-    pub pairing: Pairing,
+    /// The pairs of the last pass.
+    pairs: Vec<PairTarget>,
 }
 
 impl<'m> Workspace<'m> {
@@ -38,7 +38,7 @@ impl<'m> Workspace<'m> {
             search,
             meter: Meter::default(),
             pins: Pins::new(problem),
-            pairing: Pairing::default(),
+            pairs: Vec::new(),
         }
     }
 
@@ -49,7 +49,7 @@ impl<'m> Workspace<'m> {
             search,
             meter: _,
             pins: _,
-            pairing: _,
+            pairs: _,
         } = self;
         stiffness.carry(archive)?;
         search.carry(archive)
@@ -188,39 +188,16 @@ impl<'m> Workspace<'m> {
         let Workspace {
             search,
             meter,
-            pairing,
+            pairs,
             ..
         } = self;
         meter.time(|t| &mut t.search, || search.cover(increment[1]));
         let write = || {
             let form = problem.integration.row_form();
-            pairing.find(search, increment, before, (held, kept), form);
-            problem.constraints(&pairing.pairs, increment, constraints);
+            find_targets(search, increment, before, (held, kept), form, pairs);
+            problem.constraints(pairs, increment, constraints);
         };
         meter.time(|t| &mut t.contact, write);
-    }
-
-    /// Writes the constraints of the slave nodes that kept their targets in the last iterate `u`, and carry no force, as
-    /// they are there; gives these nodes. `held` are the pairs closed at the start, and `closed` those closed now.
-    pub fn renewed_constraints(
-        &mut self,
-        problem: &StepProblem,
-        [u0, u]: [&[f64]; 2],
-        closed: [&ClosedPairs; 2],
-        constraints: &mut Vec<Constraint>,
-    ) -> Vec<SlaveKey> {
-        let Workspace {
-            search,
-            meter,
-            pairing,
-            ..
-        } = self;
-        let write = || {
-            let (slaves, pairs) = pairing.renewed(search, u0, closed);
-            problem.constraints(&pairs, [u0, u], constraints);
-            slaves
-        };
-        meter.time(|t| &mut t.contact, write)
     }
 
     /// Makes the velocities at the start of a motion those of bodies with hinges: impulses of the hinges act there once.
@@ -283,16 +260,11 @@ impl<'m> Workspace<'m> {
         closed: [&ClosedPairs; 2],
         unsolved: &[f64],
     ) -> Option<NodeAtSegment> {
-        let Workspace {
-            search,
-            meter,
-            pairing,
-            ..
-        } = self;
+        let Workspace { search, meter, .. } = self;
         meter.time(|t| &mut t.search, || search.cover_path(u0, u1));
         meter.time(
             |t| &mut t.contact,
-            || find_penetration(search, pairing, [u0, u1], closed, unsolved),
+            || find_penetration(search, [u0, u1], closed, unsolved),
         )
     }
 }
