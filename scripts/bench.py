@@ -18,7 +18,7 @@ import bench_ccx
 import bench_reader
 import numpy as np
 from bench_decks import GROUPS, SIZES, Bench, group
-from bench_runs import PHASES, CcxRun, Measured, bandwidth, measure, run_ccx
+from bench_runs import PHASES, WORK, CcxRun, Measured, bandwidth, measure, run_ccx
 from measured_run import check_program
 from repository import ROOT
 from sample_decks import runner
@@ -30,7 +30,8 @@ PAGE = ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- {name}: begin -->\n", "<!-- {name}: end -->\n"
 """Lines between which --write puts the tables."""
 
-HEADER = ("deck", "dofs", "increments", "passes", "factorisations", "CPU [ms] per increment")
+COUNTS = ("increments", "passes", "factorisations", *WORK)
+HEADER = ("deck", "dofs", *COUNTS, "CPU [ms] per increment")
 COUNTED = "instructions [10^6] per pass"
 PEAK = "memory [MB]"
 AGAINST = "of OTHER"
@@ -65,7 +66,8 @@ class Row:
         one = self.measured
         passes, per_increment = one.passes / one.increments, number(one.per_increment)
         cells = [self.bench.name, str(one.dofs), str(one.increments), f"{passes:.1f}"]
-        cells += [str(one.factorizations), per_increment]
+        work = (str(one.work.get(column, "")) for column in WORK)
+        cells += [str(one.factorizations), *work, per_increment]
         counted = next((run.per_pass for run in self.runs if isfinite(run.instructions)), nan)
         cells.append(number(counted / 1e6) if isfinite(counted) else "")
         cells.append(number(one.peak / 1e6))

@@ -3,8 +3,10 @@
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
+from bench_dense import arch, lattice, long_block, wall
 from repository import ROOT
 from stickslip.cards import card, dry, elastic, step
 from stickslip.deck import Deck
@@ -67,13 +69,30 @@ def example(name: str) -> Bench:
     return Bench(name, text, ())
 
 
-def two_blocks(size: int, scheme: str) -> Bench:
+def two_blocks(size: int, scheme: str, passes: int = 1) -> Bench:
     """Two blocks of size x size/2 elements each, pressed and sheared, friction 0.3."""
 
     def text() -> str:
-        return elastic_blocks.two_blocks(size, 0.3, passes=1, scheme=scheme)
+        return elastic_blocks.two_blocks(size, 0.3, passes=passes, scheme=scheme)
 
-    return Bench(f"two_blocks_{size}", text, size=size)
+    sides = "_two_sided" if passes == 2 else ""
+    return Bench(f"two_blocks_{size}{sides}", text, size=size if passes == 1 else 0)
+
+
+def dense_decks(scheme: str) -> list[Bench]:
+    """Walls, lattices, arches, faces that are both slaves, many pairs between two bodies."""
+    sides = {1: "one_sided", 2: "two_sided"}
+    decks = [
+        (f"wall_{n * n}_{name}", partial(wall, n, n, k))
+        for n in (3, 5, 7, 10)
+        for k, name in sides.items()
+    ]
+    decks += [("lattice_100", partial(lattice, 10, 10, 10))]
+    decks += [("lattice_1000", partial(lattice, 25, 40, 5))]
+    decks += [(f"arch_{n}", partial(arch, n)) for n in (5, 11, 21)]
+    decks += [(f"long_block_{n}", partial(long_block, n)) for n in (250, 500, 1000, 2000, 4000)]
+    blocks = [two_blocks(size, scheme, 2) for size in (32, 256, 512)]
+    return [Bench(name, text) for name, text in decks] + blocks
 
 
 def large_blocks() -> Bench:
@@ -159,8 +178,9 @@ def group(name: str, scheme: str, sizes: tuple[int, ...]) -> list[Bench]:
             strip_and_blocks(10, 199),
             strip_and_blocks(1, 1999),
         ],
+        "dense": lambda: dense_decks(scheme),
     }
     return groups[name]()
 
 
-GROUPS = ("examples", "blocks", "scale", "many")
+GROUPS = ("examples", "blocks", "scale", "many", "dense")

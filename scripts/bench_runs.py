@@ -20,6 +20,9 @@ COLLECTED = re.compile(r"Collected : (\d+)")
 MISSING_VALGRIND = "valgrind is not installed (Debian: apt-get install valgrind)"
 MISSING_CCX = "CalculiX (ccx) is not installed (Debian: apt-get install calculix-ccx)"
 
+WORK = {"pivots": "pivots", "iterations": "active_set_iterations", "LUs": "lcp_factorizations"}
+"""Columns of the work of the complementarity problems, and their names in the results."""
+
 PHASES = ("assembly", "factorization", "solve", "search", "contact", "lcp", "output")
 
 
@@ -37,6 +40,8 @@ class Measured:
     phases: dict[str, float]
     """Parts of the run's time."""
     dofs: int
+    work: dict[str, int]
+    """What the complementarity problems took, by WORK."""
     instructions: float = nan
 
     @property
@@ -74,6 +79,7 @@ def read(ended: Run, instructions: float) -> Measured:
             int(record.get("peak_memory", ended.peak)),
             {name: float(record[f"seconds_{name}"]) / total for name in PHASES},
             2 * len(results.coordinates),
+            {column: int(solver[name].sum()) for column, name in WORK.items() if name in solver},
             instructions,
         )
 
