@@ -236,10 +236,118 @@ pub struct SlaveSegments {
     pub runs: Vec<usize>,
     /// Rank of every segment of a surface that touches itself: of two faces the one of lower rank is slave.
     pub ranks: Option<Vec<usize>>,
-    /// Ends of the sides by their nodes between.
-    pub middles: HashMap<usize, [usize; 2]>,
+    /// Ends of every slave face, and after them those of every master segment.
+    pub vertices: Vec<[Vertex; 2]>,
     /// Whether the faces are those of bodies of revolution.
     pub are_rings: bool,
+}
+
+/// A slave face or a master segment in one configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// Positions of its ends.
+    pub ends: [[f64; 2]; 2],
+    /// Unit vector from the first to the second.
+    pub tangent: [f64; 2],
+}
+
+impl SlaveSegments {
+    /// All faces, and after them all segments, at some positions.
+    pub fn edges(&self, positions: Positions) -> Vec<Edge> {
+        let edge = |vertices: &[Vertex; 2]| {
+            let ends = vertices.map(|vertex| vertex.place(|node| positions.of(node)));
+            let e = difference(ends[0], ends[1]);
+            let length = length(e);
+            Edge {
+                ends,
+                tangent: e.map(|e| e / length),
+            }
+        };
+        self.vertices.iter().map(edge).collect()
+    }
+
+    /// Ends of a slave face.
+    pub fn face(&self, face: usize) -> [Vertex; 2] {
+        self.vertices[face]
+    }
+
+    /// Ends of a master segment.
+    pub fn segment(&self, segment: usize) -> [Vertex; 2] {
+        self.vertices[self.ends.len() + segment]
+    }
+
+    /// That of a slave face among the edges.
+    pub fn edge_of_face<'e>(&self, edges: &'e [Edge], face: usize) -> &'e Edge {
+        &edges[face]
+    }
+
+    /// That of a master segment among the edges.
+    pub fn edge_of_segment<'e>(&self, edges: &'e [Edge], segment: usize) -> &'e Edge {
+        &edges[self.ends.len() + segment]
+    }
+
+    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
+    pub fn reference_weight(&self, face: usize, positions: Positions, eta: f64, part: f64) -> f64 {
+        let x = positions.reference();
+        let [a, b] = self.face(face).map(|vertex| vertex.place(|node| x[node]));
+        let radius = match self.are_rings {
+            true => between(a, b, eta)[0],
+            false => 1.0,
+        };
+        length(difference(a, b)) * part * radius
+    }
+}
+
+/// (1 - eta) x_1 + eta x_2
+pub(super) fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
+    [0, 1].map(|i| (1.0 - eta) * x1[i] + eta * x2[i])
+}
+
+/// A vertex of the straight lines that the surfaces are made of: a node, or where a side has a node between its corners
+/// what takes its place, so that a pressure that is linear along the side has the right forces on all its nodes.
+///
+/// ```text
+/// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Vertex {
+    /// The node.
+    pub node: usize,
+    /// Corners of the side that it is between.
+    pub corners: Option<[usize; 2]>,
+}
+
+impl Vertex {
+    /// Calls `take` with each of its nodes and the node's part in the position.
+    #[inline]
+    pub fn each_share(self, mut take: impl FnMut(usize, f64)) {
+        match self.corners {
+            None => take(self.node, 1.0),
+            Some([a, b]) => {
+                take(self.node, 4.0 / 3.0);
+                take(a, -1.0 / 6.0);
+                take(b, -1.0 / 6.0);
+            }
+        }
+    }
+
+    /// Its nodes.
+    pub fn nodes(self) -> impl Iterator<Item = usize> {
+        std::iter::once(self.node).chain(self.corners.into_iter().flatten())
+    }
+
+    /// Its position.
+    #[inline]
+    pub fn place(self, at: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+        let x = at(self.node);
+        match self.corners {
+            None => x,
+            Some(corners) => {
+                let [a, b] = corners.map(at);
+                [0, 1].map(|i| 4.0 / 3.0 * x[i] - (a[i] + b[i]) / 6.0)
+            }
+        }
+    }
 }
 
 impl ContactSurfaces {
@@ -322,12 +430,18 @@ impl ContactSurfaces {
         };
         let is_self_contact = self.slave_faces == self.segments;
         self.corners = self.corners_of_both(x, is_self_contact);
+        let vertex = |node: usize| Vertex {
+            node,
+            corners: middles.get(&node).copied(),
+        };
+        let edges = self.slave_faces.iter().chain(&self.segments);
+        let vertices = edges.map(|ends| ends.map(vertex)).collect();
         self.slave_segments = Some(SlaveSegments {
             ends,
             at_nodes: at_nodes.into_iter().map(of_sides).collect(),
             runs: self.runs(x),
             ranks: is_self_contact.then(|| self.ranks(x)),
-            middles,
+            vertices,
             are_rings: mesh.is_axisymmetric(),
         });
         self

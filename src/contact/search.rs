@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use smallvec::SmallVec;
 
-use super::geometry::{ContactSurfaces, Corners, position};
+use super::geometry::{ContactSurfaces, Corners, Edge, position};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
 use super::tolerances::{
@@ -278,11 +278,21 @@ pub struct Territory<'m> {
 /// Segments that a slave face is turned to.
 pub(super) type Faced = SmallVec<[usize; 8]>;
 
-/// Segments that all slave faces are turned to, for the positions and candidates that they were found with.
+/// Parts [low, high] of a slave face that are over master segments.
+pub(super) type Cells = SmallVec<[(f64, f64, usize); 4]>;
+
+/// Segments of one run of the master that a slave face is turned to at the start of the increment, and its parts over them there.
+pub(super) struct FacedRun {
+    pub face: usize,
+    pub segments: Faced,
+    pub cells: Cells,
+}
+
+/// Segments that the slave faces are turned to, for the edges and candidates that they were found with.
 #[derive(Default)]
 struct FacedAtStart {
-    places: Vec<[f64; 2]>,
-    of_faces: Vec<Faced>,
+    edges: Vec<Edge>,
+    runs: Vec<FacedRun>,
 }
 
 impl<'m> Territory<'m> {
@@ -327,24 +337,20 @@ impl<'m> Territory<'m> {
         }
     }
 
-    /// What follows from the segments that all slave faces are turned to at the start of the increment, where nodes have
-    /// these `places`: passes of one increment find them once.
+    /// What follows from the segments that the slave faces are turned to at the start of the increment, where faces and
+    /// segments have these edges: passes of one increment find them once.
     pub(super) fn with_faced<T>(
         &self,
-        places: impl FnOnce() -> Vec<[f64; 2]>,
-        find: impl Fn(usize) -> Faced,
-        then: impl FnOnce(&[Faced]) -> T,
+        edges: Vec<Edge>,
+        find: impl FnOnce(&[Edge]) -> Vec<FacedRun>,
+        then: impl FnOnce(&[Edge], &[FacedRun]) -> T,
     ) -> T {
         let mut faced = self.faced.lock().unwrap_or_else(PoisonError::into_inner);
-        let places = places();
-        if faced.places != places {
-            let faces = 0..self.contact.slave_faces.len();
-            *faced = FacedAtStart {
-                places,
-                of_faces: faces.map(find).collect(),
-            };
+        if faced.edges != edges {
+            let runs = find(&edges);
+            *faced = FacedAtStart { edges, runs };
         }
-        then(&faced.of_faces)
+        then(&faced.edges, &faced.runs)
     }
 
     /// Takes the overlaps that a fit allows the slave nodes of the contact; corners, which no fit names, take the
@@ -418,7 +424,7 @@ impl<'m> Territory<'m> {
 
     fn forget_faced(&mut self) {
         let faced = self.faced.get_mut().unwrap_or_else(PoisonError::into_inner);
-        faced.places.clear();
+        faced.edges.clear();
     }
 
     fn extend_travel(&mut self, from: impl Fn(usize) -> [f64; 2], to: impl Fn(usize) -> [f64; 2]) {

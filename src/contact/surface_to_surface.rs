@@ -8,29 +8,19 @@ use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
 use smallvec::SmallVec;
 
 use super::constraint::{Configurations, Constraint, PerDof, RowForm, RowPair, Rows};
-use super::geometry::{ContactSurfaces, Positions, Projection, SlaveSegments, project};
+use super::geometry::{
+    ContactSurfaces, Edge, Positions, Projection, SlaveSegments, between, project,
+};
 use super::keys::ConstraintKey;
 use super::node_to_segment::{SegmentRows, rows_between, sum_of};
-use super::search::{Faced, Territory};
+use super::search::{Cells, Faced, FacedRun, Territory};
 use super::stiffness::changes_between;
-use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint, Vertex};
+use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint};
 use super::tolerances::{
     CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH,
     POINT_TILT, SIDE_BY_SIDE,
 };
-use crate::vectors::{cross, difference, dot, length};
-
-/// A slave face with the master segments of one run that it faces.
-struct Face<'a> {
-    number: usize,
-    segments: &'a [usize],
-}
-
-/// Part [low, high] of a slave face that is over a master segment.
-type Cells = SmallVec<[(f64, f64, usize); 8]>;
-
-/// Points of a slave face with the segments of the master that they are over.
-type FacePoints = SmallVec<[(usize, SurfacePoint); 8]>;
+use crate::vectors::{cross, difference, dot};
 
 /// The points of one side of a slave node over one run of the master.
 struct Mean {
@@ -61,25 +51,20 @@ pub(super) fn find_points(
     let Some(slave) = &surfaces.slave_segments else {
         return;
     };
-    let finder = Finder {
-        surfaces,
-        slave,
-        positions,
-        form,
-    };
-    let of_faces: Vec<FacePoints> = territory.with_faced(
-        || finder.start_places(),
-        |face| finder.faced(territory, face),
-        |faced| {
-            (faced.iter().enumerate())
-                .map(|(face, faced)| finder.points(face, faced))
-                .collect()
+    let [start, now] = positions.map(|positions| slave.edges(positions));
+    let place = positions[0];
+    let of_faces = territory.with_faced(
+        start,
+        |start| Finder::new(territory, slave, start, place).all_faced(),
+        |start, faced| {
+            let finder = Finder::new(territory, slave, start, place);
+            PointsOfFaces::new(&finder, faced, &now, form)
         },
     );
     for (number, (&node, sides)) in surfaces.slaves.iter().zip(&slave.at_nodes).enumerate() {
         let key = territory.key().plus(number);
         for (side, faces) in sides.iter().enumerate() {
-            for mut mean in finder.means(faces, &of_faces) {
+            for mut mean in of_faces.means(slave, faces, place) {
                 mean.points
                     .iter_mut()
                     .for_each(|q| q.weight /= mean.covered);
@@ -103,24 +88,53 @@ pub(super) fn find_points(
     }
 }
 
-/// The points of slave faces between start and iterate.
-struct Finder<'a> {
-    surfaces: &'a ContactSurfaces,
-    slave: &'a SlaveSegments,
-    positions: [Positions<'a>; 2],
-    form: RowForm,
+/// The points of all slave faces, each with the segment that it is over, its weight w_q (length).
+struct PointsOfFaces {
+    points: Vec<(usize, SurfacePoint)>,
+    /// Where those of every face begin, and the number of all.
+    starts: Vec<usize>,
 }
 
-impl Finder<'_> {
+impl PointsOfFaces {
+    /// Those of faces that are turned to some segments at the start, and have edges `now` in the iterate.
+    fn new(finder: &Finder, faced: &[FacedRun], now: &[Edge], form: RowForm) -> Self {
+        let faces = finder.slave.ends.len();
+        let mut all = PointsOfFaces {
+            points: Vec::with_capacity(8 * faced.len()),
+            starts: Vec::with_capacity(faces + 1),
+        };
+        let mut faced = faced.iter().peekable();
+        for face in 0..faces {
+            all.starts.push(all.points.len());
+            while let Some(run) = faced.next_if(|run| run.face == face) {
+                finder.add_points(run, now, form, &mut all.points);
+            }
+        }
+        all.starts.push(all.points.len());
+        all
+    }
+
+    fn of(&self, face: usize) -> &[(usize, SurfacePoint)] {
+        &self.points[self.starts[face]..self.starts[face + 1]]
+    }
+
     /// The means of one side of a slave node that has some faces, with increasing runs.
-    fn means(&self, faces: &[[usize; 2]], of_faces: &[FacePoints]) -> SmallVec<[Mean; 2]> {
+    fn means(
+        &self,
+        slave: &SlaveSegments,
+        faces: &[[usize; 2]],
+        positions: Positions,
+    ) -> SmallVec<[Mean; 2]> {
         let mut means: SmallVec<[Mean; 2]> = SmallVec::new();
+        if faces.iter().all(|&[face, _]| self.of(face).is_empty()) {
+            return means;
+        }
         let mut whole = 0.0;
         for &[face, end] in faces {
-            whole += self.reference_weight(face, 0.5, 0.5);
-            for (segment, point) in &of_faces[face] {
+            whole += slave.reference_weight(face, positions, 0.5, 0.5);
+            for (segment, point) in self.of(face) {
                 let hat = if end == 0 { 1.0 - point.eta } else { point.eta };
-                let run = self.slave.runs[*segment];
+                let run = slave.runs[*segment];
                 let weight = point.weight * hat;
                 let place = means.iter().position(|mean| mean.run == run);
                 let place = place.unwrap_or_else(|| {
@@ -144,36 +158,62 @@ impl Finder<'_> {
         means.sort_by_key(|mean| mean.run);
         means
     }
+}
 
-    /// Positions at the start that say which segments faces are turned to.
-    fn start_places(&self) -> Vec<[f64; 2]> {
-        let faces = self.surfaces.slave_faces.iter();
-        let ends = faces.chain(&self.surfaces.segments).flatten();
-        ends.map(|&node| self.positions[0].of(node)).collect()
+/// Finds what slave faces are turned to at the start of an increment, and their points.
+struct Finder<'a> {
+    territory: &'a Territory<'a>,
+    surfaces: &'a ContactSurfaces,
+    slave: &'a SlaveSegments,
+    /// Edges of the start, and positions there.
+    start: &'a [Edge],
+    positions: Positions<'a>,
+}
+
+impl<'a> Finder<'a> {
+    fn new(
+        territory: &'a Territory<'a>,
+        slave: &'a SlaveSegments,
+        start: &'a [Edge],
+        positions: Positions<'a>,
+    ) -> Self {
+        Finder {
+            surfaces: territory.surfaces(),
+            territory,
+            slave,
+            start,
+            positions,
+        }
     }
 
-    /// Points of a face that is turned to some segments, with weights w_q (length).
-    fn points(&self, face: usize, segments: &[usize]) -> FacePoints {
-        let mut points = FacePoints::new();
-        for segments in segments.chunk_by(|&i, &j| self.slave.runs[i] == self.slave.runs[j]) {
-            self.add_points(
-                &Face {
-                    number: face,
-                    segments,
-                },
-                &mut points,
-            );
+    /// For every face the segments that it is turned to, and its cells over them, a run each.
+    fn all_faced(&self) -> Vec<FacedRun> {
+        let mut all = Vec::new();
+        for face in 0..self.slave.ends.len() {
+            let faced = self.faced(face);
+            for run in faced.chunk_by(|&i, &j| self.slave.runs[i] == self.slave.runs[j]) {
+                all.push(FacedRun {
+                    face,
+                    segments: run.into(),
+                    cells: self.cells(face, run, self.start),
+                });
+            }
         }
-        points
+        all
     }
 
     /// Adds the points of a face over one run.
-    fn add_points(&self, face: &Face, points: &mut FacePoints) {
-        let [start, now] = [0, 1].map(|k| self.cells(face, k));
+    fn add_points(
+        &self,
+        faced: &FacedRun,
+        edges: &[Edge],
+        form: RowForm,
+        points: &mut Vec<(usize, SurfacePoint)>,
+    ) {
+        let face = faced.face;
+        let [start, now] = [&faced.cells, &self.cells(face, &faced.segments, edges)];
         let mut cuts: SmallVec<[f64; 32]> = SmallVec::new();
-        let of_start = start
-            .iter()
-            .filter(|_| self.form == RowForm::DiscreteGradient);
+        let of_start = start.iter().filter(|_| form == RowForm::DiscreteGradient);
         for &(low, high, _) in now.iter().chain(of_start) {
             cuts.extend([low, high]);
         }
@@ -183,18 +223,18 @@ impl Finder<'_> {
             if part <= LEAST_CELL {
                 continue;
             }
-            let Some(j) = self.over(face, &now, middle, 1) else {
+            let Some(j) = self.over(face, now, middle, edges) else {
                 continue;
             };
-            let i = match self.form {
+            let i = match form {
                 RowForm::End => Some(j),
-                RowForm::DiscreteGradient => self.over(face, &start, middle, 0),
+                RowForm::DiscreteGradient => self.over(face, start, middle, self.start),
             };
             // two Gauss points, each with half of the cell
             for side in [-1.0, 1.0] {
                 let eta = middle + side * part / 12_f64.sqrt();
-                let weight = self.reference_weight(face.number, eta, part / 2.0);
-                points.push(self.point(face.number, eta, weight, (i, j)));
+                let weight = (self.slave).reference_weight(face, self.positions, eta, part / 2.0);
+                points.push(self.point(face, eta, weight, (i, j)));
             }
         }
     }
@@ -207,41 +247,37 @@ impl Finder<'_> {
         weight: f64,
         (i, j): (Option<usize>, usize),
     ) -> (usize, SurfacePoint) {
-        let [x1, x2] = self.face(face);
-        let over = |i: usize, origin: Origin| {
-            let [a, b] = self.segment(i);
-            let vertices = [x1, x2, a, b];
-            let point = SurfacePoint {
-                vertices,
-                eta,
-                weight,
-                origin,
-            };
-            (i, point)
-        };
+        let [x1, x2] = self.slave.face(face);
+        let [a, b] = self.slave.segment(j);
         let origin = match i {
-            Some(i) if i == j => return over(j, Origin::Same),
-            Some(i) => Origin::Other(self.segment(i)),
+            Some(i) if i == j => Origin::Same,
+            Some(i) => Origin::Other(self.slave.segment(i)),
             None => Origin::Outside,
         };
-        over(j, origin)
+        let point = SurfacePoint {
+            vertices: [x1, x2, a, b],
+            eta,
+            weight,
+            origin,
+        };
+        (j, point)
     }
 
     /// Segments that a face is turned to at the start, within reach, one run after the other.
-    fn faced(&self, territory: &Territory, face: usize) -> Faced {
+    fn faced(&self, face: usize) -> Faced {
         let mut faced = Faced::new();
-        let x = self.face(face).map(|vertex| self.place(vertex, 0));
+        let x = self.slave.edge_of_face(self.start, face).ends;
         for number in self.slave.ends[face].into_iter().flatten() {
-            for candidate in territory.candidates(number) {
+            for candidate in self.territory.candidates(number) {
                 let i = candidate.segment;
                 if faced.contains(&i) || !self.may_meet(face, i) || !self.faces(face, i) {
                     continue;
                 }
-                let [a, b] = self.segment(i).map(|vertex| self.place(vertex, 0));
+                let [a, b] = self.slave.edge_of_segment(self.start, i).ends;
                 let [p, q] = x.map(|x| project(x, a, b));
                 let is_near =
                     [p, q].iter().any(|p| p.gap.abs() <= candidate.reach) || p.gap * q.gap < 0.0;
-                if is_near && self.is_in_front(territory, (face, i), [p, q]) {
+                if is_near && self.is_in_front((face, i), [p, q]) {
                     faced.push(i);
                 }
             }
@@ -262,114 +298,80 @@ impl Finder<'_> {
     /// Whether a face was in front of a segment at the start, where its ends have the given projections, or of another
     /// from which it may slide on to this one, or has penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
     /// that has come in through another segment or lies on it.
-    fn is_in_front(
-        &self,
-        territory: &Territory,
-        (face, segment): (usize, usize),
-        [p, q]: [Projection; 2],
-    ) -> bool {
+    fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
         if p.gap.max(q.gap) >= -CLOSED_GAP * p.length {
             return true;
         }
         // the middle of the part of the face that is over the segment
         let xi = f64::midpoint(p.xi.clamp(0.0, 1.0), q.xi.clamp(0.0, 1.0));
         let eta = ((xi - p.xi) / (q.xi - p.xi)).clamp(0.0, 1.0);
-        let [x1, x2] = self.face(face).map(|vertex| self.place(vertex, 0));
+        let [x1, x2] = self.slave.edge_of_face(self.start, face).ends;
         let x = between(x1, x2, eta);
-        let [a, b] = self.segment(segment).map(|vertex| self.place(vertex, 0));
-        let depth = -project(x, a, b).gap;
+        let at = |segment: usize| {
+            let [a, b] = self.slave.edge_of_segment(self.start, segment).ends;
+            project(x, a, b)
+        };
+        let depth = -at(segment).gap;
         let is_nearer = |other: usize| {
-            let [a, b] = self.segment(other).map(|vertex| self.place(vertex, 0));
-            let p = project(x, a, b);
+            let p = at(other);
             let on_it = CLOSED_GAP * p.length;
             (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&p.xi)
                 && (-NEARER_DEPTH * depth..=on_it).contains(&p.gap)
         };
         // it is in front of a segment before or after, from which it may slide on to this one
         let is_beside = |other: usize| {
-            let [a, b] = self.segment(other).map(|vertex| self.place(vertex, 0));
-            let p = project(x, a, b);
+            let p = at(other);
             self.slave.runs[other] == self.slave.runs[segment]
                 && (-SIDE_BY_SIDE..=1.0 + SIDE_BY_SIDE).contains(&p.xi)
                 && p.gap >= -CLOSED_GAP * p.length
                 && self.faces(face, other)
         };
         let numbers = || self.slave.ends[face].into_iter().flatten();
-        let others = || numbers().flat_map(|number| territory.candidates(number));
+        let others = || numbers().flat_map(|number| self.territory.candidates(number));
         let ends = self.surfaces.slave_faces[face];
         let own = self.surfaces.segments[segment];
-        let at = |node: usize| self.positions[0].of(node);
-        let is_inside = || (self.surfaces.interior).takes_in_point(own, (x, ends), at);
+        let node_at = |node: usize| self.positions.of(node);
+        let is_inside = || (self.surfaces.interior).takes_in_point(own, (x, ends), node_at);
         others().any(|other| is_beside(other.segment))
             || (is_inside() && !others().any(|other| is_nearer(other.segment)))
     }
 
     /// Whether a face and a segment are turned to each other at the start.
     fn faces(&self, face: usize, segment: usize) -> bool {
-        let [e, f] = [self.face(face), self.segment(segment)].map(|ends| self.tangent(ends, 0));
+        let e = self.slave.edge_of_face(self.start, face).tangent;
+        let f = self.slave.edge_of_segment(self.start, segment).tangent;
         dot(e, f) < -FACING_COSINE
     }
 
-    /// The vertex at a node.
-    fn vertex(&self, node: usize) -> Vertex {
-        Vertex {
-            node,
-            corners: self.slave.middles.get(&node).copied(),
-        }
-    }
-
-    /// Ends of a slave face.
-    fn face(&self, face: usize) -> [Vertex; 2] {
-        self.surfaces.slave_faces[face].map(|node| self.vertex(node))
-    }
-
-    /// Ends of a master segment.
-    fn segment(&self, segment: usize) -> [Vertex; 2] {
-        self.surfaces.segments[segment].map(|node| self.vertex(node))
-    }
-
-    /// Position at the start (0) or in the iterate (1).
-    fn place(&self, vertex: Vertex, k: usize) -> [f64; 2] {
-        vertex.place(|node| self.positions[k].of(node))
-    }
-
-    /// Unit vector from the first to the second vertex at the start (0) or in the iterate (1).
-    fn tangent(&self, ends: [Vertex; 2], k: usize) -> [f64; 2] {
-        let [a, b] = ends.map(|vertex| self.place(vertex, k));
-        let e = difference(a, b);
-        let length = length(e);
-        e.map(|e| e / length)
-    }
-
-    /// The parts of a face over its segments, at the start (0) or in the iterate (1): those between the bisectors of the
+    /// The parts of a face over some segments of a run, where they have the given edges: those between the bisectors of the
     /// vertices, or the normals at the ends of the run.
     ///
     /// ```text
     /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
     /// ```
-    fn cells(&self, face: &Face, k: usize) -> Cells {
-        let [x1, x2] = self.face(face.number).map(|vertex| self.place(vertex, k));
+    fn cells(&self, face: usize, segments: &[usize], edges: &[Edge]) -> Cells {
+        let [x1, x2] = self.slave.edge_of_face(edges, face).ends;
+        let edge = |i: usize| self.slave.edge_of_segment(edges, i);
         let normal = |i: usize| {
-            let [x, y] = self.tangent(self.segment(i), k);
+            let [x, y] = edge(i).tangent;
             [y, -x]
         };
-        let eta = |i: usize, vertex: Vertex, neighbour: Option<usize>| {
+        let eta = |i: usize, v: [f64; 2], neighbour: Option<usize>| {
             let is_next = |j: &usize| {
                 self.slave.runs[i] == self.slave.runs[*j]
-                    && self.may_meet(face.number, *j)
-                    && self.faces(face.number, *j)
+                    && self.may_meet(face, *j)
+                    && self.faces(face, *j)
             };
             let (n, other) = (
                 normal(i),
                 neighbour.filter(is_next).map_or([0.0; 2], normal),
             );
             let m = [n[0] + other[0], n[1] + other[1]];
-            let v = self.place(vertex, k);
             -cross(difference(v, x1), m) / cross(difference(x1, x2), m)
         };
         let mut cells = Cells::new();
-        for &i in face.segments {
-            let [a, b] = self.segment(i);
+        for &i in segments {
+            let [a, b] = edge(i).ends;
             let at_a = eta(i, a, self.surfaces.previous[i]);
             let at_b = eta(i, b, self.surfaces.next[i]);
             // the face runs against the segment
@@ -381,36 +383,26 @@ impl Finder<'_> {
         cells
     }
 
-    /// The nearest segment that a place of a face is over.
-    fn over(&self, face: &Face, cells: &Cells, eta: f64, k: usize) -> Option<usize> {
-        let [x1, x2] = self.face(face.number).map(|vertex| self.place(vertex, k));
+    /// The nearest segment that a place of a face is over, where they have the given edges.
+    fn over(&self, face: usize, cells: &Cells, eta: f64, edges: &[Edge]) -> Option<usize> {
+        let mut over = (cells.iter())
+            .filter(|(low, high, _)| (*low..=*high).contains(&eta))
+            .map(|&(_, _, i)| i);
+        let first = over.next()?;
+        let [x1, x2] = self.slave.edge_of_face(edges, face).ends;
         let x = between(x1, x2, eta);
-        let over = cells
-            .iter()
-            .filter(|(low, high, _)| (*low..=*high).contains(&eta));
         let distance = |i: usize| {
-            let [a, b] = self.segment(i).map(|vertex| self.place(vertex, k));
+            let [a, b] = self.slave.edge_of_segment(edges, i).ends;
             project(x, a, b).gap.abs()
         };
-        over.map(|&(_, _, i)| i)
-            .min_by(|i, j| distance(*i).total_cmp(&distance(*j)))
+        let mut nearest = first;
+        for i in over {
+            if distance(i) < distance(nearest) {
+                nearest = i;
+            }
+        }
+        Some(nearest)
     }
-
-    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
-    fn reference_weight(&self, face: usize, eta: f64, part: f64) -> f64 {
-        let x = self.positions[0].reference();
-        let [a, b] = self.face(face).map(|vertex| vertex.place(|node| x[node]));
-        let radius = match self.slave.are_rings {
-            true => between(a, b, eta)[0],
-            false => 1.0,
-        };
-        length(difference(a, b)) * part * radius
-    }
-}
-
-/// (1 - eta) x_1 + eta x_2
-fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
-    [0, 1].map(|i| (1.0 - eta) * x1[i] + eta * x2[i])
 }
 
 impl SurfacePoint {
@@ -457,18 +449,17 @@ impl SurfacePoint {
         (rows, tilt)
     }
 
-    /// Places of its nodes among those of a constraint, with the parts that they have of s, a and b.
-    fn shares(&self, nodes: &[usize]) -> SmallVec<[(usize, usize, f64); 12]> {
-        let place = |node: usize| nodes.iter().position(|&n| n == node).unwrap_or_default();
+    /// Calls `take` with the place of each of its nodes among those of a constraint, the number of s, a or b that the node
+    /// belongs to, and its part of that.
+    #[inline]
+    fn each_share(&self, nodes: &[usize], mut take: impl FnMut(usize, usize, f64)) {
         let own = [(0, 1.0 - self.eta), (0, self.eta), (1, 1.0), (2, 1.0)];
-        let of_vertices = self.vertices.into_iter().zip(own);
-        of_vertices
-            .flat_map(|(vertex, (own, part))| {
-                let shares = vertex.shares();
-                shares.map(move |(node, share)| (node, own, part * share))
-            })
-            .map(|(node, own, share)| (place(node), own, share))
-            .collect()
+        for (vertex, (own, part)) in self.vertices.into_iter().zip(own) {
+            vertex.each_share(|node, share| {
+                let place = nodes.iter().position(|&n| n == node);
+                take(place.unwrap_or_default(), own, part * share);
+            });
+        }
     }
 }
 
@@ -523,15 +514,18 @@ pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
 }
 
 /// Nodes of a constraint, its slave nodes first, of them the one that it is named by; and the number of slave nodes.
-fn nodes(source: &PairTarget) -> (SmallVec<[usize; 12]>, usize) {
-    let mut nodes: SmallVec<[usize; 12]> = SmallVec::new();
+fn nodes(source: &PairTarget) -> (SmallVec<[usize; 16]>, usize) {
+    let mut nodes: SmallVec<[usize; 16]> = SmallVec::new();
     nodes.push(source.nodes[0]);
     let mut slaves = 1;
     for ends in [0..2, 2..4] {
-        let vertices = source.points.iter().flat_map(|q| &q.vertices[ends.clone()]);
-        for (node, _) in vertices.flat_map(|vertex| vertex.shares()) {
-            if !nodes.contains(&node) {
-                nodes.push(node);
+        for point in &source.points {
+            for vertex in &point.vertices[ends.clone()] {
+                vertex.each_share(|node, _| {
+                    if !nodes.contains(&node) {
+                        nodes.push(node);
+                    }
+                });
             }
         }
         if ends.start == 0 {
@@ -548,34 +542,34 @@ fn nodes(source: &PairTarget) -> (SmallVec<[usize; 12]>, usize) {
 /// ```
 pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
     let (nodes, slaves) = nodes(&source);
-    let zero = || -> PerDof<f64> { PerDof::from_elem(0.0, 2 * nodes.len()) };
-    // force rows n, t, derivative rows n, t
-    let mut sums = [zero(), zero(), zero(), zero()];
+    // of every node the entries of the force rows n, t and the derivative rows n, t
+    let mut sums: SmallVec<[[[f64; 2]; 4]; 16]> = SmallVec::from_elem([[0.0; 2]; 4], nodes.len());
     let (mut gap, mut scale) = (0.0, 0.0);
     for point in &source.points {
         let (rows, _) = point.rows(at);
         gap += point.weight * rows.projection.gap;
         scale += point.weight * rows.projection.length;
         let of_point = [
-            rows.force.normal,
-            rows.force.tangential,
-            rows.derivative.normal,
-            rows.derivative.tangential,
+            &rows.force.normal,
+            &rows.force.tangential,
+            &rows.derivative.normal,
+            &rows.derivative.tangential,
         ];
-        for (place, own, share) in point.shares(&nodes) {
-            for (sum, row) in sums.iter_mut().zip(&of_point) {
+        point.each_share(&nodes, |place, own, share| {
+            for (sum, row) in sums[place].iter_mut().zip(of_point) {
                 for i in 0..2 {
-                    sum[2 * place + i] += point.weight * share * row[2 * own + i];
+                    sum[i] += point.weight * share * row[2 * own + i];
                 }
             }
-        }
+        });
     }
     let dofs: PerDof<usize> = nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
     let product = |row: &[f64]| -> f64 {
         let motions = dofs.iter().map(|&dof| at.u[dof] - at.u0[dof]);
         row.iter().zip(motions).map(|(b, d)| b * d).sum()
     };
-    let [n, t, gn, gt] = sums;
+    let row = |k: usize| -> PerDof<f64> { sums.iter().flat_map(|sum| sum[k]).collect() };
+    let [n, t, gn, gt] = [0, 1, 2, 3].map(row);
     let [allowed_before, allowed] = source.allowed;
     let (mut start_gap, slip) = (gap - product(&n) + allowed_before, product(&t));
     gap += allowed;
@@ -621,7 +615,7 @@ pub(super) fn stiffness(
     [pn, pt]: [f64; 2],
     at: &Configurations,
 ) -> DMatrix<f64> {
-    let nodes: SmallVec<[usize; 12]> = constraint.nodes().collect();
+    let nodes: SmallVec<[usize; 16]> = constraint.nodes().collect();
     let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
     for point in points {
         let places = point.configurations(at);
@@ -637,7 +631,8 @@ pub(super) fn stiffness(
             );
             own += force * change.transpose() * (pn * slope);
         }
-        let shares = point.shares(&nodes);
+        let mut shares: SmallVec<[(usize, usize, f64); 12]> = SmallVec::new();
+        point.each_share(&nodes, |place, own, share| shares.push((place, own, share)));
         for &(row, i, p) in &shares {
             for &(col, j, q) in &shares {
                 let block: SMatrix<f64, 2, 2> =
@@ -653,6 +648,7 @@ pub(super) fn stiffness(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::geometry::Vertex;
     use crate::contact::testing;
 
     /// Three slave nodes above the master nodes 3, 4 and 5, which the surface runs through from right to left.

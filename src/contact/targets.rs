@@ -10,7 +10,7 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::crossing::{Crossing, Direction, Motion, crossings};
-use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Projection, project};
+use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Projection, Vertex, project};
 use super::keys::ConstraintKey;
 use super::search::Candidate;
 use super::tolerances::{
@@ -59,48 +59,6 @@ impl ContactTarget {
     }
 }
 
-/// A vertex of the straight lines that the surfaces are made of: a node, or where a side has a node between its corners
-/// what takes its place, so that a pressure that is linear along the side has the right forces on all its nodes.
-///
-/// ```text
-/// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Vertex {
-    /// The node.
-    pub node: usize,
-    /// Corners of the side that it is between.
-    pub corners: Option<[usize; 2]>,
-}
-
-impl Vertex {
-    /// Its nodes, each with its part in the position.
-    pub fn shares(self) -> impl Iterator<Item = (usize, f64)> {
-        let corners = self.corners.into_iter().flatten();
-        let own = if self.corners.is_some() {
-            4.0 / 3.0
-        } else {
-            1.0
-        };
-        [(self.node, own)]
-            .into_iter()
-            .chain(corners.map(|node| (node, -1.0 / 6.0)))
-    }
-
-    /// Its position.
-    #[inline]
-    pub fn place(self, at: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
-        let x = at(self.node);
-        match self.corners {
-            None => x,
-            Some(corners) => {
-                let [a, b] = corners.map(at);
-                [0, 1].map(|i| 4.0 / 3.0 * x[i] - (a[i] + b[i]) / 6.0)
-            }
-        }
-    }
-}
-
 /// A point of a slave face at the line of a master segment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SurfacePoint {
@@ -117,10 +75,7 @@ pub struct SurfacePoint {
 impl SurfacePoint {
     /// Nodes whose positions it depends on; some may come twice.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
-        self.vertices
-            .into_iter()
-            .flat_map(Vertex::shares)
-            .map(|(node, _)| node)
+        self.vertices.into_iter().flat_map(Vertex::nodes)
     }
 }
 
