@@ -4,10 +4,9 @@
 use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff, SmallStrainModuli};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, ContactFormulation, Curve,
-    Damping, Direction, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction,
-    Material, Mesh, Model, Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach,
-    TimeBase, Wear,
+    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
+    Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material, Mesh, Model,
+    Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -36,7 +35,7 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
         lines.card("CONTACT INCLUSIONS", ["ALL EXTERIOR".to_owned()]);
         lines.card("CONTACT PROPERTY ASSIGNMENT", []);
         lines.row([String::new(), String::new(), interaction]);
-        if general.formulation != ContactFormulation::default() {
+        if general.lying_faces.is_none() {
             let formulation = set("TYPE", general.formulation.name());
             lines.card("CONTACT FORMULATION", [formulation]);
         }

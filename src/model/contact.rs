@@ -66,6 +66,9 @@ pub struct Contact {
     pub interaction: Interaction,
     /// What is kept out.
     pub formulation: ContactFormulation,
+    /// Faces that lie on other bodies at the start, by whose number general contact has chosen what is kept out; none
+    /// where the deck says it.
+    pub lying_faces: Option<usize>,
     /// Slave nodes that are moved onto the master surface before the start.
     pub adjust: Option<Adjust>,
     /// Slave nodes that take no part (indices, increasing).

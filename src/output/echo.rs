@@ -271,14 +271,29 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         true => format!("{} ({nodes}, {edges}) with itself", slave.name),
         false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
     };
-    let formulation = match contact.formulation {
-        ContactFormulation::NodeToSegment => None,
-        ContactFormulation::SurfaceToSurface => Some("surface to surface".to_owned()),
-    };
-    let mut pieces = vec![sides];
-    pieces.extend(formulation);
-    pieces.extend([contact.interaction.friction.to_string(), smallest_gap(gaps)]);
+    let pieces = [
+        sides,
+        formulation(contact),
+        contact.interaction.friction.to_string(),
+        smallest_gap(gaps),
+    ];
     wrap("contact", &pieces)
+}
+
+/// What a contact keeps out, and why where the program has chosen.
+fn formulation(contact: &Contact) -> String {
+    let name = contact.formulation.name().to_lowercase();
+    let only = match contact.formulation {
+        ContactFormulation::NodeToSegment => "only ",
+        ContactFormulation::SurfaceToSurface => "",
+    };
+    let lying = match contact.lying_faces {
+        None => return name,
+        Some(0) => "no face lies".to_owned(),
+        Some(1) => format!("{only}1 face lies"),
+        Some(count) => format!("{only}{} lie", counted(count, "face")),
+    };
+    format!("{name} as {lying} on other bodies")
 }
 
 /// The overlaps that contacts allow in a step.

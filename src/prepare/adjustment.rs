@@ -241,6 +241,7 @@ mod tests {
             master: 1,
             interaction: Interaction::default(),
             formulation: ContactFormulation::default(),
+            lying_faces: None,
             adjust: Some(Adjust::Within(Reach {
                 above: 0.1 * edge,
                 below: f64::INFINITY,

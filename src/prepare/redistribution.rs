@@ -490,6 +490,7 @@ pub(crate) mod tests {
             master: 0,
             interaction: Interaction::default(),
             formulation: ContactFormulation::default(),
+            lying_faces: None,
             adjust: None,
             left_out: Vec::new(),
             is_interference_fit: false,

@@ -11,7 +11,7 @@ use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
-    ImpactTime, Interaction, Model, Reach, Surface, SurfaceKind, Wear,
+    Interaction, Model, Reach, Surface, SurfaceKind, Wear,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -60,37 +60,6 @@ fn formulation(card: &Card) -> ContactFormulation {
     match card.choice("TYPE") {
         Some("SURFACE TO SURFACE") => ContactFormulation::SurfaceToSurface,
         _ => ContactFormulation::NodeToSegment,
-    }
-}
-
-/// Takes node to surface where contact from surface to surface cannot be used, with a warning that says why.
-pub(super) fn restrict_formulations(model: &mut Model, cx: &mut Context) {
-    for number in 0..model.contacts.len() {
-        let contact = &model.contacts[number];
-        if contact.formulation == ContactFormulation::NodeToSegment {
-            continue;
-        }
-        if let Some(why) = not_from_surface_to_surface(contact, model) {
-            let message = "TYPE=SURFACE TO SURFACE is taken as NODE TO SURFACE";
-            cx.d.warning_once(Code::IgnoredParameter, contact.span, message)
-                .help(why);
-            model.contacts[number].formulation = ContactFormulation::NodeToSegment;
-        }
-    }
-}
-
-/// Why a contact cannot be from surface to surface, if it cannot.
-fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'static str> {
-    let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
-    let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));
-    let has_segments = |surface: &Surface| !matches!(surface.kind, SurfaceKind::Nodes(_));
-    let settings = || model.steps.iter().map(|step| &step.settings);
-    if !is_of_faces(slave) || !has_segments(master) {
-        Some("the slave surface must be made of element faces")
-    } else if settings().any(|s| s.impact_time == ImpactTime::Event) {
-        Some("impacts at their times need nodes that land on segments")
-    } else {
-        None
     }
 }
 
@@ -149,6 +118,7 @@ fn contact(
         master: master.0,
         interaction: interaction?,
         formulation: ContactFormulation::default(),
+        lying_faces: None,
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,
@@ -472,6 +442,7 @@ fn general_contacts(
             all.push(Contact {
                 master,
                 left_out,
+                lying_faces: None,
                 ..general.clone()
             });
         }
@@ -537,6 +508,7 @@ fn general(
         formulation: formulations
             .first()
             .map_or_else(ContactFormulation::default, |card| formulation(card)),
+        lying_faces: formulations.is_empty().then_some(0),
         adjust,
         left_out: Vec::new(),
         is_interference_fit,

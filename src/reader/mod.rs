@@ -13,6 +13,7 @@ mod contact_changes;
 mod context;
 mod couplings;
 mod equations;
+mod formulation;
 mod interference;
 mod label;
 mod loads;
@@ -142,7 +143,8 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: bodies,
         restarts: steps.restarts,
     };
-    contact::restrict_formulations(&mut model, cx);
+    formulation::restrict(&mut model, cx);
+    formulation::choose(&mut model);
     contact::keep_arcs_for_discs(&mut model);
     let model = model;
     let all: [&dyn Fn(&mut Context); 10] = [

@@ -341,6 +341,7 @@ fn constraints_and_contacts() {
     let onto_floor = pair.replace("STOP", "FLOOR");
     for contact in [
         general.to_owned(),
+        format!("{general}*CONTACT FORMULATION, TYPE=SURFACE TO SURFACE\n"),
         format!("{initialization}{general}{assignment}"),
         format!(
             "{}{floor}{general}{assignment}",

@@ -1179,3 +1179,42 @@ fn line_elements_that_are_no_sides_are_left_out() {
     assert!(messages.contains("line element 8 is no side"), "{messages}");
     assert_eq!(faces_of(&model, 1), [2]);
 }
+
+#[test]
+fn general_contact_takes_means_where_many_faces_lie_on_others() {
+    // two strips of elements, a gap apart
+    let strips = |count: usize, gap: f64, formulation: &str| {
+        let mut text = String::from("*NODE\n");
+        for (strip, first) in [(0, 1), (1, 1001)] {
+            for row in 0..2 {
+                for i in 0..=count {
+                    let label = first + row * (count + 1) + i;
+                    let y = row as f64 + strip as f64 * (1.0 + gap);
+                    text += &format!("{label}, {i}., {y}\n");
+                }
+            }
+        }
+        text += "*ELEMENT, TYPE=CPE4, ELSET=ALL\n";
+        for first in [1, 1001] {
+            for i in first..first + count {
+                let [c, d] = [i + count + 2, i + count + 1];
+                text += &format!("{i}, {i}, {}, {c}, {d}\n", i + 1);
+            }
+        }
+        text += "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*DENSITY\n1.\n\
+                 *SOLID SECTION, ELSET=ALL, MATERIAL=M\n1.\n\
+                 *CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
+        text += formulation;
+        text + "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*END STEP\n"
+    };
+    let chosen = |count: usize, gap: f64, formulation: &str| {
+        let contact = &read(&strips(count, gap, formulation)).0.contacts[0];
+        (contact.formulation, contact.lying_faces)
+    };
+    use ContactFormulation::{NodeToSegment, SurfaceToSurface};
+    assert_eq!(chosen(24, 0.01, ""), (NodeToSegment, Some(48)));
+    assert_eq!(chosen(25, 0.01, ""), (SurfaceToSurface, Some(50)));
+    assert_eq!(chosen(25, 0.2, ""), (NodeToSegment, Some(0)));
+    let card = "*CONTACT FORMULATION, TYPE=NODE TO SURFACE\n";
+    assert_eq!(chosen(25, 0.01, card), (NodeToSegment, None));
+}

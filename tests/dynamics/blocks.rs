@@ -157,6 +157,7 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
             ..Interaction::default()
         },
         formulation: ContactFormulation::default(),
+        lying_faces: None,
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,

@@ -44,6 +44,7 @@ fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, V
         master: 0,
         interaction: Interaction::default(),
         formulation: ContactFormulation::default(),
+        lying_faces: None,
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,

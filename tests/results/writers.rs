@@ -145,6 +145,7 @@ fn contact() -> Contact {
             ..Interaction::default()
         },
         formulation: ContactFormulation::default(),
+        lying_faces: None,
         adjust: None,
         left_out: Vec::new(),
         is_interference_fit: false,
