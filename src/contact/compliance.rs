@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use pulp::Simd;
 
 use super::constraint::{Constraint, Rows};
+use super::keys::SlaveKey;
 use crate::archive::{Archive, ArchiveError};
 use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 
@@ -40,6 +41,8 @@ pub enum Scope {
     All,
     /// Those between the same bodies, given by increasing numbers.
     Bodies(Vec<usize>),
+    /// A part of these along the surfaces, told by contact and part.
+    Part(Vec<usize>, [usize; 2]),
 }
 
 /// The inverse at some unknowns of a group.
@@ -149,6 +152,16 @@ impl Compliance {
         &self.rotation
     }
 
+    /// The part of the constraints between the same bodies that a constraint belongs to, where parts have so many slave
+    /// nodes.
+    pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> Scope {
+        let SlaveKey { contact, slave } = constraint.key.slave();
+        match self.scope_of(constraint) {
+            Scope::Bodies(bodies) => Scope::Part(bodies, [contact, slave / nodes]),
+            other => other,
+        }
+    }
+
     /// The bodies that a constraint acts on.
     pub fn scope_of(&self, constraint: &Constraint) -> Scope {
         let terms = constraint.dofs.iter().flat_map(|&dof| self.map.row(dof));
@@ -199,7 +212,7 @@ impl Compliance {
             .collect();
         let inverses = match scope {
             Scope::All => solver.inverse_at(&lists)?,
-            Scope::Bodies(_) => solver.unchecked_inverse_at(&lists),
+            Scope::Bodies(_) | Scope::Part(..) => solver.unchecked_inverse_at(&lists),
         };
         for (&at, inverse) in renewed.iter().zip(inverses) {
             blocks[at].inverse = inverse;

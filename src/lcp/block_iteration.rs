@@ -22,6 +22,9 @@ const MOST: usize = 60;
 /// blocks is too strong.
 const TRIAL: usize = 15;
 
+/// Iterations from which on the difference must be on its way there.
+const FIRST_TRIAL: usize = 6;
+
 /// See [`TRIAL`].
 const FALLEN: f64 = 1e-2;
 
@@ -102,7 +105,8 @@ impl Course {
 
     /// Whether the coupling of the blocks is too strong.
     fn is_slow(self) -> bool {
-        self.iterations >= TRIAL && self.least > FALLEN * self.first
+        let part = self.iterations.min(TRIAL) as f64 / TRIAL as f64;
+        self.iterations >= FIRST_TRIAL && self.least > FALLEN.powf(part) * self.first
     }
 }
 

@@ -77,3 +77,32 @@ fn many_pairs_of_many_bodies_are_solved_by_blocks() {
         assert_same_motion(&blocks, &lemke);
     }
 }
+
+#[test]
+fn many_pairs_of_two_bodies_are_solved_in_parts_along_the_surfaces() {
+    let long_block = |lcp| {
+        let mut model = model(1e3, 0.3, 1.0);
+        let base = add_block(&mut model, [0.0, -0.2], [31.0, 0.2], (310, 2), 0.0);
+        let origin = [0.45, 1e-3];
+        let block = add_block(&mut model, origin, [30.0, 0.2], (300, 2), 0.0);
+        throw(&mut model, &block, [0.5, -1.0], 0.0, origin);
+        add_contact(&mut model, block.faces(0), base.faces(2), 0.2);
+        let bottom = (0..=base.nx).map(|i| base.node(i, 0));
+        let supports = bottom.flat_map(|n| [2 * n, 2 * n + 1]).map(fixed);
+        let settings = Settings {
+            lcp,
+            ..Settings::default()
+        };
+        model.steps = vec![step(0.002, 2, settings, supports.collect())];
+        run_to_end(&model)
+    };
+    let (parts, counts) = long_block(LcpChoice::Hybrid);
+    let (lemke, _) = long_block(LcpChoice::Lemke);
+    let solver = counts.solver;
+    assert!(solver.lcp_size > 240, "{solver:?}");
+    assert!(
+        solver.active_set_iterations >= 5 * solver.lcps / 2,
+        "the problems have parts: {solver:?}"
+    );
+    assert_same_motion(&parts, &lemke);
+}

@@ -201,6 +201,16 @@ pub(super) const FEW: usize = 128;
 /// Part of the entries of Q within the blocks at most, or blocks gain nothing.
 const WITHIN: f64 = 0.25;
 
+/// Constraints between the same bodies from which on they are parted along the surfaces.
+const LEAST_PARTED: usize = 240;
+
+/// Slave nodes of a part.
+const PART: usize = 64;
+
+/// Entry of Q between some two constraints of every part, beside their own compliances, below which the parts are
+/// coupled weakly.
+const COUPLING: f64 = 0.1;
+
 /// Gaps and slips of the constraints of a problem under any forces.
 struct Motion<'r, 'a> {
     response: &'r mut Response<'a>,
@@ -226,8 +236,12 @@ impl Motion<'_, '_> {
     }
 }
 
+/// The blocks of a problem, with eps Q_kk of all its constraints.
+type ProblemBlocks = (Vec<LcpBlock>, Vec<[f64; 2]>);
+
 impl ContactSystem<'_> {
-    /// Positions of constraints by the bodies that they are between, if their problem is to be solved by blocks.
+    /// Positions of constraints by the bodies that they are between, or by parts of surfaces, if their problem is to be
+    /// solved by blocks.
     pub(super) fn by_bodies(
         &self,
         constraints: &[&Constraint],
@@ -236,14 +250,20 @@ impl ContactSystem<'_> {
         if constraints.len() < LEAST || !may_be_parted {
             return None;
         }
-        let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
-        for (k, constraint) in constraints.iter().enumerate() {
-            let scope = self.system.scope_of(constraint);
-            blocks.entry(scope).or_default().push(k);
-        }
-        let square = |count: usize| (count as f64).powi(2);
-        let within: f64 = blocks.values().map(|block| square(block.len())).sum();
-        (within <= WITHIN * square(constraints.len())).then_some(blocks)
+        let blocks_by = |scope_of: &dyn Fn(&Constraint) -> Scope| {
+            let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
+            for (k, constraint) in constraints.iter().enumerate() {
+                blocks.entry(scope_of(constraint)).or_default().push(k);
+            }
+            let square = |count: usize| (count as f64).powi(2);
+            let within: f64 = blocks.values().map(|block| square(block.len())).sum();
+            (within <= WITHIN * square(constraints.len())).then_some(blocks)
+        };
+        let by_bodies = blocks_by(&|constraint| self.system.scope_of(constraint));
+        by_bodies.or_else(|| {
+            let parts = blocks_by(&|constraint| self.system.part_of(constraint, PART));
+            parts.filter(|_| constraints.len() >= LEAST_PARTED)
+        })
     }
 
     /// Forces of constraints by blocks, `free` being their gaps and slips without
@@ -262,7 +282,9 @@ impl ContactSystem<'_> {
         };
         let count = constraints.len();
         let near = (guess.forces.clone()).unwrap_or_else(|| vec![[0.0; 2]; count]);
-        let (blocks, held) = self.blocks(constraints, &by_bodies, guess)?;
+        let Some((blocks, held)) = self.blocks(constraints, &by_bodies, guess)? else {
+            return Ok(None);
+        };
         let mut motion = Motion {
             response,
             constraints,
@@ -299,13 +321,13 @@ impl ContactSystem<'_> {
         Ok(Some(solution.counters.pivots))
     }
 
-    /// The blocks, with eps Q_kk of all constraints.
+    /// The blocks, with eps Q_kk of all constraints; none where parts of surfaces are coupled strongly.
     fn blocks(
         &mut self,
         all: &[&Constraint],
         by_bodies: &BTreeMap<Scope, Vec<usize>>,
         guess: &Guess,
-    ) -> Result<(Vec<LcpBlock>, Vec<[f64; 2]>), LinearError> {
+    ) -> Result<Option<ProblemBlocks>, LinearError> {
         let mut held = vec![[0.0; 2]; all.len()];
         let mut blocks = Vec::with_capacity(by_bodies.len());
         for (scope, contacts) in by_bodies {
@@ -313,6 +335,9 @@ impl ContactSystem<'_> {
             let n = constraints.len();
             let terms = vec![[0.0; 2]; n];
             let mut problem = self.system.frictional_lcp(scope, &constraints, &terms)?;
+            if matches!(scope, Scope::Part(..)) && n >= PART / 2 && is_coupled(&problem) {
+                return Ok(None);
+            }
             for (k, &contact) in contacts.iter().enumerate() {
                 held[contact] = [k, k + n].map(|i| {
                     let part = guess.weight.unwrap_or(0.0) * problem.q[(i, i)];
@@ -328,8 +353,15 @@ impl ContactSystem<'_> {
                 kept,
             });
         }
-        Ok((blocks, held))
+        Ok(Some((blocks, held)))
     }
+}
+
+/// Whether the first contact of a part is coupled strongly to all others, so that the part is to those beside it.
+fn is_coupled(part: &FrictionalLcp) -> bool {
+    let q = |i: usize, j: usize| part.q[(i, j)];
+    let coupling = |j: usize| q(0, j).abs() / (q(0, 0) * q(j, j)).sqrt();
+    (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
 /// u + W (f + B^T P) of some constraints, W being the inverse of the system matrix: at the nodes of the

@@ -640,6 +640,12 @@ impl<'a> System<'a> {
         self.matrix.compliance.rotation()
     }
 
+    /// The part of the constraints between the same bodies that a constraint belongs to, where parts have so many slave
+    /// nodes.
+    pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> Scope {
+        self.matrix.compliance.part_of(constraint, nodes)
+    }
+
     /// The bodies that a constraint acts on.
     pub fn scope_of(&self, constraint: &Constraint) -> Scope {
         self.matrix.compliance.scope_of(constraint)
