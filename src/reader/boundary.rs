@@ -21,6 +21,8 @@ pub(crate) struct Targets<'a> {
     pub sets: &'a Sets,
     /// All amplitudes with their names.
     pub amplitudes: &'a Amplitudes,
+    /// Masses of the point elements, 0 of those that have none (mass).
+    pub masses: &'a [f64],
     /// Rigid bodies, whose nodes move with reference nodes.
     pub rigid_bodies: &'a [Rigid],
 }

@@ -17,6 +17,8 @@ use std::collections::BTreeMap;
 #[derive(Default)]
 pub(crate) struct LoadHistories {
     points: LoadHistory<usize, PointLoad>,
+    /// Weights of point masses, by their number and direction.
+    weights: LoadHistory<(u32, usize), PointLoad>,
     bodies: LoadHistory<(u32, Body), BodyForce>,
     turned: LoadHistory<u32, CentrifugalForce>,
     pressures: LoadHistory<OnFace, Pressure>,
@@ -50,6 +52,7 @@ impl Body {
 pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
     let mut loads = LoadHistories {
         points: LoadHistory::of(&step.point_loads, |at| at.dof),
+        weights: LoadHistory::default(),
         bodies: LoadHistory::of(&step.body_forces, |at| (at.element as u32, Body::of(at))),
         turned: LoadHistory::of(&step.centrifugal_forces, |at| at.element as u32),
         pressures: LoadHistory::of(&step.pressures, |at| (None, at.face)),
@@ -113,6 +116,7 @@ impl LoadHistories {
         }
         let on_surfaces = keyword == "DSLOAD";
         if !on_surfaces {
+            self.weights.clear(context, |_| true);
             self.bodies.clear(context, |_| true);
             self.turned.clear(context, |_| true);
         }
@@ -160,12 +164,10 @@ impl LoadHistories {
             _ => None,
         };
         if let Some(body) = body {
-            if body == Body::Gravity {
-                warn_of_masses(row, source.targets, cx);
-            }
             return self.body_row(row, body, &elements, source, cx);
         }
         if key == "CENTRIF" {
+            warn_of_masses(row, source.targets, cx);
             return self.centrifugal_row(row, &elements, source, cx);
         }
         let Some((side, is_traction)) = loaded_side(&key) else {
@@ -212,7 +214,25 @@ impl LoadHistories {
             let key = (element as u32, body);
             self.bodies.add(key, at, magnitude, amplitude, context);
         }
+        if body == Body::Gravity {
+            for point in masses_of(row, source.targets, cx) {
+                self.add_weight(point, magnitude, direction, source);
+            }
+        }
         Some(())
+    }
+
+    /// The weight of a point mass, a force in each direction; both replace those of earlier steps.
+    fn add_weight(&mut self, point: usize, magnitude: f64, direction: [f64; 2], source: Source) {
+        let Targets {
+            mesh_index, masses, ..
+        } = source.targets;
+        let (node, mass) = (mesh_index.points[point].node, masses[point]);
+        for (i, component) in direction.into_iter().enumerate() {
+            let at = PointLoad { dof: 2 * node + i };
+            let (weight, key) = (mass * magnitude * component, (point as u32, i));
+            (self.weights).add(key, at, weight, source.amplitude, source.context);
+        }
     }
 
     /// `element or set, CENTRIF, omega^2, x, y, z, ax, ay, az`: a point of the axis and its direction
@@ -347,6 +367,11 @@ impl LoadHistories {
     /// Writes the loads of the current step; those of the last one are not carried further.
     pub fn fill(&mut self, step: &mut Step, is_last: bool) {
         step.point_loads = self.points.list(is_last);
+        let acts = |load: &Load<PointLoad>| match load.ends() {
+            Some(ends) => ends != [0.0; 2],
+            None => load.magnitude != 0.0,
+        };
+        (step.point_loads).extend(self.weights.list(is_last).into_iter().filter(acts));
         step.body_forces = self.bodies.list(is_last);
         step.centrifugal_forces = self.turned.list(is_last);
         step.pressures = joined(self.pressures.list(is_last), |load| load.at.face);
@@ -356,6 +381,7 @@ impl LoadHistories {
     /// Ends a step of duration `period` at total time `total`.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         self.points.end_step(period, total, amplitudes);
+        self.weights.end_step(period, total, amplitudes);
         self.bodies.end_step(period, total, amplitudes);
         self.turned.end_step(period, total, amplitudes);
         self.pressures.end_step(period, total, amplitudes);
@@ -382,20 +408,25 @@ fn loaded_side(kind: &str) -> Option<(usize, bool)> {
     Some((side, is_traction))
 }
 
-/// Warns that gravity leaves out the masses at nodes, of which there are some among the elements of a row.
-fn warn_of_masses(row: Line, targets: Targets, cx: &mut Context) {
+/// The point masses among the elements of a row.
+fn masses_of(row: Line, targets: Targets, cx: &mut Context) -> Vec<usize> {
     let Targets {
         mesh_index, sets, ..
     } = targets;
     let all = || (0..mesh_index.points.len()).collect();
-    let points = row
+    let mut points = row
         .get(0)
         .map_or_else(all, |field| sets.points_of(field, mesh_index, cx));
-    let is_mass = |point: &usize| mesh_index.points[*point].kind == PointKind::Mass;
-    if points.iter().any(is_mass) {
-        let message = "gravity does not act on elements of the type MASS";
+    points.retain(|&point| mesh_index.points[point].kind == PointKind::Mass);
+    points
+}
+
+/// Warns that a centrifugal force leaves out the point masses, of which there are some among the elements of a row.
+fn warn_of_masses(row: Line, targets: Targets, cx: &mut Context) {
+    if !masses_of(row, targets, cx).is_empty() {
+        let message = "CENTRIF does not act on elements of the type MASS";
         cx.d.warning_once(Code::IgnoredParameter, row.span(), message)
-            .help("give their weight with *CLOAD at the nodes");
+            .help("give their force with *CLOAD at the nodes");
     }
 }
 

@@ -93,7 +93,7 @@ fn read(cx: &mut Context) -> Model {
     };
     let mut rigid_bodies = rigid_bodies::read(&outline, lookup, cx);
     let links = couplings::read(&outline, lookup, &mut rigid_bodies, cx);
-    rigid_bodies::point_masses(&mut rigid_bodies, &outline, lookup, cx);
+    let masses = rigid_bodies::point_masses(&mut rigid_bodies, &outline, lookup, cx);
     let properties = sections::read(&outline, &mut mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
     let ties = ties::read(&outline, &mut mesh_index, &sets, &surfaces, cx);
@@ -108,6 +108,7 @@ fn read(cx: &mut Context) -> Model {
         mesh_index: &mesh_index,
         sets: &sets,
         amplitudes: &amplitudes,
+        masses: &masses,
         rigid_bodies: &rigid_bodies,
     };
     let connectors = connectors::read(&outline, targets, cx);

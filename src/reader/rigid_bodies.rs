@@ -2,7 +2,7 @@
 //! where it is prescribed or they have mass.
 
 use super::context::Context;
-use super::mesh_index::{MeshIndex, PointKind};
+use super::mesh_index::{MeshIndex, Point, PointKind};
 use super::outline::Outline;
 use super::sets::Sets;
 use super::surfaces::Surfaces;
@@ -157,8 +157,14 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
     all
 }
 
-/// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`.
-pub(super) fn point_masses(all: &mut [Rigid], outline: &Outline, lookup: Lookup, cx: &mut Context) {
+/// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`; the masses by the point elements, 0 of
+/// others.
+pub(super) fn point_masses(
+    all: &mut [Rigid],
+    outline: &Outline,
+    lookup: Lookup,
+    cx: &mut Context,
+) -> Vec<f64> {
     let points = &lookup.mesh_index.points;
     let mut values: Vec<Option<f64>> = vec![None; points.len()];
     for (keyword, kind, column, what) in [
@@ -202,7 +208,7 @@ pub(super) fn point_masses(all: &mut [Rigid], outline: &Outline, lookup: Lookup,
                 .for_each(|point| values[point] = Some(value));
         }
     }
-    for (point, value) in points.iter().zip(values) {
+    for (point, &value) in points.iter().zip(&values) {
         let owner = all.iter_mut().find(|rigid| rigid.has(point.node));
         let fault = match (owner, value, point.kind) {
             (Some(rigid), Some(value), PointKind::Mass) => {
@@ -221,6 +227,11 @@ pub(super) fn point_masses(all: &mut [Rigid], outline: &Outline, lookup: Lookup,
         cx.error(Code::RigidSurface, point.span, fault)
             .help("its node is the reference node, or another one, of a *RIGID BODY");
     }
+    let mass = |(point, value): (&Point, Option<f64>)| match point.kind {
+        PointKind::Mass => value.unwrap_or(0.0),
+        PointKind::RotaryInertia => 0.0,
+    };
+    points.iter().zip(values).map(mass).collect()
 }
 
 fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {

@@ -74,15 +74,17 @@ fn static_steps_without_weight_need_no_density() {
 }
 
 #[test]
-fn gravity_tells_that_it_leaves_out_masses_at_nodes() {
-    let found = |target: &str| {
-        let mass = "*ELEMENT, TYPE=MASS, ELSET=EM\n9, 3\n*MASS, ELSET=EM\n1.\n*STEP";
-        let load = format!("*DLOAD\n{target}, GRAV, 9.81, 0., -1.\n*NODE PRINT");
+fn centrifugal_forces_tell_that_they_leave_out_masses_at_nodes() {
+    let found = |load: &str| {
+        let mass = "*NODE\n100, 5., 0.\n101, 6., 0.\n*NSET, NSET=ROD\n100, 101\n\
+                    *RIGID BODY, NSET=ROD, REF NODE=100\n\
+                    *ELEMENT, TYPE=MASS, ELSET=EM\n9, 100\n10, 101\n*MASS, ELSET=EM\n1.\n*STEP";
         let deck = SQUARE.replacen("*STEP", mass, 1);
+        let load = format!("*DLOAD\n{load}\n*NODE PRINT");
         codes(&change(&deck, "*NODE PRINT", &load)).contains(&Code::IgnoredParameter)
     };
-    assert!(found("") && found("EM"));
-    assert!(!found("BODY"));
+    assert!(found(", CENTRIF, 4.") && found("EM, CENTRIF, 4."));
+    assert!(!found("BODY, CENTRIF, 4.") && !found(", GRAV, 9.81, 0., -1."));
 }
 
 /// The square without its load.

@@ -155,6 +155,40 @@ fn a_moment_turns_a_body_about_its_centre_of_mass() {
     assert!(unbalanced(&keep.reports) < 1e-11);
 }
 
+/// Point masses have their weight: two on a rod without elements that turns, one of them of two elements, and one that is
+/// coupled to a block fall with it. OP=NEW takes the weights off.
+#[test]
+fn point_masses_fall() {
+    let text = format!(
+        "{}{MATERIAL}*NODE\n100, 3., 0.\n101, 4., 0.\n200, 0., 1.\n*NSET, NSET=ROD\n100, 101\n\
+         *NSET, NSET=LID\n3, 4\n*RIGID BODY, NSET=ROD, REF NODE=100\n\
+         *KINEMATIC COUPLING, REF NODE=200\nLID, 1, 6\n\
+         *ELEMENT, TYPE=MASS, ELSET=EM\n901, 100\n902, 101\n903, 101\n*MASS, ELSET=EM\n2.\n\
+         *ELEMENT, TYPE=MASS, ELSET=EC\n904, 200\n*MASS, ELSET=EC\n0.7\n\
+         *INITIAL CONDITIONS, TYPE=VELOCITY\n100, 6, 3.\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.5\n*DLOAD\n, GRAV, 9., 0., -1.\n*END STEP\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.1\n*DLOAD, OP=NEW\n*END STEP\n",
+        square(1, [0.0, 0.0], 0.5, "A"),
+    );
+    let (keep, _) = run_to_end(&read(&text));
+    let reports = &keep.reports;
+    assert!(unbalanced(reports) < 1e-12, "{:e}", unbalanced(reports));
+    for report in reports {
+        let speed = -9.0 * report.time.min(0.5);
+        // the elements of the block, and the reference node of its coupling
+        for node in [0, 1, 2, 3, 6] {
+            let v = [0, 1].map(|i| report.state.v[2 * node + i]);
+            assert!(v[0].abs() < 1e-11 && (v[1] - speed).abs() < 1e-11, "{v:?}");
+        }
+        // the masses 2 and 4 turn about the point two thirds along the rod, which starts with the velocity 2
+        let (t, rod) = (report.time.min(0.5), &report.rigid[0]);
+        let height = 2.0 * t - 4.5 * t * t + (2.0 + speed) * (report.time - t);
+        assert!((rod.center[0] - 11.0 / 3.0).abs() < 1e-11);
+        assert!((rod.center[1] - height).abs() < 1e-11, "{}", rod.center[1]);
+        assert!((rod.angular_velocity - 3.0).abs() < 1e-11);
+    }
+}
+
 /// A profile with the mass and the inertia of point elements rolls over a block that rests on a base, as master.
 #[test]
 fn a_profile_with_mass_falls_on_to_a_block() {
