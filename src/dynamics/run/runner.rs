@@ -390,7 +390,14 @@ impl<'m, 'o> Runner<'m, 'o> {
         self.procedure = step.procedure;
         let decides = matches!(step.increments.incrementation, Incrementation::Error { .. });
         let State { u, a, .. } = &self.state;
-        self.accuracy = decides.then(|| TruncationError::new(u, a));
+        self.accuracy = decides.then(|| {
+            let whole = Interval {
+                start: place.time_point(0.0),
+                end: place.time_point(place.end()),
+                dt: place.end(),
+            };
+            TruncationError::new(u, a, problem.fits.way(whole))
+        });
         Ok(None)
     }
 

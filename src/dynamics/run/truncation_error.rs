@@ -10,7 +10,7 @@ use crate::vectors::distance;
 pub(crate) struct TruncationError {
     /// Displacement at the start of the step.
     start: Vec<f64>,
-    /// The largest displacement from there so far (length).
+    /// The largest displacement from there so far, at least the way by which fits part surfaces in the step (length).
     way: f64,
     /// The last two increments, the later one last; at first the start, of no length.
     last: Vec<Past>,
@@ -42,11 +42,12 @@ impl Ends<'_> {
 }
 
 impl TruncationError {
-    /// At the start of a step, with its displacement and acceleration.
-    pub fn new(u: &[f64], a: &[f64]) -> Self {
+    /// At the start of a step, with its displacement and acceleration and the way by which its fits part surfaces
+    /// (length).
+    pub fn new(u: &[f64], a: &[f64], parted: f64) -> Self {
         TruncationError {
             start: u.to_vec(),
-            way: 0.0,
+            way: parted,
             last: vec![Past {
                 acceleration: a.to_vec(),
                 dt: 0.0,

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::loads::Interval;
-use crate::linear::largest;
+use crate::linear::{larger, largest};
 use crate::model::{Interference, Load, Model, Step};
 
 /// The contacts of a step that allow an overlap.
@@ -57,6 +57,13 @@ impl<'m> Fits<'m> {
             allowed[load.at.contact] = nodes.iter().map(|o| part.map(|part| part * o)).collect();
         }
         allowed
+    }
+
+    /// The largest way by which they part surfaces in an interval (length).
+    pub fn way(&self, interval: Interval) -> f64 {
+        let allowed = self.allowed(interval);
+        let ways = allowed.iter().flatten().map(|[a0, a1]| (a0 - a1).abs());
+        ways.fold(0.0, larger)
     }
 
     /// Contacts with the largest overlap at the start of the analysis that they press out (length).
