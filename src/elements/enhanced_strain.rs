@@ -426,7 +426,9 @@ mod tests {
     use crate::elements::block::Shape;
     use crate::elements::formulation::evaluate;
     use crate::elements::shapes::Quadrilateral;
-    use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
+    use crate::materials::{
+        Committed, ConstitutiveLaw, Law, NeoHooke, Plane, PlaneLaw, Plastic, SmallStrainModuli,
+    };
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
 
@@ -508,6 +510,50 @@ mod tests {
                 assert!(force.column_sum().norm() < 1e-13 * force.norm());
                 assert!(moments.sum::<f64>().abs() < 1e-13 * force.norm());
             }
+        }
+    }
+
+    #[test]
+    fn a_metal_that_hardens_little_flows_in_all_points() {
+        // the yield strain is 0.002, that of the element up to 0.1
+        let metal = |kinematic: f64| Plastic {
+            moduli: SmallStrainModuli {
+                young: 1000.0,
+                poisson: 0.3,
+            },
+            hardening: [[0.0, 2.0], [1.0, 2.1]].into(),
+            kinematic,
+        };
+        let metals = [metal(0.0), metal(0.5)].map(Law::Plastic);
+        let planes = [Plane::Strain, Plane::Stress];
+        for law in (metals.iter()).flat_map(|law| planes.map(|plane| law.in_plane(plane))) {
+            let z0 = vec![0.0; 4 * law.variables()];
+            let material = Committed::new(&law, &z0);
+            let force = |configuration: &Configuration<4>| {
+                EnhancedStrain::internal_force::<4, 4>(&quad(), &material, configuration).0
+            };
+            let u = displacements(5) * 0.5;
+            let k = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &Configuration::At(u));
+            for j in 0..8 {
+                let mut du = SMatrix::<f64, 2, 4>::zeros();
+                du[j] = 1e-6;
+                let [more, less] = [u + du, u - du].map(|u| force(&Configuration::At(u)));
+                for i in 0..8 {
+                    let slope = (more[i] - less[i]) / 2e-6;
+                    assert!((k[(i, j)] - slope).abs() < 1e-5 * k.norm(), "({i},{j})");
+                }
+            }
+            // the work of an increment is the change of the stored energy and what is dissipated
+            let (mut z, u0) = (z0.clone(), SMatrix::zeros());
+            let increment = Configuration::Between(u0, u);
+            let dissipated = EnhancedStrain::update::<4, 4>(&quad(), &material, &increment, &mut z);
+            let energy = |z: &[f64], u: &SMatrix<f64, 2, 4>| {
+                evaluate::<EnhancedStrain, 4, 4>(&quad(), &Committed::new(&law, z), u).energy
+            };
+            let work = force(&increment).dot(&u);
+            let error = work - (energy(&z, &u) - energy(&z0, &u0)) - dissipated;
+            assert!(dissipated > 0.02 * work, "{dissipated} {work}");
+            assert!(error.abs() < 1e-12 * work, "{error}");
         }
     }
 

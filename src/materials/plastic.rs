@@ -101,8 +101,11 @@ impl Plastic {
         stress + slope * (slip - start)
     }
 
-    /// int sigma_y da from an accumulated strain on (force/length^2).
+    /// int sigma_y da from an accumulated strain on, or back (force/length^2).
     fn hardening_work(&self, from: f64, by: f64) -> f64 {
+        if by < 0.0 {
+            return -self.hardening_work(from + by, -by);
+        }
         let (mut at, mut left, mut work) = (from, by, 0.0);
         for index in self.segment_at(from)..self.hardening.len() {
             let (start, stress, slope, end) = self.segment(index);
@@ -175,6 +178,25 @@ impl Plastic {
         }
     }
 
+    /// Changes of dE_p and of da between two trial strains of one state, from that of the trial strain, whose digits they
+    /// keep where both flow: with n_m the mean of both directions and |xi|_m that of both sizes,
+    ///
+    /// ```text
+    /// dxi = 2 mu dev dE_h = d|xi| n_m + |xi|_m dn,   d(dE_p) = sqrt(3/2) (d(da) n_m + (da0 + da1)/2 dn)
+    /// ```
+    fn flow_change(&self, change: &Symmetric, [start, end]: [&Flow; 2]) -> (Symmetric, f64) {
+        let slip = end.slip - start.slip;
+        if start.slip == 0.0 || end.slip == 0.0 {
+            return (end.strain - start.strain, slip);
+        }
+        let mean = (start.direction + end.direction) / 2.0;
+        let xi = deviator(change) * (2.0 * self.shear());
+        let turn = (xi - mean * (contract(&mean, &xi) / contract(&mean, &mean)))
+            / ((start.size + end.size) / 2.0);
+        let strain = mean * slip + turn * ((start.slip + end.slip) / 2.0);
+        (strain * 1.5_f64.sqrt(), slip)
+    }
+
     /// Change of the stress T after the flow with the trial strain (force/length^2):
     ///
     /// ```text
@@ -199,6 +221,19 @@ impl Plastic {
         let strain = self.trial(e, state).strain;
         contract(&self.elastic(&strain), &strain) / 2.0
             + self.kinematic / 3.0 * contract(&state.back, &state.back)
+    }
+
+    /// psi(E) - Phi(E), which is zero unless the strain flows at once (force/length^2):
+    ///
+    /// ```text
+    /// (T_h + T)/2 : dE_p - H_k/3 (2 A + dE_p):dE_p - int sigma_y da,   T_h = T without the flow
+    /// ```
+    fn released(&self, e: &Symmetric, state: &State) -> f64 {
+        let strain = self.trial(e, state).strain;
+        let flow = self.flow(&strain, state);
+        let stress = self.elastic(&(strain * 2.0 - flow.strain)) / 2.0;
+        let back = (state.back * 2.0 + flow.strain) * (self.kinematic / 3.0);
+        contract(&(stress - back), &flow.strain) - self.hardening_work(state.slip, flow.slip)
     }
 
     /// The state after the flow of a strain, eq. (2.41), in the frame V of the new G, so that the trial strain there is E_e
@@ -470,22 +505,24 @@ impl SolidHyperelastic for Potential<'_> {
         self.law.stored(&zero, &self.state) + self.energy_change(&zero, e)
     }
 
-    /// Phi(E1) - psi(E0), since E0 with z0 does not flow, eq. (2.40):
+    /// Phi(E1) - Phi(E0), eq. (2.40), dp being the change of dE_p and dx that of da:
     ///
     /// ```text
-    /// (T0 + T1)/2 : (dE_h - dE_p) + H_k/3 (2 A + dE_p):dE_p + int sigma_y da
+    /// (T0 + T1)/2 : (dE_h - dp) + H_k/3 (2 A + dE_p0 + dE_p1):dp + int sigma_y da from a + da0 to a + da1
     /// ```
     fn energy_change(&self, e0: &Symmetric, e1: &Symmetric) -> f64 {
         let Potential { law, state } = self;
         let (start, end) = (law.trial(e0, state), law.trial(e1, state));
-        let flow = law.flow(&end.strain, state);
+        let [flow0, flow1] = [&start, &end].map(|trial| law.flow(&trial.strain, state));
         let dy = between(&start.v, &(e1 - e0)) * 2.0;
-        let change = log_change(&start.y, &end.y, &dy) - flow.strain;
-        let stress = law.elastic(&start.strain) + law.elastic(&(end.strain - flow.strain));
-        let back = state.back * 2.0 + flow.strain;
-        contract(&stress, &change) / 2.0
-            + law.kinematic / 3.0 * contract(&back, &flow.strain)
-            + law.hardening_work(state.slip, flow.slip)
+        let change = log_change(&start.y, &end.y, &dy);
+        let (flow, slip) = law.flow_change(&change, [&flow0, &flow1]);
+        let stress =
+            law.elastic(&(start.strain - flow0.strain)) + law.elastic(&(end.strain - flow1.strain));
+        let back = state.back * 2.0 + flow0.strain + flow1.strain;
+        contract(&stress, &(change - flow)) / 2.0
+            + law.kinematic / 3.0 * contract(&back, &flow)
+            + law.hardening_work(state.slip + flow0.slip, slip)
     }
 
     /// S = V (D ln(X) : T) V, eq. (2.39) (force/length^2).
@@ -553,10 +590,15 @@ impl PlanePlastic {
         }
     }
 
-    fn dissipated(&self, e: &Symmetric, z0: &[f64]) -> f64 {
+    /// D of an increment that ends at a strain, from another in the energy-momentum form.
+    fn dissipated(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> f64 {
         let state = self.law.state(z0);
-        let flow = self.law.flow(&self.law.trial(e, &state).strain, &state);
-        self.law.hardening_work(state.slip, flow.slip)
+        let released = match strains {
+            Strains::At(_) => 0.0,
+            Strains::Between(start, _) => self.law.released(start, &state),
+        };
+        let end = self.law.trial(strains.end(), &state).strain;
+        released + (self.law).hardening_work(state.slip, self.law.flow(&end, &state).slip)
     }
 }
 
@@ -678,7 +720,14 @@ impl ConstitutiveLaw for PlanePlastic {
     }
 
     fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64 {
-        self.dissipated(&self.potential(z0).complete(strains.end()), z0)
+        let potential = self.potential(z0);
+        let strains = match strains {
+            Strains::At(e) => Strains::At(potential.complete(e)),
+            Strains::Between(e0, e1) => {
+                Strains::Between(potential.complete(e0), potential.complete(e1))
+            }
+        };
+        self.dissipated(&strains, z0)
     }
 
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across {
@@ -713,7 +762,7 @@ impl RingLaw for PlanePlastic {
     }
 
     fn dissipation(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> f64 {
-        self.dissipated(strains.end(), z0)
+        self.dissipated(strains, z0)
     }
 
     /// q/sigma_y of the trial strain.
@@ -767,6 +816,37 @@ mod tests {
                 let exact = mid.log_derivative(&(y1 - y0)) / 2.0;
                 let bound = (1e-14 + size * size) * exact.norm();
                 assert!((found - exact).norm() < bound, "{size}: {found} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_change_of_the_potential_is_that_of_its_values_wherever_the_flow_starts() {
+        // from within the yield surface and from beyond it, as the strains of an element are found, and back
+        let across = Vector4::new(-0.3, 0.2, 0.1, 0.25);
+        for law in &[0.0, 50.0].map(metal) {
+            for state in states(law) {
+                let potential = Potential { law, state };
+                let strains =
+                    [0.0, 0.03, 0.7, 1.5].map(|part| WAY * part + across * (0.1 * part * part));
+                for (e0, e1) in strains
+                    .iter()
+                    .flat_map(|a| strains.iter().map(move |b| (a, b)))
+                {
+                    let found = potential.energy_change(e0, e1);
+                    let exact = potential.energy(e1) - potential.energy(e0);
+                    let scale = potential.energy(e0).abs() + potential.energy(e1).abs();
+                    assert!((found - exact).abs() <= 1e-13 * scale, "{found} {exact}");
+                }
+                // digits of a small change, both ends of which flow: S(E_m):dE
+                for size in [1e-4, 1e-7, 1e-10] {
+                    let (e0, e1) = (WAY * 2.0, WAY * 2.0 + across * size);
+                    let middle = SolidHyperelastic::stress(&potential, &((e0 + e1) / 2.0));
+                    let work = contract(&middle, &(e1 - e0));
+                    let found = potential.energy_change(&e0, &e1);
+                    let bound = (1e-13 + 1e6 * size * size) * work.abs();
+                    assert!((found - work).abs() < bound, "{size}: {found} {work}");
+                }
             }
         }
     }
