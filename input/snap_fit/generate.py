@@ -51,7 +51,7 @@ def push_and_pull() -> list[tuple[float, float]]:
     return [(time, 0.5 - 0.5 * cos(pi * time / PUSH)) for time in times]
 
 
-def model() -> str:
+def model(element_type: str = "CPE4") -> str:
     """Everything but the material and the step."""
     hook = Grid("HOOK", ALONG, ACROSS, place)
     reference = hook.next_node
@@ -59,7 +59,7 @@ def model() -> str:
     return "".join(
         [
             "** Written by generate.py; N, mm, t, s.\n",
-            hook.mesh("CPE4"),
+            hook.mesh(element_type),
             hook.side_nodes("CLAMP", "left"),
             hook.side_surface("UNDER", "bottom"),
             card("NSET, NSET=TIP", (hook.node(ALONG, ACROSS),)),
@@ -75,13 +75,13 @@ def model() -> str:
     )
 
 
-def problem(beta: float) -> str:
-    """A deck: heading, include, material, step."""
+def problem(beta: float, model: str = card(f"INCLUDE, INPUT={INCLUDE}")) -> str:
+    """A deck: heading, model, material, step."""
     damping = f"beta {beta!r} s" if beta > 0.0 else "no damping"
     return "".join(
         [
             card("HEADING", (f"snap-fit hook over a ramp and back; {damping}",)),
-            card(f"INCLUDE, INPUT={INCLUDE}"),
+            model,
             material("PP", YOUNG, POISSON, DENSITY, beta=beta),
             step(
                 DT,
@@ -101,6 +101,8 @@ def write(folder: Path) -> None:
     (folder / INCLUDE).write_text(model())
     for name, beta in BETA.items():
         (folder / f"{name}.inp").write_text(problem(beta))
+    enhanced = problem(max(BETA.values()), model("CPE4I"))
+    (folder / "snap_fit_cpe4i.inp").write_text(enhanced)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ pub(super) struct HourglassPotential<const M: usize> {
     stiffness: SMatrix<f64, M, M>,
     /// y_p, the amplitudes that have flown.
     flown: SVector<f64, M>,
-    /// s_y (square root of an energy); infinite in elastic materials.
+    /// s_y² (energy); infinite in elastic materials.
     limit: f64,
 }
 
@@ -44,15 +44,16 @@ pub(super) const fn variables(modes: usize) -> usize {
     modes + 1
 }
 
-/// Length of the stress s_y per yield stress of an element with a volume and a modulus E' of its plane, where the strain uses
-/// a part of the yield stress:
+/// s_y² of an element with a volume and a modulus E' of its plane, where the strain uses a part of the yield stress. It is
+/// kept as an energy: the root of one has other bits in units that differ by a power of two.
 ///
 /// ```text
 /// s_y = 3/2 max(1/20, 1 - used²) sigma_y sqrt(V/(3 E'))
 /// ```
 fn limit(yield_stress: f64, used: f64, volume: f64, modulus: f64) -> f64 {
     let part = (1.0 - used * used).max(LEAST_PART);
-    FULL_SECTION * part * yield_stress * (volume / (3.0 * modulus)).sqrt()
+    let stress = FULL_SECTION * part * yield_stress;
+    stress * stress * volume / (3.0 * modulus)
 }
 
 impl<const M: usize> HourglassPotential<M> {
@@ -77,39 +78,35 @@ impl<const M: usize> HourglassPotential<M> {
         }
     }
 
-    /// s at some amplitudes, and Kh x.
+    /// s/s_y at some amplitudes, and Kh x.
     fn size(&self, y: &SVector<f64, M>) -> (f64, SVector<f64, M>) {
         let x = y - self.flown;
         let stress = self.stiffness * x;
-        (stress.dot(&x).max(0.0).sqrt(), stress)
+        ((stress.dot(&x).max(0.0) / self.limit).sqrt(), stress)
     }
 
     /// Stress f = d Phi/dy.
     fn stress_at(&self, y: &SVector<f64, M>) -> SVector<f64, M> {
         let (size, stress) = self.size(y);
-        if size <= self.limit {
-            stress
-        } else {
-            stress * (self.limit / size)
-        }
+        if size <= 1.0 { stress } else { stress / size }
     }
 
     /// Kh, or s_y/s (Kh - Kh x x Kh/s²) beyond the limit.
     fn tangent_at(&self, y: &SVector<f64, M>) -> SMatrix<f64, M, M> {
         let (size, stress) = self.size(y);
-        if size <= self.limit {
+        if size <= 1.0 {
             return self.stiffness;
         }
-        let along = stress * stress.transpose() / (size * size);
-        (self.stiffness - along) * (self.limit / size)
+        let along = stress * stress.transpose() / (size * size * self.limit);
+        (self.stiffness - along) / size
     }
 
     fn energy_at(&self, y: &SVector<f64, M>) -> f64 {
         let (size, stress) = self.size(y);
-        if size <= self.limit {
+        if size <= 1.0 {
             stress.dot(&(y - self.flown)) / 2.0
         } else {
-            self.limit * (size - self.limit / 2.0)
+            self.limit * (size - 0.5)
         }
     }
 
@@ -122,12 +119,12 @@ impl<const M: usize> HourglassPotential<M> {
     /// `None` where both are within.
     fn change(&self, y0: &SVector<f64, M>, y1: &SVector<f64, M>) -> Option<f64> {
         let ((s0, f0), (s1, f1)) = (self.size(y0), self.size(y1));
-        if s0.max(s1) <= self.limit {
+        if s0.max(s1) <= 1.0 {
             return None;
         }
         let change = (f0 + f1).dot(&(y1 - y0)) / (s0 + s1);
-        let [below0, below1] = [s0, s1].map(|s| (self.limit - s).max(0.0));
-        Some(self.limit * change - (below0 * below0 - below1 * below1) / 2.0)
+        let [below0, below1] = [s0, s1].map(|s| (1.0 - s).max(0.0));
+        Some(change - self.limit * (below0 * below0 - below1 * below1) / 2.0)
     }
 
     /// Stress that does work on the amplitudes, and the energy, or the work between two configurations: with n = y1 - y0,
@@ -205,7 +202,7 @@ impl<const M: usize> HourglassPotential<M> {
     ) -> f64 {
         let (size, _) = self.size(end);
         let next = limit(yield_stress, used, volume, modulus);
-        let left = size.min(self.limit).min(next);
+        let left = size.min(1.0).min((next / self.limit).sqrt());
         let flown = match left < size {
             true => end - (end - self.flown) * (left / size),
             false => self.flown,
@@ -213,7 +210,7 @@ impl<const M: usize> HourglassPotential<M> {
         updated[..M].copy_from_slice(flown.as_slice());
         updated[M] = used;
         match left < size {
-            true => self.energy_at(end) - left * left / 2.0,
+            true => self.energy_at(end) - self.limit * left * left / 2.0,
             false => 0.0,
         }
     }
@@ -230,7 +227,7 @@ mod tests {
         HourglassPotential {
             stiffness: Matrix2::new(3.0, 0.4, 0.4, 2.0),
             flown: Vector2::new(0.02, -0.01),
-            limit,
+            limit: limit * limit,
         }
     }
 
@@ -281,11 +278,11 @@ mod tests {
     #[test]
     fn what_the_update_dissipates_is_missing_in_the_stored_energy() {
         for [y0, y1] in ends() {
-            let own = potential(limit(2.0, 0.0, SIZES[0], SIZES[1]));
+            let own = potential(limit(2.0, 0.0, SIZES[0], SIZES[1]).sqrt());
             let mut updated = [0.0; 3];
             let dissipated = own.update(&y1, SIZES, [2.1, 0.6], &mut updated);
             let after = HourglassPotential::new(own.stiffness, SIZES, Some((2.1, &updated)));
-            assert!(dissipated >= 0.0 && after.size(&y1).0 <= after.limit * (1.0 + 1e-14));
+            assert!(dissipated >= 0.0 && after.size(&y1).0 <= 1.0 + 1e-14);
             let missing = own.energy_at(&y1) - after.energy_at(&y1);
             assert!(
                 (missing - dissipated).abs() < 1e-15,
@@ -295,12 +292,30 @@ mod tests {
     }
 
     #[test]
+    fn units_that_differ_by_a_power_of_two_change_no_bit() {
+        let k = Matrix2::new(3.0, 0.4, 0.4, 2.0);
+        let in_units = |factor: f64| {
+            let own = [0.02, -0.01, 0.3];
+            let sizes = [SIZES[0], SIZES[1] * factor];
+            HourglassPotential::new(k * factor, sizes, Some((5.0 * factor, &own)))
+        };
+        for [y0, y1] in ends() {
+            let amplitudes = Amplitudes::Between(y0, y1);
+            let (stress, work) = in_units(1.0).stress(&amplitudes);
+            for factor in [2.0, 2.0_f64.powi(-11)] {
+                let found = in_units(factor).stress(&amplitudes);
+                assert_eq!(found, (stress * factor, work * factor), "{factor}");
+            }
+        }
+    }
+
+    #[test]
     fn the_limit_is_the_moment_of_a_section_that_flows() {
         // one layer of squares of height 1, thickness 1: energy of the moment M is M²/(2 E' I) per length, I = 1/12, and
         // M_p = sigma_y/4 = 3/2 of sigma_y/6: s = M_p/sqrt(E' I) = 3/2 sigma_y sqrt(1/(3 E'))
-        let found = limit(2.0, 0.0, 1.0, 1000.0);
+        let found = limit(2.0, 0.0, 1.0, 1000.0).sqrt();
         assert!((found - 2.0 / 4.0 * (12.0_f64 / 1000.0).sqrt()).abs() < 1e-15);
-        let least = limit(2.0, 1.0, 1.0, 1000.0);
+        let least = limit(2.0, 1.0, 1.0, 1000.0).sqrt();
         assert!((least - found * LEAST_PART).abs() < 1e-15 * found);
     }
 }
