@@ -92,10 +92,15 @@ fn is_clear(nodes: &[Motion; 3], dt: f64) -> bool {
     if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {
         return false;
     }
-    let ends = nodes
-        .map(|node| [0.0, dt].map(|t| [0, 1].map(|i| node.position[i] + node.velocity[i] * t)));
-    let [r, e, beyond] = [(1, 0), (1, 2), (2, 0)]
-        .map(|(from, to)| [0, 1].map(|end| difference(ends[from][end], ends[to][end])));
+    let end = |node: &Motion| [0, 1].map(|i| node.position[i] + node.velocity[i] * dt);
+    let [s, a, b] = nodes;
+    let between = |p: &Motion, q: &Motion| {
+        [
+            difference(p.position, q.position),
+            difference(end(p), end(q)),
+        ]
+    };
+    let [r, e, beyond] = [between(a, s), between(a, b), between(b, s)];
     let size = |p: [[f64; 2]; 2]| p.as_flattened().iter().map(|x| x.abs()).sum::<f64>();
     let clear = CLEAR_PRODUCT * (size(r) + size(e)) * size(e);
     let least = |sign: f64, of: fn([f64; 2], [f64; 2]) -> f64, p: [[f64; 2]; 2]| {
@@ -103,14 +108,10 @@ fn is_clear(nodes: &[Motion; 3], dt: f64) -> bool {
         let [first, last] = [of(p[0], e[0]), of(p[1], e[1])];
         (sign * first).min(sign * middle).min(sign * last)
     };
-    let mut all = [
-        least(1.0, cross, r),
-        least(-1.0, cross, r),
-        least(-1.0, dot, r),
-        least(1.0, dot, beyond),
-    ]
-    .into_iter();
-    all.any(|least| least > clear)
+    least(1.0, cross, r) > clear
+        || least(-1.0, dot, r) > clear
+        || least(1.0, dot, beyond) > clear
+        || least(-1.0, cross, r) > clear
 }
 
 /// The same for the infinite line through the segment.

@@ -36,6 +36,7 @@ pub fn find_penetration(
             x,
             u: [u0, u1],
             slave: listed.node(),
+            ends: [u0, u1].map(|u| position(x, u, listed.node())),
             key: listed.key,
             closed,
             unsolved,
@@ -64,6 +65,8 @@ struct NodePath<'a> {
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
+    /// Its positions at the start and at the end.
+    ends: [[f64; 2]; 2],
     key: SlaveKey,
     /// Closed pairs before the increment and at its end.
     closed: [&'a ClosedPairs; 2],
@@ -88,12 +91,15 @@ impl NodePath<'_> {
     }
 
     fn motions(&self, segment: usize) -> [Motion; 3] {
-        let [a, b] = self.contact.segments[segment];
-        let motions = [self.slave, a, b].map(|node| {
+        let of_end = |node: usize| {
             let [from, to] = self.u.map(|u| position(self.x, u, node));
             Motion::straight(from, to)
-        });
-        raised(motions, self.allowed)
+        };
+        let [a, b] = self.contact.segments[segment].map(of_end);
+        raised(
+            [Motion::straight(self.ends[0], self.ends[1]), a, b],
+            self.allowed,
+        )
     }
 
     /// Projection on a segment at a fraction of the path.
@@ -135,6 +141,9 @@ impl NodePath<'_> {
         let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
         let others = segments.filter(|i| !is_own(i));
         let is_behind = |&i: &usize| {
+            if self.ends_in_front(i) {
+                return false;
+            }
             let p = self.project(i, 1.0);
             (0.0..=1.0).contains(&p.xi)
                 && p.gap < 0.0
@@ -152,6 +161,12 @@ impl NodePath<'_> {
         };
         let is_held = self.held_by().any(|held| held == i);
         (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+    }
+
+    /// Whether the node is clearly in front of a segment at the end, where no fit lets it overlap.
+    fn ends_in_front(&self, i: usize) -> bool {
+        let [a, b] = self.contact.segments[i].map(|node| position(self.x, self.u[1], node));
+        self.allowed == [0.0; 2] && cross(difference(a, self.ends[1]), difference(a, b)) > 0.0
     }
 
     /// Whether the node belongs to the body behind a segment at the end.
