@@ -67,11 +67,15 @@ struct Touching {
 
 impl ActiveConstraints {
     /// The pairs that touch in the displacements `u0`, which the search covers; `before` are those
-    /// that carried forces up to then.
+    /// that carried forces up to then. Discs have joined: they land within the subincrement.
     pub fn new(search: &Search, u0: &[f64], before: &ClosedPairs) -> Self {
         let start = Positions::new(search.coordinates(), u0);
         let mut active = ActiveConstraints::default();
         for listed in search.slaves() {
+            if listed.surfaces.disc.is_some() {
+                active.join(listed.key);
+                continue;
+            }
             for candidate in listed.candidates() {
                 let pair = listed.at(candidate.segment);
                 if let Some(normal) = touched_normal(start, &listed, pair, before) {

@@ -217,3 +217,30 @@ def test_a_disc_rolls_on_an_elastic_block(tmp_path: Path, scheme: str) -> None:
     history.file.close()
     failed = [check.name for check in certify(tmp_path / "deck.vtkhdf").checks if not check.holds]
     assert not failed
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_discs_land_alike_where_impacts_are_events(tmp_path: Path, scheme: str) -> None:
+    """Discs have their contacts with IMPACT TIME=EVENT too: with each other and in a hole."""
+    two = [
+        disc(1, "DISC", 0.0, 0.0),
+        disc(2, "OTHER", 2.515, 0.3, mass=2.0),
+        pair("DISC", "OTHER", 0.3),
+        "*INITIAL CONDITIONS, TYPE=VELOCITY\nNDISC, 1, 1.",
+    ]
+    hole = [
+        disc(1, "DISC", 0.0, -0.5),
+        HOLE,
+        FIXED,
+        pair("DISC", "FLOOR", 0.2),
+        "*INITIAL CONDITIONS, TYPE=VELOCITY\nNDISC, 1, 3.",
+    ]
+    weight = f"*DLOAD\nMDISC, GRAV, {GRAVITY!r}, 0., -1.\n"
+    for cards, loads in ((two, ""), (hole, weight)):
+        motions = []
+        for event in ("", ", IMPACT TIME=EVENT"):
+            history = run(tmp_path, *cards, dt=0.01, end=1.5, scheme=scheme + event, loads=loads)
+            motions.append(history["rigid/DISC/V"][:])
+            history.file.close()
+        assert np.abs(motions[0] - motions[0][0]).max() > 0.3
+        assert np.abs(motions[1] - motions[0]).max() < 1e-9
