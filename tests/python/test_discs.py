@@ -244,3 +244,18 @@ def test_discs_land_alike_where_impacts_are_events(tmp_path: Path, scheme: str) 
             history.file.close()
         assert np.abs(motions[0] - motions[0][0]).max() > 0.3
         assert np.abs(motions[1] - motions[0]).max() < 1e-9
+
+
+def test_models_without_elements_are_certified(tmp_path: Path) -> None:
+    """The certificate of two discs that collide holds, and not that of another kinetic energy."""
+    start = "*INITIAL CONDITIONS, TYPE=VELOCITY\nNDISC, 1, 1."
+    cards = [disc(1, "DISC", 0.0, 0.0), disc(2, "OTHER", 2.515, 0.3), pair("DISC", "OTHER", 0.3), start]
+    history = run(tmp_path, *cards, dt=0.01, end=1.0, scheme="ENERGY-MOMENTUM")
+    history.file.close()
+    checks = {check.name: check for check in certify(tmp_path / "deck.vtkhdf").checks}
+    assert all(check.holds for check in checks.values())
+    assert all(checks[name].is_told for name in ("balance", "cone", "kinetic energy", "penetration"))
+    with h5py.File(tmp_path / "deck.vtkhdf", "r+") as file:
+        file["history/rigid/OTHER/kinetic"][-1] *= 1.01
+    broken = [check.name for check in certify(tmp_path / "deck.vtkhdf").checks if not check.holds]
+    assert broken == ["kinetic energy"]

@@ -126,7 +126,7 @@ class Frames:
         """All checks of all frames."""
         stored = self.result.read("model/bodies/mass")
         mass = self.elements.mass()
-        self.checks["mass"].add(np.abs(mass - stored) / stored.max(), ENERGY, "body {}")
+        self.checks["mass"].add(np.abs(mass - stored) / stored.max(initial=0.0), ENERGY, "body {}")
         last: tuple[int, Array] | None = None
         for frame in self.result.frames:
             rows = np.flatnonzero(self.time == frame.time)
@@ -198,21 +198,25 @@ class Frames:
         momentum = self._sum(p) * self.elements.keeps
         size = (
             np.abs(history.momentum["linear"]).max()
-            + np.abs(body_mass[:, None] * history.bodies["velocity"]).max()
+            + np.abs(body_mass[:, None] * history.bodies["velocity"]).max(initial=0.0)
         )
         if size > 0.0:
             stored = body_mass[:, None] * history.bodies["velocity"][row]
             error = np.abs(momentum - stored).max(axis=1)[elastic] / size
             self.checks["momenta"].add(error, ENERGY, place)
-        extent = np.abs(x[self.result.in_cells]).max()
+        extent = np.abs(x[self.result.in_cells]).max(initial=0.0)
         error = np.abs(centre - history.bodies["center"][row]).max(axis=1)[elastic] / extent
         self.checks["momenta"].add(error, ENERGY, "centre of " + place)
         if not elastic.all():
             self.checks["momenta"].skip("bodies that move as a whole are left out")
             return
-        if "rigid" in self.result.file["history"] and any(
-            "kinetic" in each for each in history.rigid.values()
-        ):
+        moving = []
+        if "rigid" in self.result.file["history"]:
+            moving = [each["kinetic"][row] for each in history.rigid.values() if "kinetic" in each]
+        if moving and not self.elements.count:
+            total = abs(sum(moving) - history.energy["kinetic"][row]) / largest
+            self.checks["kinetic energy"].add(total, ENERGY, f"rigid bodies, t = {frame.time:g}")
+        if moving:
             return
         total = abs(kinetic.sum() - history.energy["kinetic"][row]) / largest
         self.checks["kinetic energy"].add(total, ENERGY, f"t = {frame.time:g}")

@@ -152,7 +152,7 @@ def _body_forces(result: Result, check: Check) -> None:
     total[..., 0] *= not is_axisymmetric(result)
     size = max((float(c["normal"].max(initial=0.0)) for c in result.contact.values()), default=0.0)
     size = max(size, float(np.abs(stored).max(initial=0.0)), 1e-300)
-    error = np.where(told, np.abs(total - stored).max(axis=2), 0.0).max(axis=1) / size
+    error = np.where(told, np.abs(total - stored).max(axis=2), 0.0).max(axis=1, initial=0.0) / size
     check.add(error, ROUND_OFF, "contact force on bodies, increment {}")
 
 
