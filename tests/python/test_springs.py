@@ -209,3 +209,42 @@ def test_a_torsion_spring_swings_rigid_bodies_and_keeps_their_energy(
         # its largest angle is the first rate over the frequency
         omega = math.sqrt(3.0 / 0.5 * (2.0 if kind == "SPRING2" else 1.0))
         assert abs(angle.max() * omega / 1.5 - 1.0) < 2e-3
+
+
+ROD = """*NODE\n1, 0., 0.\n2, 1., 0.\n*NSET, NSET=ARM\n2\n*RIGID BODY, REF NODE=1, PIN NSET=ARM
+*ELEMENT, TYPE=MASS, ELSET=EM\n10, 1\n*MASS, ELSET=EM\n2.
+*ELEMENT, TYPE=ROTARYI, ELSET=ER\n20, 1\n*ROTARY INERTIA, ELSET=ER\n0., 0., 0.5
+*ELEMENT, TYPE=SPRING1, ELSET=S\n50, 1\n*SPRING, ELSET=S\n6\n8.\n*BOUNDARY\n1, 1, 2"""
+"""A rod that a torsion spring of 8 holds, with the inertia 0.5: omega = 4."""
+
+
+def test_the_period_on_a_torsion_spring_is_of_second_order(tmp_path: Path) -> None:
+    """The angle follows sin(2 n atan(omega dt/2)) v/omega, whose period is longer by (omega dt)^2/12."""
+    errors = []
+    for parts in (20, 40, 80):
+        dt = math.pi / 2 / parts
+        start = "*INITIAL CONDITIONS, TYPE=VELOCITY\n1, 6, 0.004"
+        history = run(tmp_path, ROD, start, dt=dt, end=3 * math.pi / 2)
+        angle = history["rotary_connectors/angle"][:, 0]
+        phase = 2 * np.arange(len(angle)) * math.atan(2 * dt)
+        assert np.abs(angle - 1e-3 * np.sin(phase)).max() < 1e-8
+        errors.append(np.abs(angle - 1e-3 * np.sin(4 * history["time"][:])).max())
+        assert balance(history) < 1e-11
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.03)
+    assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.01)
+
+
+def test_a_torsion_spring_holds_a_rod_in_a_static_step(tmp_path: Path) -> None:
+    """A force P at the arm turns it by k a = P cos a; ramps do the work of the spring."""
+    deck = tmp_path / "deck.inp"
+    deck.write_text(f"{ROD}\n*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*CLOAD\n2, 2, 4.\n*END STEP\n")
+    done = subprocess.run(
+        [binary(), "run", deck, "-o", tmp_path, "--overwrite", "-q"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    history = h5py.File(tmp_path / "deck.vtkhdf")["history"]
+    angle = history["rotary_connectors/angle"][-1, 0]
+    assert 8.0 * angle == pytest.approx(4.0 * math.cos(angle), abs=1e-10)
+    energy = history["energy"]
+    assert energy["strain"][-1] == pytest.approx(4.0 * angle**2, rel=1e-10)
+    assert np.abs(energy["balance"][:]).max() < 1e-11 * energy["strain"][-1]
