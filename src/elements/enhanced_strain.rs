@@ -115,10 +115,10 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     }
 
     /// sum v M:S
-    fn work(&self, element: &Reference<N, P>, s: impl Fn(usize) -> Matrix2<f64>) -> Vector4<f64> {
+    fn work(&self, element: &Reference<N, P>, s: &[Matrix2<f64>; P]) -> Vector4<f64> {
         let mut work = Vector4::zeros();
         for (p, point) in element.points.iter().enumerate() {
-            let s = s(p) * point.volume;
+            let s = s[p] * point.volume;
             work += Vector4::from_fn(|k, _| self.strains[p][k].dot(&s));
         }
         work
@@ -149,10 +149,11 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         &self,
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
-        (strains, factor): (impl Fn(usize) -> Strains, f64),
+        (strains, factor): (&[Strains; P], f64),
     ) -> (Vector4<f64>, Matrix4<f64>) {
-        let slope = self.work(element, |p| material.stress(p, &strains(p)));
-        let k = self.stiffness(element, |p| material.tangent(p, &strains(p)) * factor);
+        let slope = self.work(element, &material.stresses(strains));
+        let c = material.tangents(strains);
+        let k = self.stiffness(element, |p| c[p] * factor);
         (slope, k)
     }
 
@@ -179,7 +180,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let last = LAST_STEP * largest(compatible) + f64::EPSILON;
         let derivatives = |alpha: &Vector4<f64>| {
             let e = self.enhanced(compatible, alpha);
-            self.derivatives(element, material, (|p| Strains::At(e[p]), 1.0))
+            self.derivatives(element, material, (&e.map(Strains::At), 1.0))
         };
         let change = |from: &Vector4<f64>, to: &Vector4<f64>| {
             let [e0, e1] = [from, to].map(|alpha| self.enhanced(compatible, alpha));
@@ -200,8 +201,8 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let last = LAST_STEP * largest(&change) + f64::EPSILON * largest(e1) + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Vector4<f64>| {
             let e = self.enhanced(e1, alpha);
-            let strains = |p: usize| Strains::Between(e0[p], e[p]);
-            self.derivatives(element, viscosity, (strains, 0.5))
+            let strains = std::array::from_fn(|p| Strains::Between(e0[p], e[p]));
+            self.derivatives(element, viscosity, (&strains, 0.5))
         };
         self.with(e1, zero(derivatives, last))
     }
@@ -219,12 +220,12 @@ fn energy_change<const N: usize, const P: usize>(
     e0: &[Matrix2<f64>; P],
     e1: &[Matrix2<f64>; P],
 ) -> f64 {
+    let strains: [Strains; P] = std::array::from_fn(|p| Strains::Between(e0[p], e1[p]));
+    let s = material.stresses(&strains);
     let points = element.points.iter().enumerate();
-    let terms = points.map(|(p, point)| {
-        let s = material.stress(p, &Strains::Between(e0[p], e1[p]));
-        s.dot(&(e1[p] - e0[p])) * point.volume
-    });
-    terms.sum()
+    points
+        .map(|(p, point)| s[p].dot(&(e1[p] - e0[p])) * point.volume)
+        .sum()
 }
 
 /// What a configuration gives at all points.
@@ -253,13 +254,13 @@ fn states<const N: usize, const P: usize>(
         Configuration::At(_) => {
             strains = least(&compatible[1]).map(Strains::At);
             tangent_at = strains;
-            s = std::array::from_fn(|p| material.stress(p, &strains[p]));
+            s = material.stresses(&strains);
         }
         Configuration::Between(..) if material.is_viscous() => {
             let end = modes.of_rates(element, material, &compatible);
             strains = std::array::from_fn(|p| Strains::Between(compatible[0][p], end[p]));
             tangent_at = strains;
-            s = std::array::from_fn(|p| material.stress(p, &strains[p]));
+            s = material.stresses(&strains);
         }
         Configuration::Between(..) => {
             let [c0, c1] = &compatible;
@@ -267,7 +268,7 @@ fn states<const N: usize, const P: usize>(
             let middle = least(&std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0));
             strains = std::array::from_fn(|p| Strains::Between(e0[p], e1[p]));
             tangent_at = middle.map(Strains::At);
-            s = std::array::from_fn(|p| material.stress(p, &tangent_at[p]));
+            s = material.stresses(&tangent_at);
             let (mut f, mut squares) = (energy_change(element, material, &e0, &e1), 0.0);
             for (p, point) in element.points.iter().enumerate() {
                 let change = c1[p] - c0[p];
@@ -395,7 +396,7 @@ impl Formulation for EnhancedStrain {
         let States { states, tangent_at } = states(&modes, element, material, configuration);
         let q = hourglass(&modes, configuration);
         let along_q = SMatrix::<f64, 1, D>::from_fn(|_, j| q[j % 2] * modes.gamma[j / 2]);
-        let c: [Matrix3<f64>; P] = std::array::from_fn(|p| material.tangent(p, &tangent_at[p]));
+        let c = material.tangents(&tangent_at);
         let mut k = SMatrix::<f64, D, D>::zeros();
         let mut mixed = SMatrix::<f64, D, 4>::zeros();
         for (p, point) in element.points.iter().enumerate() {

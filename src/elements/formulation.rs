@@ -276,6 +276,7 @@ pub(super) fn smaller(a: f64, b: f64) -> f64 {
 }
 
 /// Displacement gradient H = du/dX, eq. (2.1).
+#[inline]
 pub fn displacement_gradient<const N: usize>(
     point: &Point<N>,
     u: &SMatrix<f64, 2, N>,
@@ -285,11 +286,13 @@ pub fn displacement_gradient<const N: usize>(
 
 /// Green-Lagrange strain E = (H + H^T + H^T H)/2, eq. (2.2), from H so that small strains keep their
 /// digits.
+#[inline]
 pub fn green_lagrange(h: &Matrix2<f64>) -> Matrix2<f64> {
     (h + h.transpose() + h.transpose() * h) / 2.0
 }
 
 /// det F = det(I + H).
+#[inline]
 pub(super) fn determinant(h: &Matrix2<f64>) -> f64 {
     (Matrix2::identity() + h).determinant()
 }

@@ -56,6 +56,7 @@ struct PointStress {
 }
 
 impl PointMotion {
+    #[inline(always)]
     fn new<const N: usize>(point: &Point<N>, u: [&SMatrix<f64, 2, N>; 2]) -> Self {
         let h = u.map(|u| displacement_gradient(point, u));
         PointMotion {
@@ -66,6 +67,7 @@ impl PointMotion {
     }
 
     /// Strain that the material has, with r = theta/J: Ebar = r E + (r - 1)/2 I, eq. (2.10).
+    #[inline(always)]
     fn material_strain(&self, theta: [f64; 2]) -> [Matrix2<f64>; 2] {
         std::array::from_fn(|i| {
             let excess = (theta[i] - self.dilatation[i]) / (1.0 + self.dilatation[i]);
@@ -73,6 +75,7 @@ impl PointMotion {
         })
     }
 
+    #[inline(always)]
     fn stress(&self, theta: [f64; 2], strains: Strains, s: Matrix2<f64>) -> PointStress {
         let [j0, j1] = self.dilatation.map(|j| 1.0 + j);
         let [t0, t1] = theta.map(|t| 1.0 + t);
@@ -116,6 +119,7 @@ impl PointStress {
 ///
 /// so that S : dEbar = W1 - W0 at every point makes the work of the internal force that of the
 /// stored energy of the element, eq. (2.11).
+#[inline(always)]
 fn stresses<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &impl StressAtPoints,
@@ -135,14 +139,16 @@ fn stresses<const N: usize, const P: usize>(
     };
     // theta - 1 = int (J - 1) dOmega / V
     let theta = [0, 1].map(|i| mean(&|p| motions[p].dilatation[i]));
-    let mut stresses: [PointStress; P] = std::array::from_fn(|p| {
+    let strains: [Strains; P] = std::array::from_fn(|p| {
         let [e0, e1] = motions[p].material_strain(theta);
-        let strains = match configuration {
+        match configuration {
             Configuration::At(_) => Strains::At(e1),
             Configuration::Between(..) => Strains::Between(e0, e1),
-        };
-        motions[p].stress(theta, strains, material.stress(p, &strains))
+        }
     });
+    let s = material.stresses(&strains);
+    let mut stresses: [PointStress; P] =
+        std::array::from_fn(|p| motions[p].stress(theta, strains[p], s[p]));
     // a = S : C_m/2 / (J0 J1),  A = int a J_m dOmega / V
     let shared = mean(&|p| stresses[p].kirchhoff() * stresses[p].inverse_j);
     for stress in &mut stresses {
@@ -190,6 +196,7 @@ impl Formulation for MeanDilatation {
         for (point, dj) in element.points.iter().zip(&dj) {
             dtheta += dj * (point.volume / element.volume());
         }
+        let c = material.tangents(&stresses.each_ref().map(|stress| stress.strains));
         let mut k = SMatrix::<f64, D, D>::zeros();
         for (p, point) in element.points.iter().enumerate() {
             let stress = &stresses[p];
@@ -198,7 +205,7 @@ impl Formulation for MeanDilatation {
             let half_c = &stress.half_c;
             let half_c = Vector3::new(half_c.m11, half_c.m22, 2.0 * half_c.m12);
             let b_bar = b[p] * stress.ratio + half_c * dr.transpose();
-            k += b_bar.transpose() * (material.tangent(p, &stress.strains) * b_bar) * point.volume;
+            k += b_bar.transpose() * (c[p] * b_bar) * point.volume;
             // S : D2Ebar without the second derivatives of J and theta
             let s = b[p].transpose() * work_conjugate(&stress.s)
                 - dj[p] * (stress.kirchhoff() * stress.inverse_j);

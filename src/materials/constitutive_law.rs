@@ -1,6 +1,7 @@
 //! What an element asks of a material at an integration point. Sections 2 and 4 of docs/theory.md.
 
 use nalgebra::{Matrix2, Matrix3};
+use smallvec::SmallVec;
 
 /// Green-Lagrange strains at which a material is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +49,26 @@ pub trait ConstitutiveLaw {
     /// the strain, in Voigt order (force/length^2).
     fn tangent(&self, strains: &Strains, z0: &[f64]) -> Matrix3<f64>;
 
+    /// Stresses of the points of an element, all of one kind of strains and with their z0 one after the other
+    /// (force/length^2).
+    fn stresses(&self, strains: &[Strains], z0: &[f64], s: &mut [Matrix2<f64>]) {
+        let count = self.variables();
+        let mut z1: SmallVec<[f64; 8]> = SmallVec::from_elem(0.0, count);
+        for (p, (strains, s)) in strains.iter().zip(s).enumerate() {
+            let z0 = &z0[p * count..(p + 1) * count];
+            z1.copy_from_slice(z0);
+            *s = self.stress(strains, z0, &mut z1);
+        }
+    }
+
+    /// Tangents of the points of an element, as [`Self::stresses`].
+    fn tangents(&self, strains: &[Strains], z0: &[f64], c: &mut [Matrix3<f64>]) {
+        let count = self.variables();
+        for (p, (strains, c)) in strains.iter().zip(c).enumerate() {
+            *c = self.tangent(strains, &z0[p * count..(p + 1) * count]);
+        }
+    }
+
     /// Stored energy W(E, z).
     fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64;
 
@@ -83,6 +104,16 @@ pub trait StressAtPoints {
 
     /// Tangent of [`Self::stress`] at a point, as [`ConstitutiveLaw::tangent`] (force/length^2).
     fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64>;
+
+    /// Stresses of all points, all of one kind of strains.
+    fn stresses<const P: usize>(&self, strains: &[Strains; P]) -> [Matrix2<f64>; P] {
+        std::array::from_fn(|p| self.stress(p, &strains[p]))
+    }
+
+    /// Tangents of all points, all of one kind of strains.
+    fn tangents<const P: usize>(&self, strains: &[Strains; P]) -> [Matrix3<f64>; P] {
+        std::array::from_fn(|p| self.tangent(p, &strains[p]))
+    }
 
     /// Whether the stress is that of a change of the strains, without a stored energy.
     fn is_viscous(&self) -> bool {

@@ -58,6 +58,26 @@ pub trait Hyperelastic {
     fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix3<f64> {
         energy_momentum_tangent(self, e0, e1)
     }
+
+    /// Stresses of several points, all of one kind of strains (force/length^2).
+    fn stresses(&self, strains: &[Strains], s: &mut [Matrix2<f64>]) {
+        for (strains, s) in strains.iter().zip(s) {
+            *s = match strains {
+                Strains::At(e) => self.stress(e),
+                Strains::Between(e0, e1) => self.mean_stress(e0, e1),
+            };
+        }
+    }
+
+    /// Tangents of several points, all of one kind of strains (force/length^2).
+    fn tangents(&self, strains: &[Strains], c: &mut [Matrix3<f64>]) {
+        for (strains, c) in strains.iter().zip(c) {
+            *c = match strains {
+                Strains::At(e) => self.tangent(e),
+                Strains::Between(e0, e1) => self.mean_tangent(e0, e1),
+            };
+        }
+    }
 }
 
 impl<L: Hyperelastic> ConstitutiveLaw for L {
@@ -75,6 +95,14 @@ impl<L: Hyperelastic> ConstitutiveLaw for L {
             Strains::At(e) => Hyperelastic::tangent(self, e),
             Strains::Between(e0, e1) => self.mean_tangent(e0, e1),
         }
+    }
+
+    fn stresses(&self, strains: &[Strains], _z0: &[f64], s: &mut [Matrix2<f64>]) {
+        Hyperelastic::stresses(self, strains, s);
+    }
+
+    fn tangents(&self, strains: &[Strains], _z0: &[f64], c: &mut [Matrix3<f64>]) {
+        Hyperelastic::tangents(self, strains, c);
     }
 
     fn stored_energy(&self, e: &Matrix2<f64>, _z: &[f64]) -> f64 {

@@ -143,6 +143,16 @@ pub fn tensors(of_lane: impl Fn(usize) -> Matrix2<f64>) -> SymmetricLanes {
     [(0, 0), (1, 1), (0, 1)].map(|entry| Lanes(all.map(|tensor| tensor[entry])))
 }
 
+/// A tensor whose components follow from those of two others.
+#[inline(always)]
+pub fn combined(
+    a: &SymmetricLanes,
+    b: &SymmetricLanes,
+    of: impl Fn(Lanes, Lanes) -> Lanes,
+) -> SymmetricLanes {
+    from_fn(|i| of(a[i], b[i]))
+}
+
 /// Tangent in Voigt order.
 pub type TangentLanes = [[Lanes; 3]; 3];
 
@@ -156,6 +166,25 @@ pub struct StrainChange {
 }
 
 impl StrainChange {
+    /// That from some strains to others.
+    #[inline(always)]
+    pub fn between(e0: &SymmetricLanes, e1: &SymmetricLanes) -> Self {
+        StrainChange {
+            mean: combined(e0, e1, |a, b| (a + b) * 0.5),
+            half: combined(e0, e1, |a, b| (b - a) * 0.5),
+        }
+    }
+
+    /// Strains of start and end.
+    #[inline(always)]
+    pub fn ends(&self) -> [SymmetricLanes; 2] {
+        let StrainChange { mean, half } = self;
+        [
+            combined(mean, half, |m, h| m - h),
+            combined(mean, half, |m, h| m + h),
+        ]
+    }
+
     /// Strains of start and end of one element.
     fn of(&self, lane: usize) -> Strains {
         let [mean, half] = [&self.mean, &self.half].map(|strain| tensor_of(lane, strain));
@@ -263,6 +292,39 @@ impl<L: ConstitutiveLaw> LawInLanes for OneByOne<'_, L> {
     fn across(&self, e: &SymmetricLanes) -> [Lanes; 2] {
         let all: [Across; LANES] = from_fn(|lane| self.0.across(&tensor_of(lane, e), &[]));
         [Lanes(all.map(|a| a.stretch)), Lanes(all.map(|a| a.stress))]
+    }
+}
+
+/// The tangent of one element as a matrix.
+pub fn tangent_of(lane: usize, c: &TangentLanes) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| c[i][j].0[lane])
+}
+
+/// Values at points, which stand in the lanes side by side, the last one in all that are left. `at` gives those of strains,
+/// `between` those of changes; all strains are of the kind of the first.
+#[inline(always)]
+pub fn points_side_by_side<V, T>(
+    strains: &[Strains],
+    values: &mut [T],
+    at: impl Fn(&SymmetricLanes) -> V,
+    between: impl Fn(&StrainChange) -> V,
+    of_lane: impl Fn(usize, &V) -> T,
+) {
+    for (strains, values) in strains.chunks(LANES).zip(values.chunks_mut(LANES)) {
+        let of = |lane: usize| &strains[lane.min(strains.len() - 1)];
+        let end = tensors(|lane| *of(lane).end());
+        let all = match strains[0] {
+            Strains::At(_) => at(&end),
+            Strains::Between(..) => {
+                let start = tensors(|lane| match of(lane) {
+                    Strains::At(e) | Strains::Between(e, _) => *e,
+                });
+                between(&StrainChange::between(&start, &end))
+            }
+        };
+        for (lane, value) in values.iter_mut().enumerate() {
+            *value = of_lane(lane, &all);
+        }
     }
 }
 

@@ -131,6 +131,14 @@ impl ConstitutiveLaw for PlaneLaw {
         of_each!(self, law => law.tangent(strains, z0))
     }
 
+    fn stresses(&self, strains: &[Strains], z0: &[f64], s: &mut [Matrix2<f64>]) {
+        of_each!(self, law => ConstitutiveLaw::stresses(law, strains, z0, s));
+    }
+
+    fn tangents(&self, strains: &[Strains], z0: &[f64], c: &mut [Matrix3<f64>]) {
+        of_each!(self, law => ConstitutiveLaw::tangents(law, strains, z0, c));
+    }
+
     fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
         of_each!(self, law => law.stored_energy(e, z))
     }
@@ -243,6 +251,18 @@ impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
     #[inline]
     fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64> {
         self.law.tangent(strains, self.at(point))
+    }
+
+    fn stresses<const P: usize>(&self, strains: &[Strains; P]) -> [Matrix2<f64>; P] {
+        let mut s = [Matrix2::zeros(); P];
+        self.law.stresses(strains, self.variables, &mut s);
+        s
+    }
+
+    fn tangents<const P: usize>(&self, strains: &[Strains; P]) -> [Matrix3<f64>; P] {
+        let mut c = [Matrix3::zeros(); P];
+        self.law.tangents(strains, self.variables, &mut c);
+        c
     }
 
     fn initial_tangent(&self) -> Matrix3<f64> {

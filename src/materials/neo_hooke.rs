@@ -2,10 +2,12 @@
 //! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 and 6.5; Bonet & Wood, Nonlinear Continuum
 //! Mechanics for Finite Element Analysis, section 6.5). Section 2 of docs/theory.md.
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3};
 
-use super::plane::{dyad, product};
-use super::{Across, Hyperelastic, SmallStrainModuli};
+use super::lanes::{
+    LawInLanes, StrainChange, SymmetricLanes, points_side_by_side, tangent_of, tensor_of, tensors,
+};
+use super::{Across, Hyperelastic, SmallStrainModuli, Strains};
 
 /// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.
 ///
@@ -34,47 +36,6 @@ pub struct NeoHooke {
     pub d1: f64,
 }
 
-/// Measures of the change of volume and shape at a strain.
-struct Dilatation {
-    /// t = 2 tr E, so that I1 = 3 + t.
-    t: f64,
-    /// q = 4 det E.
-    q: f64,
-    /// J = sqrt(1 + t + q).
-    j: f64,
-    /// J - 1 = (t + q)/(J + 1).
-    grown: f64,
-    /// a = J^(2/3).
-    a: f64,
-    /// b = a - 1 = (t + q)/(a² + a + 1).
-    b: f64,
-}
-
-impl Dilatation {
-    fn new(e: &Matrix2<f64>) -> Self {
-        let (t, q) = (2.0 * e.trace(), 4.0 * e.determinant());
-        let (j, a) = ((1.0 + t + q).sqrt(), (1.0 + t + q).cbrt());
-        Dilatation {
-            t,
-            q,
-            j,
-            grown: (t + q) / (j + 1.0),
-            a,
-            b: (t + q) / (a * a + a + 1.0),
-        }
-    }
-
-    /// a (Ibar1 - 3)
-    fn distortion(&self) -> f64 {
-        self.b * self.b * (self.b + 3.0) - self.q
-    }
-}
-
-/// Cofactor matrix of a symmetric 2 x 2 matrix: det(A) A^-1.
-fn cofactor(m: &Matrix2<f64>) -> Matrix2<f64> {
-    Matrix2::new(m.m22, -m.m12, -m.m12, m.m11)
-}
-
 impl NeoHooke {
     /// The material with Young's modulus (force/length^2) and Poisson's ratio at small strains: C10 = mu/2, D1 = 2/K,
     /// mu = E/(2 (1 + nu)), K = E/(3 (1 - 2 nu)).
@@ -93,76 +54,73 @@ impl NeoHooke {
             poisson: (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)),
         }
     }
-
-    /// p = dU/dJ = 2 (J - 1)/D1 (force/length^2).
-    fn pressure(&self, v: &Dilatation) -> f64 {
-        2.0 * v.grown / self.d1
-    }
 }
 
+/// All by the formulas of elements side by side: one number in all lanes costs what one number costs.
 impl Hyperelastic for NeoHooke {
-    /// W = C10 (Ibar1 - 3) + (J - 1)²/D1, eq. (2.14), by eq. (2.16)
     fn stored_energy(&self, e: &Matrix2<f64>) -> f64 {
-        let v = Dilatation::new(e);
-        self.c10 * v.distortion() / v.a + v.grown * v.grown / self.d1
+        LawInLanes::stored_energy(self, &alone(e)).0[0]
     }
 
-    /// The differences of t, q, J², a, J and b one after the other from dE, det being quadratic:
-    ///
-    /// ```text
-    /// dq = 4 cof(E_m):dE                        da = db = (dt + dq)/(a1² + a1 a0 + a0²)
-    /// d(b³ + 3 b²) = da (b1² + b1 b0 + b0² + 3 (b1 + b0))
-    /// dJ = (dt + dq)/(J1 + J0)                  d(N/a) = (dN - N0/a0 da)/a1
-    /// ```
     fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> f64 {
-        let (v0, v1) = (Dilatation::new(e0), Dilatation::new(e1));
-        let (mean, de) = ((e0 + e1) / 2.0, e1 - e0);
-        let dq = 4.0 * cofactor(&mean).dot(&de);
-        let squared = 2.0 * de.trace() + dq;
-        let da = squared / (v1.a * v1.a + v1.a * v0.a + v0.a * v0.a);
-        let cubic = v1.b * v1.b + v1.b * v0.b + v0.b * v0.b + 3.0 * (v1.b + v0.b);
-        let shape = (da * cubic - dq - v0.distortion() / v0.a * da) / v1.a;
-        let dj = squared / (v1.j + v0.j);
-        self.c10 * shape + dj * (v1.grown + v0.grown) / self.d1
+        self.energy_change_in_lanes(&StrainChange::between(&alone(e0), &alone(e1)))
+            .0[0]
     }
 
-    /// S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1, eq. (2.15), by eq. (2.16)
     fn stress(&self, e: &Matrix2<f64>) -> Matrix2<f64> {
-        let v = Dilatation::new(e);
-        let cof = cofactor(e) * 2.0; // cof C = I + 2 cof E
-        let shape = Matrix2::identity() * (2.0 * v.t / 3.0 + v.q) - cof * (1.0 + v.t / 3.0);
-        // J C^-1 = cof C/J
-        (shape * (2.0 * self.c10 / v.a) / v.j + (Matrix2::identity() + cof) * self.pressure(&v))
-            / v.j
+        tensor_of(0, &LawInLanes::stress(self, &alone(e)))
     }
 
     fn tangent(&self, e: &Matrix2<f64>) -> Matrix3<f64> {
-        let v = Dilatation::new(e);
-        let inverse = (Matrix2::identity() + cofactor(e) * 2.0) / (v.j * v.j);
-        let (square, product) = (dyad(&inverse), product(&inverse));
-        let c = Vector3::new(inverse.m11, inverse.m22, inverse.m12);
-        let one = Vector3::new(1.0, 1.0, 0.0);
-        let (i1, p) = (3.0 + v.t, self.pressure(&v));
-        let mixed = one * c.transpose();
-        let shape = product * i1 + square * (i1 / 3.0) - (mixed + mixed.transpose());
-        shape * (4.0 * self.c10 / (3.0 * v.a)) + square * ((p + 2.0 * v.j / self.d1) * v.j)
-            - product * (2.0 * p * v.j)
+        tangent_of(0, &LawInLanes::tangent(self, &alone(e)))
     }
 
-    /// F_zz = 1, S_zz = 2 C10 J^(-2/3) (1 - I1/3) + p J
     fn across(&self, e: &Matrix2<f64>) -> Across {
-        let v = Dilatation::new(e);
-        Across {
-            stretch: 1.0,
-            stress: self.pressure(&v) * v.j - 2.0 * self.c10 / v.a * v.t / 3.0,
-        }
+        let [stretch, stress] = LawInLanes::across(self, &alone(e)).map(|value| value.0[0]);
+        Across { stretch, stress }
     }
+
+    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix2<f64> {
+        let change = StrainChange::between(&alone(e0), &alone(e1));
+        tensor_of(0, &LawInLanes::mean_stress(self, &change))
+    }
+
+    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix3<f64> {
+        let change = StrainChange::between(&alone(e0), &alone(e1));
+        tangent_of(0, &LawInLanes::mean_tangent(self, &change))
+    }
+
+    fn stresses(&self, strains: &[Strains], s: &mut [Matrix2<f64>]) {
+        points_side_by_side(
+            strains,
+            s,
+            |e| LawInLanes::stress(self, e),
+            |change| LawInLanes::mean_stress(self, change),
+            tensor_of,
+        );
+    }
+
+    fn tangents(&self, strains: &[Strains], c: &mut [Matrix3<f64>]) {
+        points_side_by_side(
+            strains,
+            c,
+            |e| LawInLanes::tangent(self, e),
+            |change| LawInLanes::mean_tangent(self, change),
+            tangent_of,
+        );
+    }
+}
+
+/// A strain in all lanes.
+fn alone(e: &Matrix2<f64>) -> SymmetricLanes {
+    tensors(|_| *e)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::materials::{Plane, SaintVenantKirchhoff};
+    use nalgebra::Vector3;
 
     const MATERIAL: NeoHooke = NeoHooke {
         c10: 200.0,
@@ -175,7 +133,7 @@ mod tests {
 
     /// Cauchy stress F S F^T/J.
     fn cauchy(f: &Matrix2<f64>) -> Matrix2<f64> {
-        f * MATERIAL.stress(&strain(f)) * f.transpose() / f.determinant()
+        f * Hyperelastic::stress(&MATERIAL, &strain(f)) * f.transpose() / f.determinant()
     }
 
     #[test]
@@ -186,9 +144,9 @@ mod tests {
         let sigma = cauchy(&f);
         let expected = Matrix2::new(2.0 * g / 3.0, 1.0, 1.0, -g / 3.0) * (mu * g);
         assert!((sigma - expected).norm() < 1e-13 * mu);
-        let across = MATERIAL.across(&strain(&f));
+        let across = Hyperelastic::across(&MATERIAL, &strain(&f));
         assert!((across.stress + mu * g * g / 3.0).abs() < 1e-13 * mu);
-        let energy = MATERIAL.stored_energy(&strain(&f));
+        let energy = Hyperelastic::stored_energy(&MATERIAL, &strain(&f));
         assert!((energy - MATERIAL.c10 * g * g).abs() < 1e-13 * mu);
     }
 
@@ -202,7 +160,7 @@ mod tests {
             let p = 2.0 * (l - 1.0) / MATERIAL.d1;
             let expected = Matrix2::new(shape + p, 0.0, 0.0, p - shape / 2.0);
             assert!((cauchy(&f) - expected).norm() < 1e-12 * (1.0 + expected.norm()));
-            let across = MATERIAL.across(&strain(&f));
+            let across = Hyperelastic::across(&MATERIAL, &strain(&f));
             assert!((across.stress / l - expected.m22).abs() < 1e-12 * (1.0 + expected.norm()));
         }
     }
@@ -216,17 +174,20 @@ mod tests {
             Matrix2::new(0.5, 0.4, 0.1, 0.9),
         ] {
             let e = strain(&f);
-            let (s, c) = (MATERIAL.stress(&e), MATERIAL.tangent(&e));
+            let (s, c) = (
+                Hyperelastic::stress(&MATERIAL, &e),
+                Hyperelastic::tangent(&MATERIAL, &e),
+            );
             let units = [
                 Matrix2::new(1.0, 0.0, 0.0, 0.0),
                 Matrix2::new(0.0, 0.0, 0.0, 1.0),
                 Matrix2::new(0.0, 0.5, 0.5, 0.0),
             ];
             for (k, unit) in units.iter().enumerate() {
-                let energy = |h: f64| MATERIAL.stored_energy(&(e + unit * h));
+                let energy = |h: f64| Hyperelastic::stored_energy(&MATERIAL, &(e + unit * h));
                 let slope = (energy(h) - energy(-h)) / (2.0 * h);
                 assert!((slope - s.dot(unit)).abs() < 1e-8 * c.norm());
-                let stress = |h: f64| MATERIAL.stress(&(e + unit * h));
+                let stress = |h: f64| Hyperelastic::stress(&MATERIAL, &(e + unit * h));
                 let d = (stress(h) - stress(-h)) / (2.0 * h);
                 let column = Vector3::new(d.m11, d.m22, d.m12);
                 assert!((column - c.column(k)).norm() < 1e-8 * c.norm());
@@ -244,14 +205,22 @@ mod tests {
             poisson: moduli.poisson,
         };
         let linear = linear.in_plane(Plane::Strain);
-        let c = linear.tangent(&Matrix2::zeros());
-        assert!((MATERIAL.tangent(&Matrix2::zeros()) - c).norm() < 1e-14 * c.norm());
+        let c = Hyperelastic::tangent(&linear, &Matrix2::zeros());
+        assert!(
+            (Hyperelastic::tangent(&MATERIAL, &Matrix2::zeros()) - c).norm() < 1e-14 * c.norm()
+        );
         let e = Matrix2::new(3.0, -1.0, -1.0, 2.0) * 1e-14;
-        let (s, expected) = (MATERIAL.stress(&e), linear.stress(&e));
+        let (s, expected) = (
+            Hyperelastic::stress(&MATERIAL, &e),
+            Hyperelastic::stress(&linear, &e),
+        );
         assert!((s - expected).norm() < 1e-12 * expected.norm());
-        let (w, expected) = (MATERIAL.stored_energy(&e), linear.stored_energy(&e));
+        let (w, expected) = (
+            Hyperelastic::stored_energy(&MATERIAL, &e),
+            Hyperelastic::stored_energy(&linear, &e),
+        );
         assert!((w - expected).abs() < 1e-12 * expected);
-        let change = MATERIAL.energy_change(&e, &(e * 3.0));
+        let change = Hyperelastic::energy_change(&MATERIAL, &e, &(e * 3.0));
         assert!((change - 8.0 * expected).abs() < 1e-11 * expected);
     }
 
@@ -259,8 +228,8 @@ mod tests {
     fn the_energy_change_is_the_difference_of_energies() {
         let e0 = strain(&Matrix2::new(1.4, 0.3, -0.5, 0.8));
         let e1 = strain(&Matrix2::new(0.5, 0.4, 0.1, 0.9));
-        let [w0, w1] = [e0, e1].map(|e| MATERIAL.stored_energy(&e));
-        let change = MATERIAL.energy_change(&e0, &e1);
+        let [w0, w1] = [e0, e1].map(|e| Hyperelastic::stored_energy(&MATERIAL, &e));
+        let change = Hyperelastic::energy_change(&MATERIAL, &e0, &e1);
         assert!((change - (w1 - w0)).abs() < 1e-14 * (w0 + w1));
     }
 }

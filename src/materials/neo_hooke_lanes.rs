@@ -1,19 +1,26 @@
-//! The neo-Hookean material in plane strain for several elements side by side: the formulas of [`NeoHooke`], in which
-//! stress, tangent and energies share what they have in common. docs/numerics.md, Sweeps over elements.
+//! The formulas of the neo-Hookean material in plane strain, for several elements or points side by side, in which
+//! stress, tangent and energies share what they have in common. Section 2 of docs/theory.md, and docs/numerics.md, Sweeps
+//! over elements.
 
 use std::array::from_fn;
 
 use super::NeoHooke;
 use super::hyperelastic::{NO_CHANGE, NO_CHANGE_OF_TANGENT};
-use super::lanes::{Lanes, LawInLanes, StrainChange, SymmetricLanes, TangentLanes};
+use super::lanes::{Lanes, LawInLanes, StrainChange, SymmetricLanes, TangentLanes, combined};
 
-/// Measures of the change of volume and shape at a strain, as in [`NeoHooke`].
+/// Measures of the change of volume and shape at a strain.
 struct Dilatation {
+    /// t = 2 tr E, so that I1 = 3 + t.
     t: Lanes,
+    /// q = 4 det E.
     q: Lanes,
+    /// J = sqrt(1 + t + q).
     j: Lanes,
+    /// J - 1 = (t + q)/(J + 1).
     grown: Lanes,
+    /// a = J^(2/3).
     a: Lanes,
+    /// b = a - 1 = (t + q)/(a² + a + 1).
     b: Lanes,
     /// 1/a and 1/J².
     over_a: Lanes,
@@ -56,15 +63,6 @@ fn contract(s: &SymmetricLanes, e: &SymmetricLanes) -> Lanes {
     s[0] * e[0] + s[1] * e[1] + s[2] * e[2] * 2.0
 }
 
-#[inline(always)]
-fn combined(
-    a: &SymmetricLanes,
-    b: &SymmetricLanes,
-    of: impl Fn(Lanes, Lanes) -> Lanes,
-) -> SymmetricLanes {
-    from_fn(|i| of(a[i], b[i]))
-}
-
 /// C:E in Voigt order.
 #[inline(always)]
 fn times(c: &TangentLanes, [xx, yy, xy]: &SymmetricLanes) -> SymmetricLanes {
@@ -72,6 +70,7 @@ fn times(c: &TangentLanes, [xx, yy, xy]: &SymmetricLanes) -> SymmetricLanes {
 }
 
 impl NeoHooke {
+    /// S = 2 C10 J^(-2/3) (I - I1/3 C^-1) + p J C^-1, eq. (2.15), by eq. (2.16), cof C = I + 2 cof E and J C^-1 = cof C/J.
     #[inline(always)]
     fn stress_in_lanes(&self, [xx, yy, xy]: &SymmetricLanes, v: &Dilatation) -> SymmetricLanes {
         let diagonal = v.t * (2.0 / 3.0) + v.q;
@@ -114,9 +113,22 @@ impl NeoHooke {
         })
     }
 
-    /// W1 - W0 as [`super::Hyperelastic::energy_change`], with cof(E_m):dE.
+    /// W1 - W0 of two strains.
     #[inline(always)]
-    fn energy_change_in_lanes(&self, change: &StrainChange, [v0, v1]: [&Dilatation; 2]) -> Lanes {
+    pub(super) fn energy_change_in_lanes(&self, change: &StrainChange) -> Lanes {
+        let [v0, v1] = change.ends().map(|e| Dilatation::new(&e));
+        self.energy_change_between(change, [&v0, &v1])
+    }
+
+    /// The differences of t, q, J², a, J and b one after the other from dE, det being quadratic:
+    ///
+    /// ```text
+    /// dq = 4 cof(E_m):dE                        da = db = (dt + dq)/(a1² + a1 a0 + a0²)
+    /// d(b³ + 3 b²) = da (b1² + b1 b0 + b0² + 3 (b1 + b0))
+    /// dJ = (dt + dq)/(J1 + J0)                  d(N/a) = (dN - N0/a0 da)/a1
+    /// ```
+    #[inline(always)]
+    fn energy_change_between(&self, change: &StrainChange, [v0, v1]: [&Dilatation; 2]) -> Lanes {
         let StrainChange { mean, half } = change;
         let along = mean[1] * half[0] + mean[0] * half[1] - mean[2] * half[2] * 2.0;
         let dq = along * 8.0;
@@ -151,13 +163,9 @@ impl LawInLanes for NeoHooke {
     #[inline(always)]
     fn mean_stress(&self, change: &StrainChange) -> SymmetricLanes {
         let StrainChange { mean, half } = change;
-        let [e0, e1] = [
-            combined(mean, half, |m, h| m - h),
-            combined(mean, half, |m, h| m + h),
-        ];
-        let [v0, v1] = [&e0, &e1].map(Dilatation::new);
+        let [v0, v1] = change.ends().map(|e| Dilatation::new(&e));
         let s = LawInLanes::stress(self, mean);
-        let f = self.energy_change_in_lanes(change, [&v0, &v1]) - contract(&s, half) * 2.0;
+        let f = self.energy_change_between(change, [&v0, &v1]) - contract(&s, half) * 2.0;
         let factor = over(f, contract(half, half) * 4.0, NO_CHANGE) * 2.0;
         combined(&s, half, |s, h| s + h * factor)
     }
@@ -171,14 +179,11 @@ impl LawInLanes for NeoHooke {
     #[inline(always)]
     fn mean_tangent(&self, change: &StrainChange) -> TangentLanes {
         let StrainChange { mean, half } = change;
-        let [e0, e1] = [
-            combined(mean, half, |m, h| m - h),
-            combined(mean, half, |m, h| m + h),
-        ];
+        let [e0, e1] = change.ends();
         let [v0, v1, vm] = [&e0, &e1, mean].map(Dilatation::new);
         let c = self.tangent_in_lanes(mean, &vm);
         let s = self.stress_in_lanes(mean, &vm);
-        let f = self.energy_change_in_lanes(change, [&v0, &v1]) - contract(&s, half) * 2.0;
+        let f = self.energy_change_between(change, [&v0, &v1]) - contract(&s, half) * 2.0;
         let (end, along) = (self.stress_in_lanes(&e1, &v1), times(&c, half));
         let g: SymmetricLanes = from_fn(|i| end[i] - s[i] - along[i]);
         let n = half.map(|h| h * 2.0);
@@ -199,12 +204,14 @@ impl LawInLanes for NeoHooke {
         })
     }
 
+    /// W = C10 (Ibar1 - 3) + (J - 1)²/D1, eq. (2.14), by eq. (2.16)
     #[inline(always)]
     fn stored_energy(&self, e: &SymmetricLanes) -> Lanes {
         let v = Dilatation::new(e);
         v.distortion() * v.over_a * self.c10 + v.grown * v.grown * (1.0 / self.d1)
     }
 
+    /// F_zz = 1, S_zz = 2 C10 J^(-2/3) (1 - I1/3) + p J
     #[inline(always)]
     fn across(&self, e: &SymmetricLanes) -> [Lanes; 2] {
         let v = Dilatation::new(e);
@@ -216,15 +223,19 @@ impl LawInLanes for NeoHooke {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::OneByOne;
+    use crate::materials::{OneByOne, Plane, PlanePolynomial};
 
     #[test]
-    fn stresses_tangents_and_energies_are_those_of_one_element() {
+    fn stresses_tangents_and_energies_are_those_of_a_polynomial_of_one_constant() {
         let law = NeoHooke {
             c10: 200.0,
             d1: 2e-3,
         };
-        let one = OneByOne(&law);
+        let polynomial = PlanePolynomial {
+            law: law.into(),
+            plane: Plane::Strain,
+        };
+        let one = OneByOne(&polynomial);
         let near = |a: Lanes, b: Lanes, size: f64| {
             let is_near = |(a, b): (f64, f64)| (a - b).abs() <= 1e-13 * size;
             a.0.into_iter().zip(b.0).all(is_near)
