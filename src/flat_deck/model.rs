@@ -2,7 +2,7 @@
 //! amplitudes, contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{DeckWriter, name, named, number, set};
-use crate::materials::{Law, NeoHooke, Polynomial, SaintVenantKirchhoff, SmallStrainModuli};
+use crate::materials::Law;
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
     Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material, Mesh, Model,
@@ -455,53 +455,12 @@ fn write_material(material: &Material, lines: &mut DeckWriter) {
 }
 
 fn write_law(law: &Law, lines: &mut DeckWriter) {
-    match law {
-        &Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson }) => {
-            if young > 0.0 {
-                lines.card("ELASTIC", []);
-                lines.row([young, poisson].map(number));
-            }
+    for card in law.cards() {
+        let parameters: Vec<String> = card.parameter.map(str::to_owned).into_iter().collect();
+        lines.card_of(card.keyword, &parameters);
+        for row in card.rows {
+            lines.row(row.into_iter().map(number));
         }
-        &Law::NeoHooke(NeoHooke { c10, d1 }) => {
-            lines.card("HYPERELASTIC", ["NEO HOOKE".to_owned()]);
-            lines.row([c10, d1].map(number));
-        }
-        &Law::Polynomial(Polynomial {
-            shape: [c10, c20, c30],
-            c01,
-            d,
-        }) => {
-            let mooney_rivlin = c01 != 0.0;
-            let form = if mooney_rivlin {
-                "MOONEY-RIVLIN"
-            } else {
-                "YEOH"
-            };
-            lines.card("HYPERELASTIC", [form.to_owned()]);
-            match mooney_rivlin {
-                true => lines.row([c10, c01, d[0]].map(number)),
-                false => lines.row([c10, c20, c30, d[0], d[1], d[2]].map(number)),
-            }
-        }
-        Law::Plastic(law) => {
-            let SmallStrainModuli { young, poisson } = law.moduli;
-            lines.card("ELASTIC", []);
-            lines.row([young, poisson].map(number));
-            let (hardening, rows) = match law.kinematic > 0.0 {
-                true => {
-                    let first = law.hardening[0][1];
-                    let second = [1.0, first + law.kinematic];
-                    ("KINEMATIC", vec![[0.0, first], second])
-                }
-                false => ("ISOTROPIC", law.hardening.to_vec()),
-            };
-            lines.card("PLASTIC", [set("HARDENING", hardening.to_owned())]);
-            for [strain, stress] in rows {
-                lines.row([stress, strain].map(number));
-            }
-        }
-        #[cfg(test)]
-        Law::Yielding(_) => {}
     }
 }
 

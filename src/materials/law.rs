@@ -15,6 +15,17 @@ use super::{
     SmallStrainModuli, Strains, StressAtPoints, Symmetric,
 };
 
+/// A card of a deck with constants of a law.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawCard {
+    /// Keyword, without the asterisk.
+    pub keyword: &'static str,
+    /// What stands behind the keyword, if anything.
+    pub parameter: Option<&'static str>,
+    /// Numbers of the data lines.
+    pub rows: Vec<Vec<f64>>,
+}
+
 /// Law of a material with the constants of the deck.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
@@ -46,6 +57,39 @@ impl Law {
             Law::Plastic(law) => law.small_strain(),
             #[cfg(test)]
             Law::Yielding(law) => law.small_strain(),
+        }
+    }
+
+    /// Cards from which a deck has the law.
+    pub fn cards(&self) -> Vec<LawCard> {
+        match self {
+            Law::SaintVenantKirchhoff(law) => law.cards(),
+            Law::NeoHooke(law) => law.cards(),
+            Law::Polynomial(law) => law.cards(),
+            Law::Plastic(law) => law.cards(),
+            #[cfg(test)]
+            Law::Yielding(_) => Vec::new(),
+        }
+    }
+
+    /// Number of the law in result files (docs/output.md).
+    pub fn number(&self) -> u8 {
+        match self {
+            Law::SaintVenantKirchhoff(_) => 0,
+            Law::NeoHooke(_) => 1,
+            Law::Polynomial(_) => 2,
+            Law::Plastic(_) => 3,
+            #[cfg(test)]
+            Law::Yielding(_) => u8::MAX,
+        }
+    }
+
+    /// Constants of the invariants of a hyperelastic law, zero of others.
+    pub fn constants_of_invariants(&self) -> Polynomial {
+        match *self {
+            Law::NeoHooke(law) => law.into(),
+            Law::Polynomial(law) => law,
+            _ => Polynomial::default(),
         }
     }
 

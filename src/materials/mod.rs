@@ -29,7 +29,7 @@ pub use constitutive_law::{Across, ConstitutiveLaw, Strains, StressAtPoints};
 pub use hyperelastic::Hyperelastic;
 pub(crate) use lanes::in_lanes;
 pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
-pub use law::{Committed, Law, PlaneLaw};
+pub use law::{Committed, Law, LawCard, PlaneLaw};
 pub use neo_hooke::NeoHooke;
 pub use plane::{Plane, SmallStrainModuli};
 pub use plastic::{PlanePlastic, Plastic};

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Matrix3};
 use super::lanes::{
     LawInLanes, StrainChange, SymmetricLanes, points_side_by_side, tangent_of, tensor_of, tensors,
 };
-use super::{Across, Hyperelastic, SmallStrainModuli, Strains};
+use super::{Across, Hyperelastic, LawCard, SmallStrainModuli, Strains};
 
 /// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.
 ///
@@ -44,6 +44,15 @@ impl NeoHooke {
             c10: young / (4.0 * (1.0 + poisson)),
             d1: 6.0 * (1.0 - 2.0 * poisson) / young,
         }
+    }
+
+    /// `*HYPERELASTIC, NEO HOOKE`
+    pub fn cards(&self) -> Vec<LawCard> {
+        vec![LawCard {
+            keyword: "HYPERELASTIC",
+            parameter: Some("NEO HOOKE"),
+            rows: vec![vec![self.c10, self.d1]],
+        }]
     }
 
     /// mu = 2 C10 and K = 2/D1, E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(2 (3 K + mu)).

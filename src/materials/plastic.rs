@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Vector4};
 
 use super::symmetric::{IDENTITY, Symmetric, contract};
 use super::{
-    Across, ConstitutiveLaw, Hyperelastic, Plane, RingLaw, SmallStrainModuli, SolidHyperelastic,
+    Across, ConstitutiveLaw, Hyperelastic, LawCard, Plane, RingLaw, SaintVenantKirchhoff, SmallStrainModuli, SolidHyperelastic,
     Strains,
 };
 
@@ -41,6 +41,28 @@ impl Plastic {
     /// Moduli at small strains.
     pub fn small_strain(&self) -> SmallStrainModuli {
         self.moduli
+    }
+
+    /// `*ELASTIC` and `*PLASTIC`; linear kinematic hardening has a row at the plastic strains 0 and 1.
+    pub fn cards(&self) -> Vec<LawCard> {
+        let SmallStrainModuli { young, poisson } = self.moduli;
+        let (hardening, table) = match self.has_back_strain() {
+            true => {
+                let first = self.hardening[0][1];
+                let second = [1.0, first + self.kinematic];
+                ("HARDENING=KINEMATIC", vec![[0.0, first], second])
+            }
+            false => ("HARDENING=ISOTROPIC", self.hardening.to_vec()),
+        };
+        let rows = table.iter().map(|[strain, stress]| vec![*stress, *strain]);
+        let plastic = LawCard {
+            keyword: "PLASTIC",
+            parameter: Some(hardening),
+            rows: rows.collect(),
+        };
+        let mut cards = SaintVenantKirchhoff { young, poisson }.cards();
+        cards.push(plastic);
+        cards
     }
 
     /// The law in the plane.

@@ -5,7 +5,7 @@
 use nalgebra::{Matrix2, Matrix3, Matrix4, Vector4};
 
 use super::symmetric::{IDENTITY, Symmetric, both, cofactor, contract, dyad, product};
-use super::{Across, Hyperelastic, NeoHooke, Plane, SmallStrainModuli, SolidHyperelastic};
+use super::{Across, Hyperelastic, LawCard, NeoHooke, Plane, SmallStrainModuli, SolidHyperelastic};
 
 /// Hyperelastic material, `*HYPERELASTIC`; a Neo-Hookean one in plane stress too.
 ///
@@ -105,6 +105,20 @@ impl Invariants {
 }
 
 impl Polynomial {
+    /// `*HYPERELASTIC, MOONEY-RIVLIN`, or YEOH where C01 is zero.
+    pub fn cards(&self) -> Vec<LawCard> {
+        let ([c10, c20, c30], [d1, d2, d3]) = (self.shape, self.d);
+        let (form, row) = match self.c01 != 0.0 {
+            true => ("MOONEY-RIVLIN", vec![c10, self.c01, d1]),
+            false => ("YEOH", vec![c10, c20, c30, d1, d2, d3]),
+        };
+        vec![LawCard {
+            keyword: "HYPERELASTIC",
+            parameter: Some(form),
+            rows: vec![row],
+        }]
+    }
+
     /// mu = 2 (C10 + C01) and K = 2/D1, E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(2 (3 K + mu)).
     pub fn small_strain(&self) -> SmallStrainModuli {
         let (mu, k) = (2.0 * (self.shape[0] + self.c01), 2.0 / self.d[0]);

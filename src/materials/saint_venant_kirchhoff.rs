@@ -4,7 +4,7 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-use super::{Across, Hyperelastic, Plane, SmallStrainModuli};
+use super::{Across, Hyperelastic, LawCard, Plane, SmallStrainModuli};
 
 /// St. Venant-Kirchhoff material.
 ///
@@ -41,6 +41,16 @@ impl SaintVenantKirchhoff {
             young: self.young,
             poisson: self.poisson,
         }
+    }
+
+    /// `*ELASTIC`; none of a material without constants.
+    pub fn cards(&self) -> Vec<LawCard> {
+        let card = LawCard {
+            keyword: "ELASTIC",
+            parameter: None,
+            rows: vec![vec![self.young, self.poisson]],
+        };
+        if self.young > 0.0 { vec![card] } else { Vec::new() }
     }
 
     /// The law in the plane.

@@ -90,7 +90,7 @@ fn type_code(element_type: ElementType) -> u8 {
 /// Laws and constants of the materials.
 fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
     let all = &model.materials;
-    let laws: Vec<u8> = all.iter().map(|material| law_code(&material.law)).collect();
+    let laws: Vec<u8> = all.iter().map(|material| material.law.number()).collect();
     constant(at, "law", &[laws.len()], &laws, LAW)?;
     let hyperelastic = all.iter().map(|material| hyperelastic(&material.law));
     let (shapes, compressibilities): (Vec<[f64; 4]>, Vec<[f64; 3]>) = hyperelastic.unzip();
@@ -116,24 +116,9 @@ fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
 
 /// C10, C20, C30, C01, and D1, D2, D3 of a hyperelastic law.
 fn hyperelastic(law: &Law) -> ([f64; 4], [f64; 3]) {
-    let Polynomial { shape, c01, d } = match *law {
-        Law::NeoHooke(law) => law.into(),
-        Law::Polynomial(law) => law,
-        _ => Polynomial::default(),
-    };
+    let Polynomial { shape, c01, d } = law.constants_of_invariants();
     let [c10, c20, c30] = shape;
     ([c10, c20, c30, c01], d)
-}
-
-fn law_code(law: &Law) -> u8 {
-    match law {
-        Law::SaintVenantKirchhoff(_) => 0,
-        Law::NeoHooke(_) => 1,
-        Law::Polynomial(_) => 2,
-        Law::Plastic(_) => 3,
-        #[cfg(test)]
-        Law::Yielding(_) => u8::MAX,
-    }
 }
 
 /// Node indices of the segments of a surface.
