@@ -9,8 +9,8 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Vector4};
 
 use super::symmetric::{IDENTITY, Symmetric, contract};
 use super::{
-    Across, ConstitutiveLaw, Hyperelastic, LawCard, Plane, RingLaw, SaintVenantKirchhoff, SmallStrainModuli, SolidHyperelastic,
-    Strains,
+    Across, ConstitutiveLaw, Hyperelastic, LawCard, Plane, RingLaw, SaintVenantKirchhoff,
+    SmallStrainModuli, SolidHyperelastic, Strains,
 };
 
 /// A metal, `*PLASTIC`.

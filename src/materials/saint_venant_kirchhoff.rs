@@ -50,7 +50,11 @@ impl SaintVenantKirchhoff {
             parameter: None,
             rows: vec![vec![self.young, self.poisson]],
         };
-        if self.young > 0.0 { vec![card] } else { Vec::new() }
+        if self.young > 0.0 {
+            vec![card]
+        } else {
+            Vec::new()
+        }
     }
 
     /// The law in the plane.

@@ -149,11 +149,10 @@ impl Enhanced {
         SMatrix::from_columns(&self.strains[p].map(|m| as_strain(&m)))
     }
 
-    /// E + M alpha; no numbers without alpha.
-    fn enhanced(&self, compatible: &[Symmetric], alpha: Option<&Alpha>) -> OfPoints<Symmetric> {
-        let of_point = |(e, m): (&Symmetric, &[Symmetric; STRAINS])| match alpha {
-            Some(alpha) => m.iter().zip(alpha.iter()).fold(*e, |e, (m, a)| e + m * *a),
-            None => Symmetric::from_element(f64::NAN),
+    /// E + M alpha
+    fn enhanced(&self, compatible: &[Symmetric], alpha: &Alpha) -> OfPoints<Symmetric> {
+        let of_point = |(e, m): (&Symmetric, &[Symmetric; STRAINS])| {
+            m.iter().zip(alpha.iter()).fold(*e, |e, (m, a)| e + m * *a)
         };
         compatible.iter().zip(&self.strains).map(of_point).collect()
     }
@@ -175,23 +174,26 @@ impl Enhanced {
         (slope, stiffness)
     }
 
-    /// Strains at which the energy is least with those of the displacements, eq. (2.28).
+    /// alpha with which the energy is least at strains of the displacements, eq. (2.28). NaN where the local solution does
+    /// not converge.
     fn least(
         &self,
         points: &[Point],
         material: &impl RingStressAtPoints,
         compatible: &[Symmetric],
-    ) -> OfPoints<Symmetric> {
+    ) -> Alpha {
         let last = LAST_STEP * largest(compatible) + f64::EPSILON;
         let derivatives = |alpha: &Alpha| {
-            let e = self.enhanced(compatible, Some(alpha));
+            let e = self.enhanced(compatible, alpha);
             self.derivatives(points, material, (|p| Strains::At(e[p]), 1.0))
         };
         let change = |from: &Alpha, to: &Alpha| {
-            let [e0, e1] = [from, to].map(|alpha| self.enhanced(compatible, Some(alpha)));
-            energy_change(points, material, &e0, &e1)
+            let ends = [from, to].map(|alpha| self.enhanced(compatible, alpha));
+            let none = compatible.iter().map(|_| Symmetric::zeros());
+            let changes = self.enhanced(&none.collect::<OfPoints<_>>(), &(to - from));
+            energy_change(points, material, &ends, &changes)
         };
-        self.enhanced(compatible, least(derivatives, change, last).as_ref())
+        least(derivatives, change, last).unwrap_or(Alpha::from_element(f64::NAN))
     }
 
     /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own.
@@ -205,11 +207,12 @@ impl Enhanced {
         let change = changes.fold(0.0_f64, |most, e| most.max(e.amax()));
         let last = LAST_STEP * change + f64::EPSILON * largest(end) + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Alpha| {
-            let e = self.enhanced(end, Some(alpha));
+            let e = self.enhanced(end, alpha);
             let strains = |p: usize| Strains::Between(start[p], e[p]);
             self.derivatives(points, viscosity, (strains, 0.5))
         };
-        self.enhanced(end, zero(derivatives, last).as_ref())
+        let alpha = zero(derivatives, last).unwrap_or(Alpha::from_element(f64::NAN));
+        self.enhanced(end, &alpha)
     }
 
     /// Strains and stresses of all points, eq. (2.29) between two configurations.
@@ -223,7 +226,8 @@ impl Enhanced {
         let (strains, tangent_at): (OfPoints<Strains<Symmetric>>, OfPoints<Strains<Symmetric>>);
         let mut work = None;
         if !compatible.is_increment {
-            strains = least(&compatible.end)
+            strains = self
+                .enhanced(&compatible.end, &least(&compatible.end))
                 .into_iter()
                 .map(Strains::At)
                 .collect();
@@ -233,11 +237,16 @@ impl Enhanced {
             strains = compatible.strains(compatible.start.iter(), end.iter());
             tangent_at = strains.clone();
         } else {
-            let [e0, e1] = [least(&compatible.start), least(&compatible.end)];
-            let middle = least(&compatible.halfway());
-            strains = compatible.strains(e0.iter(), e1.iter());
+            let [c0, c1] = [&compatible.start, &compatible.end];
+            let [alpha0, alpha1] = [least(c0), least(c1)];
+            let ends = [self.enhanced(c0, &alpha0), self.enhanced(c1, &alpha1)];
+            let middle = compatible.halfway();
+            let middle = self.enhanced(&middle, &least(&middle));
+            strains = compatible.strains(ends[0].iter(), ends[1].iter());
             tangent_at = middle.into_iter().map(Strains::At).collect();
-            work = Some(energy_change(points, material, &e0, &e1));
+            let changes: OfPoints<Symmetric> = c1.iter().zip(c0).map(|(e1, e0)| e1 - e0).collect();
+            let changes = self.enhanced(&changes, &(alpha1 - alpha0));
+            work = Some(energy_change(points, material, &ends, &changes));
         }
         let stresses = tangent_at.iter().enumerate();
         let mut s: OfPoints<Symmetric> =
@@ -296,7 +305,7 @@ impl Enhanced {
             return 0.0;
         }
         let stored = |material: &Committed, compatible: &[Symmetric]| -> f64 {
-            let e = self.least(points, material, compatible);
+            let e = self.enhanced(compatible, &self.least(points, material, compatible));
             let energies = points.iter().zip(&e).enumerate();
             energies
                 .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
@@ -323,17 +332,18 @@ fn largest(e: &[Symmetric]) -> f64 {
     e.iter().fold(0.0, |most, e| most.max(e.amax()))
 }
 
-/// sum v (W(E1) - W(E0)), with a round-off that is relative to the change of the strains.
+/// sum v (W(E1) - W(E0)), with a round-off that is relative to the changes of the strains. They are given beside the
+/// strains, whose difference has the round-off of the strains.
 fn energy_change(
     points: &[Point],
     material: &impl RingStressAtPoints,
-    e0: &[Symmetric],
-    e1: &[Symmetric],
+    [e0, e1]: &[OfPoints<Symmetric>; 2],
+    changes: &[Symmetric],
 ) -> f64 {
-    let all = points.iter().zip(e0.iter().zip(e1)).enumerate();
-    let terms = all.map(|(p, (point, (e0, e1)))| {
-        let s = material.ring_stress(p, &Strains::Between(*e0, *e1));
-        contract(&s, &(e1 - e0)) * point.volume
+    let all = points.iter().zip(changes).enumerate();
+    let terms = all.map(|(p, (point, change))| {
+        let s = material.ring_stress(p, &Strains::Between(e0[p], e1[p]));
+        contract(&s, change) * point.volume
     });
     terms.sum()
 }
