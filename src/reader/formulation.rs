@@ -27,10 +27,10 @@ pub(super) fn choose(model: &mut Model) {
         return;
     };
     let contact = &model.contacts[number];
-    let count = match not_from_surface_to_surface(contact, model) {
-        None => Some(lying_faces(&model.surfaces[contact.slave], &model.mesh)),
-        Some(_) => None,
-    };
+    // a fit presses nodes on to segments
+    let may_choose =
+        !contact.is_interference_fit && not_from_surface_to_surface(contact, model).is_none();
+    let count = may_choose.then(|| lying_faces(&model.surfaces[contact.slave], &model.mesh));
     let contact = &mut model.contacts[number];
     contact.lying_faces = count;
     if count >= Some(MANY_LYING) {

@@ -60,7 +60,8 @@ fn a_run_from_deck_to_results() {
     for text in [
         "deck     drop.inp, 49 lines: 0 errors, 0 warnings",
         "model    8 nodes   2 elements (CPS4)   16 dofs, 4 fixed   mass 3",
-        "contact  FOOT (2 nodes) -> TOP (1 edge)   mu 0.2   smallest gap 1.0e-02",
+        "contact  FOOT (2 nodes) -> TOP (1 edge)   node to surface   mu 0.2",
+        "smallest gap 1.0e-02",
         "wrote drop.vtkhdf (6 frames,",
     ] {
         assert!(out.contains(text), "{text}\n{out}");
