@@ -334,21 +334,6 @@ fn tangents(of_lane: impl Fn(usize) -> Matrix3<f64>) -> TangentLanes {
     from_fn(|i| from_fn(|j| Lanes(all.map(|tangent| tangent[(i, j)]))))
 }
 
-/// Evaluates an expression for a plane law without internal variables as a [`LawInLanes`].
-macro_rules! in_lanes {
-    ($law:expr, $in_lanes:ident => $value:expr) => {
-        match $law {
-            $crate::materials::PlaneLaw::SaintVenantKirchhoff($in_lanes) => $value,
-            $crate::materials::PlaneLaw::NeoHooke($in_lanes) => $value,
-            law => {
-                let $in_lanes = &$crate::materials::OneByOne(law);
-                $value
-            }
-        }
-    };
-}
-pub(crate) use in_lanes;
-
 #[cfg(test)]
 mod tests {
     use super::*;

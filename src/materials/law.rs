@@ -10,21 +10,10 @@ use smallvec::SmallVec;
 #[cfg(test)]
 use super::yielding::Yielding;
 use super::{
-    Across, ConstitutiveLaw, NeoHooke, Plane, PlanePlastic, PlanePolynomial,
+    Across, ConstitutiveLaw, LawCard, NeoHooke, Plane, PlanePlastic, PlanePolynomial,
     PlaneSaintVenantKirchhoff, Plastic, Polynomial, RingStressAtPoints, SaintVenantKirchhoff,
     SmallStrainModuli, Strains, StressAtPoints, Symmetric,
 };
-
-/// A card of a deck with constants of a law.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LawCard {
-    /// Keyword, without the asterisk.
-    pub keyword: &'static str,
-    /// What stands behind the keyword, if anything.
-    pub parameter: Option<&'static str>,
-    /// Numbers of the data lines.
-    pub rows: Vec<Vec<f64>>,
-}
 
 /// Law of a material with the constants of the deck.
 #[derive(Debug, Clone, PartialEq)]
@@ -207,6 +196,21 @@ impl ConstitutiveLaw for PlaneLaw {
         of_each!(self, law => ConstitutiveLaw::used_strength(law, e, z))
     }
 }
+
+/// Evaluates an expression for a plane law without internal variables as a [`super::LawInLanes`].
+macro_rules! in_lanes {
+    ($law:expr, $in_lanes:ident => $value:expr) => {
+        match $law {
+            $crate::materials::PlaneLaw::SaintVenantKirchhoff($in_lanes) => $value,
+            $crate::materials::PlaneLaw::NeoHooke($in_lanes) => $value,
+            law => {
+                let $in_lanes = &$crate::materials::OneByOne(law);
+                $value
+            }
+        }
+    };
+}
+pub(crate) use in_lanes;
 
 /// A law with the internal variables that the last accepted increment has committed at the integration points of an
 /// element, point after point.
