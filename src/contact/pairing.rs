@@ -19,7 +19,7 @@ use super::tolerances::KEPT_BEYOND_ENDS;
 /// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
 /// node now: passes that go to and fro across a corner come to rest with it.
 ///
-/// Of contacts from surface to surface the pairs are the points of slave faces, whose rows have the given form.
+/// A contact from surface to surface has points of slave faces as its pairs. Their rows have the given form.
 ///
 /// A node that has just left its segment by a little and finds no other keeps it: whether it has
 /// slid off is decided by the end of the increment, not by one of its passes.
