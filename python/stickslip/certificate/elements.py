@@ -29,6 +29,9 @@ COMPLEX_STEP = 1e-170
 MOST_STEPS = 60
 """Steps of Newton's method for the stretch across."""
 
+LAST_STEP = 1e-9
+"""A step of Newton's method so small beside the strain leaves an error of round-off."""
+
 KINDS = (
     (3, False, False, False),
     (4, False, False, False),
@@ -238,12 +241,13 @@ class Block:
             return np.zeros_like(trace)
         squared = 2.0 * trace + 4.0 * _determinant(e)
         stretch = -self.poisson / (1.0 - self.poisson) * 0.5 * np.log1p(squared)
+        size = np.abs(e).max(axis=(2, 3))
         for _ in range(MOST_STEPS):
             z = np.expm1(2.0 * (stretch + 1j * COMPLEX_STEP))
             slope = self.polynomial_stress(e, z)[1] * (1.0 + z)
             step = slope.real / (slope.imag / COMPLEX_STEP)
             stretch = stretch - step
-            if (np.abs(step) <= 4.0 * np.finfo(np.float64).eps * np.abs(stretch)).all():
+            if (np.abs(step) <= LAST_STEP * size).all():
                 break
         return np.expm1(2.0 * stretch)
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.certificate.elements import CORNERS, EPS, PATH, PATH_WEIGHTS, Block
+from stickslip.certificate.elements import CORNERS, EPS, LAST_STEP, PATH, PATH_WEIGHTS, Block
 from stickslip.result import Array
 
 PATTERN = np.array([1.0, -1.0, 1.0, -1.0])
@@ -72,7 +72,7 @@ class EnhancedBlock(Block):
                     break
                 step[bad] *= 0.5
             alpha, found = alpha + step, following
-            if (np.abs(step).max(axis=1) <= 4.0 * EPS * np.abs(e).max(axis=(1, 2, 3)) + EPS**2).all():
+            if (np.abs(step).max(axis=1) <= LAST_STEP * np.abs(e).max(axis=(1, 2, 3)) + EPS**2).all():
                 break
         return e + np.einsum("em,egmij->egij", alpha, modes)
 

@@ -8,6 +8,7 @@ import numpy as np
 from stickslip.certificate.elements import (
     CORNERS,
     EPS,
+    LAST_STEP,
     PATH,
     PATH_WEIGHTS,
     _cofactor,
@@ -236,7 +237,7 @@ class EnhancedRingBlock(CondensedBlock):
                     break
                 step[bad] *= 0.5
             alpha, found = alpha + step, following
-            if (np.abs(step).max(axis=1) <= 4.0 * EPS * size + EPS**2).all():
+            if (np.abs(step).max(axis=1) <= LAST_STEP * size + EPS**2).all():
                 break
         return at(alpha)
 
