@@ -1,7 +1,5 @@
 //! What identifies constraints and slave nodes through passes and increments.
 
-use crate::lcp::ContactName;
-
 /// What identifies a slave node among those of all contacts: a node may be slave in several.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
@@ -49,13 +47,6 @@ impl ConstraintKey {
     /// What it shares with the other constraints of its slave node.
     pub fn slave(self) -> SlaveKey {
         self.slave
-    }
-}
-
-/// Factors of complementarity problems are kept for constraints of the same names.
-impl From<ConstraintKey> for ContactName {
-    fn from(ConstraintKey { slave, segment }: ConstraintKey) -> Self {
-        [slave.contact, slave.slave, segment]
     }
 }
 

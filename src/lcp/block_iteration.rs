@@ -7,9 +7,9 @@
 
 use super::dense::{add_sizes, axpy, dot, max_abs};
 use super::hybrid::{LcpMethod, solve_similar};
+use super::kept::KeptFactors;
 use super::problems::{ContactState, Counters, FrictionalLcp, LcpError};
 use super::residual::{ROUNDING, TOLERANCE, law_residual};
-use super::similar::KeptFactors;
 use crate::linear::largest;
 
 /// Difference between motion and expected motion that is round-off, relative to the terms of either.

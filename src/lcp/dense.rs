@@ -7,13 +7,8 @@ use std::array::from_fn;
 use bumpalo::Bump;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor as llt;
-use faer::linalg::lu::partial_pivoting::{factor as lu, solve as lu_solve};
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::perm::PermRef;
-use faer::reborrow::ReborrowMut;
-use faer::{MatMut, MatRef, Par};
+use faer::linalg::lu::partial_pivoting::factor as lu;
+use faer::{MatMut, Par};
 use pulp::{Arch, Simd, WithSimd};
 use smallvec::SmallVec;
 
@@ -201,8 +196,8 @@ pub(crate) struct Factors {
 enum Kind {
     /// L L^T, the lower triangle holds L.
     Cholesky,
-    /// P A = L U with the permutation and its inverse.
-    Lu(Vec<usize>, Vec<usize>),
+    /// P A = L U with the permutation.
+    Lu(Vec<usize>),
 }
 
 impl Factors {
@@ -238,7 +233,7 @@ impl Factors {
             Par::Seq,
             Default::default(),
         ));
-        let (mut forward, mut backward) = (vec![0; size], vec![0; size]);
+        let [mut forward, mut backward] = [(); 2].map(|()| vec![0; size]);
         lu::lu_in_place(
             MatMut::from_column_major_slice_mut(&mut values, size, size),
             &mut forward,
@@ -250,49 +245,17 @@ impl Factors {
         regular((0..size).map(|i| values[i + i * size].abs())).then_some(Self {
             values,
             size,
-            kind: Kind::Lu(forward, backward),
+            kind: Kind::Lu(forward),
         })
-    }
-
-    /// Number of rows.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// Size of the smallest pivot.
-    pub fn smallest_pivot(&self) -> f64 {
-        let pivots = (0..self.size).map(|i| self.values[i + i * self.size].abs());
-        pivots.fold(f64::INFINITY, f64::min)
     }
 
     /// Overwrites b with the solution of A x = b.
     pub fn solve(&self, b: &mut [f64]) {
-        if let Kind::Lu(forward, _) = &self.kind {
+        if let Kind::Lu(forward) = &self.kind {
             let permuted: SmallVec<[f64; 256]> = forward.iter().map(|&row| b[row]).collect();
             b.copy_from_slice(&permuted);
         }
         Arch::new().dispatch(Substitution { factors: self, b });
-    }
-
-    /// Overwrites the columns of b with the solutions of A X = B.
-    pub fn solve_columns(&self, b: &mut [f64]) {
-        let factor = MatRef::from_column_major_slice(&self.values, self.size, self.size);
-        let columns = b.len() / self.size;
-        let mut x = MatMut::from_column_major_slice_mut(b, self.size, columns);
-        match &self.kind {
-            Kind::Cholesky => {
-                solve_lower_triangular_in_place(factor, x.rb_mut(), Par::Seq);
-                solve_upper_triangular_in_place(factor.transpose(), x, Par::Seq);
-            }
-            Kind::Lu(forward, backward) => {
-                let scratch =
-                    lu_solve::solve_in_place_scratch::<usize, f64>(self.size, columns, Par::Seq);
-                let mut buffer = MemBuffer::new(scratch);
-                let rows = PermRef::new_checked(forward, backward, self.size);
-                let stack = MemStack::new(&mut buffer);
-                lu_solve::solve_in_place(factor, factor, rows, x, Par::Seq, stack);
-            }
-        }
     }
 
     /// Part of column k from row `from` on.
@@ -319,7 +282,7 @@ impl WithSimd for Substitution<'_> {
                 factors.forward(simd, b, false);
                 factors.backward_transposed(b);
             }
-            Kind::Lu(..) => {
+            Kind::Lu(_) => {
                 factors.forward(simd, b, true);
                 factors.backward(simd, b);
             }
@@ -466,24 +429,27 @@ mod factors_tests {
     }
 
     #[test]
-    fn substitutions_of_all_sizes_solve_what_columns_together_solve() {
+    fn substitutions_of_all_sizes_solve() {
         for size in 1..23 {
             // diagonally dominant and symmetric
             let entry = |i: usize, j: usize| 1.0 / (1.0 + (i + j) as f64);
             let a = |k: usize| entry(k % size, k / size) + f64::from(k % size == k / size) * 3.0;
             let a: Vec<f64> = (0..size * size).map(a).collect();
-            let b: Vec<f64> = (0..size).map(|i| 1.0 - i as f64).collect();
+            let x: Vec<f64> = (0..size).map(|i| 1.0 - i as f64).collect();
             let unsymmetric: Vec<f64> = (0..)
                 .zip(&a)
                 .map(|(k, a)| a * f64::from(1 + k % 3))
                 .collect();
-            for factors in [Factors::cholesky(a, size), Factors::lu(unsymmetric, size)] {
-                let factors = factors.expect("regular");
-                let (mut one, mut two) = (b.clone(), [b.clone(), b.clone()].concat());
-                factors.solve(&mut one);
-                factors.solve_columns(&mut two);
-                for (i, x) in two.iter().enumerate() {
-                    assert!((x - one[i % size]).abs() < 1e-13, "{size} {i}");
+            for (a, is_symmetric) in [(a, true), (unsymmetric, false)] {
+                let mut b = vec![0.0; size];
+                add_product(&a, &x, &mut b);
+                let factors = match is_symmetric {
+                    true => Factors::cholesky(a, size),
+                    false => Factors::lu(a, size),
+                };
+                factors.expect("regular").solve(&mut b);
+                for (i, (found, x)) in b.iter().zip(&x).enumerate() {
+                    assert!((found - x).abs() < 1e-12, "{size} {i}");
                 }
             }
         }

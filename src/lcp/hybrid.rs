@@ -6,6 +6,7 @@ use bumpalo::Bump;
 
 use super::basis::perturbation;
 use super::dense::{List, axpy, copy, filled, list, max_abs};
+use super::kept::KeptFactors;
 use super::lemke::{LemkeSettings, lemke_forces};
 use super::problems::{
     ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError, Method, Spare, expect_size,
@@ -13,7 +14,6 @@ use super::problems::{
 use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
 use super::scaled::Scaled;
-use super::similar::KeptFactors;
 
 /// Gauss-Seidel sweeps between two calls of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];
@@ -87,8 +87,8 @@ fn solve_in(
     lemke(problem, &scaled, &mut counters)
 }
 
-/// The active set from the warm states, with factors of its own where it fails with kept ones, whose round-off moves
-/// contacts that are nearly one; then from the states after ever more Gauss-Seidel sweeps, which break its cycles.
+/// The active set from the warm states, again with factors of its own where it fails with kept ones, whose round-off
+/// moves contacts that are nearly one; then from the states after ever more Gauss-Seidel sweeps, which break its cycles.
 fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -97,6 +97,7 @@ fn iterate(
 ) -> Option<FrictionalSolution> {
     let mut states = warm.map_or_else(|| first_states(scaled), |warm| known(scaled, warm));
     let mut rounds = SWEEPS.into_iter();
+    let mut has_kept = kept.has_factors();
     loop {
         let mut p = match active_set(scaled, states.clone(), kept, counters) {
             Outcome::Converged(states, p) => {
@@ -110,7 +111,8 @@ fn iterate(
             }
             Outcome::Failed(p) => p,
         };
-        if kept.forget() {
+        if std::mem::take(&mut has_kept) {
+            kept.forget();
             continue;
         }
         project(scaled, &mut p);

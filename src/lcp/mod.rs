@@ -16,19 +16,19 @@ mod block_iteration;
 mod dense;
 mod exchange;
 mod hybrid;
+mod kept;
 mod lemke;
 mod problems;
 mod reduced;
 mod residual;
 mod scaled;
-mod similar;
 
 pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
 pub use hybrid::{LcpMethod, solve_frictional, solve_similar};
+pub use kept::KeptFactors;
 pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problems::{
     ContactState, Counters, FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolution, Method,
 };
 pub use residual::residual;
-pub use similar::{ContactName, KeptFactors};

@@ -1,9 +1,10 @@
-//! The forces of given contact states: a linear system, solved directly, or with the factors of a similar one.
+//! The forces of given contact states: a linear system, solved directly, or with the factors of the same states with
+//! another Q.
 
 use super::dense::{Factors, List, copy, filled, list, max_abs};
+use super::kept::KeptFactors;
 use super::problems::ContactState;
 use super::scaled::Scaled;
-use super::similar::{KeptFactors, Similar, slide};
 
 /// Shift of the diagonal, relative to its entries, that makes a singular system solvable.
 const SHIFT: f64 = 1e-10;
@@ -32,9 +33,9 @@ const OWN: Corrections = Corrections {
     rate: 0.1,
 };
 
-/// Solves with the factors of a similar system in place of factors of its own: so many, or, of a large system, that
+/// Solves with the factors of another Q in place of factors of the own one: so many, or, of a large system, that
 /// take a part of the operations of these.
-const SIMILAR_SOLVES: usize = 6;
+const KEPT_SOLVES: usize = 6;
 
 /// Unknowns for one such solve.
 const UNKNOWNS_PER_SOLVE: usize = 24;
@@ -43,9 +44,9 @@ const UNKNOWNS_PER_SOLVE: usize = 24;
 type Solution<'a> = (List<'a, f64>, List<'a, f64>);
 
 impl Corrections {
-    /// With the factors of a similar system of the given size: as long as the residual falls to round-off.
-    fn similar(size: usize) -> Self {
-        let most = SIMILAR_SOLVES.max(size / UNKNOWNS_PER_SOLVE);
+    /// With the factors of another Q, in a system of the given size: as long as the residual falls to round-off.
+    fn kept(size: usize) -> Self {
+        let most = KEPT_SOLVES.max(size / UNKNOWNS_PER_SOLVE);
         Corrections {
             solves: [1, most],
             rate: f64::EPSILON.powf(1.0 / most as f64),
@@ -87,38 +88,23 @@ pub(crate) fn forces<'a>(
     match regular {
         Some(factors) => {
             let found = solution(&factors);
-            kept.keep(scaled, states, &unknowns, factors);
+            kept.keep(scaled, states, factors);
             found
         }
         None => solution(&Factors::lu(shifted(matrix(), size), size)?),
     }
 }
 
-/// Forces from kept factors, if these serve.
+/// Forces from kept factors, if they are as good as those from the own ones.
 fn from_kept<'a>(
     scaled: &Scaled<'a>,
     states: &[ContactState],
     unknowns: &[usize],
     kept: &KeptFactors,
 ) -> Option<Solution<'a>> {
-    if let Some(factors) = kept
-        .same(scaled, states)
-        .filter(|f| f.size() == unknowns.len())
-    {
-        return from_similar(scaled, states, unknowns, |b| factors.solve(b));
-    }
-    let similar = Similar::of(kept, scaled, states, unknowns)?;
-    from_similar(scaled, states, unknowns, |b| similar.solve(b))
-}
-
-/// Forces from solves of a similar system, if they are as good as those from the own factors.
-fn from_similar<'a>(
-    scaled: &Scaled<'a>,
-    states: &[ContactState],
-    unknowns: &[usize],
-    solve: impl Fn(&mut [f64]),
-) -> Option<Solution<'a>> {
-    let corrections = Corrections::similar(unknowns.len());
+    let factors = kept.serving(scaled, states)?;
+    let corrections = Corrections::kept(unknowns.len());
+    let solve = |b: &mut [f64]| factors.solve(b);
     let (p, v, error) = refine(scaled, states, unknowns, (&corrections, solve));
     (error <= ACCURATE * terms(scaled, &p)).then_some((p, v))
 }
@@ -163,6 +149,11 @@ fn sliding(scaled: &Scaled, states: &[ContactState], k: usize) -> Option<(usize,
         return None;
     }
     scaled.tangents[k].map(|t| (t, slide(scaled, states, k)))
+}
+
+/// The factor in Pt = factor Pn of contact i, zero where it does not slide.
+fn slide(scaled: &Scaled, states: &[ContactState], i: usize) -> f64 {
+    -states[i].slip_sign() * scaled.mu[i]
 }
 
 /// Whether the two triangles of a matrix are equal up to differences that the corrections by the
@@ -237,16 +228,17 @@ mod tests {
 
     const CONTACTS: usize = 40;
 
-    /// Contacts on an elastic surface, each at the place of its name, those of the same place being one and the
-    /// same; all penetrate.
-    fn problem(names: &[usize], compliance: f64) -> FrictionalLcp {
-        let n = names.len();
+    /// Contacts at the given places of an elastic surface; all penetrate.
+    fn problem(places: &[f64], compliance: f64) -> FrictionalLcp {
+        let n = places.len();
         let entry = |i: usize, j: usize| {
-            let distance = names[i % n] as f64 - names[j % n] as f64;
+            let distance = places[i % n] - places[j % n];
             let decay = compliance * (-distance.abs() / 4.0).exp();
-            let side = distance
-                .partial_cmp(&0.0)
-                .map_or(0.0, |order| order as i8 as f64);
+            let side = if distance == 0.0 {
+                0.0
+            } else {
+                distance.signum()
+            };
             match (i < n, j < n) {
                 (true, true) => decay,
                 (false, false) => 0.8 * decay,
@@ -262,137 +254,65 @@ mod tests {
         }
     }
 
-    /// A system of named contacts.
-    fn scaled<'a>(names: &[usize], compliance: f64, arena: &'a Bump) -> Scaled<'a> {
-        Scaled::new(&problem(names, compliance), arena).expect("finite")
+    /// Places of contacts with a given distance.
+    fn places(distance: f64) -> Vec<f64> {
+        (0..CONTACTS).map(|i| distance * i as f64).collect()
     }
 
-    /// Factors kept of the system of all contacts with every state.
-    fn kept() -> (KeptFactors, Vec<usize>, Vec<ContactState>) {
-        let names: Vec<usize> = (0..CONTACTS).map(|i| 2 * i).collect();
+    /// States of every kind.
+    fn states() -> Vec<ContactState> {
         let states = (0..CONTACTS).map(|i| [Stick, SlipPlus, Open, SlipMinus, Stick][i % 5]);
-        let states: Vec<ContactState> = states.collect();
-        let mut kept = KeptFactors::default();
-        kept.name_contacts(names.iter().map(|&name| [name, 0, 0]));
-        let arena = Bump::new();
-        forces(&scaled(&names, 1.0, &arena), &states, &mut kept).expect("regular");
-        (kept, names, states)
+        states.collect()
     }
 
-    /// The solve by the kept factors beside that by own ones, if they serve.
-    fn differs(
-        kept: &mut KeptFactors,
-        names: &[usize],
-        states: &[ContactState],
-        compliance: f64,
-    ) -> Option<f64> {
-        kept.name_contacts(names.iter().map(|&name| [name, 0, 0]));
-        let arena = Bump::new();
-        let scaled = scaled(names, compliance, &arena);
-        let unknowns = unknowns(&scaled, states);
-        let own = Factors::lu(matrix(&scaled, states, &unknowns), unknowns.len())?;
-        let mut expected: Vec<f64> = (0..unknowns.len()).map(|k| 1.0 + (k % 7) as f64).collect();
-        let mut found = expected.clone();
-        Similar::of(kept, &scaled, states, &unknowns)?.solve(&mut found);
-        own.solve(&mut expected);
-        let difference = expected.iter().zip(&found).map(|(a, b)| (a - b).abs());
-        Some(difference.fold(0.0, f64::max) / max_abs(&expected))
-    }
-
-    #[test]
-    fn kept_factors_solve_systems_with_other_states() {
-        let (mut kept, names, states) = kept();
-        for first in [0, 5, 35] {
-            for (i, before) in states.iter().enumerate().skip(first).take(5) {
-                for after in [Open, Stick, SlipPlus, SlipMinus] {
-                    let mut others = states.clone();
-                    (others[i], others[(i + 7) % CONTACTS]) = (after, Stick);
-                    let difference = differs(&mut kept, &names, &others, 1.0);
-                    let difference = difference.expect("a small border");
-                    assert!(difference < 1e-11, "{before:?} {after:?} {difference:e}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn kept_factors_solve_systems_with_other_contacts_in_other_units() {
-        let (mut kept, mut names, mut states) = kept();
-        for gone in [11, 7, 0] {
-            names.remove(gone);
-            states.remove(gone);
-        }
-        names.insert(20, names[20] - 1);
-        states.insert(20, Stick);
-        // a little less than a power of two has half its unit
-        for (compliance, most) in [(1.0, 1e-11), (1.0 - 1e-6, 1e-4)] {
-            let difference = differs(&mut kept, &names, &states, compliance);
-            let difference = difference.expect("a small border");
-            assert!(difference < most, "{compliance} {difference:e}");
-        }
+    /// Factors kept of a system.
+    fn kept() -> KeptFactors {
+        let (mut kept, arena) = (KeptFactors::default(), Bump::new());
+        let scaled = Scaled::new(&problem(&places(2.0), 1.0), &arena).expect("finite");
+        forces(&scaled, &states(), &mut kept).expect("regular");
+        kept
     }
 
     #[test]
     fn forces_by_kept_factors_are_those_by_own_ones() {
-        let (mut kept, names, mut states) = kept();
-        (states[3], states[4], states[12]) = (Stick, SlipPlus, Stick);
-        let arena = Bump::new();
-        let scaled = scaled(&names, 1.0001, &arena);
+        let (kept, states, arena) = (kept(), states(), Bump::new());
+        let scaled = Scaled::new(&problem(&places(2.0), 1.0001), &arena).expect("finite");
         let unknowns = unknowns(&scaled, &states);
-        let similar = Similar::of(&kept, &scaled, &states, &unknowns).expect("a border");
-        let found = from_similar(&scaled, &states, &unknowns, |b| similar.solve(b));
-        let (p, v) = found.expect("converges");
+        let (p, v) = from_kept(&scaled, &states, &unknowns, &kept).expect("converges");
         let own = forces(&scaled, &states, &mut KeptFactors::default()).expect("regular");
         for (found, own) in [(p, own.0), (v, own.1)] {
             let most = max_abs(&own);
-            assert!(
-                found
-                    .iter()
-                    .zip(own)
-                    .all(|(a, b)| (a - b).abs() < 1e-12 * most)
-            );
+            let differ = |(a, b): (&f64, f64)| (a - b).abs() >= 1e-12 * most;
+            assert!(!found.iter().zip(own).any(differ));
         }
-        drop(similar);
-        let before = forces(&scaled, &states, &mut kept);
-        assert!(before.is_some(), "the kept factors serve again");
     }
 
     #[test]
     fn factors_of_their_own_replace_those_that_do_not_serve() {
-        let (mut kept, names, states) = kept();
-        // too many states differ
+        let (mut kept, states, arena) = (kept(), states(), Bump::new());
+        let scaled = Scaled::new(&problem(&places(2.0), 1.0), &arena).expect("finite");
+        // other states
         let all = vec![Stick; CONTACTS];
-        assert_eq!(differs(&mut kept, &names, &all, 1.0), None);
+        assert!(from_kept(&scaled, &all, &unknowns(&scaled, &all), &kept).is_none());
         // Q is another one: corrections by the residual do not converge
-        let far: Vec<usize> = names.iter().map(|name| 50 * name).collect();
-        let arena = Bump::new();
-        let other = scaled(&far, 1.0, &arena);
-        kept.name_contacts(names.iter().map(|&name| [name, 0, 0]));
-        let unknowns = unknowns(&other, &states);
-        let similar = Similar::of(&kept, &other, &states, &unknowns).expect("the same states");
-        assert!(from_similar(&other, &states, &unknowns, |b| similar.solve(b)).is_none());
-        drop(similar);
-        let (p, v) = forces(&other, &states, &mut kept).expect("own factors");
+        let far = Scaled::new(&problem(&places(100.0), 1.0), &arena).expect("finite");
+        let unknowns = unknowns(&far, &states);
+        assert!(from_kept(&far, &states, &unknowns, &kept).is_none());
+        let (p, v) = forces(&far, &states, &mut kept).expect("own factors");
         assert!(unknowns.iter().all(|k| v[*k].abs() < 1e-13 * max_abs(&p)));
     }
 
     #[test]
-    fn a_singular_border_gives_way_to_shared_loads() {
-        let (mut kept, mut names, mut states) = kept();
-        // a contact that is there twice
-        names.insert(1, names[0]);
-        states.insert(1, Stick);
+    fn contacts_that_are_one_share_the_load() {
         let arena = Bump::new();
-        let twice = scaled(&names, 1.0, &arena);
-        kept.name_contacts((0..names.len()).map(|i| [i.max(1) - 1, usize::from(i == 1), 0]));
-        let (p, v) = forces(&twice, &states, &mut kept).expect("shared");
-        let closed = (0..names.len()).filter(|i| states[*i].is_closed());
-        assert!(closed.clone().all(|i| v[i].abs() < 1e-10 * max_abs(&p)));
-        assert!(
-            (p[0] - p[1]).abs() < 1e-5 * max_abs(&p),
-            "{} {}",
-            p[0],
-            p[1]
-        );
+        // the first contact is there twice
+        let places: Vec<f64> = std::iter::once(0.0).chain(places(2.0)).collect();
+        let states: Vec<_> = std::iter::once(Stick).chain(states()).collect();
+        let twice = Scaled::new(&problem(&places, 1.0), &arena).expect("finite");
+        let (p, v) = forces(&twice, &states, &mut KeptFactors::default()).expect("shared");
+        let mut closed = (0..places.len()).filter(|i| states[*i].is_closed());
+        assert!(closed.all(|i| v[i].abs() < 1e-10 * max_abs(&p)));
+        let difference = (p[0] - p[1]).abs();
+        assert!(difference < 1e-5 * max_abs(&p), "{} {}", p[0], p[1]);
     }
 }

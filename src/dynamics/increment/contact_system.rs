@@ -14,8 +14,7 @@ use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
 use crate::dynamics::results::{Cause, FailedLcp};
 use crate::dynamics::step::{ResponseVectors, System};
 use crate::lcp::{
-    BlockIteration, BlockStart, ContactName, ContactState, FrictionalLcp, LcpBlock, LcpMethod,
-    Progress,
+    BlockIteration, BlockStart, ContactState, FrictionalLcp, LcpBlock, LcpMethod, Progress,
 };
 use crate::linear::LinearError;
 
@@ -134,7 +133,6 @@ impl ContactSystem<'_> {
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
-        self.system.name_contacts(names(constraints));
         match self.system.solve_lcp(&problem, &guess.states, self.method) {
             Ok(solution) => {
                 self.system.take_back(problem);
@@ -160,11 +158,6 @@ impl ContactSystem<'_> {
         self.system.check()?;
         Ok(response)
     }
-}
-
-/// What tells constraints from others in a row of complementarity problems.
-pub(super) fn names(constraints: &[&Constraint]) -> impl Iterator<Item = ContactName> {
-    constraints.iter().map(|constraint| constraint.key.into())
 }
 
 /// The constraints that carry a force.
@@ -345,8 +338,7 @@ impl ContactSystem<'_> {
                     part
                 });
             }
-            let mut kept = self.system.take_kept(scope);
-            kept.name_contacts(names(&constraints));
+            let kept = self.system.take_kept(scope);
             blocks.push(LcpBlock {
                 contacts: contacts.clone(),
                 problem,

@@ -21,8 +21,8 @@ use crate::contact::{
 };
 use crate::elements::{Motion, TangentPart};
 use crate::lcp::{
-    BlockIteration, ContactName, ContactState, Counters, FrictionalLcp, FrictionalSolution,
-    KeptFactors, LcpError, LcpMethod, solve_similar,
+    BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors,
+    LcpError, LcpMethod, solve_similar,
 };
 use crate::linear::{
     AddedBlocks, Assembled, CheckedSolver, LinearError, LinearSolver, Rotation, Transformation,
@@ -717,12 +717,6 @@ impl<'a> System<'a> {
     /// Counts a complementarity problem that was solved by blocks.
     pub fn count_lcp(&mut self, size: usize, work: Counters) {
         self.meter.count_lcp(size, work);
-    }
-
-    /// Names the constraints of the next complementarity problem, each differently.
-    pub fn name_contacts(&mut self, names: impl Iterator<Item = ContactName>) {
-        let kept = self.matrix.kept.entry(Scope::All).or_default();
-        kept.name_contacts(names);
     }
 
     /// Takes the factors of the last complementarity problem of a scope.
