@@ -134,7 +134,7 @@ pub(crate) const MOST_LEFT_OVERLAP: f64 = 0.02;
 pub(crate) const PENETRATION_FAULT: f64 = 1e-3;
 /// Gap of a node that lies on its master up to round-off of the coordinates.
 pub(crate) const COORDINATE_ROUND_OFF: f64 = 1e-9;
-/// Clearance up to which the nodes of a set are moved on to the master.
+/// Clearance up to which the nodes of a set, or those that get a clearance, are moved to the master.
 pub(crate) const ADJUSTMENT_REACH: f64 = 1.0;
 
 // Impacts as events.

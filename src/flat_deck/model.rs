@@ -214,12 +214,22 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
         set("INTERACTION", interactions.name(&contact.interaction)),
         set("TYPE", contact.formulation.name()),
     ];
-    parameters.extend(contact.adjust.map(|adjust| match adjust {
-        Adjust::Within(reach) => set("ADJUST", number(reach.above)),
-        Adjust::Nodes(set) => named("ADJUST", &model.sets.nodes[set].name),
+    parameters.extend(contact.adjust.and_then(|adjust| match adjust {
+        Adjust::Within(reach) => Some(set("ADJUST", number(reach.above))),
+        Adjust::Nodes(set) => Some(named("ADJUST", &model.sets.nodes[set].name)),
+        Adjust::Clearance(_) => None,
     }));
     lines.card_of("CONTACT PAIR", &parameters);
     pair_row(contact, model, lines);
+    if let Some(Adjust::Clearance(clearance)) = contact.adjust {
+        let surface = |index: usize| &model.surfaces[index].name;
+        let parameters = [
+            named("SLAVE", surface(contact.slave)),
+            named("MASTER", surface(contact.master)),
+            set("VALUE", number(clearance)),
+        ];
+        lines.card("CLEARANCE", parameters);
+    }
 }
 
 /// Writes which nodes of general contact are moved before the start, and whether overlaps are pressed out.

@@ -86,6 +86,8 @@ pub enum Adjust {
     Within(Reach),
     /// Those of the node set with this index.
     Nodes(usize),
+    /// Those that are near the surface, to this clearance above it (length).
+    Clearance(f64),
 }
 
 /// Which nodes are near a surface, and where they are moved to.
@@ -105,6 +107,7 @@ impl Adjust {
         match self {
             Adjust::Within(reach) => reach.clearance,
             Adjust::Nodes(_) => 0.0,
+            Adjust::Clearance(clearance) => *clearance,
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Adjustment of the mesh before the start: strain-free moves of slave nodes onto the master
-//! surface (`ADJUST=` of `*CONTACT PAIR`, `*CONTACT INITIALIZATION DATA` of general contact), with a check
+//! surface (`ADJUST=` of `*CONTACT PAIR`, `*CLEARANCE`, `*CONTACT INITIALIZATION DATA` of general contact), with a check
 //! of the elements that change shape. Section 10 of docs/theory.md, Initial gaps.
 
 use super::initial_gaps::{InitialGap, gaps};
@@ -94,6 +94,7 @@ fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
 fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
     match wanted {
         Adjust::Within(Reach { above, below, .. }) => (-below..=above).contains(&gap.gap),
+        Adjust::Clearance(_) => gap.gap <= ADJUSTMENT_REACH * gap.length,
         Adjust::Nodes(set) => {
             let members = &model.sets.nodes[set].members;
             members.binary_search(&gap.slave).is_ok() && gap.gap <= ADJUSTMENT_REACH * gap.length

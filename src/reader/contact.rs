@@ -41,6 +41,9 @@ pub(crate) fn read(
         }
     }
     report_repeated(&contacts, cx);
+    for card in outline.model_cards("CLEARANCE") {
+        clearance(card, surfaces, &mut contacts, cx);
+    }
     let general = general_contacts(
         outline,
         mesh_index,
@@ -75,6 +78,38 @@ fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
         below: f64::INFINITY,
         clearance: 0.0,
     }))
+}
+
+/// Gives the contact that a card names its clearance.
+fn clearance(card: &Card, surfaces: &Surfaces, contacts: &mut [Contact], cx: &mut Context) {
+    let rule = "the clearance must not be negative";
+    let value = card.required("VALUE", cx.d);
+    let value = value.and_then(|value| value.real_that(|x| x >= 0.0, rule, Code::BadValue, cx.d));
+    let mut surface = |name: &'static str| {
+        let field = card.required(name, cx.d)?;
+        Some(surfaces.find(field, cx)?.0)
+    };
+    let (slave, master) = (surface("SLAVE"), surface("MASTER"));
+    let (Some(value), Some(slave), Some(master)) = (value, slave, master) else {
+        return;
+    };
+    let is_meant = |contact: &&mut Contact| (contact.slave, contact.master) == (slave, master);
+    let fault = match contacts.iter_mut().find(is_meant) {
+        None if cx.may_lack_cards() => return,
+        None => "there is no contact pair of this slave and this master",
+        Some(contact) if contact.is_self_contact() => {
+            "the nodes of a surface that touches itself cannot be moved by a pair"
+        }
+        Some(contact) if contact.adjust.is_some() => {
+            "the nodes of this contact pair are moved already"
+        }
+        Some(contact) => {
+            contact.adjust = Some(Adjust::Clearance(value));
+            return;
+        }
+    };
+    cx.error(Code::SurfaceUse, card.span, fault)
+        .help("*CLEARANCE gives one *CONTACT PAIR without ADJUST= its clearance");
 }
 
 fn report_adjusted_self_contact(contact: Option<&Contact>, card: &Card, cx: &mut Context) {

@@ -305,6 +305,8 @@ fn contacts_that_cannot_be() {
     let pair = |adjust: &str, row: &str| {
         format!("*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE, {adjust}\n{row}\n")
     };
+    let clearance =
+        |pair: &str, names: &str| shared(PAIR, &format!("{pair}*CLEARANCE, SLAVE={names}\n"));
     let of_nodes = format!(
         "*SURFACE, NAME=S, TYPE=NODE\nNFIX\n{}",
         PAIR.replace("SBOT, STOP", "S")
@@ -343,6 +345,12 @@ EBLOCK",
         shared(PAIR, &initialized("ADJUST=YES", ", , FOT")),
         shared(PAIR, &initialized("ADJUST=YES", "SBOT, STOP, FIT")),
         step(GENERAL.trim_end()),
+        clearance(PAIR, "STOP, MASTER=SBOT, VALUE=0."),
+        clearance(PAIR, "SBOT, MASTER=STOP, VALUE=-0.1"),
+        clearance(
+            &pair("ADJUST=0.1", "SBOT, STOP"),
+            "SBOT, MASTER=STOP, VALUE=0.",
+        ),
     ];
     let texts = decks.map(|deck| {
         let (d, text) = messages(&deck);

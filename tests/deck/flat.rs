@@ -353,6 +353,7 @@ fn constraints_and_contacts() {
         pair.replace("TYPE", "ADJUST=0.05, TYPE"),
         pair.replace("TYPE", "ADJUST=NBLOCK, TYPE"),
         pair.replace("SBOT, STOP", "STOP"),
+        format!("{pair}*CLEARANCE, SLAVE=SBOT, MASTER=STOP, VALUE=0.01\n"),
         format!(
             "{pair}*SURFACE INTERACTION, NAME=SLICK\n{}",
             pair.replace("DRY", "SLICK")

@@ -832,6 +832,16 @@ fn adjusted_nodes_are_moved_onto_the_master() {
 }
 
 #[test]
+fn slave_nodes_get_the_clearance_of_their_pair() {
+    let adjusted = |value: &str| {
+        let card = format!("*CLEARANCE, SLAVE=SBOT, MASTER=STOP, VALUE={value}\n");
+        adjusted_by(&format!("{PAIR}{card}"))
+    };
+    assert_eq!(adjusted("0.125"), ([1.125, 1.125], 2));
+    assert_eq!(adjusted("0."), ([1.0, 1.0], 2));
+}
+
+#[test]
 fn nodes_of_general_contact_are_moved_onto_the_surfaces() {
     let adjusted = |parameters: &str| {
         adjusted_by(&format!(
