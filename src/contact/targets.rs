@@ -770,7 +770,8 @@ impl Corner {
 /// after the slave node on its own surface. A normal that separates the two corners lies in the
 /// normal cone between `normals` and in the cone between the opposites of `own`; the common normal
 /// is the middle of their intersection. Flush blocks meet with the normal of their faces, corners
-/// with that of their bisectors. Concave corners have no common normal.
+/// with that of their bisectors. A node in a concave corner has no common normal with a sharp one; with a vertex of a
+/// surface that turns gently, as that of a pin in a bore, it has the middle of both cones.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let opposite = own.map(|n| [-n[0], -n[1]]);
@@ -780,11 +781,14 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
         return None;
     }
     let from = angle(n, opposite[0]);
-    let to = from + angle(opposite[0], opposite[1]);
-    if to < from - CONE_MISS {
-        return None; // the slave node is in a concave corner
+    let mut cone = [from, from + angle(opposite[0], opposite[1])];
+    if cone[1] < cone[0] - CONE_MISS {
+        if width.sin() > SLIDING_SINE || width.cos() < 0.0 {
+            return None; // the slave node is in a concave corner
+        }
+        cone.reverse();
     }
-    let (low, high) = (from.max(0.0), to.min(width));
+    let (low, high) = (cone[0].max(0.0), cone[1].min(width));
     if low > high + CONE_MISS {
         return None;
     }
@@ -867,6 +871,25 @@ mod corner_tests {
             "a concave corner"
         );
         assert_eq!(common_normal([UP, RIGHT], [LEFT, DOWN]), None, "not convex");
+        let blunt = |[x, y]: [f64; 2], side: f64| [side * x, y].map(|e| e / x.hypot(y));
+        let pin = [1.0, -1.0].map(|side| blunt([0.6, 1.0], side));
+        let bore = [-1.0, 1.0].map(|side| blunt([0.6, -1.0], side));
+        assert_eq!(
+            common_normal(pin, bore),
+            None,
+            "concave, of more than 30 degrees"
+        );
+    }
+
+    #[test]
+    fn a_node_in_a_bore_meets_a_vertex_of_a_pin_with_the_normal_between() {
+        let unit = |[x, y]: [f64; 2]| [x, y].map(|e| e / x.hypot(y));
+        let pin = [[0.1, 1.0], [-0.1, 1.0]].map(unit);
+        for turn in [0.0, 0.02, 0.1, 0.15] {
+            let bore = [[-turn, -1.0], [turn, -1.0]].map(unit);
+            let weight = common_normal(pin, bore).unwrap_or(f64::NAN);
+            assert!((weight - 0.5).abs() < 1e-14, "{turn} {weight}");
+        }
         let nowhere = [f64::NAN; 2];
         assert_eq!(common_normal([RIGHT, nowhere], [LEFT, DOWN]), None);
     }
