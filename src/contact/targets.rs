@@ -873,7 +873,7 @@ mod corner_tests {
         assert_eq!(common_normal([UP, RIGHT], [LEFT, DOWN]), None, "not convex");
         let blunt = |[x, y]: [f64; 2], side: f64| [side * x, y].map(|e| e / x.hypot(y));
         let pin = [1.0, -1.0].map(|side| blunt([0.6, 1.0], side));
-        let bore = [-1.0, 1.0].map(|side| blunt([0.6, -1.0], side));
+        let bore = [1.0, -1.0].map(|side| blunt([0.6, -1.0], side));
         assert_eq!(
             common_normal(pin, bore),
             None,
@@ -886,7 +886,7 @@ mod corner_tests {
         let unit = |[x, y]: [f64; 2]| [x, y].map(|e| e / x.hypot(y));
         let pin = [[0.1, 1.0], [-0.1, 1.0]].map(unit);
         for turn in [0.0, 0.02, 0.1, 0.15] {
-            let bore = [[-turn, -1.0], [turn, -1.0]].map(unit);
+            let bore = [[turn, -1.0], [-turn, -1.0]].map(unit);
             let weight = common_normal(pin, bore).unwrap_or(f64::NAN);
             assert!((weight - 0.5).abs() < 1e-14, "{turn} {weight}");
         }
