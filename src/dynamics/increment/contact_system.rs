@@ -191,6 +191,10 @@ const LEAST: usize = 100;
 /// Constraints whose list takes no memory from the system.
 pub(super) const FEW: usize = 128;
 
+/// Constraints of a block in the mean at least: the solves of an iteration, which cost the same for any blocks, gain
+/// nothing over all of Q when blocks are smaller.
+const LEAST_BLOCK: usize = 4;
+
 /// Part of the entries of Q within the blocks at most, or blocks gain nothing.
 const WITHIN: f64 = 0.25;
 
@@ -250,7 +254,8 @@ impl ContactSystem<'_> {
             }
             let square = |count: usize| (count as f64).powi(2);
             let within: f64 = blocks.values().map(|block| square(block.len())).sum();
-            (within <= WITHIN * square(constraints.len())).then_some(blocks)
+            let are_small = within <= WITHIN * square(constraints.len());
+            (are_small && LEAST_BLOCK * blocks.len() <= constraints.len()).then_some(blocks)
         };
         let by_bodies = blocks_by(&|constraint| self.system.scope_of(constraint));
         by_bodies.or_else(|| {
