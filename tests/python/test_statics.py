@@ -220,6 +220,31 @@ def test_general_contact_finds_what_pairs_find(tmp_path: Path) -> None:
     assert np.abs(found[0] - found[1]).max() < 1e-4
 
 
+def test_every_body_of_a_stack_gets_soft_pins(tmp_path: Path) -> None:
+    """Three blocks on an elastic floor: none has all of the nearest pairs, and no increment is cut."""
+    floor = block("FLOOR", (16, 3), (4.0, 0.75), x=-1.0, y=-0.75)
+    low = block("LOW", (8, 4), (2.0, 1.0), floor)
+    middle = block("MIDDLE", (6, 3), (1.5, 0.75), low, x=0.2, y=1.0)
+    top = block("TOP", (4, 2), (1.0, 0.5), middle, x=0.45, y=1.75)
+    grids = (floor, low, middle, top)
+    pairs = [("LOW_SOLE", "FLOOR_ROOF"), ("MIDDLE_SOLE", "LOW_ROOF"), ("TOP_SOLE", "MIDDLE_ROOF")]
+    result = solve(
+        tmp_path,
+        *(grid.mesh("CPE4") for grid in grids),
+        *(grid.side_surface(f"{grid.name}_SOLE", "bottom") for grid in grids),
+        *(grid.side_surface(f"{grid.name}_ROOF", "top") for grid in grids),
+        floor.side_nodes("BASE", "bottom"),
+        elastic(YOUNG, 0.3, 1.0, *(grid.name for grid in grids)),
+        dry(0.4),
+        card("CONTACT PAIR, INTERACTION=DRY", *pairs),
+        card("BOUNDARY", ("BASE", 1, 2)),
+        static(card("DLOAD", ("", "GRAV", 10.0, 0.1, -1.0)), dt=0.5),
+    )
+    passes = result.history.solver["passes"][1:]
+    assert len(passes) == 2
+    assert passes.max() <= 5
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_a_hairpin_closes_onto_itself(tmp_path: Path, friction: float) -> None:
     """Self-contact: the ends of a strip that is bent to a U are pressed together."""

@@ -1,6 +1,8 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
+use std::collections::BTreeSet;
+
 use super::acceleration::Acceleration;
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
@@ -16,8 +18,8 @@ use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::contact::{ClosedPairs, Constraint, ConstraintKey, ConstraintSet};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
-    Workspace, add_pin_forces, difference, sum, write_difference, write_sum,
+    ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, Parts, StartVelocity,
+    StepProblem, Workspace, add_pin_forces, difference, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
 use crate::linear::largest;
@@ -187,7 +189,7 @@ const SETTLED_PIN: f64 = 1e-3;
 const HARDLY_FALLS: f64 = 0.9;
 /// Passes with the same closed pairs in which forces of pins stay after which there is no equilibrium.
 const FREE_PASSES: usize = 3;
-/// Constraints that the stiffness of pins is taken from.
+/// Constraints of a body that the stiffness of its pins is taken from.
 const NEAR: usize = 12;
 
 /// How much farther than its own motion the pins of a body go in the next step of a pass, beside that motion, `last`
@@ -237,11 +239,18 @@ impl FreePasses {
     }
 }
 
-/// The constraints with the smallest gaps in their lengths.
-fn nearest(contact: &ContactForces) -> Vec<Constraint> {
+/// The constraints of every body with the smallest gaps in their lengths.
+fn nearest(contact: &ContactForces, parts: &Parts) -> Vec<Constraint> {
     let mut all: Vec<&Constraint> = contact.constraints.iter().collect();
     all.sort_by(|a, b| (a.gap / a.scale).total_cmp(&(b.gap / b.scale)));
-    all.into_iter().take(NEAR).cloned().collect()
+    let mut of_bodies = vec![0; parts.bodies()];
+    let is_near = |constraint: &&Constraint| {
+        let bodies: BTreeSet<usize> = constraint.nodes().map(|n| parts.of_nodes()[n]).collect();
+        let is_among = bodies.iter().any(|&body| of_bodies[body] < NEAR);
+        bodies.iter().for_each(|&body| of_bodies[body] += 1);
+        is_among
+    };
+    all.into_iter().filter(is_near).cloned().collect()
 }
 
 /// An attempt at one increment.
@@ -491,7 +500,7 @@ impl<'m> Attempt<'_, 'm> {
         v: &mut Vectors,
     ) -> Result<Vec<f64>, Cause> {
         let problem = self.problem;
-        let near = nearest(contact);
+        let near = nearest(contact, problem.parts);
         let near: Vec<&Constraint> = near.iter().collect();
         let dofs: Vec<usize> = self.workspace.pins.dofs().collect();
         let of_bodies = self.workspace.pins.of_bodies();
