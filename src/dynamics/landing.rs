@@ -143,7 +143,8 @@ fn landing(
     ))
 }
 
-/// Factorises K* of the converged increment from `start`, so that patterns do not depend on the age of the factors.
+/// Factorises K* of the converged increment from `start`, so that what it is used for does not depend on the age of the
+/// factors.
 ///
 /// # Errors
 /// [`Cause::Indefinite`], or those of the solver.
@@ -161,6 +162,7 @@ pub(super) fn factorize_anew(
         are_held: false,
         out_of_balance: &[],
     };
+    (workspace.stiffness).write_rows(problem, [&start.u, &solved.d]);
     let factorized = workspace.factorize(problem, dt, motion, &closed);
     factorized.map_err(|error| problem.unsolvable(error))
 }

@@ -6,6 +6,7 @@ use stickslip::model::{
 };
 
 use crate::blocks::{Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw};
+use crate::turning::read;
 
 const TOLERANCE: f64 = 1e-4;
 
@@ -209,4 +210,30 @@ fn increments_go_with_every_rule_of_impacts() {
             }
         }
     }
+}
+
+/// Waves that are too fast for the increments do not shorten them, however small the tolerance is.
+#[test]
+fn waves_of_a_stiff_block_leave_increments_long() {
+    let mut model = bouncing_square(Settings::default());
+    automatic(&mut model, 1e-5);
+    model.steps[0].increments.dt_min = 0.0;
+    let (_, summary) = run_to_end(&model);
+    let attempts = summary.increments + summary.rejections;
+    assert!(attempts < 400, "{attempts}");
+}
+
+/// The vibrations that a fit begins with are measured beside the fit: a stiff one takes few increments.
+#[test]
+fn a_fit_takes_few_increments() {
+    let deck = include_str!("../decks/fits.inp").replace("1000., 0.3", "1.e9, 0.3");
+    let (head, _) = deck.split_once("*STEP").expect("steps");
+    let text = format!(
+        "{head}*STEP, NLGEOM\n*DYNAMIC\n0.01, 1.\n*CONTACT INTERFERENCE, SHRINK\nFOOT, TOP\n*END STEP\n"
+    );
+    let (keep, summary) = run_to_end(&read(&text));
+    let last = keep.reports.last().expect("reports");
+    assert!(last.contacts.iter().any(|contact| contact.closed > 0));
+    let attempts = summary.increments + summary.rejections;
+    assert!(attempts < 40, "{attempts}");
 }

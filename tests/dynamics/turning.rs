@@ -8,7 +8,7 @@ use stickslip::{deck, reader};
 use crate::blocks::run_to_end;
 
 /// The model of a deck.
-fn read(text: &str) -> Model {
+pub fn read(text: &str) -> Model {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
     let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
     let model = reader::build(&deck, &mut d);

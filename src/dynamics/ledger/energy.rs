@@ -219,7 +219,7 @@ impl Ledger {
         let [load, internal, inertia, contact] =
             [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
         let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
-        // (d - dt V_mid).M A of what is free, eq. (4.26)
+        // (d - dt V_mid).M A of what is free, eq. (4.27)
         if problem.integration.backward_euler {
             let beyond = |dof: usize| d[dof] - dt * (v0p[dof] + end.v[dof]) / 2.0;
             let all: f64 = (0..d.len())

@@ -14,6 +14,7 @@ use crate::contact::ClosedPairs;
 use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
 use crate::dynamics::increment::{Attempt, Failed, Path, Solved};
+use crate::dynamics::landing::factorize_anew;
 use crate::dynamics::ledger::{Accounts, Ledger, contact_violation, landings};
 use crate::dynamics::results::{
     Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
@@ -451,7 +452,8 @@ impl<'m, 'o> Runner<'m, 'o> {
             let checked = attempt.and_then(|found| {
                 Accepted::new(problem, workspace, before, found, halvings, &nominal)
             });
-            let checked = checked.and_then(|accepted| self.measured(problem, accepted, control));
+            let checked =
+                checked.and_then(|accepted| self.measured(problem, workspace, accepted, control));
             match checked {
                 Ok((accepted, error)) => {
                     let Subincrement {
@@ -487,13 +489,16 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// An accepted increment with its truncation error, where that decides the increments of the step.
+    /// An accepted increment with its truncation error, where that decides the increments of the step. An error that is
+    /// too large counts without what is too stiff for the increment.
     ///
     /// # Errors
-    /// [`Cause::Inaccurate`] where it is so large that the increment is to be repeated.
+    /// [`Cause::Inaccurate`] where it is so large that the increment is to be repeated; those of
+    /// [`factorize_anew`].
     fn measured(
         &self,
         problem: &StepProblem,
+        workspace: &mut Workspace<'m>,
         accepted: Accepted,
         control: &dyn TimeControl,
     ) -> Result<(Accepted, Option<f64>), FailedSubincrement> {
@@ -503,19 +508,30 @@ impl<'m, 'o> Runner<'m, 'o> {
         let Subincrement {
             interval, solved, ..
         } = &accepted.subincrement;
-        let error = accuracy.of(problem, &ends(&self.state, solved, interval.dt));
-        match control.largest_error(interval.dt) {
-            Some(tolerance) if error > tolerance => {
-                let failed = Failed {
-                    cause: Cause::Inaccurate { error, tolerance },
-                    course: None,
-                    worst: None,
-                    passes: accepted.subincrement.solved.passes,
-                };
-                Err(Box::new((accepted.subincrement.interval, failed)))
-            }
-            _ => Ok((accepted, Some(error))),
-        }
+        let ends = ends(&self.state, solved, interval.dt);
+        let e = accuracy.of(problem, &ends);
+        let error = accuracy.relative(problem, &ends, &e);
+        let most = control.largest_error(interval.dt);
+        let Some(tolerance) = most.filter(|&most| error > most) else {
+            return Ok((accepted, Some(error)));
+        };
+        let mut filtered = || -> Result<f64, Cause> {
+            factorize_anew(problem, workspace, (&self.state, interval.dt), solved)?;
+            let e = TruncationError::filter(problem, workspace.k(), interval.dt, &e)?;
+            Ok(accuracy.relative(problem, &ends, &e))
+        };
+        let cause = match filtered() {
+            Ok(error) if error <= tolerance => return Ok((accepted, Some(error))),
+            Ok(error) => Cause::Inaccurate { error, tolerance },
+            Err(cause) => cause,
+        };
+        let failed = Failed {
+            cause,
+            course: None,
+            worst: None,
+            passes: accepted.subincrement.solved.passes,
+        };
+        Err(Box::new((accepted.subincrement.interval, failed)))
     }
 
     /// Solves a span, or its part up to the next impact.

@@ -1,8 +1,8 @@
 //! Truncation error of an increment, from the third derivative of the motion. Section 4 of docs/theory.md, Automatic
 //! increments.
 
-use crate::dynamics::step::{StepProblem, dot};
-use crate::linear::larger;
+use crate::dynamics::step::{StepProblem, System, dot};
+use crate::linear::{LinearError, larger};
 use crate::vectors::distance;
 
 /// What the truncation error of the increments of a step is measured by.
@@ -55,21 +55,14 @@ impl TruncationError {
         }
     }
 
-    /// Error of an increment in the displacements, the largest of the bodies in the norm of their mass, beside the
-    /// largest displacement of the step so far.
+    /// Error of an increment in the displacements.
     ///
     /// ```text
-    /// e = (dt³/12) (A - A_2)/(dt/2 + dt_1 + dt_2/2),  sqrt(e.M e/m)/max |U - U_start|    eq. (4.22), eq. (4.23)
+    /// e = (dt³/12) (A - A_2)/(dt/2 + dt_1 + dt_2/2)    eq. (4.22)
     /// ```
     ///
     /// 1 being the increment before and 2 that before it: what is too stiff for the increments changes its sign in each.
-    pub fn of(&self, problem: &StepProblem, ends: &Ends) -> f64 {
-        let StepProblem {
-            mass,
-            parts,
-            unknowns,
-            ..
-        } = problem;
+    pub fn of(&self, problem: &StepProblem, ends: &Ends) -> Vec<f64> {
         let (before, since) = match &self.last[..] {
             [earlier, later] => (earlier, later.dt + earlier.dt / 2.0),
             others => (&others[0], 0.0),
@@ -77,8 +70,40 @@ impl TruncationError {
         let factor = ends.dt.powi(3) / (12.0 * (ends.dt / 2.0 + since));
         let both = ends.acceleration().zip(&before.acceleration);
         let mut e: Vec<f64> = both.map(|(a, last)| factor * (a - last)).collect();
-        unknowns.prescribed().for_each(|dof| e[dof] = 0.0);
-        let m_e = mass.times(&e);
+        (problem.unknowns.prescribed()).for_each(|dof| e[dof] = 0.0);
+        e
+    }
+
+    /// What of an error is not too stiff for increments of length `dt`, `k` being their K*.
+    ///
+    /// ```text
+    /// e <- K*^-1 (2/dt²) M e    eq. (4.24)
+    /// ```
+    ///
+    /// # Errors
+    /// Factors that cannot be used.
+    pub fn filter(
+        problem: &StepProblem,
+        mut k: System,
+        dt: f64,
+        e: &[f64],
+    ) -> Result<Vec<f64>, LinearError> {
+        let m_e = problem.mass.times(e);
+        let c = problem.integration.mass_factor(dt);
+        let force: Vec<f64> = m_e.iter().map(|m_e| c * m_e).collect();
+        let mut e = k.respond(&force)?;
+        (problem.unknowns.prescribed()).for_each(|dof| e[dof] = 0.0);
+        Ok(e)
+    }
+
+    /// The largest error of the bodies in the norm of their mass, beside the largest displacement of the step so far.
+    ///
+    /// ```text
+    /// sqrt(e.M e/m)/max |U - U_start|    eq. (4.23)
+    /// ```
+    pub fn relative(&self, problem: &StepProblem, ends: &Ends, e: &[f64]) -> f64 {
+        let StepProblem { mass, parts, .. } = problem;
+        let m_e = mass.times(e);
         let mut of_bodies = vec![[0.0; 2]; parts.bodies()];
         for (node, &body) in parts.of_nodes().iter().enumerate() {
             let dofs = 2 * node..2 * node + 2;

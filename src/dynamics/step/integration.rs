@@ -75,7 +75,7 @@ impl Integration {
         self.theta1 != self.theta2
     }
 
-    /// Factor of M in K* for increments of length `dt`: 2/dt², eq. (4.6), or 1/dt², eq. (4.25); 0 in a static step (1/time^2).
+    /// Factor of M in K* for increments of length `dt`: 2/dt², eq. (4.6), or 1/dt², eq. (4.26); 0 in a static step (1/time^2).
     pub fn mass_factor(&self, dt: f64) -> f64 {
         match (self.has_rates, self.backward_euler) {
             (false, _) => 0.0,
@@ -85,7 +85,7 @@ impl Integration {
     }
 
     /// Writes the velocity at the end of an increment of length `dt`: V1 = (2/dt) d - V0+, eq. (4.2), or
-    /// V1 = d/dt, eq. (4.24); zero in a static step.
+    /// V1 = d/dt, eq. (4.25); zero in a static step.
     pub fn end_velocity(&self, d: &[f64], v0p: &[f64], dt: f64) -> Vec<f64> {
         if !self.has_rates {
             return vec![0.0; d.len()];

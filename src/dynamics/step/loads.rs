@@ -178,7 +178,7 @@ impl<'m> Loads<'m> {
     }
 
     /// omega² int rho N^T N (x - x_axis) dOmega, the arm in the configuration of displacements `u`, on the nodes that carry
-    /// the mass, eq. (4.27).
+    /// the mass, eq. (4.28).
     fn add_centrifugal_forces(
         &self,
         elements: &Elements,
