@@ -10,8 +10,8 @@ use stickslip::elements::{Elements, Motion, TangentPart};
 use stickslip::linear::{Assembled, Transformation};
 use stickslip::materials::{Law, NeoHooke};
 use stickslip::model::{
-    Damping, Element, ElementType, Formulation, Material, Model, Scheme, Section, Settings,
-    Support, SupportMotion,
+    ContactFormulation, Damping, Element, ElementType, Formulation, Material, Model, Scheme,
+    Section, Settings, Support, SupportMotion,
 };
 
 // shared with tests/dynamics, which use all of it
@@ -154,11 +154,12 @@ fn a_sweep_takes_no_memory_after_the_first() {
 }
 
 /// Two blocks, the lower one held below, the upper one pressed on it and then sheared, with friction.
-fn pressed_and_sheared(tolerance: f64) -> Model {
+fn pressed_and_sheared(formulation: ContactFormulation, tolerance: f64) -> Model {
     let mut model = blocks::model(1e3, 0.3, 1.0);
     let lower = blocks::add_block(&mut model, [0.0, 0.0], [2.0, 0.5], (16, 32), 0.0);
     let upper = blocks::add_block(&mut model, [0.23, 0.5001], [1.5, 0.5], (13, 32), 0.0);
     blocks::add_contact(&mut model, upper.faces(0), lower.faces(2), 0.3);
+    model.contacts[0].formulation = formulation;
     let held = (0..=lower.nx).flat_map(|i| [0, 1].map(|k| (2 * lower.node(i, 0) + k, 0.0)));
     let top = (0..=upper.nx).map(|i| upper.node(i, upper.ny));
     let moved = top.flat_map(|node| [(2 * node, 0.02), (2 * node + 1, -0.01)]);
@@ -203,8 +204,8 @@ impl Observer for Counts {
 }
 
 /// All allocations and large ones of every increment but the first, with its passes and factorisations.
-fn of_increments(tolerance: f64) -> Vec<Count> {
-    let model = pressed_and_sheared(tolerance);
+fn of_increments(formulation: ContactFormulation, tolerance: f64) -> Vec<Count> {
+    let model = pressed_and_sheared(formulation, tolerance);
     assert!(8 * model.mesh.dof_count() > LARGE);
     one_thread().install(|| {
         let mut counts = Counts(Vec::with_capacity(100));
@@ -217,11 +218,12 @@ fn of_increments(tolerance: f64) -> Vec<Count> {
     })
 }
 
-#[test]
-fn passes_take_memory_for_factors_of_contacts_only_after_the_first_increment() {
-    let (few, many) = (of_increments(1e-6), of_increments(1e-12));
+/// Checks what passes take that a smaller tolerance asks for, after so many of the increments that are counted: lists of
+/// points grow for as long as there are more of them than before.
+fn check_passes(formulation: ContactFormulation, growing: usize) {
+    let [few, many] = [1e-6, 1e-12].map(|tolerance| of_increments(formulation, tolerance));
     let (mut compared, mut without) = (0, 0);
-    for (few, many) in few.into_iter().zip(many) {
+    for (few, many) in few.into_iter().zip(many).skip(growing) {
         // factors of K* are others whenever they are made anew
         if many.passes == few.passes || [few, many].iter().any(|c| c.factorizations > 0) {
             continue;
@@ -240,4 +242,14 @@ fn passes_take_memory_for_factors_of_contacts_only_after_the_first_increment() {
         without >= 5,
         "{without} increments whose passes take nothing"
     );
+}
+
+#[test]
+fn passes_take_memory_for_factors_of_contacts_only_after_the_first_increment() {
+    check_passes(ContactFormulation::NodeToSegment, 0);
+}
+
+#[test]
+fn passes_from_surface_to_surface_take_no_more() {
+    check_passes(ContactFormulation::SurfaceToSurface, 1);
 }

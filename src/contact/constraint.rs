@@ -8,16 +8,11 @@
 
 use std::array::from_fn;
 
-use smallvec::SmallVec;
-
 use super::geometry::position;
 use super::keys::{ConstraintKey, NodeAtSegment};
+use super::lists::PerDof;
 use super::targets::PairTarget;
 use super::tolerances::NOTHING;
-
-/// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, on
-/// the heap beyond.
-pub type PerDof<T> = SmallVec<[T; 8]>;
 
 /// A normal and a tangential row over the dofs of a constraint.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -33,8 +28,8 @@ impl Rows {
     #[inline]
     pub fn new(normal: &[f64], tangential: &[f64]) -> Self {
         Rows {
-            normal: SmallVec::from_slice(normal),
-            tangential: SmallVec::from_slice(tangential),
+            normal: normal.iter().copied().collect(),
+            tangential: tangential.iter().copied().collect(),
         }
     }
 }
@@ -50,18 +45,10 @@ impl<const N: usize> RowPair<N> {
     #[inline]
     fn rows(&self) -> Rows {
         Rows {
-            normal: in_place(self.normal),
-            tangential: in_place(self.tangential),
+            normal: PerDof::of(self.normal),
+            tangential: PerDof::of(self.tangential),
         }
     }
-}
-
-/// The values of N dofs, eight at most.
-#[inline]
-fn in_place<T: Copy + Default, const N: usize>(values: [T; N]) -> PerDof<T> {
-    let mut all = [T::default(); 8];
-    all[..N].copy_from_slice(&values);
-    PerDof::from_buf_and_len(all, N)
 }
 
 /// A constraint g >= 0 with Coulomb friction, linearised at the current iterate.
@@ -121,7 +108,7 @@ impl Constraint {
         let product = |row: &[f64; N]| -> f64 { row.iter().zip(&d).map(|(b, d)| b * d).sum() };
         Constraint {
             key: source.key,
-            dofs: in_place(dofs),
+            dofs: PerDof::of(dofs),
             slave_dofs: 2,
             force_rows: force.rows(),
             other_derivative_rows: (derivative != force).then(|| derivative.rows()),

@@ -10,6 +10,7 @@ use smallvec::SmallVec;
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
 use super::geometry::{ContactSurfaces, MasterArc, Positions, Projection, SurfaceArc};
 use super::keys::ConstraintKey;
+use super::lists::Recycled;
 use super::node_to_segment::{SegmentRows, rows_between};
 use super::search::{Candidate, ListedSlave};
 use super::stiffness::changes_between;
@@ -50,7 +51,7 @@ pub(super) fn find_targets(
             nodes: [centre, feature.nodes[0], feature.nodes[1], disc.arm],
             from: None,
             allowed,
-            points: Vec::new(),
+            points: Recycled::default(),
             is_of_master: false,
             round: Some(Round {
                 radius: disc.radius,

@@ -15,6 +15,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::lists::{Recycled, entries};
 use super::tolerances::{
     CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE,
 };
@@ -251,9 +252,11 @@ pub struct Edge {
     pub tangent: [f64; 2],
 }
 
+entries!(Edge);
+
 impl SlaveSegments {
     /// All faces, and after them all segments, at some positions.
-    pub fn edges(&self, positions: Positions) -> Vec<Edge> {
+    pub fn edges(&self, positions: Positions) -> Recycled<Edge> {
         let edge = |vertices: &[Vertex; 2]| {
             let ends = vertices.map(|vertex| vertex.place(|node| positions.of(node)));
             let e = difference(ends[0], ends[1]);

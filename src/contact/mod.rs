@@ -11,6 +11,7 @@ mod disc;
 mod geometry;
 mod keys;
 mod kinds;
+mod lists;
 mod node_to_corner;
 mod node_to_segment;
 mod pairing;
@@ -30,7 +31,7 @@ mod tunnelling_tests;
 pub use active_constraints::{ActiveConstraints, ConstraintSet};
 pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::{Compliance, Scope};
-pub use constraint::{Configurations, Constraint, PerDof, RowForm, Rows};
+pub use constraint::{Configurations, Constraint, RowForm, Rows};
 pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
 pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
@@ -39,6 +40,7 @@ pub use geometry::{
     contact_surfaces, project, shortest_faces,
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
+pub use lists::PerDof;
 pub use pairing::find_targets;
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal};

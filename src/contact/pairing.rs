@@ -8,6 +8,7 @@ use super::constraint::{Constraint, RowForm};
 use super::disc;
 use super::geometry::Positions;
 use super::keys::NodeAtSegment;
+use super::lists::Recycled;
 use super::search::{ListedSlave, Search};
 use super::surface_to_surface::find_points;
 use super::targets::{ContactTarget, PairTarget, SlaveNode, Targets};
@@ -111,7 +112,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         nodes: [s, a, b, c],
         from: target.from.map(|i| surfaces.segments[i]),
         allowed: listed.allowed(),
-        points: Vec::new(),
+        points: Recycled::default(),
         is_of_master: listed.is_of_master(),
         round: None,
     }

@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 use super::geometry::{ContactSurfaces, Corners, Edge, position};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
+use super::lists::{Recycled, entries};
 use super::tolerances::{
     PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
 };
@@ -279,7 +280,9 @@ pub struct Territory<'m> {
 pub(super) type Faced = SmallVec<[usize; 8]>;
 
 /// Parts [low, high] of a slave face that are over master segments.
-pub(super) type Cells = SmallVec<[(f64, f64, usize); 4]>;
+pub(super) type Cells = Recycled<(f64, f64, usize)>;
+
+entries!((f64, f64, usize));
 
 /// Segments of one run of the master that a slave face is turned to at the start of the increment, and its parts over them there.
 pub(super) struct FacedRun {
@@ -291,7 +294,7 @@ pub(super) struct FacedRun {
 /// Segments that the slave faces are turned to, for the edges and candidates that they were found with.
 #[derive(Default)]
 struct FacedAtStart {
-    edges: Vec<Edge>,
+    edges: Recycled<Edge>,
     runs: Vec<FacedRun>,
 }
 
@@ -341,7 +344,7 @@ impl<'m> Territory<'m> {
     /// segments have these edges: passes of one increment find them once.
     pub(super) fn with_faced<T>(
         &self,
-        edges: Vec<Edge>,
+        edges: Recycled<Edge>,
         find: impl FnOnce(&[Edge]) -> Vec<FacedRun>,
         then: impl FnOnce(&[Edge], &[FacedRun]) -> T,
     ) -> T {

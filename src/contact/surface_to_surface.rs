@@ -4,14 +4,17 @@
 //! A point is a node that is not there: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in
 //! the positions of the nodes, so that rows and stiffness are those of a node on a segment.
 
+use std::array::from_fn;
+
 use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
 use smallvec::SmallVec;
 
-use super::constraint::{Configurations, Constraint, PerDof, RowForm, RowPair, Rows};
+use super::constraint::{Configurations, Constraint, RowForm, RowPair, Rows};
 use super::geometry::{
     ContactSurfaces, Edge, Positions, Projection, SlaveSegments, between, project,
 };
 use super::keys::ConstraintKey;
+use super::lists::{PerDof, Recycled};
 use super::node_to_segment::{SegmentRows, rows_between, sum_of};
 use super::search::{Cells, Faced, FacedRun, Territory};
 use super::stiffness::changes_between;
@@ -28,7 +31,7 @@ struct Mean {
     /// Segment of the point of the largest hat function, and this value.
     nearest: (usize, f64),
     covered: f64,
-    points: Vec<SurfacePoint>,
+    points: Recycled<SurfacePoint>,
 }
 
 /// Adds the points of all slave nodes of a contact between start and iterate, a constraint for each side of a node
@@ -90,9 +93,9 @@ pub(super) fn find_points(
 
 /// The points of all slave faces, each with the segment that it is over, its weight w_q (length).
 struct PointsOfFaces {
-    points: Vec<(usize, SurfacePoint)>,
+    points: Recycled<(usize, SurfacePoint)>,
     /// Where those of every face begin, and the number of all.
-    starts: Vec<usize>,
+    starts: Recycled<usize>,
 }
 
 impl PointsOfFaces {
@@ -100,9 +103,11 @@ impl PointsOfFaces {
     fn new(finder: &Finder, faced: &[FacedRun], now: &[Edge], form: RowForm) -> Self {
         let faces = finder.slave.ends.len();
         let mut all = PointsOfFaces {
-            points: Vec::with_capacity(8 * faced.len()),
-            starts: Vec::with_capacity(faces + 1),
+            points: Recycled::with_room(),
+            starts: Recycled::with_room(),
         };
+        // room for those of the increments that follow too
+        all.points.reserve(16 * faced.len());
         let mut faced = faced.iter().peekable();
         for face in 0..faces {
             all.starts.push(all.points.len());
@@ -142,7 +147,7 @@ impl PointsOfFaces {
                         run,
                         nearest: (*segment, 0.0),
                         covered: 0.0,
-                        points: Vec::new(),
+                        points: Recycled::with_room(),
                     });
                     means.len() - 1
                 });
@@ -212,12 +217,12 @@ impl<'a> Finder<'a> {
     ) {
         let face = faced.face;
         let [start, now] = [&faced.cells, &self.cells(face, &faced.segments, edges)];
-        let mut cuts: SmallVec<[f64; 32]> = SmallVec::new();
+        let mut cuts = Recycled::with_room();
         let of_start = start.iter().filter(|_| form == RowForm::DiscreteGradient);
         for &(low, high, _) in now.iter().chain(of_start) {
             cuts.extend([low, high]);
         }
-        cuts.sort_by(f64::total_cmp);
+        cuts.sort_unstable_by(f64::total_cmp);
         for cell in cuts.windows(2) {
             let (part, middle) = (cell[1] - cell[0], f64::midpoint(cell[0], cell[1]));
             if part <= LEAST_CELL {
@@ -369,7 +374,7 @@ impl<'a> Finder<'a> {
             let m = [n[0] + other[0], n[1] + other[1]];
             -cross(difference(v, x1), m) / cross(difference(x1, x2), m)
         };
-        let mut cells = Cells::new();
+        let mut cells = Cells::with_room();
         for &i in segments {
             let [a, b] = edge(i).ends;
             let at_a = eta(i, a, self.surfaces.previous[i]);
@@ -502,7 +507,7 @@ pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
     if source.points.iter().any(|q| q.origin != Origin::Outside) {
         source.points.retain(|q| q.origin != Origin::Outside);
     }
-    for point in &mut source.points {
+    for point in source.points.iter_mut() {
         if let Origin::Other([a, b]) = point.origin {
             (point.vertices[2], point.vertices[3]) = (a, b);
         }
@@ -514,12 +519,12 @@ pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
 }
 
 /// Nodes of a constraint, its slave nodes first, of them the one that it is named by; and the number of slave nodes.
-fn nodes(source: &PairTarget) -> (SmallVec<[usize; 16]>, usize) {
-    let mut nodes: SmallVec<[usize; 16]> = SmallVec::new();
+fn nodes(source: &PairTarget) -> (Recycled<usize>, usize) {
+    let mut nodes = Recycled::with_room();
     nodes.push(source.nodes[0]);
     let mut slaves = 1;
     for ends in [0..2, 2..4] {
-        for point in &source.points {
+        for point in source.points.iter() {
             for vertex in &point.vertices[ends.clone()] {
                 vertex.each_share(|node, _| {
                     if !nodes.contains(&node) {
@@ -542,10 +547,11 @@ fn nodes(source: &PairTarget) -> (SmallVec<[usize; 16]>, usize) {
 /// ```
 pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
     let (nodes, slaves) = nodes(&source);
-    // of every node the entries of the force rows n, t and the derivative rows n, t
-    let mut sums: SmallVec<[[[f64; 2]; 4]; 16]> = SmallVec::from_elem([[0.0; 2]; 4], nodes.len());
+    // force rows n, t and derivative rows n, t
+    let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
+    let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
     let (mut gap, mut scale) = (0.0, 0.0);
-    for point in &source.points {
+    for point in source.points.iter() {
         let (rows, _) = point.rows(at);
         gap += point.weight * rows.projection.gap;
         scale += point.weight * rows.projection.length;
@@ -556,9 +562,11 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
             &rows.derivative.tangential,
         ];
         point.each_share(&nodes, |place, own, share| {
-            for (sum, row) in sums[place].iter_mut().zip(of_point) {
+            let part = point.weight * share;
+            for (sums, row) in at_nodes.iter_mut().zip(of_point) {
+                let sum = &mut sums[place];
                 for i in 0..2 {
-                    sum[i] += point.weight * share * row[2 * own + i];
+                    sum[i] += part * row[2 * own + i];
                 }
             }
         });
@@ -568,8 +576,7 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         let motions = dofs.iter().map(|&dof| at.u[dof] - at.u0[dof]);
         row.iter().zip(motions).map(|(b, d)| b * d).sum()
     };
-    let row = |k: usize| -> PerDof<f64> { sums.iter().flat_map(|sum| sum[k]).collect() };
-    let [n, t, gn, gt] = [0, 1, 2, 3].map(row);
+    let [n, t, gn, gt] = sums;
     let [allowed_before, allowed] = source.allowed;
     let (mut start_gap, slip) = (gap - product(&n) + allowed_before, product(&t));
     gap += allowed;
@@ -680,12 +687,14 @@ mod tests {
             origin,
         };
         PairTarget {
-            points: vec![
+            points: [
                 point([0, 1], 0.3, 0.1, [4, 5], Origin::Same),
                 point([0, 1], 0.9, 0.4, [4, 5], Origin::Same),
                 point([1, 2], 0.15, 0.3, [3, 4], Origin::Other([4, 5].map(vertex))),
                 point([1, 2], 0.6, 0.2, [3, 4], Origin::Same),
-            ],
+            ]
+            .into_iter()
+            .collect(),
             ..testing::pair(ContactTarget::face(0), [1, 4, 5, 5])
         }
     }
@@ -699,7 +708,8 @@ mod tests {
     /// end.
     fn gap(u: &[f64], is_start: bool) -> f64 {
         let at = |node: usize| [X[node][0] + u[2 * node], X[node][1] + u[2 * node + 1]];
-        let gaps = source().points.into_iter().map(|q| {
+        let source = source();
+        let gaps = source.points.iter().map(|q| {
             let [x1, x2, a, b] = match q.origin {
                 Origin::Other([a, b]) if is_start => [q.vertices[0], q.vertices[1], a, b],
                 _ => q.vertices,

@@ -12,6 +12,7 @@ use smallvec::{SmallVec, smallvec};
 use super::crossing::{Crossing, Direction, Motion, crossings};
 use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Projection, Vertex, project};
 use super::keys::ConstraintKey;
+use super::lists::{Recycled, entries};
 use super::search::Candidate;
 use super::tolerances::{
     CLOSED_GAP, CONE_MISS, CORNER_TIP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, GENTLE_SINE,
@@ -71,6 +72,8 @@ pub struct SurfacePoint {
     /// Where it was at the start of the increment.
     pub origin: Origin,
 }
+
+entries!(SurfacePoint, (usize, SurfacePoint));
 
 impl SurfacePoint {
     /// Nodes whose positions it depends on; some may come twice.
@@ -136,7 +139,7 @@ pub struct PairTarget {
     /// Overlap that a fit allows the node at the start of the increment and at its end (length), eq. (3.15).
     pub allowed: [f64; 2],
     /// Points whose gaps are averaged, from surface to surface; none of a node that meets a segment or corner.
-    pub points: Vec<SurfacePoint>,
+    pub points: Recycled<SurfacePoint>,
     /// Whether the slave node is a corner of the contact's master.
     pub is_of_master: bool,
     /// How a disc meets the master, if the slave is the centre of one; its nodes are s, a, b and one that turns with it.
@@ -147,7 +150,7 @@ impl PairTarget {
     /// The same target, whatever held the node at the start.
     pub(super) fn untilted(self) -> Self {
         let mut points = self.points;
-        for point in &mut points {
+        for point in points.iter_mut() {
             point.origin = Origin::Same;
         }
         PairTarget {

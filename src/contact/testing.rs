@@ -3,6 +3,7 @@
 use super::closed_pairs::{ClosedPair, ClosedPairs};
 use super::constraint::{Constraint, Rows};
 use super::keys::{ConstraintKey, SlaveKey};
+use super::lists::Recycled;
 use super::targets::ContactTarget;
 use super::targets::PairTarget;
 use crate::lcp::ContactState;
@@ -21,7 +22,7 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
         nodes,
         from: None,
         allowed: [0.0; 2],
-        points: Vec::new(),
+        points: Recycled::default(),
         is_of_master: false,
         round: None,
     }
