@@ -15,7 +15,7 @@
 use nalgebra::{Matrix4, Vector4};
 
 use super::points::{OfPoints, Point, as_strain};
-use super::stresses::{Compatible, Rows, Stresses, add_products, size};
+use super::stresses::{Compatible, Rows, Stresses, add_products, energy_change, size};
 use crate::elements::formulation::smaller;
 use crate::elements::solid::MAX_DOFS;
 use crate::materials::symmetric::{IDENTITY, cofactor, dyad, product};
@@ -112,6 +112,36 @@ impl Dilatation {
         all.map(of_point).collect()
     }
 
+    /// Changes of the strains of the material at every point from those of the displacements, with a round-off that is
+    /// relative to these, C_m being the mean of C0 and C1:
+    ///
+    /// ```text
+    /// dEbar = (r0 + r1)/2 dE + C_m/2 dr,  dr = r0 (exp(2/3 dL) - 1),  dL = ln(1 + dtheta/theta0) - ln(1 + dJ/J0),
+    /// dJ = (cof C_m : 2 dE + det(2 dE)/4)/(J0 + J1),  dtheta = sum psi_k int psi_k dJ dOmega
+    /// ```
+    fn changes(
+        &self,
+        points: &[Point],
+        [start, end]: [&[Dilated]; 2],
+        changes: &[Symmetric],
+    ) -> OfPoints<Symmetric> {
+        let grown = |((at0, at1), de): ((&Dilated, &Dilated), &Symmetric)| {
+            let (c, d) = ((at0.c + at1.c) / 2.0, de * 2.0);
+            let determinant = (d.x * d.y - d.w * d.w) * d.z;
+            (contract(&cofactor(&c), &d) + determinant / 4.0) / (at0.j + at1.j)
+        };
+        let all = || start.iter().zip(end).zip(changes);
+        let dj: OfPoints<f64> = all().map(grown).collect();
+        let dtheta = self.project(points, dj.iter().copied());
+        let of_point = |(((at0, at1), de), (dj, dtheta)): (_, (&f64, &f64))| {
+            let (at0, at1): (&Dilated, &Dilated) = (at0, at1);
+            let dl = (dtheta / at0.theta).ln_1p() - (dj / at0.j).ln_1p();
+            let dr = at0.ratio * (2.0 / 3.0 * dl).exp_m1();
+            de * ((at0.ratio + at1.ratio) / 2.0) + (at0.c + at1.c) * (dr / 4.0)
+        };
+        all().zip(dj.iter().zip(&dtheta)).map(of_point).collect()
+    }
+
     /// p - a/J at every point, from stresses Sbar of the material (force/length^2).
     fn pressures(&self, points: &[Point], dilated: &[Dilated], s: &[Symmetric]) -> OfPoints<f64> {
         let a = |(at, s): (&Dilated, &Symmetric)| at.ratio * contract(s, &at.c) / 3.0;
@@ -142,6 +172,9 @@ impl Dilatation {
         } else {
             end.iter().map(|at| Strains::At(at.strain)).collect()
         };
+        let changes = compatible
+            .is_increment
+            .then(|| self.changes(points, [&start, &end], &compatible.changes()));
         let middle = match compatible.is_increment {
             true => self.dilated(points, &compatible.halfway()),
             false => end,
@@ -159,15 +192,9 @@ impl Dilatation {
         let mut s: OfPoints<Symmetric> = all
             .map(|((at, own), pressure)| own * at.ratio + at.inverse * (pressure * at.j))
             .collect();
-        if compatible.is_increment {
-            let works = points.iter().zip(&strains).enumerate();
-            let works = works.map(|(p, (point, strains))| match strains {
-                Strains::At(_) => 0.0,
-                Strains::Between(e0, e1) => {
-                    contract(&material.ring_stress(p, strains), &(e1 - e0)) * point.volume
-                }
-            });
-            compatible.do_work(works.sum(), points, &mut s);
+        if let Some(changes) = changes {
+            let work = energy_change(points, material, strains.iter().cloned(), &changes);
+            compatible.do_work(work, points, &mut s);
         }
         Stresses {
             strains,

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
 
 use super::points::{OfPoints, Point, as_strain, section};
-use super::stresses::{Compatible, Rows, Stresses, size};
+use super::stresses::{Compatible, Rows, Stresses, energy_change, size};
 use crate::elements::enhanced_strain::{alternating, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
@@ -191,7 +191,7 @@ impl Enhanced {
             let ends = [from, to].map(|alpha| self.enhanced(compatible, alpha));
             let none = compatible.iter().map(|_| Symmetric::zeros());
             let changes = self.enhanced(&none.collect::<OfPoints<_>>(), &(to - from));
-            energy_change(points, material, &ends, &changes)
+            energy_change(points, material, between(&ends), &changes)
         };
         least(derivatives, change, last).unwrap_or(Alpha::from_element(f64::NAN))
     }
@@ -244,9 +244,8 @@ impl Enhanced {
             let middle = self.enhanced(&middle, &least(&middle));
             strains = compatible.strains(ends[0].iter(), ends[1].iter());
             tangent_at = middle.into_iter().map(Strains::At).collect();
-            let changes: OfPoints<Symmetric> = c1.iter().zip(c0).map(|(e1, e0)| e1 - e0).collect();
-            let changes = self.enhanced(&changes, &(alpha1 - alpha0));
-            work = Some(energy_change(points, material, &ends, &changes));
+            let changes = self.enhanced(&compatible.changes(), &(alpha1 - alpha0));
+            work = Some(energy_change(points, material, between(&ends), &changes));
         }
         let stresses = tangent_at.iter().enumerate();
         let mut s: OfPoints<Symmetric> =
@@ -327,23 +326,13 @@ impl Enhanced {
     }
 }
 
+/// From the strains at the start to those at the end.
+fn between([e0, e1]: &[OfPoints<Symmetric>; 2]) -> impl Iterator<Item = Strains<Symmetric>> {
+    let ends = e0.iter().zip(e1);
+    ends.map(|(e0, e1)| Strains::Between(*e0, *e1))
+}
+
 /// Largest component of strains.
 fn largest(e: &[Symmetric]) -> f64 {
     e.iter().fold(0.0, |most, e| most.max(e.amax()))
-}
-
-/// sum v (W(E1) - W(E0)), with a round-off that is relative to the changes of the strains. They are given beside the
-/// strains, whose difference has the round-off of the strains.
-fn energy_change(
-    points: &[Point],
-    material: &impl RingStressAtPoints,
-    [e0, e1]: &[OfPoints<Symmetric>; 2],
-    changes: &[Symmetric],
-) -> f64 {
-    let all = points.iter().zip(changes).enumerate();
-    let terms = all.map(|(p, (point, change))| {
-        let s = material.ring_stress(p, &Strains::Between(e0[p], e1[p]));
-        contract(&s, change) * point.volume
-    });
-    terms.sum()
 }

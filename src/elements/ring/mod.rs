@@ -485,6 +485,38 @@ mod tests {
     }
 
     #[test]
+    fn the_force_of_a_small_increment_has_the_round_off_of_the_force() {
+        // that of the strains over their change would be 1e-7 of the force
+        for (ring, mesh) in rings() {
+            let name = mesh.elements[0].element_type;
+            for law in laws() {
+                let law = law.in_plane(Plane::Revolution);
+                let (c, n) = (Committed::new(&law, &[]), ring.nodes.len());
+                for size in [1e-8, 1e-9, 1e-10] {
+                    let (u0, d) = (displacements(n, 5), displacements(n, 11));
+                    let moved = |part: f64| -> Vec<f64> {
+                        let all = u0.iter().zip(&d);
+                        all.map(|(u, d)| u + part * size * d).collect()
+                    };
+                    let (u1, middle) = (moved(1.0), moved(0.5));
+                    let between = Motion {
+                        start: Some(&u0),
+                        ..Motion::at(&u1, &[])
+                    };
+                    let (found, exact) = (
+                        ring.force(&c, between).0,
+                        ring.force(&c, Motion::at(&middle, &[])).0,
+                    );
+                    let most = exact.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+                    let error = found.iter().zip(&exact).map(|(a, b)| (a - b).abs());
+                    let error = error.fold(0.0, f64::max);
+                    assert!(error < 1e-13 * most, "{name} {size} {error} {most}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn between_two_configurations_the_force_does_the_work_of_the_energy() {
         for (ring, _) in rings() {
             for law in laws() {

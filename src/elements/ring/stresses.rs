@@ -22,6 +22,12 @@ impl Compatible {
         ends.map(|(e0, e1)| (e0 + e1) / 2.0).collect()
     }
 
+    /// dE = E1 - E0
+    pub fn changes(&self) -> OfPoints<Symmetric> {
+        let ends = self.start.iter().zip(&self.end);
+        ends.map(|(e0, e1)| e1 - e0).collect()
+    }
+
     /// Strains of a material from one list to another, those of the start and of the end.
     pub fn strains<'a>(
         &self,
@@ -37,8 +43,7 @@ impl Compatible {
 
     /// S_g = S_g + f/(sum v dE:dE) dE_g, f = work - sum v S:dE, eq. (2.29): stresses that do a work in an increment.
     pub fn do_work(&self, work: f64, points: &[Point], s: &mut [Symmetric]) {
-        let changes = self.end.iter().zip(&self.start).map(|(e1, e0)| e1 - e0);
-        let changes: OfPoints<Symmetric> = changes.collect();
+        let changes = self.changes();
         let (mut f, mut squares, mut volume) = (work, 0.0, 0.0);
         for ((point, change), s) in points.iter().zip(&changes).zip(s.iter()) {
             f -= contract(s, change) * point.volume;
@@ -77,6 +82,21 @@ impl Stresses {
             determinant: f64::INFINITY,
         }
     }
+}
+
+/// sum v (W(E1) - W(E0)), with a round-off that is relative to the changes of the strains. They are given beside the
+/// strains, whose difference has the round-off of the strains.
+pub(super) fn energy_change(
+    points: &[Point],
+    material: &impl RingStressAtPoints,
+    strains: impl Iterator<Item = Strains<Symmetric>>,
+    changes: &[Symmetric],
+) -> f64 {
+    let all = points.iter().zip(changes).zip(strains).enumerate();
+    let terms = all.map(|(p, ((point, change), strains))| {
+        contract(&material.ring_stress(p, &strains), change) * point.volume
+    });
+    terms.sum()
 }
 
 /// Rows of dE (11, 22, 33, 2*12) by the displacements of an element, one vector for each.
