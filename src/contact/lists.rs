@@ -1,5 +1,5 @@
-//! Lists whose memory is used again. A pass makes constraints with as many points and dofs as the pass before, whose
-//! constraints it drops: lists of surface-to-surface contact take over the memory of those that were dropped before them.
+//! Lists whose memory is used again. Every pass drops the constraints of the pass before and makes new ones, with about
+//! as many points and dofs. A new list begins in the memory of one that was dropped.
 
 use std::cell::RefCell;
 use std::fmt;

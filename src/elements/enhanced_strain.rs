@@ -511,7 +511,7 @@ mod tests {
 
     #[test]
     fn the_force_of_a_small_increment_has_the_round_off_of_the_force() {
-        // that of the strains over their change would be 1e-7 of the force
+        // The difference of two strains has the round-off of the strains: up to 1e-7 of the force.
         for law in laws() {
             for size in [1e-8, 1e-9, 1e-10] {
                 let (u0, d) = (displacements(5), displacements(11) * size);

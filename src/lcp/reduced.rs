@@ -44,7 +44,7 @@ const UNKNOWNS_PER_SOLVE: usize = 24;
 type Solution<'a> = (List<'a, f64>, List<'a, f64>);
 
 impl Corrections {
-    /// With the factors of another Q, in a system of the given size: as long as the residual falls to round-off.
+    /// Corrections with the factors of another Q, of which a system of the given size takes more before it gives up.
     fn kept(size: usize) -> Self {
         let most = KEPT_SOLVES.max(size / UNKNOWNS_PER_SOLVE);
         Corrections {
