@@ -13,7 +13,7 @@ use super::shapes::{
     QuadraticTriangle, Quadrilateral, ReducedSerendipity, Serendipity, Tri3, Tri6, Triangle,
 };
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
-use super::{block, formulation};
+use super::{block, enhanced_strain, formulation};
 use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, RingStressAtPoints, StressAtPoints};
 use crate::model::{ElementType, Formulation, Model, Shape, Thickness};
 
@@ -110,17 +110,18 @@ impl AnyElement {
         with_element!(self, element => element.points())
     }
 
-    /// Number of internal variables of all points and hourglass modes with a law.
+    /// Number of internal variables of all points with a law, and in metals of the hourglass modes or of the element's strains.
     pub fn variables(&self, law: &PlaneLaw) -> usize {
-        let of_modes = match self {
+        let own = match self {
             AnyElement::Quad4Reduced(_) => variables(2),
-            AnyElement::Ring(ring) => ring.hourglass_variables(),
+            AnyElement::Quad4Enhanced(_) => enhanced_strain::STRAINS,
+            AnyElement::Ring(ring) => ring.own_variables(),
             _ => 0,
         };
         let of_point = law.variables();
         // at the start all are zero
         let is_metal = law.yield_stress(&vec![0.0; of_point]).is_some();
-        self.points() * of_point + if is_metal { of_modes } else { 0 }
+        self.points() * of_point + if is_metal { own } else { 0 }
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.

@@ -1,6 +1,7 @@
 //! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990), which bends without locking: four
 //! strains of the element beside those of the displacements make its stored energy least. They are no state: they
-//! follow from the displacements by Newton's method in the element, eq. (2.28). Section 2 of docs/theory.md.
+//! follow from the displacements by Newton's method in the element, eq. (2.28), which begins in metals with those of the
+//! last increment. Section 2 of docs/theory.md.
 //!
 //! # Derivation
 //!
@@ -16,14 +17,15 @@
 
 use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3, Vector4};
 
-use smallvec::SmallVec;
-
 use super::formulation::{
     Configuration, Formulation, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::local_solution::{LAST_STEP, least, zero};
 use crate::materials::{Committed, Strains, StressAtPoints};
+
+/// Number of strains of the element.
+pub(super) const STRAINS: usize = 4;
 
 /// Strains of the displacements and four of the element.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,13 +159,13 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         (slope, k)
     }
 
-    /// alpha with which the energy is least at strains of the displacements, eq. (2.28). NaN where the local solution does
-    /// not converge.
+    /// alpha with which the energy is least at strains of the displacements, eq. (2.28), sought from a first one on. NaN
+    /// where the local solution does not converge.
     fn least(
         &self,
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
-        compatible: &[Matrix2<f64>; P],
+        (compatible, first): (&[Matrix2<f64>; P], Vector4<f64>),
     ) -> Vector4<f64> {
         let last = LAST_STEP * largest(compatible) + f64::EPSILON;
         let derivatives = |alpha: &Vector4<f64>| {
@@ -174,7 +176,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
             let ends = [from, to].map(|alpha| self.enhanced(compatible, alpha));
             energy_change(element, material, &ends, |p| self.strain(p, &(to - from)))
         };
-        least(derivatives, change, last).unwrap_or(Vector4::from_element(f64::NAN))
+        least(first, derivatives, change, last).unwrap_or(Vector4::from_element(f64::NAN))
     }
 
     /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own,
@@ -218,6 +220,13 @@ fn energy_change<const N: usize, const P: usize>(
         .sum()
 }
 
+/// alpha of the last committed increment, from which that of a metal is sought: the energy may have several minima, and the
+/// element follows one. Zero in other materials.
+fn committed<const P: usize>(material: &impl StressAtPoints) -> Vector4<f64> {
+    let own = material.yielding(P);
+    own.map_or_else(Vector4::zeros, |(_, own)| Vector4::from_column_slice(own))
+}
+
 /// What a configuration gives at all points.
 struct States<const P: usize> {
     states: [PointState; P],
@@ -237,7 +246,8 @@ fn states<const N: usize, const P: usize>(
         Configuration::Between(u0, u1) => [u0, u1],
     };
     let compatible = u.map(|u| modes.compatible(element, u));
-    let least = |e: &[Matrix2<f64>; P]| modes.least(element, material, e);
+    let first = committed::<P>(material);
+    let least = |e: &[Matrix2<f64>; P]| modes.least(element, material, (e, first));
     let (strains, tangent_at): ([Strains; P], [Strains; P]);
     let mut s: [Matrix2<f64>; P];
     match configuration {
@@ -310,9 +320,9 @@ fn stored<const N: usize, const P: usize>(
     modes: &Modes<N, P>,
     element: &Reference<N, P>,
     material: &Committed,
-    compatible: &[Matrix2<f64>; P],
+    (compatible, alpha): (&[Matrix2<f64>; P], &Vector4<f64>),
 ) -> f64 {
-    let e = modes.enhanced(compatible, &modes.least(element, material, compatible));
+    let e = modes.enhanced(compatible, alpha);
     let points = element.points.iter().enumerate();
     points
         .map(|(p, point)| material.stored_energy(p, &e[p]) * point.volume)
@@ -321,7 +331,7 @@ fn stored<const N: usize, const P: usize>(
 
 impl Formulation for EnhancedStrain {
     /// Between two configurations D is what Phi has more than the stored energy: that of the points alone would have an
-    /// error of first order in alpha.
+    /// error of first order in alpha. alpha is written behind the variables of the points.
     fn update<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &Committed,
@@ -330,7 +340,6 @@ impl Formulation for EnhancedStrain {
     ) -> f64 {
         let modes = Modes::new(element);
         let states = states(&modes, element, material, configuration).states;
-        let before: SmallVec<[f64; 64]> = SmallVec::from_slice(updated);
         let (mut of_points, mut work) = (0.0, 0.0);
         for (p, (point, state)) in element.points.iter().zip(&states).enumerate() {
             of_points += material.update(p, &state.strains, updated) * point.volume;
@@ -338,15 +347,25 @@ impl Formulation for EnhancedStrain {
                 work += material.stress(p, &state.strains).dot(&(e1 - e0)) * point.volume;
             }
         }
-        let Configuration::Between(u0, u1) = configuration else {
+        let (Configuration::Between(u0, u1), Some(own)) =
+            (configuration, updated.len().checked_sub(STRAINS))
+        else {
             return of_points;
         };
-        if before.as_slice() == updated {
-            return 0.0;
-        }
         let [c0, c1] = [u0, u1].map(|u| modes.compatible(element, u));
-        work + stored(&modes, element, material, &c0)
-            - stored(&modes, element, &material.with(updated), &c1)
+        let first = committed::<P>(material);
+        let at_end = modes.least(element, material, (&c1, first));
+        let after = material.with(updated);
+        let alpha = modes.least(element, &after, (&c1, at_end));
+        let dissipated = if material.are_first_variables(&updated[..own]) {
+            0.0
+        } else {
+            let before = modes.least(element, material, (&c0, first));
+            work + stored(&modes, element, material, (&c0, &before))
+                - stored(&modes, element, &after, (&c1, &alpha))
+        };
+        updated[own..].copy_from_slice(alpha.as_slice());
+        dissipated
     }
 
     fn for_each_state<const N: usize, const P: usize>(
@@ -536,7 +555,7 @@ mod tests {
         let metals = [metal(0.0), metal(0.5)].map(Law::Plastic);
         let planes = [Plane::Strain, Plane::Stress];
         for law in (metals.iter()).flat_map(|law| planes.map(|plane| law.in_plane(plane))) {
-            let z0 = vec![0.0; 4 * law.variables()];
+            let z0 = vec![0.0; 4 * law.variables() + STRAINS];
             let material = Committed::new(&law, &z0);
             let force = |configuration: &Configuration<4>| {
                 EnhancedStrain::internal_force::<4, 4>(&quad(), &material, configuration).0

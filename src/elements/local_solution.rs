@@ -10,15 +10,15 @@ pub(super) const LAST_STEP: f64 = 1e-8;
 /// Part of the slope by which a step has to lower the energy.
 const DESCENT: f64 = 1e-4;
 
-/// Values that make an energy least, eq. (2.28), from zero on: Newton's method with a line search, the eigenvalues of the
+/// Values that make an energy least, eq. (2.28), from some `alpha` on: Newton's method with a line search, the eigenvalues of the
 /// stiffness taken positive. `derivatives` gives slope and stiffness, `change` the energy of the second values less that
 /// of the first; the solution ends with a step of the size `last`. None where it does not converge.
 pub(super) fn least<const A: usize>(
+    mut alpha: SVector<f64, A>,
     derivatives: impl Fn(&SVector<f64, A>) -> (SVector<f64, A>, SMatrix<f64, A, A>),
     change: impl Fn(&SVector<f64, A>, &SVector<f64, A>) -> f64,
     last: f64,
 ) -> Option<SVector<f64, A>> {
-    let mut alpha = SVector::<f64, A>::zeros();
     for _ in 0..MOST_STEPS {
         let (slope, stiffness) = derivatives(&alpha);
         let step = descent(stiffness, &slope)?;

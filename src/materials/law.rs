@@ -234,9 +234,9 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         Committed::new(self.law, variables)
     }
 
-    /// Whether internal variables are those of the element.
-    pub fn are_variables(&self, variables: &[f64]) -> bool {
-        self.variables == variables
+    /// Whether the internal variables of the element begin with some.
+    pub fn are_first_variables(&self, variables: &[f64]) -> bool {
+        self.variables.starts_with(variables)
     }
 
     /// Internal variables of a point among those of the element.

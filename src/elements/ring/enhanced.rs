@@ -174,13 +174,19 @@ impl Enhanced {
         (slope, stiffness)
     }
 
-    /// alpha with which the energy is least at strains of the displacements, eq. (2.28). NaN where the local solution does
-    /// not converge.
+    /// alpha of the last committed increment, from which that of a metal is sought; zero in other materials.
+    fn committed(&self, material: &impl RingStressAtPoints) -> Alpha {
+        let own = material.ring_yielding(self.strains.len());
+        own.map_or_else(Alpha::zeros, |(_, own)| Alpha::from_column_slice(own))
+    }
+
+    /// alpha with which the energy is least at strains of the displacements, eq. (2.28), sought from a first one on. NaN
+    /// where the local solution does not converge.
     fn least(
         &self,
         points: &[Point],
         material: &impl RingStressAtPoints,
-        compatible: &[Symmetric],
+        (compatible, first): (&[Symmetric], Alpha),
     ) -> Alpha {
         let last = LAST_STEP * largest(compatible) + f64::EPSILON;
         let derivatives = |alpha: &Alpha| {
@@ -193,7 +199,7 @@ impl Enhanced {
             let changes = self.enhanced(&none.collect::<OfPoints<_>>(), &(to - from));
             energy_change(points, material, between(&ends), &changes)
         };
-        least(derivatives, change, last).unwrap_or(Alpha::from_element(f64::NAN))
+        least(first, derivatives, change, last).unwrap_or(Alpha::from_element(f64::NAN))
     }
 
     /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own.
@@ -222,7 +228,8 @@ impl Enhanced {
         material: &impl RingStressAtPoints,
         compatible: &Compatible,
     ) -> Stresses {
-        let least = |e: &[Symmetric]| self.least(points, material, e);
+        let first = self.committed(material);
+        let least = |e: &[Symmetric]| self.least(points, material, (e, first));
         let (strains, tangent_at): (OfPoints<Strains<Symmetric>>, OfPoints<Strains<Symmetric>>);
         let mut work = None;
         if !compatible.is_increment {
@@ -292,37 +299,45 @@ impl Enhanced {
     }
 
     /// D of an increment, what the potential has more than the stored energy: that of the points alone would have an error
-    /// of first order in alpha (force length).
-    pub fn dissipated(
+    /// of first order in alpha (force length). `updated` has the variables of the points at the end already; alpha is written
+    /// behind them.
+    pub fn update(
         &self,
         points: &[Point],
-        (material, updated): (&Committed, &[f64]),
+        (material, updated): (&Committed, &mut [f64]),
         compatible: &Compatible,
         stresses: &Stresses,
     ) -> f64 {
-        if material.are_variables(updated) {
+        let Some(own) = updated.len().checked_sub(STRAINS) else {
             return 0.0;
-        }
-        let stored = |material: &Committed, compatible: &[Symmetric]| -> f64 {
-            let e = self.enhanced(compatible, &self.least(points, material, compatible));
+        };
+        let first = self.committed(material);
+        let at_end = self.least(points, material, (&compatible.end, first));
+        let after = material.with(updated);
+        let alpha = self.least(points, &after, (&compatible.end, at_end));
+        let stored = |material: &Committed, compatible: &[Symmetric], alpha: &Alpha| -> f64 {
+            let e = self.enhanced(compatible, alpha);
             let energies = points.iter().zip(&e).enumerate();
             energies
                 .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
                 .sum()
         };
-        let work: f64 = stresses
-            .strains
-            .iter()
-            .enumerate()
-            .map(|(p, strains)| match strains {
+        let dissipated = if material.are_first_variables(&updated[..own]) {
+            0.0
+        } else {
+            let before = self.least(points, material, (&compatible.start, first));
+            let strains = stresses.strains.iter().enumerate();
+            let work = strains.map(|(p, strains)| match strains {
                 Strains::At(_) => 0.0,
                 Strains::Between(e0, e1) => {
                     contract(&material.ring_stress(p, strains), &(e1 - e0)) * points[p].volume
                 }
-            })
-            .sum();
-        work + stored(material, &compatible.start)
-            - stored(&material.with(updated), &compatible.end)
+            });
+            work.sum::<f64>() + stored(material, &compatible.start, &before)
+                - stored(&after, &compatible.end, &alpha)
+        };
+        updated[own..].copy_from_slice(alpha.as_slice());
+        dissipated
     }
 }
 
