@@ -1,7 +1,9 @@
 """What a case of the verification consists of: `case.toml` and `reference.csv` of its folder, read and checked."""
 
 import csv
+import fnmatch
 import importlib.util
+import itertools
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -173,21 +175,26 @@ def read(folder: Path) -> Form:
     data = tomllib.loads((folder / "case.toml").read_text())
     common = tomllib.loads((HERE / "limits.toml").read_text())
     try:
-        quantities = [Quantity(**_with_runs(entry)) for entry in data.get("quantity", [])]
+        runs = _runs(data)
+        names = [run.name for run in runs]
+
+        def with_runs(entry: dict[str, Any]) -> dict[str, Any]:
+            return entry | {"runs": _named(entry, names)}
+
+        quantities = [Quantity(**with_runs(entry)) for entry in data.get("quantity", [])]
         form = Form(
             folder,
             data["title"],
             ROOT / data.get("decks", f"verification/{folder.name}"),
-            _runs(data),
+            runs,
             {one.name: one for one in [*(Quantity(**entry) for entry in common["quantity"]), *quantities]},
-            [Curve(**_with_runs(entry)) for entry in data.get("curve", [])],
-            [Order(**_with_runs(entry)) for entry in data.get("order", [])],
+            [Curve(**with_runs(entry)) for entry in data.get("curve", [])],
+            [Order(**with_runs(entry)) for entry in data.get("order", [])],
             data.get("constants", {}),
             references(folder / "reference.csv"),
         )
     except (TypeError, KeyError) as error:
         raise Fault(f"{folder / 'case.toml'}: {error}") from None
-    names = {run.name for run in form.runs}
     for one in [*quantities, *form.curves, *form.orders]:
         unknown = [run for run in one.runs if run not in names]
         if unknown:
@@ -195,21 +202,25 @@ def read(folder: Path) -> Form:
     return form
 
 
-def _with_runs(entry: dict[str, Any]) -> dict[str, Any]:
-    """An entry with its run or runs as a tuple."""
-    entry = dict(entry)
+def _named(entry: dict[str, Any], names: list[str]) -> tuple[str, ...]:
+    """The run or the runs of an entry, which it takes; a name with * stands for all that are like it."""
     one = entry.pop("run", None)
-    return entry | {"runs": (one,) if one else tuple(entry.get("runs", ()))}
+    wanted = (one,) if one else tuple(entry.pop("runs", ()))
+    return tuple(name for want in wanted for name in (fnmatch.filter(names, want) if "*" in want else (want,)))
 
 
 def _runs(data: dict[str, Any]) -> list[Run]:
     """The runs, with what their groups have in common."""
-    runs = []
+    runs: dict[str, Run] = {}
     for entry in data["run"]:
         shared = data.get("defaults", {}).get(entry.get("group"), {})
-        parameters = shared.get("parameters", {}) | entry.get("parameters", {})
-        runs.append(Run(**shared | entry | {"parameters": parameters}))
-    return runs
+        entry = shared | entry | {"parameters": shared.get("parameters", {}) | entry.get("parameters", {})}
+        each = entry.pop("each", {})
+        for values in itertools.product(*each.values()):
+            own = dict(zip(each, values, strict=True))
+            run = Run(**entry | {"name": entry["name"].format(**own), "parameters": entry["parameters"] | own})
+            runs.setdefault(run.name, run)
+    return list(runs.values())
 
 
 def references(path: Path) -> dict[str, Reference]:
