@@ -10,7 +10,8 @@ use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
 use super::lists::{Recycled, entries};
 use super::tolerances::{
-    PAIRING_REACH, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
+    PAIRING_REACH, PAIRING_REACH_WITHOUT_VELOCITIES, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN,
+    SEARCH_MARGIN_PER_MOTION,
 };
 use crate::archive::{Archive, ArchiveError};
 use crate::vectors::{Circle, CircleTree, difference, dot, length};
@@ -45,12 +46,25 @@ pub struct Search<'m> {
 }
 
 impl<'m> Search<'m> {
-    /// A search among some contacts of nodes with the reference coordinates `x`.
+    /// A search among some contacts of nodes with the reference coordinates `x`, whose velocities tell how far they go in an
+    /// increment.
     pub fn new(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
+        Search::within(PAIRING_REACH, contacts, x)
+    }
+
+    /// The same of nodes without velocities, which go farther in an increment than they tell.
+    pub fn without_velocities(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
+        Search::within(PAIRING_REACH_WITHOUT_VELOCITIES, contacts, x)
+    }
+
+    /// A search up to a distance in mean segment lengths of each contact.
+    fn within(reach: f64, contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search {
             x,
             territories: (contacts.iter().enumerate())
-                .flat_map(|(contact, surfaces)| Territory::of_contact(contact, surfaces, x))
+                .flat_map(|(contact, surfaces)| {
+                    Territory::of_contact(contact, (surfaces, reach), x)
+                })
                 .collect(),
             searches: 0,
         }
@@ -300,14 +314,18 @@ struct FacedAtStart {
 
 impl<'m> Territory<'m> {
     /// The territories of a contact and of its corners, whose numbers follow those of the slave nodes.
-    fn of_contact(contact: usize, surfaces: &'m ContactSurfaces, x: &[[f64; 2]]) -> Vec<Self> {
+    fn of_contact(
+        contact: usize,
+        (surfaces, reach): (&'m ContactSurfaces, f64),
+        x: &[[f64; 2]],
+    ) -> Vec<Self> {
         let mut key = SlaveKey { contact, slave: 0 };
-        let mut all = vec![Territory::new(key, (surfaces, None), x)];
+        let mut all = vec![Territory::new(key, (surfaces, None), reach, x)];
         let mut before = surfaces;
         for corners in &surfaces.corners {
             key = key.plus(before.slaves.len());
             before = &corners.surfaces;
-            all.push(Territory::new(key, (before, Some(corners)), x));
+            all.push(Territory::new(key, (before, Some(corners)), reach, x));
         }
         all
     }
@@ -315,6 +333,7 @@ impl<'m> Territory<'m> {
     fn new(
         key: SlaveKey,
         (contact, corners): (&'m ContactSurfaces, Option<&'m Corners>),
+        reach: f64,
         x: &[[f64; 2]],
     ) -> Self {
         let lengths = || {
@@ -327,7 +346,7 @@ impl<'m> Territory<'m> {
             key,
             corners,
             // of all points of a slave face, whose ends are listed
-            reach: PAIRING_REACH * mean + contact.half_longest_face(x),
+            reach: reach * mean + contact.half_longest_face(x),
             skin: SEARCH_MARGIN * mean,
             slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
             segments: Side::new(contact.segments.clone()),

@@ -33,7 +33,9 @@ pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;
 pub(crate) const PROJECTION_BEYOND_ENDS: f64 = 1e-6;
 /// Distance up to which a node at rest pairs with a segment at rest, in mean segment lengths of the
 /// contact.
-pub(crate) const PAIRING_REACH: f64 = 2.0;
+pub(crate) const PAIRING_REACH: f64 = 0.5;
+/// The same in steps without velocities.
+pub(crate) const PAIRING_REACH_WITHOUT_VELOCITIES: f64 = 2.0;
 /// Growth of the circle of an entity at rest, in mean segment lengths of the contact: it may move
 /// this far before its candidates are searched anew.
 pub(crate) const SEARCH_MARGIN: f64 = 0.5;

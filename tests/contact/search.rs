@@ -101,7 +101,7 @@ proptest! {
         shake in 0.0..0.3,
     ) {
         let (surfaces, x) = scene(&bodies);
-        let near = mean_length(&surfaces, &x);
+        let near = mean_length(&surfaces, &x) / 2.0; // R of eq. (10.2)
         let contacts = [surfaces.clone()];
         let mut search = Search::new(&contacts, &x);
         let mut ways = ways;

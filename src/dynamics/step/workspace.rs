@@ -29,7 +29,11 @@ impl<'m> Workspace<'m> {
     /// The workspace of a step, without factors and without lists of candidates.
     pub fn new(problem: &StepProblem<'m>) -> Self {
         let x = &problem.model.mesh.coordinates;
-        let mut search = Search::new(problem.contacts, x);
+        let velocities_tell = problem.integration.has_rates && !problem.integration.backward_euler;
+        let mut search = match velocities_tell {
+            true => Search::new(problem.contacts, x),
+            false => Search::without_velocities(problem.contacts, x),
+        };
         for (contact, overlap) in problem.fits.largest() {
             search.reach_into(contact, overlap);
         }
