@@ -110,18 +110,18 @@ impl AnyElement {
         with_element!(self, element => element.points())
     }
 
-    /// Number of internal variables of all points with a law, and in metals of the hourglass modes or of the element's strains.
+    /// Number of internal variables of all points with a law, of the hourglass modes of metals and of the element's own strains.
     pub fn variables(&self, law: &PlaneLaw) -> usize {
-        let own = match self {
-            AnyElement::Quad4Reduced(_) => variables(2),
-            AnyElement::Quad4Enhanced(_) => enhanced_strain::STRAINS,
-            AnyElement::Ring(ring) => ring.own_variables(),
-            _ => 0,
-        };
         let of_point = law.variables();
         // at the start all are zero
         let is_metal = law.yield_stress(&vec![0.0; of_point]).is_some();
-        self.points() * of_point + if is_metal { own } else { 0 }
+        let own = match self {
+            AnyElement::Quad4Reduced(_) if is_metal => variables(2),
+            AnyElement::Quad4Enhanced(_) => enhanced_strain::STRAINS,
+            AnyElement::Ring(ring) => ring.own_variables(is_metal),
+            _ => 0,
+        };
+        self.points() * of_point + own
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.

@@ -1,7 +1,7 @@
 //! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990), which bends without locking: four
 //! strains of the element beside those of the displacements make its stored energy least. They are no state: they
-//! follow from the displacements by Newton's method in the element, eq. (2.28), which begins in metals with those of the
-//! last increment. Section 2 of docs/theory.md.
+//! follow from the displacements by Newton's method in the element, eq. (2.28), which begins with those of the last
+//! increment. Section 2 of docs/theory.md.
 //!
 //! # Derivation
 //!
@@ -220,11 +220,13 @@ fn energy_change<const N: usize, const P: usize>(
         .sum()
 }
 
-/// alpha of the last committed increment, from which that of a metal is sought: the energy may have several minima, and the
-/// element follows one. Zero in other materials.
+/// alpha of the last committed increment, from which the next is sought: the energy may have several minima, and the
+/// element follows one.
 fn committed<const P: usize>(material: &impl StressAtPoints) -> Vector4<f64> {
-    let own = material.yielding(P);
-    own.map_or_else(Vector4::zeros, |(_, own)| Vector4::from_column_slice(own))
+    match material.beyond(P) {
+        [] => Vector4::zeros(),
+        own => Vector4::from_column_slice(own),
+    }
 }
 
 /// What a configuration gives at all points.

@@ -127,6 +127,11 @@ pub trait StressAtPoints {
         self.tangent(0, &Strains::Between(zero, zero))
     }
 
+    /// The variables of an element behind those of its points; none of a law without an element.
+    fn beyond(&self, _points: usize) -> &[f64] {
+        &[]
+    }
+
     /// Yield stress of a metal at the first point (force/length^2), and the variables behind those of the points.
     fn yielding(&self, _points: usize) -> Option<(f64, &[f64])> {
         None

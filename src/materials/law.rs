@@ -266,10 +266,16 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         self.law.used_strength(e, self.at(0))
     }
 
-    /// The variables behind those of the points, and the yield stress of the first point.
-    fn beyond(&self, points: usize) -> Option<(f64, &[f64])> {
+    /// The variables behind those of the points.
+    fn behind(&self, points: usize) -> &[f64] {
+        let own = self.variables.get(points * self.law.variables()..);
+        own.unwrap_or_default()
+    }
+
+    /// The same with the yield stress of the first point, of a metal.
+    fn yielding_behind(&self, points: usize) -> Option<(f64, &[f64])> {
         let yield_stress = self.law.yield_stress(self.at(0))?;
-        let own = self.variables.get(points * self.law.variables()..)?;
+        let own = self.behind(points);
         (!own.is_empty()).then_some((yield_stress, own))
     }
 
@@ -318,8 +324,12 @@ impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
         self.law.tangent(&Strains::At(Matrix2::zeros()), &z0)
     }
 
+    fn beyond(&self, points: usize) -> &[f64] {
+        self.behind(points)
+    }
+
     fn yielding(&self, points: usize) -> Option<(f64, &[f64])> {
-        self.beyond(points)
+        self.yielding_behind(points)
     }
 }
 
@@ -354,8 +364,12 @@ impl RingStressAtPoints for Committed<'_> {
         self.law.of_ring().tangent(&zero, &z0)
     }
 
+    fn ring_beyond(&self, points: usize) -> &[f64] {
+        self.behind(points)
+    }
+
     fn ring_yielding(&self, points: usize) -> Option<(f64, &[f64])> {
-        self.beyond(points)
+        self.yielding_behind(points)
     }
 
     fn ring_stress(&self, point: usize, strains: &Strains<Symmetric>) -> Symmetric {

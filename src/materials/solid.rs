@@ -53,6 +53,11 @@ pub trait RingStressAtPoints {
         self.ring_tangent(0, &Strains::Between(zero, zero))
     }
 
+    /// As [`super::StressAtPoints::beyond`].
+    fn ring_beyond(&self, _points: usize) -> &[f64] {
+        &[]
+    }
+
     /// As [`super::StressAtPoints::yielding`].
     fn ring_yielding(&self, _points: usize) -> Option<(f64, &[f64])> {
         None

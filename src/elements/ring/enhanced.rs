@@ -174,10 +174,12 @@ impl Enhanced {
         (slope, stiffness)
     }
 
-    /// alpha of the last committed increment, from which that of a metal is sought; zero in other materials.
+    /// alpha of the last committed increment, from which the next is sought.
     fn committed(&self, material: &impl RingStressAtPoints) -> Alpha {
-        let own = material.ring_yielding(self.strains.len());
-        own.map_or_else(Alpha::zeros, |(_, own)| Alpha::from_column_slice(own))
+        match material.ring_beyond(self.strains.len()) {
+            [] => Alpha::zeros(),
+            own => Alpha::from_column_slice(own),
+        }
     }
 
     /// alpha with which the energy is least at strains of the displacements, eq. (2.28), sought from a first one on. NaN

@@ -238,7 +238,7 @@ impl Ring {
             RingFormulation::Reduced(hourglass) => {
                 let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
                 let before = updated.to_vec();
-                let first = before.len().saturating_sub(self.own_variables());
+                let first = before.len().saturating_sub(self.own_variables(true));
                 let (after, own) = (material.with(&before), &mut updated[first..]);
                 dissipated + modes.update(&after, stresses.strains[0].end(), own)
             }
@@ -246,12 +246,14 @@ impl Ring {
         }
     }
 
-    /// Internal variables of the element behind those of the points, in metals.
-    pub fn own_variables(&self) -> usize {
+    /// Internal variables of the element behind those of the points, of a metal or of another material.
+    pub fn own_variables(&self, is_metal: bool) -> usize {
         match &self.formulation {
-            RingFormulation::Reduced(_) => variables(MODES),
+            RingFormulation::Reduced(_) if is_metal => variables(MODES),
             RingFormulation::Enhanced(_) => enhanced::STRAINS,
-            RingFormulation::Displacement | RingFormulation::Dilatation(_) => 0,
+            RingFormulation::Reduced(_)
+            | RingFormulation::Displacement
+            | RingFormulation::Dilatation(_) => 0,
         }
     }
 
@@ -553,7 +555,7 @@ mod tests {
                 .collect();
             let at =
                 |step: u32| -> Vec<f64> { d.iter().map(|d| d * f64::from(step) / 40.0).collect() };
-            let mut z = vec![0.0; ring.points() * law.variables() + ring.own_variables()];
+            let mut z = vec![0.0; ring.points() * law.variables() + ring.own_variables(true)];
             for step in 0..40 {
                 let (u0, u1) = (at(step), at(step + 1));
                 let between = Motion {
