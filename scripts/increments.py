@@ -147,6 +147,7 @@ def cases() -> Iterator[Case]:
         ("input/corner_to_corner/corners_left_mu02", 0.005),
         ("input/bouncing_rings/rings_mu02", 0.005),
         ("input/rubber_ring/rubber_ring_mu05", 0.002),
+        ("input/snap_fit/snap_fit_damped", 2e-5),
         ("verification/elastic_bar/em_impulse", 0.006),
     )
     for name, dt in own:
