@@ -71,6 +71,20 @@ fn a_block_slides_on_a_slope_where_friction_ends() {
 }
 
 #[test]
+fn a_weak_spring_takes_over_from_friction() {
+    let spring = "*ELEMENT, TYPE=SPRING1, ELSET=SPRING\n3, 5\n*SPRING, ELSET=SPRING\n1\n0.1\n*NSET, NSET=ROOF";
+    let pushed = "*STEP, NLGEOM\n*STATIC\n0.05, 1.\n*DLOAD\nBODY, GRAV, 1., 0., -1.\nBODY, BX, 0.5\n*END STEP\n";
+    let deck = on_floor(0.0, 0.3, &[WEIGHT, pushed].concat());
+    let stiff = deck.replace("1000., 0.3", "1e7, 0.3");
+    let (keep, failure) = run_deck(&stiff.replace("*NSET, NSET=ROOF", spring));
+    assert_eq!(failure, None);
+    assert!(keep.cutbacks.is_empty());
+    // the push less friction
+    let way = keep.reports.last().expect("reports").state.u[8];
+    assert!((way - (0.5 - 0.3) / 0.1).abs() < 1e-6, "{way}");
+}
+
+#[test]
 fn a_block_falls_to_the_floor_that_is_near() {
     let (keep, failure) = run_deck(&on_floor(0.3, 0.3, WEIGHT));
     assert_eq!(failure, None);

@@ -197,11 +197,12 @@ const NEAR: usize = 12;
 /// largest one does, at most twice as far and its own motion once more.
 ///
 /// ```text
-/// p <- S^T dU + w (S^T dU - p),   w = r/(1 - r),   r = f.f_last/|f_last|²      eq. (12.6)
+/// p <- S^T dU + w (S^T dU - p),   w = r/(1 - r),   1 - r = (1 - f.f_last/|f_last|²)/(1 + w_last)      eq. (12.6)
 /// ```
 fn stride(last: f64, f: &[f64], f_last: &[f64]) -> f64 {
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let r = product(f, f_last) / product(f_last, f_last);
+    let falls = 1.0 - product(f, f_last) / product(f_last, f_last);
+    let r = 1.0 - falls / (1.0 + last);
     if r.is_nan() || r <= HARDLY_FALLS {
         return 0.0;
     }
@@ -211,6 +212,13 @@ fn stride(last: f64, f: &[f64], f_last: &[f64]) -> f64 {
     } else {
         most
     }
+}
+
+/// Whether forces of pins have settled since `before`; or grow with the way of a body that goes too far, as they do where
+/// it slides off without friction.
+fn stay(f: &[f64], before: &[f64], goes_too_far: bool) -> bool {
+    let (size, change) = (largest(f), largest(&difference(f, before)));
+    change < SETTLED_PIN * size || (goes_too_far && size > largest(before))
 }
 
 /// Passes in a row in which forces of pins stay.
@@ -533,13 +541,14 @@ impl<'m> Attempt<'_, 'm> {
                     free.ends();
                     return Ok(closing);
                 }
+                let goes_too_far = largest(&moved) > reach;
                 if let Some(before) = step.checked_sub(2).map(|before| &forces[before])
                     && step >= LEAST_PIN_STEPS
                     && left > SMALL_PIN_FORCE
-                    && largest(&difference(&force, before)) < SETTLED_PIN * largest(&force)
+                    && stay(&force, before, goes_too_far)
                 {
                     stays.get_or_insert_with(|| (force.clone(), v.du.clone(), contact.keys()));
-                    if largest(&moved) > reach {
+                    if goes_too_far {
                         break 'rounds;
                     }
                 }
