@@ -41,6 +41,8 @@ class Run:
     """The deck's, or "default": without its STICKSLIP card."""
     impact_time: str = "deck"
     """The deck's, or the value of IMPACT TIME on the only setting of all steps."""
+    formulation: str = "deck"
+    """The deck's, or the discretisation of all contacts, as TYPE of CONTACT PAIR."""
     refine: int = 1
     """Divides the edges of all elements."""
     flight: float = 0.0
@@ -78,6 +80,8 @@ class Run:
             deck.set_settings()
         if self.impact_time != "deck":
             deck.set_settings(IMPACT_TIME=self.impact_time)
+        if self.formulation != "deck":
+            deck.set_formulation(self.formulation)
         if self.divide != 1.0 or self.until is not None:
             dt = deck.dt / self.divide
             period = deck.period if self.until is None else self.until

@@ -259,6 +259,16 @@ class Deck:
                 place = next(i for i, card in enumerate(self.cards) if card is step) + 1
                 self.cards.insert(place, Card("STICKSLIP", "*STICKSLIP" + text))
 
+    def set_formulation(self, kind: str) -> None:
+        """Gives all contacts one discretisation: NODE TO SURFACE or SURFACE TO SURFACE."""
+        self.cards = [card for card in self.cards if card.keyword != "CONTACTFORMULATION"]
+        for card in self.find("CONTACT PAIR"):
+            parts = [part for part in card.head.split(",") if not fold(part).startswith("TYPE=")]
+            card.head = ",".join(parts) + f", TYPE={kind}"
+        for card in self.find("CONTACT INCLUSIONS"):
+            place = next(i for i, other in enumerate(self.cards) if other is card) + 1
+            self.cards.insert(place, Card("CONTACTFORMULATION", f"*CONTACT FORMULATION, TYPE={kind}"))
+
 
 def _in_lines(numbers: Iterable[int]) -> list[list[int]]:
     """Numbers as data lines of eight."""

@@ -106,15 +106,18 @@ def outside(results: Result) -> int:
 def check(study: runner.Study, case: runner.Run, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
-    study.check_run(name, element_size(results))
+    is_of_means = case.formulation == "SURFACE TO SURFACE"
+    kind = ", surface to surface" if is_of_means else ""
+    study.check_run(name, element_size(results), place=kind)
     overlaps = penetration.follow(results)
     worst = max(range(len(overlaps)), key=lambda frame: overlaps[frame].depth)
     crossed = sum(overlap.crossings > 0 for overlap in overlaps)
     depth = overlaps[worst].depth
-    study.check("deepest node in a body / element size", name, depth)
-    study.check("frames in which edges cross", name, crossed)
-    if depth > penetration.LIMIT:
-        print(f"      {penetration.describe(results, worst, overlaps[worst])}")
+    study.check(f"deepest node in a body / element size{kind}", name, depth)
+    if not is_of_means:
+        study.check("frames in which edges cross", name, crossed)
+        if depth > penetration.LIMIT:
+            print(f"      {penetration.describe(results, worst, overlaps[worst])}")
     study.check("sum of contact forces / their magnitudes", name, imbalance(results))
     study.check("energy that contact put in / largest", name, put_in(results))
     account = results.history.energy
@@ -147,6 +150,21 @@ def check(study: runner.Study, case: runner.Run, results: Result) -> list[object
             for entry in ("friction_dissipation", "impact_loss", "normal_contact_work")
         ),
     ]
+
+
+def compare_passes(study: runner.Study) -> None:
+    """Passes of an increment and cutbacks from surface to surface beside those of node to surface."""
+    rows = []
+    for case in study.runs:
+        means, nodes = (study.results.get(name) for name in (case.name, case.name.removesuffix("_STS")))
+        if means is None or nodes is None or means is nodes:
+            continue
+        of = [float(results.history.solver["passes"][1:].mean()) for results in (means, nodes)]
+        cut = [int(results.run["cutbacks"]) for results in (means, nodes)]
+        study.check("passes beside those of node to surface", case.name, of[0] / of[1])
+        rows.append((case.name.removesuffix("_STS"), *of, *cut))
+    header = ("case", "passes, surface to surface", "node to surface", "cutbacks, surface to surface", "node to surface")
+    study.table("Surface to surface beside node to surface, passes of an increment", header, rows)
 
 
 def tabulate_corners(study: runner.Study) -> None:
@@ -199,6 +217,7 @@ def measure(study: runner.Study) -> None:
         + ("friction", "impact", "normal contact"),
         rows,
     )
+    compare_passes(study)
     tabulate_corners(study)
     if study.draws:
         draw_conservation(study)
