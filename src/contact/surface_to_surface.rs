@@ -20,8 +20,7 @@ use super::search::{Cells, Faced, FacedRun, Territory};
 use super::stiffness::changes_between;
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint};
 use super::tolerances::{
-    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, MOST_LEFT_OVERLAP, NEARER_DEPTH,
-    POINT_TILT, SIDE_BY_SIDE,
+    CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, NEARER_DEPTH, POINT_TILT, SIDE_BY_SIDE,
 };
 use crate::vectors::{cross, difference, dot};
 
@@ -424,17 +423,6 @@ impl SurfacePoint {
         ]
     }
 
-    /// Its gap at the start over the segment that it was over then; over its own if over none.
-    fn gap_before(&self, at: &Configurations) -> f64 {
-        let place = |node: usize| at.start([node])[0];
-        let [s, own @ ..] = self.places(place);
-        let [a, b] = match self.origin {
-            Origin::Other(segment) => segment.map(|vertex| vertex.place(place)),
-            Origin::Same | Origin::Outside => own,
-        };
-        project(s, a, b).gap
-    }
-
     /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b.
     fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
         let [p, q] = [start, end].map(|[s, a, b]| project(s, a, b));
@@ -596,13 +584,10 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     let [allowed_before, allowed] = source.allowed;
     let (mut start_gap, slip) = (gap - product(&n) + allowed_before, product(&t));
     gap += allowed;
-    // what was there at the start stays, and what the end of the master has come over, eq. (7.9)
+    // what overlaps at the start stays, eq. (7.9)
     if at.form == RowForm::DiscreteGradient && start_gap < 0.0 {
-        let most = MOST_LEFT_OVERLAP * scale;
-        if start_gap >= -most || start_gap >= overlap_before(&source.points, at) - most {
-            gap -= start_gap;
-            start_gap = 0.0;
-        }
+        gap -= start_gap;
+        start_gap = 0.0;
     }
     let (force_rows, derivative_rows) = (
         Rows {
@@ -629,13 +614,6 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         dofs,
         source,
     }
-}
-
-/// The part of the mean gap of some points that is of points that were there at the start and overlapped, at most 0.
-fn overlap_before(points: &[SurfacePoint], at: &Configurations) -> f64 {
-    let there = points.iter().filter(|q| q.origin != Origin::Outside);
-    let gaps = there.map(|q| q.weight * q.gap_before(at));
-    gaps.sum::<f64>().min(0.0)
 }
 
 /// Contact stiffness of a constraint with the given points, eq. (4.12): the sum of those of its points, the weights as

@@ -127,8 +127,6 @@ pub(crate) const LEAST_COVER: f64 = 1e-6;
 /// Tangent of the tilt of the force at a point that has changed its segment, beyond which it keeps the segment of the
 /// start, unless the surface turns by half as much.
 pub(crate) const POINT_TILT: f64 = 0.3;
-/// Mean overlap (segment lengths) that is left as it is where the end of a master surface has come over it.
-pub(crate) const MOST_LEFT_OVERLAP: f64 = 0.02;
 
 // Preparation of a model.
 

@@ -150,6 +150,7 @@ impl NodePath<'_> {
                 && !self.is_round_off(i, -p.gap, p.length)
                 && -p.gap <= 2.0 * self.relative_displacement(i)
                 && !self.is_far_side(i)
+                && !self.is_before_corner(i, &p)
         };
         let depth = |i: usize| -self.project(i, 1.0).gap;
         let nearest = |i: &usize, j: &usize| depth(*i).total_cmp(&depth(*j));
@@ -248,6 +249,23 @@ impl NodePath<'_> {
             turns_left(&q, p)
         };
         from_end <= CORNER_CLIP_DEPTH && is_convex && self.is_round_off(j, -q.gap, q.length)
+    }
+
+    /// Whether a node that may overlap with a segment `i` is still in front of the line of a neighbour at a convex corner,
+    /// raised as well: near the corner it is outside the body that is smaller by the overlap.
+    fn is_before_corner(&self, i: usize, p: &Projection) -> bool {
+        let is_before = |(j, is_next): (Option<usize>, bool)| {
+            let Some(q) = j.map(|j| self.project(j, 1.0)) else {
+                return false;
+            };
+            let [first, second] = if is_next { [p, &q] } else { [&q, p] };
+            turns_left(first, second) && q.gap >= 0.0
+        };
+        let neighbours = [
+            (self.contact.next[i], true),
+            (self.contact.previous[i], false),
+        ];
+        self.allowed != [0.0; 2] && neighbours.into_iter().any(is_before)
     }
 
     /// Whether the node has slid off the end of an open surface.

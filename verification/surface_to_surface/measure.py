@@ -25,8 +25,11 @@ INNER = 0.85
 SLIDES = 1.15
 """Time from which on the slider slides in steady state."""
 
-CHECKED = ("iron_fine", "iron_smooth")
-"""Pairs of runs with eight segments or more of both surfaces in contact."""
+CHECKED = ("iron_fine", "iron_smooth", "iron_equal", "iron_fine_reversed")
+"""Pairs of runs whose foundation is no coarser than 1.3 times the slider."""
+
+OF_BULK = {"iron_coarse": "iron_coarse_bulk", "iron_reversed": "iron_reversed_bulk"}
+"""Runs on a coarse foundation, and those with a slider so fine that contact is exact on its segments."""
 
 
 def pressures(result: Result, name: str) -> tuple[Array, Array]:
@@ -137,6 +140,11 @@ def measure(study: runner.Study) -> None:
         if {f"{name}_STS", f"{name}_NTS"} <= found.keys():
             ratio = found[f"{name}_STS"][0] / found[f"{name}_NTS"][0]
             kind = "oscillation of the horizontal force beside that of node to surface"
+            study.check(kind, f"{name}_STS", ratio)
+    for name, bulk in OF_BULK.items():
+        if {f"{name}_STS", f"{bulk}_STS"} <= found.keys():
+            ratio = found[f"{name}_STS"][0] / found[f"{bulk}_STS"][0]
+            kind = "oscillation of the horizontal force beside that of the foundation's mesh"
             study.check(kind, f"{name}_STS", ratio)
     check_blocks(study)
     if study.draws:
