@@ -746,6 +746,22 @@ mod tests {
     }
 
     #[test]
+    fn an_overlap_at_the_start_stays() {
+        // slave nodes below the master at the start, deeper at the end
+        let (mut u0, mut u1) = (U0, U1);
+        for node in 0..3 {
+            u0[2 * node + 1] -= 0.6;
+            u1[2 * node + 1] -= 0.7;
+        }
+        let at = between_displacements(RowForm::DiscreteGradient, &u0, &u1);
+        let constraint = constraint(source(), &at);
+        let before = gap(&u0, true);
+        assert!(before < -0.1, "{before}");
+        assert!((constraint.gap - (gap(&u1, false) - before)).abs() < 1e-13);
+        assert!(constraint.start_gap.abs() < 1e-13);
+    }
+
+    #[test]
     fn derivative_rows_are_the_derivatives_of_the_mean_gap() {
         for form in [RowForm::End, RowForm::DiscreteGradient] {
             let of = |u: &[f64]| constraint(source(), &between_displacements(form, &U0, u));
