@@ -30,7 +30,7 @@ def attributes(item: h5py.HLObject) -> dict[str, bytes]:
 def differences(first: Path, second: Path) -> list[str]:
     """Everything outside /run in which two files differ, bit for bit."""
     found: list[str] = []
-    with h5py.File(first) as a, h5py.File(second) as b:
+    with h5py.File(first, locking=False) as a, h5py.File(second, locking=False) as b:
         names: list[set[str]] = []
         for file in (a, b):
             members: list[str] = []
@@ -49,7 +49,7 @@ def differences(first: Path, second: Path) -> list[str]:
 def scaled_differences(first: Path, second: Path, units: Units) -> list[str]:
     """Datasets of `second` that are not `first` in the other units, bit for bit."""
     found: list[str] = []
-    with h5py.File(first) as a, h5py.File(second) as b:
+    with h5py.File(first, locking=False) as a, h5py.File(second, locking=False) as b:
         for name, data in datasets(a):
             expected = data[()]
             if data.dtype.kind == "f":
@@ -69,7 +69,7 @@ def largest_deviations(first: Path, second: Path, units: Units = SAME) -> dict[s
     """
     errors: dict[str, tuple[Dimension, float]] = {}
     scales: dict[Dimension, float] = {}
-    with h5py.File(first) as a, h5py.File(second) as b:
+    with h5py.File(first, locking=False) as a, h5py.File(second, locking=False) as b:
         for name, data in datasets(a["history"]):
             unit = dimension(data.attrs["dimension"])
             if unit == BASE["1"] or name.startswith(("impacts", "returns", "touches")):
