@@ -535,10 +535,9 @@ mod tests {
         });
         let law = metal.in_plane(Plane::Revolution);
         let is_enhanced = |ring: &Ring| matches!(ring.formulation, RingFormulation::Enhanced(_));
-        let all = rings().into_iter();
-        let (ring, mesh) = all
-            .filter(|(ring, _)| is_enhanced(ring))
-            .last()
+        let (ring, mesh) = rings()
+            .into_iter()
+            .find(|(ring, _)| is_enhanced(ring))
             .expect("one");
         // squeezed along the axis, and bent in its section
         for [squeeze, bend_x, bend_y] in [[0.3, 0.0, 0.2], [0.9, 0.0, 0.2], [0.3, 0.3, -0.2]] {
