@@ -523,8 +523,8 @@ mod tests {
 
     #[test]
     fn strains_of_a_metal_ring_stay_in_the_minimum_that_they_have_flown_into() {
-        // The energy of a ring that has flown far has several minima: the one that is nearest to no enhanced strain is
-        // another than that of the increment before, with other stresses.
+        // The energy of a ring that has flown far has several minima. From no enhanced strain on, the solution may come into
+        // another minimum than that of the increment before, and the stresses jump.
         let metal = Law::Plastic(Plastic {
             moduli: SmallStrainModuli {
                 young: 1000.0,
