@@ -199,6 +199,19 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     }
 }
 
+/// alpha of the variables after an increment; that of the increment's own end, which has converged, where this one has
+/// not: an alpha that is kept is never NaN.
+pub(super) fn finite_or<const A: usize>(
+    after: SVector<f64, A>,
+    at_end: SVector<f64, A>,
+) -> SVector<f64, A> {
+    if after.iter().all(|a| a.is_finite()) {
+        after
+    } else {
+        at_end
+    }
+}
+
 /// Largest component of strains.
 fn largest(e: &[Matrix2<f64>]) -> f64 {
     e.iter().fold(0.0, |most, e| most.max(e.amax()))
@@ -356,16 +369,15 @@ impl Formulation for EnhancedStrain {
         };
         let [c0, c1] = [u0, u1].map(|u| modes.compatible(element, u));
         let first = committed::<P>(material);
-        let at_end = modes.least(element, material, (&c1, first));
-        let after = material.with(updated);
-        let alpha = modes.least(element, &after, (&c1, at_end));
-        let dissipated = if material.are_first_variables(&updated[..own]) {
-            0.0
-        } else {
+        let mut alpha = modes.least(element, material, (&c1, first));
+        let mut dissipated = 0.0;
+        if !material.are_first_variables(&updated[..own]) {
+            let after = material.with(updated);
+            alpha = finite_or(modes.least(element, &after, (&c1, alpha)), alpha);
             let before = modes.least(element, material, (&c0, first));
-            work + stored(&modes, element, material, (&c0, &before))
-                - stored(&modes, element, &after, (&c1, &alpha))
-        };
+            dissipated = work + stored(&modes, element, material, (&c0, &before))
+                - stored(&modes, element, &after, (&c1, &alpha));
+        }
         updated[own..].copy_from_slice(alpha.as_slice());
         dissipated
     }

@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
 
 use super::points::{OfPoints, Point, as_strain, section};
 use super::stresses::{Compatible, Rows, Stresses, energy_change, size};
-use crate::elements::enhanced_strain::{alternating, signs};
+use crate::elements::enhanced_strain::{alternating, finite_or, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
 use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
@@ -314,19 +314,11 @@ impl Enhanced {
             return 0.0;
         };
         let first = self.committed(material);
-        let at_end = self.least(points, material, (&compatible.end, first));
-        let after = material.with(updated);
-        let alpha = self.least(points, &after, (&compatible.end, at_end));
-        let stored = |material: &Committed, compatible: &[Symmetric], alpha: &Alpha| -> f64 {
-            let e = self.enhanced(compatible, alpha);
-            let energies = points.iter().zip(&e).enumerate();
-            energies
-                .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
-                .sum()
-        };
-        let dissipated = if material.are_first_variables(&updated[..own]) {
-            0.0
-        } else {
+        let mut alpha = self.least(points, material, (&compatible.end, first));
+        let mut dissipated = 0.0;
+        if !material.are_first_variables(&updated[..own]) {
+            let after = material.with(updated);
+            alpha = finite_or(self.least(points, &after, (&compatible.end, alpha)), alpha);
             let before = self.least(points, material, (&compatible.start, first));
             let strains = stresses.strains.iter().enumerate();
             let work = strains.map(|(p, strains)| match strains {
@@ -335,9 +327,16 @@ impl Enhanced {
                     contract(&material.ring_stress(p, strains), &(e1 - e0)) * points[p].volume
                 }
             });
-            work.sum::<f64>() + stored(material, &compatible.start, &before)
-                - stored(&after, &compatible.end, &alpha)
-        };
+            let stored = |material: &Committed, compatible: &[Symmetric], alpha: &Alpha| -> f64 {
+                let e = self.enhanced(compatible, alpha);
+                let energies = points.iter().zip(&e).enumerate();
+                energies
+                    .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
+                    .sum()
+            };
+            dissipated = work.sum::<f64>() + stored(material, &compatible.start, &before)
+                - stored(&after, &compatible.end, &alpha);
+        }
         updated[own..].copy_from_slice(alpha.as_slice());
         dissipated
     }
