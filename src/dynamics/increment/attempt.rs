@@ -387,7 +387,7 @@ impl<'m> Attempt<'_, 'm> {
             let correction = trace.correction();
             if !ends {
                 equal_forces.take_in(correction, settled);
-                factors.take_in(correction)?;
+                factors.take_in(correction, equal_forces.moves_more())?;
                 if number >= SLOW_PASSES {
                     let progress = [correction, factors.rate(), problem.settings.tolerance];
                     let same_pairs = contact.forces.are_of_same_pairs();

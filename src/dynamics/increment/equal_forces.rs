@@ -46,6 +46,11 @@ impl EqualForces {
         settled.then_some(self.weight)
     }
 
+    /// Whether the weight has become less since the last pass: a slow mode then moves more, which is no divergence.
+    pub fn moves_more(&self) -> bool {
+        self.has_decreased
+    }
+
     /// Takes in the relative correction of a pass, with the weight if they have `settled`.
     pub fn take_in(&mut self, correction: f64, settled: bool) {
         if !settled {

@@ -113,11 +113,11 @@ impl Refactorization {
         self.rate > STAGNANT
     }
 
-    /// Takes in the relative correction of a pass.
+    /// Takes in the relative correction of a pass. That it grows is no divergence where it `may_grow`.
     ///
     /// n(theta) = ln(correction/tolerance)/-ln(theta) passes are left at the rate theta; the factors are
     /// worn when that is more than with fresh ones and the factorisation.
-    pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
+    pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         let rate = match correction {
             0.0 => 0.0,
             _ => correction / self.correction,
@@ -133,7 +133,7 @@ impl Refactorization {
         if self.own && self.age == 2 {
             self.fresh_rate = rate.clamp(FRESH_RATE, 0.5);
         }
-        let grows = rate >= 1.0 && self.passes > SEARCHING_PASSES;
+        let grows = rate >= 1.0 && !may_grow && self.passes > SEARCHING_PASSES;
         self.growing = if grows { self.growing + 1 } else { 0 };
         if self.growing >= GROWING {
             return Err(Cause::Diverged);
@@ -151,5 +151,21 @@ impl Refactorization {
         self.worn = self.rule.is_every_pass()
             || (self.age >= 2 && left(rate) > COST + left(self.fresh_rate));
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_in_a_row_is_divergence_unless_it_may_be() {
+        for may_grow in [false, true] {
+            let mut factors = Refactorization::new(FactorRule::EveryPass, 1e-11);
+            let corrections = [1.0, 1e-3, 1e-6, 1e-10, 6e-8, 2e-7, 3e-7];
+            let ends = corrections.map(|correction| factors.take_in(correction, may_grow));
+            let diverged = ends.iter().any(|end| matches!(end, Err(Cause::Diverged)));
+            assert_eq!(diverged, !may_grow);
+        }
     }
 }
