@@ -3,6 +3,7 @@
 #[allow(dead_code)] // shared with the benches
 mod block;
 mod blocks;
+mod dependent;
 mod frictional;
 mod general;
 mod means;
