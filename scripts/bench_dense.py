@@ -18,6 +18,9 @@ GENERAL = (
 BRICK, GAP = (0.2, 0.1), 1e-5
 """Size of a brick, and what it begins above that below."""
 
+PERIOD = 0.1
+"""Period of the shaking."""
+
 PITCH = 0.202
 """Distance of bricks of a course: they do not touch at their sides."""
 
@@ -34,13 +37,18 @@ def cards(
     contact: str,
     run: tuple[float, int],
     friction: float = 0.6,
-    pull: float = 0.0,
+    shaking: float = 0.0,
 ) -> str:
-    """A deck of elastic bodies that gravity presses on held ones; `pull`: gravity to the right."""
+    """A deck of elastic bodies that gravity presses on held ones. `shaking`: the largest acceleration of the ground
+    to and fro, which is a load in its frame."""
     last = moving[-1].next_element - 1
     names = [part.name for part in held]
-    loads = [("MOVING", "GRAV", 10.0, 0.0, -1.0)]
-    loads += [("MOVING", "GRAV", pull, 1.0, 0.0)] if pull else []
+    loads = card("DLOAD", ("MOVING", "GRAV", 10.0, 0.0, -1.0))
+    sine = ""
+    if shaking:
+        omega = 2.0 * pi / PERIOD
+        sine = card("AMPLITUDE, NAME=SHAKING, DEFINITION=PERIODIC", (1, omega, 0.0, 0.0), (0.0, 1.0))
+        loads += card("DLOAD, AMPLITUDE=SHAKING", ("MOVING", "GRAV", shaking, 1.0, 0.0))
     dt, increments = run
     return "".join(
         [
@@ -51,12 +59,15 @@ def cards(
             dry(friction),
             contact,
             card("BOUNDARY", *((name, 1, 2) for name in names)),
-            step(dt, increments, card("DLOAD", *loads)),
+            sine,
+            step(dt, increments, loads),
         ]
     )
 
 
-def wall(courses: int, bricks: int, sides: int, increments: int = 10, pull: float = 0.0) -> str:
+def wall(
+    courses: int, bricks: int, sides: int, increments: int = 10, shaking: float = 0.0
+) -> str:
     """Bricks in running bond on a held floor: slaves are all faces, or the upper ones."""
     width = bricks * PITCH + BRICK[0]
     segments = max(8, int(width / 0.1125))
@@ -71,7 +82,7 @@ def wall(courses: int, bricks: int, sides: int, increments: int = 10, pull: floa
             parts.append(Grid(name, 4, 2, at(left, bottom, 0.05, 0.05), *labels))
             labels = parts[-1].next_node, parts[-1].next_element
     contact = GENERAL if sides == 2 else one_sided(courses, bricks, parts)
-    return cards("wall of bricks", [floor], parts, contact, (1e-3, increments), pull=pull)
+    return cards("wall of bricks", [floor], parts, contact, (1e-3, increments), shaking=shaking)
 
 
 def one_sided(courses: int, bricks: int, parts: Sequence[Grid]) -> str:

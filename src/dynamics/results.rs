@@ -655,6 +655,8 @@ pub enum Cause {
     GainedEnergy {
         /// The energy put in, relative to the largest energy.
         part: f64,
+        /// Slave node and ends of the segment (indices) of the pair whose force puts the most in.
+        pair: Option<[usize; 3]>,
     },
     /// The energy balance is off: the residual that the passes have left does work that counts.
     Unbalanced {
@@ -782,7 +784,7 @@ impl fmt::Display for Cause {
                 f,
                 "a contact is added while its bodies overlap by {depth:.3e}"
             ),
-            Cause::GainedEnergy { part } => {
+            Cause::GainedEnergy { part, .. } => {
                 write!(f, "contact would put energy in ({part:.1e} of the largest)")
             }
             Cause::Unbalanced { part, .. } => {

@@ -177,6 +177,16 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
             model.node_name(a),
             model.node_name(b),
         )),
+        Cause::GainedEnergy {
+            pair: Some([slave, a, b]),
+            ..
+        } => Some(format!(
+            "node     {} at {} on the segment {}-{}",
+            model.node_name(slave),
+            point(position(model, slave, u)),
+            model.node_name(a),
+            model.node_name(b),
+        )),
         Cause::Collapsed { segment: [a, b] } => Some(format!(
             "segment  {}-{} at {}",
             model.node_name(a),
@@ -519,6 +529,14 @@ pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
             .into_iter()
             .flat_map(|course| wrap_words("", &course_text(course, model))),
     );
+    if let Cause::GainedEnergy {
+        pair: Some([slave, a, b]),
+        ..
+    } = failure.cause
+    {
+        let [slave, a, b] = [slave, a, b].map(|node| model.node_name(node));
+        lines.push(format!("         at node {slave} on the segment {a}-{b}"));
+    }
     lines
 }
 

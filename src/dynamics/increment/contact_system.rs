@@ -193,7 +193,7 @@ pub(super) const FEW: usize = 128;
 
 /// Constraints of a block in the mean at least: the solves of an iteration, which cost the same for any blocks, gain
 /// nothing over all of Q when blocks are smaller.
-const LEAST_BLOCK: usize = 2;
+const LEAST_BLOCK: usize = 5;
 
 /// Part of the entries of Q within the blocks at most, or blocks gain nothing.
 const WITHIN: f64 = 0.25;

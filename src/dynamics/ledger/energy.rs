@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
 use crate::archive::{Archive, ArchiveError};
-use crate::contact::Constraint;
+use crate::contact::{ClosedPair, Constraint};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::dynamics::increment::{ContactStates, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
@@ -417,7 +417,14 @@ pub(crate) fn check_energy_gain(
     if part <= CONTACT_WORK_ROUND_OFF {
         return Ok(());
     }
-    Err(Cause::GainedEnergy { part })
+    let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| {
+        let work = pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage);
+        (work, constraint.pair().nodes)
+    };
+    let acting = solved.contact.forces.acting().map(of_pair);
+    let worst = acting.max_by(|p, q| p.0.total_cmp(&q.0));
+    let pair = worst.map(|(_, nodes)| nodes);
+    Err(Cause::GainedEnergy { part, pair })
 }
 
 /// Checks that the energy balance counts for nothing beside the largest energy so far.
