@@ -5,7 +5,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "python"), str(HERE)]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(HERE)]
 
 import elastic_blocks  # noqa: E402
 import masonry  # noqa: E402
@@ -24,6 +24,7 @@ PROBLEMS = {
     "stack": masonry.stack,
     "arch": masonry.arch,
     "card_house": masonry.card_house,
+    "wall": masonry.shaken_wall,
 }
 
 

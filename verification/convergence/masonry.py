@@ -2,6 +2,7 @@
 
 from math import cos, pi, sin
 
+from bench_dense import wall
 from stickslip.cards import card, dry, elastic, step
 from stickslip.quads import Grid
 
@@ -59,6 +60,12 @@ def card_house(friction: float = 0.0, increments: int = 400) -> str:
     two = Grid("CARD2", 10, 1, right, one.next_node, one.next_element)
     about = f"two cards that lean against each other; friction {friction}"
     return masonry(about, [floor, one, two], ["FLOOR"], 1e6, friction, 0.001, increments)
+
+
+def shaken_wall(courses: int = 5, shaking: float = 4.0, increments: int = 200) -> str:
+    """As many bricks in a course as there are courses, in running bond on ground that shakes with this acceleration;
+    the wall weighs 10."""
+    return wall(courses, courses, 2, increments, shaking)
 
 
 def masonry(

@@ -45,7 +45,8 @@ def first_cutback(results: Result) -> str:
 def check(study: runner.Study, case: runner.Run, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
-    study.check_run(name, element_size(results), accuracy(case))
+    place = ", walls" if case.group == "wall" else ""
+    study.check_run(name, element_size(results), accuracy(case), place)
     passes = results.history.solver["passes"][1:]
     factorizations = int(results.history.solver["factorizations"].sum())
     cutbacks = int(results.run["cutbacks"])
