@@ -324,6 +324,10 @@ codes! {
     Incompressible "D426" "A hyperelastic material with D1 = 0."
         "Elements have displacements alone, which need a bulk modulus: it is 10 000 shear moduli."
         "Use CPE4H, CPE8H or CPE8R in plane strain, or give D1."
+    BothOrders "D427" "Both orders of pairs whose faces lie on each other."
+        "Every node of either face has its condition there, and those of both faces say nearly the same: their \
+         complementarity problems take long."
+        "Keep one order of each pair, with TYPE=SURFACE TO SURFACE, or use *CONTACT."
     BadDof "D501" "A degree of freedom that plane elements do not have."
         "Directions are 1 and 2; 3 to 6 may be given with value zero."
         "Correct the direction."

@@ -1,6 +1,8 @@
 //! What contacts keep out: nodes, or means over faces. General contact chooses where the deck does not say.
 //! docs/numerics.md, Faces that lie on each other.
 
+use std::collections::HashSet;
+
 use super::context::Context;
 use crate::diagnostics::Code;
 use crate::model::{Contact, ContactFormulation, ImpactTime, Mesh, Model, Surface, SurfaceKind};
@@ -30,7 +32,8 @@ pub(super) fn choose(model: &mut Model) {
     // a fit presses nodes on to segments
     let may_choose =
         !contact.is_interference_fit && not_from_surface_to_surface(contact, model).is_none();
-    let count = may_choose.then(|| lying_faces(&model.surfaces[contact.slave], &model.mesh));
+    let faces = model.surfaces[contact.slave].segments(&model.mesh);
+    let count = may_choose.then(|| lying_faces([&faces, &faces], &model.mesh));
     let contact = &mut model.contacts[number];
     contact.lying_faces = count;
     if count >= Some(MANY_LYING) {
@@ -38,26 +41,50 @@ pub(super) fn choose(model: &mut Model) {
     }
 }
 
-/// Number of the faces of a surface that lie on a face of another body.
-fn lying_faces(surface: &Surface, mesh: &Mesh) -> usize {
+/// Advises against both orders of pairs of nodes and segments where many faces lie on each other.
+pub(super) fn report_both_orders(model: &Model, cx: &mut Context) {
+    let of_nodes = |contact: &&Contact| contact.formulation == ContactFormulation::NodeToSegment;
+    let pairs: Vec<&Contact> = model.contacts.iter().filter(of_nodes).collect();
+    let sides: HashSet<_> = pairs.iter().map(|c| (c.slave, c.master)).collect();
+    let in_both = |c: &&&Contact| c.slave != c.master && sides.contains(&(c.master, c.slave));
+    let both: Vec<&Contact> = pairs.iter().filter(in_both).copied().collect();
+    let count = |contact: &&Contact| {
+        let of = |surface: usize| model.surfaces[surface].segments(&model.mesh);
+        lying_faces([&of(contact.slave), &of(contact.master)], &model.mesh)
+    };
+    let Some(second) = both.iter().map(|contact| contact.span).nth(1) else {
+        return;
+    };
+    let lying: usize = both.iter().map(count).sum();
+    if lying >= MANY_LYING {
+        let message =
+            format!("pairs stand in both orders, and {lying} of their faces lie on each other");
+        cx.d.note(Code::BothOrders, second, message).help(
+            "the conditions of both sides depend on each other, which takes long: keep one order of each pair, with \
+             TYPE=SURFACE TO SURFACE, or use *CONTACT",
+        );
+    }
+}
+
+/// Number of the faces that lie on one of the others, of another body.
+fn lying_faces([faces, others]: [&[[usize; 2]]; 2], mesh: &Mesh) -> usize {
     let x = &mesh.coordinates;
-    let faces = surface.segments(mesh);
     let bodies = mesh.bodies();
-    let ends = |i: usize| faces[i].map(|node| x[node]);
-    let circle = |i: usize| {
-        let [a, b] = ends(i);
+    let ends = |face: [usize; 2]| face.map(|node| x[node]);
+    let circle = |face: &[usize; 2]| {
+        let [a, b] = ends(*face);
         Circle {
             centre: [0, 1].map(|k| f64::midpoint(a[k], b[k])),
             radius: (0.5 + LYING_GAP) * length(difference(a, b)),
         }
     };
-    let tree = CircleTree::new((0..faces.len()).map(circle));
+    let [tree, of_others] = [faces, others].map(|faces| CircleTree::new(faces.iter().map(circle)));
     let mut near = Vec::new();
-    tree.overlaps(&tree, &mut near);
+    tree.overlaps(&of_others, &mut near);
     let mut lies = vec![false; faces.len()];
     for [i, j] in near.into_iter().map(|pair| pair.map(|k| k as usize)) {
-        let of_others = bodies[faces[i][0]] != bodies[faces[j][0]];
-        if of_others && !lies[i] && lie_on_each_other(ends(i), ends(j)) {
+        let is_of_other = bodies[faces[i][0]] != bodies[others[j][0]];
+        if is_of_other && !lies[i] && lie_on_each_other(ends(faces[i]), ends(others[j])) {
             lies[i] = true;
         }
     }

@@ -146,6 +146,7 @@ fn read(cx: &mut Context) -> Model {
     };
     formulation::restrict(&mut model, cx);
     formulation::choose(&mut model);
+    formulation::report_both_orders(&model, cx);
     contact::keep_arcs_for_discs(&mut model);
     let model = model;
     let all: [&dyn Fn(&mut Context); 10] = [

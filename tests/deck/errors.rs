@@ -218,6 +218,7 @@ fn faulty(code: Code) -> Source {
             "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSTOP, SBOT\n*END STEP",
         ),
         Coupling => model("*MPC\nLINK, 1, 3"),
+        BothOrders => Source::Text(on_each_other(26)),
         FixedSlave => shared("SBOT, STOP", "STOP, SBOT\n*BOUNDARY\n4, 1, 2\n5, 1, 2"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
@@ -250,6 +251,42 @@ fn faulty(code: Code) -> Source {
         BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
         ScaledTolerance => square("*DYNAMIC, DIRECT", "*DYNAMIC, HALFINC SCALE FACTOR=500."),
     }
+}
+
+/// Two rows of so many elements, one on the other, with pairs in both orders.
+fn on_each_other(elements: usize) -> String {
+    let (mut nodes, mut faces) = (String::new(), [String::new(), String::new()]);
+    for (row, faces) in faces.iter_mut().enumerate() {
+        for i in 0..=elements {
+            let (low, high) = (1000 * row + 2 * i + 1, 1000 * row + 2 * i + 2);
+            nodes += &format!("{low}, {i}., {row}.\n{high}, {i}., {}.\n", row + 1);
+            if i < elements {
+                *faces += &format!("{low}, {low}, {}, {}, {high}\n", low + 2, high + 2);
+            }
+        }
+    }
+    let [below, above] = faces;
+    format!(
+        "*NODE\n{nodes}*ELEMENT, TYPE=CPE4, ELSET=BELOW\n{below}*ELEMENT, TYPE=CPE4, ELSET=ABOVE\n{above}\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n\
+         *SOLID SECTION, ELSET=BELOW, MATERIAL=M\n1.\n*SOLID SECTION, ELSET=ABOVE, MATERIAL=M\n1.\n\
+         *SURFACE, NAME=TOP\nBELOW, S3\n*SURFACE, NAME=FOOT\nABOVE, S1\n\
+         *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=DRY\nFOOT, TOP\nTOP, FOOT\n\
+         *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*DLOAD\nABOVE, GRAV, 10., 0., -1.\n*END STEP\n"
+    )
+}
+
+/// Few faces, one order, and means say nothing.
+#[test]
+fn both_orders_of_pairs_are_told_where_they_cost() {
+    let deck = on_each_other(26);
+    let says = |deck: &str| messages(&Source::Text(deck.to_owned())).1.contains("D427");
+    assert!(says(&deck));
+    assert!(!says(&on_each_other(20)));
+    assert!(!says(&deck.replace("TOP, FOOT\n", "")));
+    assert!(!says(
+        &deck.replace("=DRY\nFOOT", "=DRY, TYPE=SURFACE TO SURFACE\nFOOT")
+    ));
 }
 
 #[test]

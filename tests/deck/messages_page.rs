@@ -9,6 +9,10 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/messages.md");
 /// Longest line of an example.
 const WIDTH: usize = 240;
 
+/// Most lines of an example, and those that are kept of a longer one at its ends.
+const MOST: usize = 90;
+const ENDS: [usize; 2] = [8, 32];
+
 const HEAD: &str = "\
 # Messages
 
@@ -98,12 +102,16 @@ fn change(base: &str, deck: &str) -> String {
     shortened(&lines.join("\n")) + "\n"
 }
 
-/// A text without NUL bytes, with its long lines cut.
+/// A text without NUL bytes, with its long lines cut and without the middle of many lines.
 fn shortened(text: &str) -> String {
     let cut = |line: &str| match line.char_indices().nth(WIDTH) {
         Some((end, _)) => format!("{}...", &line[..end]),
         None => line.to_owned(),
     };
-    let lines: Vec<String> = text.trim_end().lines().map(cut).collect();
+    let mut lines: Vec<String> = text.trim_end().lines().map(cut).collect();
+    if lines.len() > MOST {
+        let middle = ENDS[0]..lines.len() - ENDS[1];
+        lines.splice(middle.clone(), [format!("** ... {} lines", middle.len())]);
+    }
     lines.join("\n").replace('\0', "\\0")
 }

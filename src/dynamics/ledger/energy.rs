@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
 use crate::archive::{Archive, ArchiveError};
-use crate::contact::{ClosedPair, Constraint};
 use crate::contact::tolerances::CLOSED_GAP;
+use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::increment::{ContactStates, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{EffectiveStiffness, Equilibrium, StepProblem, difference, dot, sum};
