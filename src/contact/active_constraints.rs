@@ -38,8 +38,11 @@ impl ConstraintSet<'_> {
         match self {
             ConstraintSet::All => Vec::new(),
             ConstraintSet::Active(active) => {
-                let touching = active.touching.iter();
-                touching.map(|touching| touching.pair.key).collect()
+                let nodes = active.touching.iter().map(|touching| touching.pair.key);
+                let means = active.means.iter().filter(|mean| mean.touches);
+                let mut keys: Vec<_> = nodes.chain(means.map(|mean| mean.key)).collect();
+                keys.sort_unstable();
+                keys
             }
         }
     }
@@ -49,13 +52,23 @@ impl ConstraintSet<'_> {
 /// and those that have joined them.
 ///
 /// A node that touches may slide on to other segments that face nearly the same way, or that it was
-/// not in front of; that is no impact. One that runs against a wall meets it later.
+/// not in front of; that is no impact. One that runs against a wall meets it later. From surface to surface a mean slides
+/// over a whole run of segments, and a mean that comes over the end of one without a gap meets nothing.
 #[derive(Debug, Clone, Default)]
 pub struct ActiveConstraints {
     /// The pairs that touch at the start, with increasing keys.
     touching: Vec<Touching>,
+    /// The means of gaps at the start, with increasing keys.
+    means: Vec<MeanAtStart>,
     /// Slave nodes that have joined, with all their segments; increasing.
     joined: Vec<SlaveKey>,
+}
+
+/// A constraint from surface to surface at the start.
+#[derive(Debug, Clone, Copy)]
+struct MeanAtStart {
+    key: ConstraintKey,
+    touches: bool,
 }
 
 /// A slave node and a segment that touch, with the normal of the segment.
@@ -66,17 +79,25 @@ struct Touching {
 }
 
 impl ActiveConstraints {
-    /// The pairs that touch in the displacements `u0`, which the search covers; `before` are those
-    /// that carried forces up to then. Discs have joined: they land within the subincrement.
-    pub fn new(search: &Search, u0: &[f64], before: &ClosedPairs) -> Self {
+    /// The pairs that touch in the displacements `u0`, which the search covers, where contact from surface to surface has
+    /// these `means`; `before` are those that carried forces up to then. Discs have joined: they land within the
+    /// subincrement.
+    pub fn new(search: &Search, u0: &[f64], means: &[Constraint], before: &ClosedPairs) -> Self {
         let start = Positions::new(search.coordinates(), u0);
-        let mut active = ActiveConstraints::default();
+        let mean = |c: &Constraint| MeanAtStart {
+            key: c.key,
+            touches: c.gap <= CLOSED_GAP * c.scale || before.closes(c.key),
+        };
+        let mut active = ActiveConstraints {
+            means: means.iter().map(mean).collect(),
+            ..ActiveConstraints::default()
+        };
         for listed in search.slaves() {
             if listed.surfaces.disc.is_some() {
                 active.join(listed.key);
                 continue;
             }
-            for candidate in listed.candidates() {
+            for candidate in listed.candidates().filter(|_| listed.meets_segments()) {
                 let pair = listed.at(candidate.segment);
                 if let Some(normal) = touched_normal(start, &listed, pair, before) {
                     active.add(pair, normal);
@@ -84,6 +105,16 @@ impl ActiveConstraints {
             }
         }
         active
+    }
+
+    /// Takes in a slave node whose mean gap is closed soon after the start.
+    pub fn join_mean_at_start(&mut self, key: ConstraintKey) {
+        let joined = MeanAtStart { key, touches: true };
+        match self.means.binary_search_by_key(&key, |mean| mean.key) {
+            Ok(place) => self.means[place] = joined,
+            Err(place) => self.means.insert(place, joined),
+        }
+        self.join(key.slave);
     }
 
     /// Takes in a slave node that lands soon after the start.
@@ -123,10 +154,20 @@ impl ActiveConstraints {
     /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner,
     /// or the node of the corner out of a segment of the slave node: two nodes that are each other's corner
     /// are one constraint.
+    /// From surface to surface, whether its mean touches, or has come over the end of the master without a gap.
     pub fn is_held(&self, start: Positions, constraint: &Constraint) -> bool {
         let (source, slave) = (&constraint.source, constraint.key.slave);
+        if constraint.is_weighted() {
+            let before = (self.means).binary_search_by_key(&constraint.key, |mean| mean.key);
+            let touches = match before {
+                Ok(place) => self.means[place].touches,
+                Err(_) => constraint.start_gap <= CLOSED_GAP * constraint.scale,
+            };
+            return touches || self.has_joined(slave);
+        }
         let [s, a, b, c] = source.nodes;
-        let is_held = |nodes| self.holds(slave, &start.place(nodes));
+        let place = |nodes| start.place(nodes).raised(source.allowed[0]);
+        let is_held = |nodes| self.holds(slave, &place(nodes));
         is_held([s, a, b])
             || (source.target.corner.is_some() && (is_held([s, b, c]) || self.touches_end(b, s)))
     }
@@ -157,7 +198,7 @@ fn touched_normal(
     if slave == a || slave == b {
         return None;
     }
-    let p = start.place(pair.nodes);
+    let p = start.place(pair.nodes).raised(listed.allowed()[0]);
     let is_inside = || {
         let at = |node: usize| start.of(node);
         p.gap >= -CLOSED_GAP * p.length || listed.surfaces.interior.takes_in([a, b], slave, at)

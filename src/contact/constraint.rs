@@ -181,6 +181,23 @@ impl Constraint {
         self.product(&self.force_rows.tangential, |dof| d[dof])
     }
 
+    /// When its gap closes in the motion t V + t²/2 A from the start, given over all dofs, up to a time `end`:
+    ///
+    /// ```text
+    /// g0 + t Bn V + t²/2 Bn A = 0    eq. (6.16)
+    /// ```
+    ///
+    /// None where it does not.
+    pub fn closing_time(&self, [v, a]: [&[f64]; 2], end: f64) -> Option<f64> {
+        let (gap, rate) = (self.start_gap.max(0.0), self.normal_motion(v));
+        let discriminant = rate * rate - 2.0 * gap * self.normal_motion(a);
+        let time = match gap == 0.0 {
+            true => 0.0,
+            false => 2.0 * gap / (discriminant.sqrt() - rate),
+        };
+        (0.0..=end).contains(&time).then_some(time)
+    }
+
     /// Adds Bn^T Pn + Bt^T Pt to a vector over all dofs.
     pub fn add_force(&self, [pn, pt]: [f64; 2], force: &mut [f64]) {
         let Rows { normal, tangential } = &self.force_rows;

@@ -84,6 +84,20 @@ pub fn find_targets(
     remove_twins(pairs);
 }
 
+/// Writes those pairs that are means from surface to surface, between the same displacements, with increasing keys.
+pub fn find_means(
+    search: &Search,
+    [u0, u]: [&[f64]; 2],
+    form: RowForm,
+    pairs: &mut Vec<PairTarget>,
+) {
+    let positions = [u0, u].map(|u| Positions::new(search.coordinates(), u));
+    pairs.clear();
+    for territory in search.territories() {
+        find_points(territory, positions, form, pairs);
+    }
+}
+
 /// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the
 /// weights of the iterate, and adds what is found beside them.
 fn keep(node: &SlaveNode, found: &Targets, beyond: f64, targets: &mut Targets) {

@@ -247,9 +247,14 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         (self.territory.corners).is_some_and(|corners| corners.are_of_master)
     }
 
+    /// Whether it meets segments by itself, not by means: it is a node, or a corner from surface to surface.
+    pub fn meets_segments(&self) -> bool {
+        self.surfaces.slave_segments.is_none()
+    }
+
     /// Whether its contact is node to segment.
     pub fn is_node_to_segment(&self) -> bool {
-        self.territory.corners.is_none() && self.surfaces.slave_segments.is_none()
+        self.territory.corners.is_none() && self.meets_segments()
     }
 
     /// Whether nodes of its contact may overlap at the end of the increment.

@@ -10,8 +10,8 @@ use super::results::State;
 use super::step::{Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
 use crate::contact::{
-    ActiveConstraints, ClosedPairs, Constraint, ConstraintSet, Crossing, Direction, NodeAtSegment,
-    Projection, crossings, line_crossings,
+    ActiveConstraints, ClosedPairs, Constraint, ConstraintKey, ConstraintSet, Crossing, Direction,
+    ListedSlave, Motion, NodeAtSegment, Projection, crossings, line_crossings,
 };
 
 /// Part of a nominal increment within which impacts are taken together; no subincrement is
@@ -44,12 +44,27 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub nominal: f64,
 }
 
-/// A node goes into a body.
+/// A node goes into a body, or a mean gap from surface to surface becomes negative.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     pair: NodeAtSegment,
+    /// Overlap that the node may have with the segment (length); none of a mean.
+    allowed: Option<f64>,
     /// Time since the start of the subincrement, by the motion between its ends.
     time: f64,
+}
+
+impl Entry {
+    /// Its gap at the end of a trial and the length that this is relative to; no number where the mean is over nothing.
+    fn gap(&self, problem: &StepProblem, trial: &Trial) -> [f64; 2] {
+        match self.allowed {
+            Some(allowed) => {
+                let place = problem.positions(&trial.u).place(self.pair.nodes);
+                [place.gap + allowed, place.length]
+            }
+            None => trial.mean(self.pair.key),
+        }
+    }
 }
 
 /// Second-order motion of all nodes from the start of a subincrement.
@@ -83,18 +98,42 @@ impl FreeMotion<'_> {
         beyond.hypot(start.gap) <= way(a).max(way(b)) + round_off
     }
 
-    /// When a slave node goes in through a segment.
-    fn entry(&self, problem: &StepProblem, u0: &[f64], pair: NodeAtSegment) -> Option<f64> {
+    /// Motions of a node that may overlap with a segment by some length, and of the ends of the segment.
+    fn motions(
+        &self,
+        problem: &StepProblem,
+        u0: &[f64],
+        nodes: [usize; 3],
+        allowed: f64,
+    ) -> [Motion; 3] {
         let Path { v, a, .. } = self.path;
-        let motions = pair.nodes.map(|node| motion(problem, u0, v, a, node));
+        let [mut s, a, b] = nodes.map(|node| motion(problem, u0, v, a, node));
+        if allowed != 0.0 {
+            let normal = problem.positions(u0).place(nodes).normal;
+            s.position = [0, 1].map(|i| s.position[i] + allowed * normal[i]);
+        }
+        [s, a, b]
+    }
+
+    /// When a slave node that may overlap by some length goes in through a segment.
+    fn entry(
+        &self,
+        problem: &StepProblem,
+        u0: &[f64],
+        (pair, allowed): (NodeAtSegment, f64),
+    ) -> Option<f64> {
+        let motions = self.motions(problem, u0, pair.nodes, allowed);
         self.first_to_stay(&crossings(&motions, self.duration))
     }
 
-    /// When the slave node of a constraint that did not count, and that ends behind its segment, has gone
-    /// behind the line of the segment.
-    fn overlap(&self, problem: &StepProblem, u0: &[f64], pair: NodeAtSegment) -> Option<f64> {
-        let Path { v, a, .. } = self.path;
-        let motions = pair.nodes.map(|node| motion(problem, u0, v, a, node));
+    /// When a constraint that did not count, and that ends with an overlap, has closed: its slave node has gone behind the
+    /// line of the segment.
+    fn overlap(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> Option<f64> {
+        if constraint.is_weighted() {
+            return constraint.closing_time([&self.path.v, &self.path.a], self.duration);
+        }
+        let allowed = constraint.allowed_at_start();
+        let motions = self.motions(problem, u0, constraint.pair().nodes, allowed);
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
 
@@ -127,8 +166,12 @@ impl<'m> Subincrements<'_, 'm> {
         let search = &mut self.workspace.search;
         search.start(&self.start.v, rest);
         search.cover(&self.start.u);
-        let mut active = ActiveConstraints::new(search, &self.start.u, &self.start.contact);
-        let mut impact = ImpactTime::new(&self.start.u);
+        let (problem, start) = (self.problem, self.start);
+        let means = self.workspace.means(problem, [&start.u; 2]);
+        let search = &self.workspace.search;
+        let mut active = ActiveConstraints::new(search, &start.u, &means, &start.contact);
+        let begin = || Trial::new(0.0, &start.u, &means);
+        let mut impact = ImpactTime::new(begin());
         let (mut tau, mut guess, mut before) = (rest, None, None);
         let mut entries = Vec::new();
         for _ in 0..TRIALS {
@@ -154,14 +197,11 @@ impl<'m> Subincrements<'_, 'm> {
             } else if entries.is_empty() {
                 return Ok(self.converged(tau, solved));
             }
-            let trial = Trial {
-                length: tau,
-                u: solved.end.u.clone(),
-            };
-            impact.take_in(trial, is_before);
+            let trial = Trial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
+            impact.take_in(trial.clone(), is_before);
             // a node that has just bounced off has hardly a gap at the start: there its motion tells
             let expected = |entry: &Entry| {
-                let gap = |u: &[f64]| self.problem.positions(u).place(entry.pair.nodes).gap;
+                let gap = |trial: &Trial| entry.gap(problem, trial)[0];
                 let root = impact.root(gap).filter(|root| *root >= group);
                 root.unwrap_or(entry.time)
             };
@@ -188,17 +228,14 @@ impl<'m> Subincrements<'_, 'm> {
                         .iter()
                         .for_each(|entry| active.join(entry.pair.key.slave()));
                 }
-                (impact, before, guess) = (ImpactTime::new(&self.start.u), None, Some(path));
+                (impact, before, guess) = (ImpactTime::new(begin()), None, Some(path));
                 tau = rest;
                 entries.clear();
                 continue;
             }
             let is_met = |entry: &Entry| {
-                let place = self
-                    .problem
-                    .positions(&solved.end.u)
-                    .place(entry.pair.nodes);
-                place.gap.abs() <= IMPACT_GAP * place.length
+                let [gap, length] = entry.gap(problem, &trial);
+                gap.abs() <= IMPACT_GAP * length
             };
             let is_near = |root: f64| (root - tau).abs() <= ACCURACY * self.nominal;
             if first.is_some_and(is_met) || root.is_some_and(is_near) {
@@ -243,6 +280,10 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     fn join_at_start(&self, active: &mut ActiveConstraints, entry: Entry) {
+        if entry.allowed.is_none() {
+            active.join_mean_at_start(entry.pair.key);
+            return;
+        }
         let p = self
             .problem
             .positions(&self.start.u)
@@ -266,15 +307,21 @@ impl<'m> Subincrements<'_, 'm> {
             duration: tau,
             end: if solved.is_some() { tau } else { 0.0 },
         };
-        let constraints = solved.map_or(&[][..], |solved| {
-            solved.contact.forces.constraints.as_slice()
-        });
+        let predicted = match solved {
+            Some(_) => Vec::new(),
+            None => (self.workspace).means(problem, [u0, &motion.displacement(u0)]),
+        };
+        let constraints = solved.map_or(&predicted, |solved| &solved.contact.forces.constraints);
         let counts = |c: &&Constraint| active.is_held(problem.positions(u0), c);
         let (counting, left_out): (Vec<_>, Vec<_>) = constraints.iter().partition(counts);
-        let has_constraint = |slave: usize| counting.iter().any(|c| c.keeps_out(slave));
+        let of_nodes = counting.iter().filter(|c| !c.is_weighted());
+        let has_constraint = |slave: usize| of_nodes.clone().any(|c| c.keeps_out(slave));
+        let place = |u: &[f64], (pair, allowed): (NodeAtSegment, f64)| {
+            problem.positions(u).place(pair.nodes).raised(allowed)
+        };
         // between its ends the motion is an estimate: what is in front at the end has not gone in
-        let ends_behind = |pair: &NodeAtSegment| {
-            solved.is_none_or(|solved| problem.positions(&solved.end.u).place(pair.nodes).gap < 0.0)
+        let ends_behind = |at: (NodeAtSegment, f64)| {
+            solved.is_none_or(|solved| place(&solved.end.u, at).gap < 0.0)
         };
         let is_kept = |pair: &NodeAtSegment, place: &Projection| {
             active.holds(pair.key.slave(), place)
@@ -284,29 +331,38 @@ impl<'m> Subincrements<'_, 'm> {
         };
         let mut entries: Vec<Entry> = Vec::new();
         for c in left_out {
-            let pair = c.pair();
-            if c.gap < -CLOSED_GAP * c.scale && problem.unknowns.moves(&pair.nodes) {
-                let time = motion.overlap(problem, u0, pair);
-                entries.extend(time.map(|time| Entry { pair, time }));
+            if c.gap < -CLOSED_GAP * c.scale {
+                let entry = |time| Entry {
+                    pair: c.pair(),
+                    allowed: (!c.is_weighted()).then_some(c.allowed_at_start()),
+                    time,
+                };
+                entries.extend(motion.overlap(problem, u0, c).map(entry));
             }
         }
         let Workspace { search, meter, .. } = &mut *self.workspace;
         let find = || {
             search.cover_path(u0, &motion.displacement(u0));
-            for listed in search.slaves() {
+            for listed in search.slaves().filter(ListedSlave::meets_segments) {
+                let allowed = listed.allowed()[0];
                 for candidate in listed.candidates() {
                     let pair = listed.at(candidate.segment);
                     let [s, a, b] = pair.nodes;
-                    let place = problem.positions(u0).place(pair.nodes);
+                    let place = place(u0, (pair, allowed));
                     let may_enter = motion.may_meet(&place, pair.nodes)
                         && s != a
                         && s != b
                         && problem.unknowns.moves(&pair.nodes)
-                        && ends_behind(&pair)
+                        && ends_behind((pair, allowed))
                         && !is_kept(&pair, &place);
                     if may_enter {
-                        let time = motion.entry(problem, u0, pair);
-                        entries.extend(time.map(|time| Entry { pair, time }));
+                        let time = motion.entry(problem, u0, (pair, allowed));
+                        let allowed = Some(allowed);
+                        entries.extend(time.map(|time| Entry {
+                            pair,
+                            allowed,
+                            time,
+                        }));
                     }
                 }
             }
@@ -337,8 +393,12 @@ impl<'m> Subincrements<'_, 'm> {
             end: 0.0,
             ..*motion
         };
-        let time = through.entry(problem, u0, pair).unwrap_or(0.0);
-        Some(Entry { pair, time })
+        let time = through.entry(problem, u0, (pair, 0.0)).unwrap_or(0.0);
+        Some(Entry {
+            pair,
+            allowed: Some(0.0),
+            time,
+        })
     }
 
     fn attempt(
@@ -388,11 +448,34 @@ impl<'m> Subincrements<'_, 'm> {
 }
 
 /// A converged subincrement that starts like the others.
+#[derive(Clone)]
 pub(crate) struct Trial {
     /// Its length tau.
-    pub length: f64,
+    length: f64,
     /// Displacements at its end.
-    pub u: Vec<f64>,
+    u: Vec<f64>,
+    /// Mean gaps from surface to surface at its end, with increasing keys, and the lengths that they are relative to.
+    means: Vec<(ConstraintKey, [f64; 2])>,
+}
+
+impl Trial {
+    /// That of the given length, whose end has the displacements `u` and some constraints.
+    fn new(length: f64, u: &[f64], constraints: &[Constraint]) -> Self {
+        let weighted = constraints.iter().filter(|c| c.is_weighted());
+        let mut means: Vec<_> = weighted.map(|c| (c.key, [c.gap, c.scale])).collect();
+        means.sort_unstable_by_key(|(key, _)| *key);
+        Trial {
+            length,
+            u: u.to_vec(),
+            means,
+        }
+    }
+
+    /// The mean gap of a constraint and the length that it is relative to; no number where it has none.
+    fn mean(&self, key: ConstraintKey) -> [f64; 2] {
+        let place = self.means.binary_search_by_key(&key, |(key, _)| *key);
+        place.map_or([f64::NAN; 2], |place| self.means[place].1)
+    }
 }
 
 /// Looks for the length of a subincrement that ends at the first impact.
@@ -408,13 +491,10 @@ pub(crate) struct ImpactTime {
 }
 
 impl ImpactTime {
-    /// Starts with the displacements `u0` at the start.
-    pub fn new(u0: &[f64]) -> Self {
+    /// Begins with the start, a trial without length.
+    pub fn new(start: Trial) -> Self {
         ImpactTime {
-            before: Trial {
-                length: 0.0,
-                u: u0.to_vec(),
-            },
+            before: start,
             after: None,
             old: None,
             steps: [f64::INFINITY; 2],
@@ -429,18 +509,18 @@ impl ImpactTime {
         };
     }
 
-    /// When the gap of a pair, given by the displacements, is zero: by inverse quadratic interpolation of
+    /// When the gap that a pair has at the end of a trial is zero: by inverse quadratic interpolation of
     /// three trials, or else linear interpolation of two. None where it has no change of sign.
-    pub fn root(&self, gap: impl Fn(&[f64]) -> f64) -> Option<f64> {
+    pub fn root(&self, gap: impl Fn(&Trial) -> f64) -> Option<f64> {
         let (low, high) = (&self.before, self.after.as_ref()?);
-        let (g, h) = (gap(&low.u), gap(&high.u));
+        let (g, h) = (gap(low), gap(high));
         if !(g >= 0.0 && h < 0.0) {
             return None;
         }
         let linear = low.length + (high.length - low.length) * (g / (g - h));
         let is_inside = |t: &f64| *t > low.length && *t < high.length;
         let quadratic = self.old.as_ref().map(|old| {
-            let points = [(low.length, g), (high.length, h), (old.length, gap(&old.u))];
+            let points = [(low.length, g), (high.length, h), (old.length, gap(old))];
             let term = |i: usize| {
                 let [(t, g), (_, p), (_, q)] = [0, 1, 2].map(|k| points[(i + k) % 3]);
                 t * (p / (g - p)) * (q / (g - q))
@@ -472,14 +552,11 @@ mod tests {
 
     /// Number of trials until the root of a gap is found to 1e-10, from the length 1 on.
     fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
-        let (mut search, mut tau) = (ImpactTime::new(&[gap(0.0)]), 1.0);
+        let trial = |tau: f64| Trial::new(tau, &[gap(tau)], &[]);
+        let (mut search, mut tau) = (ImpactTime::new(trial(0.0)), 1.0);
         (1..40).find(|_| {
-            let trial = Trial {
-                length: tau,
-                u: vec![gap(tau)],
-            };
-            search.take_in(trial, gap(tau) >= 0.0);
-            let expected = search.root(|u| u[0]);
+            search.take_in(trial(tau), gap(tau) >= 0.0);
+            let expected = search.root(|trial| trial.u[0]);
             let is_found = (tau - root).abs() < 1e-10;
             tau = search.next(tau, expected);
             is_found
@@ -508,15 +585,11 @@ mod tests {
 
     #[test]
     fn a_gap_that_jumps_is_bracketed() {
-        let (mut search, mut tau) = (ImpactTime::new(&[1.0]), 1.0);
+        let (mut search, mut tau) = (ImpactTime::new(Trial::new(0.0, &[1.0], &[])), 1.0);
         for _ in 0..12 {
             let gap = if tau < 0.4 { 1.0 } else { -1e-6 };
-            let trial = Trial {
-                length: tau,
-                u: vec![gap],
-            };
-            search.take_in(trial, gap > 0.0);
-            let root = search.root(|u| u[0]);
+            search.take_in(Trial::new(tau, &[gap], &[]), gap > 0.0);
+            let root = search.root(|trial| trial.u[0]);
             tau = search.next(tau, root);
         }
         let (low, high) = (search.before.length, search.after.expect("after").length);

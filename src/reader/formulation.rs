@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use super::context::Context;
 use crate::diagnostics::Code;
-use crate::model::{Contact, ContactFormulation, ImpactTime, Mesh, Model, Surface, SurfaceKind};
+use crate::model::{Contact, ContactFormulation, Mesh, Model, Surface, SurfaceKind};
 use crate::vectors::{Circle, CircleTree, cross, difference, dot, length};
 
 /// Faces that lie on other bodies from which on general contact is from surface to surface: with fewer, conditions of
@@ -126,11 +126,8 @@ fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'sta
     let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
     let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));
     let has_segments = |surface: &Surface| !matches!(surface.kind, SurfaceKind::Nodes(_));
-    let settings = || model.steps.iter().map(|step| &step.settings);
     if !is_of_faces(slave) || !has_segments(master) {
         Some("the slave surface must be made of element faces")
-    } else if settings().any(|s| s.impact_time == ImpactTime::Event) {
-        Some("impacts at their times need nodes that land on segments")
     } else {
         None
     }

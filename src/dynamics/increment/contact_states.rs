@@ -69,7 +69,7 @@ impl ContactStates {
         let at = problem.positions(u);
         let is_over = |constraint: &Constraint| {
             let xi = at.place(constraint.pair().nodes).xi;
-            xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
+            constraint.is_weighted() || xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
         };
         let left_out = self.left_out.drain(..);
         (self.forces.constraints).extend(left_out.filter(|c| c.gap >= 0.0 || is_over(c)));

@@ -286,9 +286,14 @@ fn landing(
 ) -> Landing {
     let [slave, a, b] = constraint.nearer_pair().nodes;
     let motions = [slave, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
-    let tau = match impact_time(&motions, interval.dt) {
+    let of_mean = constraint.is_weighted();
+    let time = match of_mean {
+        true => constraint.closing_time([&start.v, &start.a], interval.dt),
+        false => Some(impact_time(&motions, interval.dt)),
+    };
+    let tau = match time.unwrap_or(interval.dt) {
         // it touches at the start and does not cross
-        tau if touched && tau == interval.dt => 0.0,
+        tau if touched && (of_mean || tau == interval.dt) => 0.0,
         tau => tau,
     };
     let [x_s, x_a, x_b] = motions.map(|m| m.at(tau));
@@ -296,12 +301,16 @@ fn landing(
     // -e_n.(v_s - (1 - xi) v_a - xi v_b)
     let [v_s, v_a, v_b] = motions.map(|m| m.velocity_at(tau));
     let relative = |i: usize| v_s[i] - (1.0 - p.xi) * v_a[i] - p.xi * v_b[i];
+    let speed = match of_mean {
+        true => constraint.normal_motion(&start.v) + tau * constraint.normal_motion(&start.a),
+        false => p.normal[0] * relative(0) + p.normal[1] * relative(1),
+    };
     Landing {
         time: interval.start.total + tau,
         slave,
         segment: [a, b],
         xi: p.xi,
-        approach_speed: -(p.normal[0] * relative(0) + p.normal[1] * relative(1)),
+        approach_speed: -speed,
     }
 }
 

@@ -8,7 +8,8 @@ use super::pins::Pins;
 use super::step_problem::{StepProblem, difference, sum};
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
-    ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_penetration, find_targets,
+    ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_means, find_penetration,
+    find_targets,
 };
 use crate::dynamics::results::State;
 use crate::elements::Motion;
@@ -202,6 +203,24 @@ impl<'m> Workspace<'m> {
             problem.constraints(pairs, increment, constraints);
         };
         meter.time(|t| &mut t.contact, write);
+    }
+
+    /// The constraints from surface to surface between the same displacements.
+    pub fn means(&mut self, problem: &StepProblem, increment: [&[f64]; 2]) -> Vec<Constraint> {
+        let Workspace {
+            search,
+            meter,
+            pairs,
+            ..
+        } = self;
+        meter.time(|t| &mut t.search, || search.cover(increment[1]));
+        let mut means = Vec::new();
+        let write = || {
+            find_means(search, increment, problem.integration.row_form(), pairs);
+            problem.constraints(pairs, increment, &mut means);
+        };
+        meter.time(|t| &mut t.contact, write);
+        means
     }
 
     /// Makes the velocities at the start of a motion those of bodies with hinges: impulses of the hinges act there once.
