@@ -331,7 +331,9 @@ impl<'m> Subincrements<'_, 'm> {
         };
         let mut entries: Vec<Entry> = Vec::new();
         for c in left_out {
-            if c.gap < -CLOSED_GAP * c.scale {
+            // nodes that have gone in by less are found by their motion
+            let least = if c.is_weighted() { 0.0 } else { CLOSED_GAP };
+            if c.gap < -least * c.scale {
                 let entry = |time| Entry {
                     pair: c.pair(),
                     allowed: (!c.is_weighted()).then_some(c.allowed_at_start()),
