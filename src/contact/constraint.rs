@@ -181,10 +181,10 @@ impl Constraint {
         self.product(&self.force_rows.tangential, |dof| d[dof])
     }
 
-    /// When its gap closes in the motion t V + t²/2 A from the start, given over all dofs, up to a time `end`:
+    /// When its gap closes in the motion t V + t²/2 A from the start, eq. (6.3), given over all dofs, up to a time `end`:
     ///
     /// ```text
-    /// g0 + t Bn V + t²/2 Bn A = 0    eq. (6.16)
+    /// g0 + t Bn V + t²/2 Bn A = 0
     /// ```
     ///
     /// None where it does not.
