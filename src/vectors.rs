@@ -74,6 +74,12 @@ const GROUP: usize = 8;
 /// Growth of a distance, as a part of it, that covers its round-off.
 const DISTANCE_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
+#[cfg(test)]
+thread_local! {
+    /// Pairs of circles that this thread has compared.
+    pub(crate) static COMPARED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
 /// A territory: all points within `radius` of `centre`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Circle {
@@ -86,6 +92,8 @@ pub(crate) struct Circle {
 impl Circle {
     /// Whether the two have a point in common: |c1 - c2| <= r1 + r2.
     fn overlaps(&self, other: &Circle) -> bool {
+        #[cfg(test)]
+        COMPARED.set(COMPARED.get() + 1);
         let d = difference(other.centre, self.centre);
         let reach = (self.radius + other.radius) * (1.0 + DISTANCE_ROUND_OFF);
         dot(d, d) <= reach * reach

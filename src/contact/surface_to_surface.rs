@@ -303,7 +303,11 @@ impl<'a> Finder<'a> {
     /// from which it may slide on to this one, or has penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
     /// that has come in through another segment or lies on it.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
-        if p.gap.max(q.gap) >= -CLOSED_GAP * p.length {
+        // gaps at the ends of the part of the face that is over the segment: beyond it a face of a bent thin body may be in front
+        // of the line of a segment on the other side
+        let part = |xi: f64| (xi.clamp(0.0, 1.0) - p.xi) / (q.xi - p.xi);
+        let gap = |eta: f64| p.gap + eta * (q.gap - p.gap);
+        if gap(part(p.xi)).max(gap(part(q.xi))) >= -CLOSED_GAP * p.length {
             return true;
         }
         // the middle of the part of the face that is over the segment
@@ -322,6 +326,13 @@ impl<'a> Finder<'a> {
             (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&p.xi)
                 && (-NEARER_DEPTH * depth..=on_it).contains(&p.gap)
         };
+        // beyond convex vertices from a segment: not on the side on which a thin body that is bent comes in front of its line
+        let leads_behind = |other: usize| {
+            let [a, b] = self.slave.edge_of_segment(self.start, other).ends;
+            let ends = self.slave.edge_of_segment(self.start, segment).ends;
+            let mut places = ends.iter().map(|&end| project(end, a, b));
+            places.all(|p| p.gap <= CLOSED_GAP * p.length)
+        };
         // it is in front of a segment before or after, from which it may slide on to this one
         let is_beside = |other: usize| {
             let p = at(other);
@@ -329,6 +340,7 @@ impl<'a> Finder<'a> {
                 && (-SIDE_BY_SIDE..=1.0 + SIDE_BY_SIDE).contains(&p.xi)
                 && p.gap >= -CLOSED_GAP * p.length
                 && self.faces(face, other)
+                && leads_behind(other)
         };
         let numbers = || self.slave.ends[face].into_iter().flatten();
         let others = || numbers().flat_map(|number| self.territory.candidates(number));
@@ -656,9 +668,13 @@ pub(super) fn stiffness(
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+
     use super::*;
     use crate::contact::geometry::Vertex;
-    use crate::contact::testing;
+    use crate::contact::{Search, find_means, testing};
+    use crate::model::Mesh;
+    use crate::vectors::COMPARED;
 
     /// Three slave nodes above the master nodes 3, 4 and 5, which the surface runs through from right to left.
     const X: [[f64; 2]; 6] = [
@@ -721,6 +737,70 @@ mod tests {
             q.weight * gap
         });
         gaps.sum()
+    }
+
+    /// Pairs of circles that a search compares, candidates that it lists and points that follow, of the slave faces and master
+    /// segments of two open chains of nodes, or of one that touches itself.
+    fn work(chains: &[Vec<[f64; 2]>]) -> [usize; 3] {
+        let coordinates: Vec<[f64; 2]> = chains.concat();
+        let mut first = 0;
+        let faces = chains.iter().map(|chain| {
+            let from = first;
+            first += chain.len();
+            (from..first - 1).map(|a| [a, a + 1]).collect::<Vec<_>>()
+        });
+        let faces: Vec<_> = faces.collect();
+        let [slave, master] = [&faces[0], faces.last().expect("a chain")];
+        let slaves = (0..chains[0].len()).collect();
+        let u = vec![0.0; 2 * coordinates.len()];
+        let mesh = Mesh {
+            coordinates,
+            ..Mesh::default()
+        };
+        let surfaces = [ContactSurfaces::new(slaves, slave, master.clone())
+            .from_surface_to_surface(&mesh, HashMap::new())];
+        let mut search = Search::new(&surfaces, &mesh.coordinates);
+        let before = COMPARED.get();
+        search.start(&u, 1.0);
+        search.cover(&u);
+        let compared = COMPARED.get() - before;
+        let listed = search.slaves().map(|slave| slave.candidates().count());
+        let mut pairs = Vec::new();
+        find_means(&search, [&u; 2], RowForm::DiscreteGradient, &mut pairs);
+        let points = pairs.iter().map(|pair| pair.points.len());
+        [compared, listed.sum(), points.sum()]
+    }
+
+    #[test]
+    fn work_grows_as_n_log_n() {
+        let row = |count: usize, y: f64, turn: f64| -> Vec<[f64; 2]> {
+            let place = |i: usize| turn * (i as f64 / count as f64 - 0.5);
+            (0..=count).map(|i| [place(i), y]).collect()
+        };
+        // unlike meshes face to face, and the legs of one strip
+        let unlike = |n: usize| vec![row(n, 0.01 / n as f64, 1.0), row(7 * n / 5, 0.0, -1.0)];
+        let folded = |n: usize| vec![[row(n, 0.0, -1.0), row(n, 0.01 / n as f64, 1.0)].concat()];
+        for (name, chains) in [
+            ("unlike", &unlike as &dyn Fn(usize) -> _),
+            ("folded", &folded),
+        ] {
+            let mut before = [f64::INFINITY; 3];
+            for n in [64, 128, 256, 512] {
+                let [compared, listed, points] =
+                    work(&chains(n)).map(|count| count as f64 / n as f64);
+                println!(
+                    "{name} {n}: {compared} compared, {listed} listed, {points} points per segment"
+                );
+                let now = [compared / (n as f64).log2(), listed, points];
+                let most = before.map(|count| 1.05 * count);
+                assert!(
+                    now.iter().zip(most).all(|(now, most)| *now <= most),
+                    "{name} {now:?} {before:?}"
+                );
+                assert!(points > 2.0, "faces are over each other");
+                before = now;
+            }
+        }
     }
 
     #[test]

@@ -270,6 +270,22 @@ def test_whole_skins_keep_corners_out(
     assert max(overlap.depth for overlap in overlaps) < 0.02
 
 
+@pytest.mark.parametrize("setting", ["", "IMPACT TIME=EVENT"])
+def test_bent_plates_do_not_touch_their_own_far_side(tmp_path: Path, setting: str) -> None:
+    """A face on one side is in front of the lines of bent faces on the other side, beyond their ends."""
+    places, counts = SCENES["plates thinner than the reach"]
+    deck = Deck.titled("plates")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    for name, place in places.items():
+        add_body(deck, name, "CPS4I", with_skin(grid("CPS4I", *counts[name], place)), SKIN="S" + name)
+    deck.extend(f"*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n*CONTACT FORMULATION, {SURFACES}\n")
+    deck.extend("*INITIAL CONDITIONS, TYPE=VELOCITY\nNB, 2, -1.\nNB, 1, 0.3\nNA, 2, 0.5\n")
+    deck.extend(f"*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 1.6\n*STICKSLIP, {setting}\n*END STEP\n")
+    result = program.run(deck.write(tmp_path / "deck.inp"), tmp_path)
+    assert result.run["cutbacks"] == 0
+    gains_nothing(result, "ALL_EXTERIOR")
+
+
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_the_legs_of_a_bent_strip_are_pressed_on_each_other(tmp_path: Path, friction: float) -> None:
     length, radius = 2.0, 0.3
