@@ -1,8 +1,6 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use std::collections::BTreeSet;
-
 use super::acceleration::Acceleration;
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
@@ -10,19 +8,19 @@ use super::contact_system::ContactSystem;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
 use super::impulses::Before;
+use super::pin_iteration::FreePasses;
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
-use crate::contact::{ClosedPairs, Constraint, ConstraintKey, ConstraintSet};
+use crate::contact::{ClosedPairs, ConstraintSet};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, Parts, StartVelocity,
-    StepProblem, Workspace, add_pin_forces, difference, sum, write_difference, write_sum,
+    ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
+    Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
-use crate::linear::largest;
 
 /// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
 const PATIENCE: usize = 25;
@@ -147,118 +145,24 @@ impl Solved {
 
 /// Vectors of the passes of an increment.
 #[derive(Default)]
-struct Vectors {
+pub(super) struct Vectors {
     /// Forces of the iterate.
-    equilibrium: Equilibrium,
+    pub equilibrium: Equilibrium,
     /// Displacement U of the iterate.
-    u: Vec<f64>,
+    pub u: Vec<f64>,
     /// What the predictor leaves of the supports' motion, d_p.
     d_p: Vec<f64>,
     /// Its force theta2 K d_p.
     support_force: Vec<f64>,
     /// r - theta2 K d_p
-    load: Vec<f64>,
+    pub load: Vec<f64>,
     /// d_p with the motion that closes the hinges.
-    closing: Vec<f64>,
+    pub closing: Vec<f64>,
     /// Correction dU.
-    du: Vec<f64>,
+    pub du: Vec<f64>,
     /// Displacement increment after the first pass.
     tangent: Vec<f64>,
     residual: Residual,
-}
-
-/// Steps in a pass that take the forces of pins out.
-const PIN_STEPS: usize = 30;
-/// The least of them before forces count as settled.
-const LEAST_PIN_STEPS: usize = 4;
-/// Parts of the stiffness of pins with which they are made, one after the other.
-const SOFTER: [f64; 3] = [1.0, 1e-2, 1e-4];
-/// The last of them.
-const SOFTEST_PART: f64 = SOFTER[SOFTER.len() - 1];
-/// Part of the tolerance up to which forces of pins are left to the next pass.
-const WITHIN_TOLERANCE: f64 = 0.1;
-/// Part of small forces of pins above which steps that go farther have changed nothing.
-const SLOW_PIN: f64 = 0.5;
-/// Forces of pins that are none, beside the other forces.
-const PIN_FORCE: f64 = 1e-13;
-/// Those that the next pass may take out.
-const SMALL_PIN_FORCE: f64 = 1e-8;
-/// Change of forces of pins, beside them, that become no smaller.
-const SETTLED_PIN: f64 = 1e-3;
-/// Part of a force of pins that a step leaves from which on the next one goes farther.
-const HARDLY_FALLS: f64 = 0.9;
-/// Passes with the same closed pairs in which forces of pins stay after which there is no equilibrium.
-const FREE_PASSES: usize = 3;
-/// Constraints of a body that the stiffness of its pins is taken from.
-const NEAR: usize = 12;
-
-/// How much farther than its own motion the pins of a body go in the next step of a pass, beside that motion, `last`
-/// being what it was in this one and f, f_last the forces of the pins: to where they vanish if all components go on as the
-/// largest one does, at most twice as far and its own motion once more.
-///
-/// ```text
-/// p <- S^T dU + w (S^T dU - p),   w = r/(1 - r),   1 - r = (1 - f.f_last/|f_last|²)/(1 + w_last)      eq. (12.6)
-/// ```
-fn stride(last: f64, f: &[f64], f_last: &[f64]) -> f64 {
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let falls = 1.0 - product(f, f_last) / product(f_last, f_last);
-    let r = 1.0 - falls / (1.0 + last);
-    if r.is_nan() || r <= HARDLY_FALLS {
-        return 0.0;
-    }
-    let most = 2.0 * last + 1.0;
-    if r < 1.0 {
-        most.min(r / (1.0 - r))
-    } else {
-        most
-    }
-}
-
-/// Whether forces of pins have settled since `before`; or grow with the way of a body that goes too far, as they do where
-/// it slides off without friction.
-fn stay(f: &[f64], before: &[f64], goes_too_far: bool) -> bool {
-    let (size, change) = (largest(f), largest(&difference(f, before)));
-    change < SETTLED_PIN * size || (goes_too_far && size > largest(before))
-}
-
-/// Passes in a row in which forces of pins stay.
-#[derive(Default)]
-struct FreePasses {
-    count: usize,
-    closed: Vec<ConstraintKey>,
-}
-
-impl FreePasses {
-    /// A pass has balanced its bodies.
-    fn ends(&mut self) {
-        self.count = 0;
-    }
-
-    /// Takes in a pass that has not; whether there is no equilibrium: with closed pairs at once, as a body that tips
-    /// or slides would look for another one in the passes that follow. `closed` are its closed pairs.
-    fn fail(&mut self, closed: Vec<ConstraintKey>) -> bool {
-        self.count = if closed == self.closed {
-            self.count + 1
-        } else {
-            1
-        };
-        self.closed = closed;
-        !self.closed.is_empty() || self.count >= FREE_PASSES
-    }
-}
-
-/// The constraints of every body with the smallest gaps in their lengths.
-fn nearest(contact: &ContactForces, parts: &Parts) -> Vec<Constraint> {
-    let mut all: Vec<&Constraint> = contact.constraints.iter().collect();
-    all.sort_by(|a, b| (a.gap / a.scale).total_cmp(&(b.gap / b.scale)));
-    let mut of_bodies = vec![0; parts.bodies()];
-    let is_near = |constraint: &&Constraint| {
-        let bodies: BTreeSet<usize> = constraint.nodes().map(|n| parts.of_nodes()[n]).collect();
-        let is_among = bodies.iter().any(|&body| of_bodies[body] < NEAR);
-        bodies.iter().for_each(|&body| of_bodies[body] += 1);
-        is_among
-    };
-    all.into_iter().filter(is_near).cloned().collect()
 }
 
 /// An attempt at one increment.
@@ -492,126 +396,8 @@ impl<'m> Attempt<'_, 'm> {
         Ok(closing)
     }
 
-    /// Contact forces and correction of a pass in which pins hold bodies that no support holds: pinned where the
-    /// forces p of the pins, a' p, let the body move as it would without them.
-    ///
-    /// ```text
-    /// dU = y + W (B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
-    /// ```
-    ///
-    /// Gives the forces by which hinges close their gaps.
-    fn iterate_pins(
-        &mut self,
-        contact: &mut ContactForces,
-        weight: Option<f64>,
-        free: &mut FreePasses,
-        v: &mut Vectors,
-    ) -> Result<Vec<f64>, Cause> {
-        let problem = self.problem;
-        let near = nearest(contact, problem.parts);
-        let near: Vec<&Constraint> = near.iter().collect();
-        let dofs: Vec<usize> = self.workspace.pins.dofs().collect();
-        let of_bodies = self.workspace.pins.of_bodies();
-        let reach = self.workspace.search.reach();
-        let tolerance = problem.settings.tolerance;
-        let mut p = vec![0.0; dofs.len()];
-        let (mut stays, mut closing) = (None, Vec::new());
-        // where f vanishes slowly, pins are too stiff for what holds the body
-        'rounds: for part in SOFTER {
-            let stiffness = (self.workspace)
-                .soften(problem, &near, part)
-                .map_err(|error| problem.unsolvable(error))?;
-            closing = self.close_hinges(v)?;
-            let mut forces: Vec<Vec<f64>> = Vec::new();
-            let mut strides = vec![0.0; of_bodies.len()];
-            let (mut left, mut small) = (f64::INFINITY, None);
-            for step in 0..PIN_STEPS {
-                self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
-                let moved: Vec<f64> = dofs.iter().map(|&dof| v.du[dof]).collect();
-                let carried = |k: usize| stiffness[k] * (moved[k] - p[k]);
-                let force: Vec<f64> = (0..dofs.len()).map(carried).collect();
-                let Equilibrium { load, internal, .. } = &v.equilibrium;
-                let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
-                let others = [largest(load), largest(internal)]
-                    .into_iter()
-                    .chain(of_pairs);
-                left = largest(&force) / others.fold(0.0, f64::max);
-                // without any force there is nothing to carry
-                if left.is_nan() || left <= PIN_FORCE {
-                    free.ends();
-                    return Ok(closing);
-                }
-                let goes_too_far = largest(&moved) > reach;
-                if let Some(before) = step.checked_sub(2).map(|before| &forces[before])
-                    && step >= LEAST_PIN_STEPS
-                    && left > SMALL_PIN_FORCE
-                    && stay(&force, before, goes_too_far)
-                {
-                    stays.get_or_insert_with(|| (force.clone(), v.du.clone(), contact.keys()));
-                    if goes_too_far {
-                        break 'rounds;
-                    }
-                }
-                if left <= SMALL_PIN_FORCE {
-                    small.get_or_insert_with(|| (p.clone(), left));
-                }
-                for (pins, last) in of_bodies.iter().zip(&mut strides) {
-                    let before = forces.last().map_or(&[][..], |force| &force[pins.clone()]);
-                    *last = stride(*last, &force[pins.clone()], before);
-                    for k in pins.clone() {
-                        p[k] = moved[k] + *last * (moved[k] - p[k]);
-                    }
-                }
-                forces.push(force);
-            }
-            let stayed = small.filter(|(_, before)| left > SLOW_PIN * before);
-            let softer = left > WITHIN_TOLERANCE * tolerance && part > SOFTEST_PART;
-            match stayed {
-                _ if left > SMALL_PIN_FORCE => {}
-                // a weak spring takes them over slowly
-                Some(_) if softer => {}
-                // what does not fall is round-off in a motion that nothing resists
-                Some((p, _)) => {
-                    self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
-                    free.ends();
-                    return Ok(closing);
-                }
-                None => {
-                    free.ends();
-                    return Ok(closing);
-                }
-            }
-        }
-        if let Some((force, du, closed)) = stays
-            && free.fail(closed)
-        {
-            return Err((self.workspace.pins).unbalanceable(problem, &v.u, &du, &force));
-        }
-        Ok(closing)
-    }
-
-    /// Contact forces and correction of a pass with the forces a' p at the pins.
-    fn solve_with_pins(
-        &mut self,
-        contact: &mut ContactForces,
-        weight: Option<f64>,
-        (stiffness, p): (&[f64], &[f64]),
-        v: &mut Vectors,
-    ) -> Result<(), Cause> {
-        let mut load = v.load.clone();
-        add_pin_forces(&self.workspace.pins, stiffness, p, &mut load);
-        contact.solve([&v.closing, &load], weight, &mut self.k_star(), &mut v.du)
-    }
-
-    /// Makes the rigid part of the correction of a pinned body a finite motion.
-    fn move_finitely(&self, v: &mut Vectors) {
-        let at = |node: usize| self.problem.position(&v.u, node);
-        let reach = self.workspace.search.reach();
-        self.workspace.pins.make_finite(&at, reach, &mut v.du);
-    }
-
     /// K* with its contact problems.
-    fn k_star(&mut self) -> ContactSystem<'_> {
+    pub(super) fn k_star(&mut self) -> ContactSystem<'_> {
         ContactSystem {
             system: self.workspace.k(),
             method: self.problem.method(),
@@ -660,7 +446,7 @@ impl<'m> Attempt<'_, 'm> {
     /// ```text
     /// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.8)
     /// ```
-    fn close_hinges(&mut self, v: &mut Vectors) -> Result<Vec<f64>, Cause> {
+    pub(super) fn close_hinges(&mut self, v: &mut Vectors) -> Result<Vec<f64>, Cause> {
         let hinges = &self.problem.hinges;
         v.closing.clone_from(&v.d_p);
         if hinges.are_none() {
