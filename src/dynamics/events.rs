@@ -7,7 +7,7 @@
 use super::increment::{Attempt, Failed, Path, Solved};
 use super::ledger::motion;
 use super::results::State;
-use super::step::{Interval, StepProblem, TimePoint, Workspace};
+use super::step::{HeldMotions, Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
 use crate::contact::{
     ActiveConstraints, ClosedPairs, Constraint, ConstraintKey, ConstraintSet, Crossing, Direction,
@@ -267,6 +267,7 @@ impl<'m> Subincrements<'_, 'm> {
             v: self.start.v.clone(),
             a: self.start.a.clone(),
             closed: ClosedPairs::default(),
+            held: HeldMotions::default(),
         };
         loop {
             let entries = self.entries(active, &path, rest, None);

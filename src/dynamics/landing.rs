@@ -11,7 +11,7 @@ use super::patterns::{
     FrictionLoad, Pattern, ReturnLoad, RigidBodies, given, pattern, shares, signs, turning_bodies,
 };
 use super::results::{Cause, State};
-use super::step::{ClosedConstraints, StepProblem, Workspace, difference, dot, sum};
+use super::step::{ClosedConstraints, HeldMotions, StepProblem, Workspace, difference, dot, sum};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 
@@ -161,6 +161,7 @@ pub(super) fn factorize_anew(
         at: problem.configurations(&start.u, &u1),
         are_held: false,
         out_of_balance: &[],
+        held: &HeldMotions::default(),
     };
     (workspace.stiffness).write_rows(problem, [&start.u, &solved.d]);
     let factorized = workspace.factorize(problem, dt, motion, &closed);

@@ -236,6 +236,8 @@ pub struct SolverCounts {
     pub residual: f64,
     /// How far the pairs are from the contact law at the end.
     pub violation: ContactViolation,
+    /// Largest force that holds a motion which only facets resist, as a part of the normal forces at its body.
+    pub held: f64,
     /// Whether the increment converged.
     pub converged: bool,
 }
@@ -292,6 +294,9 @@ pub struct IncrementReport {
     /// Touches that have ended.
     #[serde(skip)]
     pub touches: Vec<Touch>,
+    /// The body with the largest force that holds a motion which only facets resist.
+    #[serde(skip)]
+    pub held: Option<Box<Unbalanced>>,
     /// Counters of this increment.
     pub solver: SolverCounts,
     /// Its passes.

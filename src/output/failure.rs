@@ -4,7 +4,8 @@
 use super::format::{counted, general, scientific, wrap, wrap_words};
 use super::strain::inversion_hint;
 use crate::dynamics::{
-    Alternation, Cause, Course, Cutback, FailedLcp, Failure, PassReport, Unbalanced, Worst,
+    Alternation, Cause, Course, Cutback, FailedLcp, Failure, IncrementReport, PassReport,
+    Unbalanced, Worst,
 };
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
@@ -221,15 +222,48 @@ fn unbalanced_lines(cause: &Cause, model: &Model) -> Vec<String> {
     let Cause::Unbalanceable(unbalanced) = cause else {
         return Vec::new();
     };
+    let text = format!(
+        "{} are left over; it is about to {}",
+        unbalanced_text(unbalanced, model),
+        motion_text(unbalanced)
+    );
+    wrap_words("body", &text)
+}
+
+/// That a motion which only facets resist is held, from an increment on.
+pub(crate) fn held_lines(
+    held: &Unbalanced,
+    report: &IncrementReport,
+    model: &Model,
+) -> Vec<String> {
+    let text = format!(
+        "from increment {} on the body {}, {} of its normal forces, which only the facets of its surfaces \
+         make; without friction it is free to {}",
+        report.increment,
+        unbalanced_text(held, model),
+        scientific(report.solver.held, 1),
+        motion_text(held),
+    );
+    wrap_words("held", &text)
+}
+
+fn unbalanced_text(unbalanced: &Unbalanced, model: &Model) -> String {
+    format!(
+        "of node {}: the force {} and the moment {} about its middle",
+        model.node_name(unbalanced.node),
+        point(unbalanced.force),
+        scientific(unbalanced.moment, 2),
+    )
+}
+
+fn motion_text(unbalanced: &Unbalanced) -> String {
     let Unbalanced {
-        node,
-        force,
-        moment,
         motion: [x, y, angle],
         size,
-    } = **unbalanced;
+        ..
+    } = *unbalanced;
     let (way, turn) = (x.hypot(y), angle.abs() * size);
-    let motion = match turn > way {
+    match turn > way {
         true if angle > 0.0 => "turn to the left".to_owned(),
         true => "turn to the right".to_owned(),
         false => format!(
@@ -237,14 +271,7 @@ fn unbalanced_lines(cause: &Cause, model: &Model) -> Vec<String> {
             general(x / way, 3),
             general(y / way, 3)
         ),
-    };
-    let text = format!(
-        "of node {}: the force {} and the moment {} about its middle are left over; it is about to {motion}",
-        model.node_name(node),
-        point(force),
-        scientific(moment, 2),
-    );
-    wrap_words("body", &text)
+    }
 }
 
 /// The body of a node: its element there that is compressed most, with a set that holds the element.

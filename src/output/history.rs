@@ -857,7 +857,7 @@ const LOCAL: [Entry<LocalResult>; 13] = [
 ];
 
 #[rustfmt::skip]
-const SOLVER: [Entry<SolverCounts>; 9] = [
+const SOLVER: [Entry<SolverCounts>; 10] = [
     ("passes", "1", "predictor and corrector passes", Count(|s| s.passes)),
     ("lcps", "1", "complementarity problems solved", Count(|s| s.lcps)),
     ("lcp_size", "1", "largest number of pairs in one of them", Count(|s| s.lcp_size)),
@@ -866,5 +866,6 @@ const SOLVER: [Entry<SolverCounts>; 9] = [
     ("gauss_seidel_sweeps", "1", "sweeps of the Gauss-Seidel method", Count(|s| s.gauss_seidel_sweeps)),
     ("lemke_calls", "1", "calls of Lemke's method", Count(|s| s.lemke_calls)),
     ("factorizations", "1", "factorisations of the effective matrix", Count(|s| s.factorizations)),
+    ("held", "1", "largest force that holds a motion which only facets resist, part of the normal forces at its body", Real(|s| s.held)),
     ("converged", "1", "1 when the increment converged, else 0", Flag(|s| s.converged)),
 ];

@@ -38,6 +38,8 @@ pub(crate) struct Monitor {
     landings: usize,
     /// Largest values of the checks.
     checks: Checks,
+    /// Largest force that holds a motion, beside the normal forces at its body.
+    held: f64,
 }
 
 /// Remarks on an increment besides its line in the table.
@@ -48,6 +50,8 @@ pub(crate) struct Remarks {
     pub checks: Checks,
     /// The most strained element, the first time it is beyond the range of its material.
     pub strained: Option<Strained>,
+    /// Whether a motion that only facets resist is held the first time.
+    pub holds: bool,
 }
 
 impl Monitor {
@@ -65,6 +69,7 @@ impl Monitor {
             kinds: Vec::new(),
             landings: 0,
             checks: Checks::default(),
+            held: 0.0,
         }
     }
 
@@ -82,6 +87,7 @@ impl Monitor {
             kinds: _,
             landings,
             checks,
+            held,
         } = self;
         archive.carry(balance)?;
         strain.carry(archive)?;
@@ -92,7 +98,8 @@ impl Monitor {
         archive.carry(failed_attempts)?;
         archive.carry(cutbacks)?;
         archive.carry(landings)?;
-        archive.carry(checks)
+        archive.carry(checks)?;
+        archive.carry(held)
     }
 
     /// Enters an accepted increment.
@@ -109,10 +116,13 @@ impl Monitor {
         }
         let checks = Checks::new(report, &self.balance);
         self.checks.enter(checks);
+        let holds = self.held == 0.0 && report.solver.held > 0.0;
+        self.held = larger(self.held, report.solver.held);
         Remarks {
             contact_energy,
             checks,
             strained: self.strain.add(report),
+            holds,
         }
     }
 
@@ -178,6 +188,7 @@ impl Monitor {
                 false => Vec::new(),
             },
             touches: Touches::new(&self.touches, self.balance.largest),
+            held: self.held,
             dt: self.dt,
             time: self.time,
             bodies: body_times(model, &Bodies::new(&model.mesh)),

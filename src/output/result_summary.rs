@@ -306,6 +306,7 @@ fn read_findings(
             true => read_open(&history.group("contact")?)?,
             false => Vec::new(),
         },
+        held: largest(&column::<f64>(&history, "solver/held").unwrap_or_default()),
         touches: Touches::new(&read_touches(&history).unwrap_or_default(), largest_energy),
         dt,
         time: times.last().copied().unwrap_or(0.0),

@@ -44,6 +44,8 @@ pub(crate) struct Findings {
     pub open: Vec<String>,
     /// The touches that matter.
     pub touches: Touches,
+    /// Largest force that holds a motion which only facets resist, beside the normal forces at its body.
+    pub held: f64,
     /// Length of the longest increment at whose end something moves; 0 without any, as in static steps.
     pub dt: f64,
     /// Last time.
@@ -60,6 +62,7 @@ impl Findings {
             texts.extend(self.losses.advice());
         }
         let others = [
+            self.held_text(),
             self.touches.brief_text(),
             self.touches.narrow_text(),
             self.strain_text(),
@@ -95,6 +98,17 @@ impl Findings {
                  CPS4I, CAX4I, CPE8R, CPS8R or CAX8R",
                 general(100.0 * self.hourglass, 2),
                 general(100.0 * HOURGLASS, 1),
+            )
+        })
+    }
+
+    fn held_text(&self) -> Option<String> {
+        (self.held > 0.0).then(|| {
+            format!(
+                "a body that slides without friction was held where it was, with up to {} of its normal forces: not more \
+                 than the facets of its surfaces make of them (RF has it at nodes of the body). A support that \
+                 holds it puts an end to it; contact from surface to surface and a finer mesh make it less",
+                scientific(self.held, 1),
             )
         })
     }

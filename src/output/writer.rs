@@ -11,7 +11,7 @@ use std::{fs, io};
 use super::checks::Checks;
 use super::console::{Console, Log, Verbosity};
 use super::error::{OutputError, at};
-use super::failure::{cutback_advice, cutback_lines, failure_lines};
+use super::failure::{cutback_advice, cutback_lines, failure_lines, held_lines};
 use super::format::{bytes, counted, scientific, wrap};
 use super::frames::{Frame, FrameSchedule};
 use super::job::Claim;
@@ -317,6 +317,9 @@ impl<'a> ResultWriter<'a> {
     fn print_remarks(&mut self, report: &IncrementReport, remarks: &Remarks) -> io::Result<()> {
         if let Some(energy) = remarks.contact_energy {
             self.print_contact_energy(report.increment, energy)?;
+        }
+        if let (true, Some(held)) = (remarks.holds, &report.held) {
+            self.console.lines(held_lines(held, report, self.model))?;
         }
         match remarks.strained {
             Some(strained) => {

@@ -26,6 +26,7 @@ mod loads;
 mod many;
 mod mean_dilatation;
 mod neo_hooke;
+mod neutral;
 mod patch;
 mod quasi_static;
 mod redistributed_mass;

@@ -87,7 +87,7 @@ BODIES = {
 SUMS = ("sum/RF", "sum/CF", "sum/CONTACT_FORCE", "mean/U", "mean/V", "mean/A")
 SOLVER = (
     "passes lcps lcp_size pivots active_set_iterations gauss_seidel_sweeps lemke_calls "
-    "factorizations converged"
+    "factorizations held converged"
 ).split()
 IMPACTS = {
     "time": (),

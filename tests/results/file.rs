@@ -360,6 +360,7 @@ const PER_INCREMENT: [&str; 82] = [
     "/history/solver/gauss_seidel_sweeps",
     "/history/solver/lemke_calls",
     "/history/solver/factorizations",
+    "/history/solver/held",
     "/history/solver/converged",
 ];
 

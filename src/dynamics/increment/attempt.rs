@@ -8,7 +8,7 @@ use super::contact_system::ContactSystem;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
 use super::impulses::Before;
-use super::pin_iteration::FreePasses;
+use super::pin_iteration::PinState;
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
@@ -17,8 +17,8 @@ use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::contact::{ClosedPairs, ConstraintSet};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, EffectiveStiffness, Equilibrium, Interval, StartVelocity, StepProblem,
-    Workspace, sum, write_difference, write_sum,
+    ClosedConstraints, EffectiveStiffness, Equilibrium, HeldMotions, Interval, StartVelocity,
+    StepProblem, Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
 
@@ -75,6 +75,8 @@ pub(crate) struct Solved {
     pub passes: Vec<PassReport>,
     /// What is given back once it has converged.
     pub returned: Returned,
+    /// Motions that are held in it.
+    pub held: HeldMotions,
 }
 
 /// The motion of a converged increment between its ends, which another attempt from the same start may begin
@@ -87,6 +89,8 @@ pub(crate) struct Path {
     pub a: Vec<f64>,
     /// The pairs closed at the end.
     pub closed: ClosedPairs,
+    /// Motions that are held.
+    pub held: HeldMotions,
 }
 
 impl Path {
@@ -104,6 +108,7 @@ impl Solved {
             v: self.d.iter().map(|d| d / dt).collect(),
             a: vec![0.0; self.d.len()],
             closed: self.end.contact.clone(),
+            held: self.held.clone(),
         }
     }
 
@@ -115,6 +120,7 @@ impl Solved {
             a: a.collect(),
             v: self.v0p.clone(),
             closed: self.end.contact.clone(),
+            held: self.held.clone(),
         }
     }
 }
@@ -240,9 +246,14 @@ impl<'m> Attempt<'_, 'm> {
         let mut contact = ContactStates::new(closed, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
-        let mut free = FreePasses::default();
+        let mut pins = PinState::new(
+            self.guess
+                .map_or(HeldMotions::default(), |path| path.held.clone()),
+        );
         let mut has_no_pairs = true;
         v.equilibrium.hinges.clear();
+        let all = self.workspace.pins.dofs();
+        v.equilibrium.held = all.zip(pins.held.forces(&self.workspace.pins)).collect();
         // the passes start from the rigid motion of the bodies, or from a motion that is known
         let mut d = match self.guess {
             Some(path) => path.displacement(dt),
@@ -265,7 +276,7 @@ impl<'m> Attempt<'_, 'm> {
             let state = [settled, factors.stagnate()];
             let may_end = contact.impulses.are_at_rest() && factors.are_near();
             if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
-                return self.finish(&d, contact, v, true);
+                return self.finish(&d, contact, pins.held, v, true);
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
@@ -277,7 +288,7 @@ impl<'m> Attempt<'_, 'm> {
             let weight = equal_forces.weight(settled);
             let hinge_forces = match self.workspace.pins.are_none() {
                 true => self.balance(&mut contact.forces, weight, v)?,
-                false => self.iterate_pins(&mut contact.forces, weight, &mut free, v)?,
+                false => self.iterate_pins(&mut contact.forces, weight, &mut pins, v)?,
             };
             self.take_hinge_forces(hinge_forces, v);
 
@@ -306,7 +317,7 @@ impl<'m> Attempt<'_, 'm> {
             }
             has_no_pairs &= contact.forces.closed.is_empty();
             if ends {
-                return self.finish(&d, contact, v, false);
+                return self.finish(&d, contact, pins.held, v, false);
             }
         }
         Err(Cause::NotConverged)
@@ -497,6 +508,7 @@ impl<'m> Attempt<'_, 'm> {
             at: problem.configurations(&self.start.u, u),
             are_held: factors.hold_pairs(),
             out_of_balance: &equilibrium.out_of_balance,
+            held: &HeldMotions::default(),
         };
         let factorized = (self.workspace).factorize(problem, dt, motion, &closed);
         factorized.map_err(|error| problem.unsolvable(error))
@@ -551,6 +563,7 @@ impl<'m> Attempt<'_, 'm> {
         &mut self,
         d: &[f64],
         mut contact: ContactStates,
+        held: HeldMotions,
         v: &mut Vectors,
         is_balanced: bool,
     ) -> Result<Solved, Cause> {
@@ -599,6 +612,7 @@ impl<'m> Attempt<'_, 'm> {
             tangent,
             passes: Vec::new(),
             returned: Returned::default(),
+            held,
         })
     }
 }

@@ -7,7 +7,9 @@ use super::attempt::{Attempt, Vectors};
 use super::contact_forces::ContactForces;
 use crate::contact::{Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
-use crate::dynamics::step::{Equilibrium, Parts, add_pin_forces, difference};
+use crate::dynamics::step::{
+    Equilibrium, HeldMotions, Parts, SoftPins, add_pin_forces, difference,
+};
 use crate::linear::largest;
 
 /// Steps in a pass that take the forces of pins out.
@@ -66,7 +68,7 @@ fn stay(f: &[f64], before: &[f64], goes_too_far: bool) -> bool {
 
 /// Passes in a row in which forces of pins stay.
 #[derive(Default)]
-pub(super) struct FreePasses {
+struct FreePasses {
     count: usize,
     closed: Vec<ConstraintKey>,
 }
@@ -104,25 +106,149 @@ fn nearest(contact: &ContactForces, parts: &Parts) -> Vec<Constraint> {
     all.into_iter().filter(is_near).cloned().collect()
 }
 
+/// What the steps of a pass have come to.
+enum Pinned {
+    /// Pins carry nothing but what is held.
+    Balanced,
+    /// Their forces still fall.
+    Falling,
+    /// They stay.
+    Stays(Stays),
+}
+
+/// Forces at pins that stay, with the correction and the closed pairs that belong to them, and the other forces.
+struct Stays {
+    force: Vec<f64>,
+    du: Vec<f64>,
+    closed: Vec<ConstraintKey>,
+    others: f64,
+}
+
+/// What the passes of an increment know of bodies that pins hold.
+#[derive(Default)]
+pub(super) struct PinState {
+    free: FreePasses,
+    /// Motions that are held.
+    pub held: HeldMotions,
+}
+
+impl PinState {
+    /// That of an increment whose passes start with motions that are held.
+    pub fn new(held: HeldMotions) -> Self {
+        PinState {
+            held,
+            ..PinState::default()
+        }
+    }
+}
+
 impl Attempt<'_, '_> {
-    /// Contact forces and correction of a pass in which pins hold bodies that no support holds: pinned where the
-    /// forces p of the pins, a' p, let the body move as it would without them.
-    ///
-    /// ```text
-    /// dU = y + W (B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
-    /// ```
+    /// Contact forces and correction of a pass in which pins hold bodies that no support holds. Where they stay in a motion
+    /// that only the facets of the mesh resist, it is held.
     ///
     /// Gives the forces by which hinges close their gaps.
     pub(super) fn iterate_pins(
         &mut self,
         contact: &mut ContactForces,
         weight: Option<f64>,
-        free: &mut FreePasses,
+        state: &mut PinState,
         v: &mut Vectors,
     ) -> Result<Vec<f64>, Cause> {
         let problem = self.problem;
         let near = nearest(contact, problem.parts);
         let near: Vec<&Constraint> = near.iter().collect();
+        let PinState { free, held } = state;
+        self.follow_held(contact, held, v);
+        let mut first: Option<Stays> = None;
+        loop {
+            let (closing, result) = self.balance_pins(contact, weight, (&near, held), v)?;
+            let stays = match result {
+                // in balance other pairs may be closed
+                Pinned::Balanced if self.follow_held(contact, held, v) => continue,
+                Pinned::Balanced => {
+                    free.ends();
+                    self.check_held(contact, held, first, v)?;
+                    return Ok(closing);
+                }
+                Pinned::Falling => return Ok(closing),
+                Pinned::Stays(stays) => stays,
+            };
+            let may_hold = first.is_none() && !stays.closed.is_empty();
+            if may_hold && self.hold(contact, weight, (&near, held, &stays), v)? {
+                first = Some(stays);
+                continue;
+            }
+            let Stays {
+                force, du, closed, ..
+            } = first.unwrap_or(stays);
+            return match free.fail(closed) {
+                true => Err((self.workspace.pins).unbalanceable(problem, &v.u, &du, &force)),
+                false => Ok(closing),
+            };
+        }
+    }
+
+    /// Holds the free motions of bodies that pins do not let come to rest; whether there are any. What they are is seen
+    /// before the bodies have gone anywhere.
+    fn hold(
+        &mut self,
+        contact: &mut ContactForces,
+        weight: Option<f64>,
+        (near, held, stays): (&[&Constraint], &mut HeldMotions, &Stays),
+        v: &mut Vectors,
+    ) -> Result<bool, Cause> {
+        let problem = self.problem;
+        let stiffness = (self.workspace)
+            .soften(problem, near, (SOFTER[0], held))
+            .map_err(|error| problem.unsolvable(error))?;
+        let none = vec![0.0; stiffness.soft.len()];
+        self.solve_with_pins(contact, weight, (&stiffness, &none), v)?;
+        let at = |node: usize| problem.position(&v.u, node);
+        let acting: Vec<_> = contact.acting().collect();
+        let least = SMALL_PIN_FORCE * stays.others;
+        Ok(held.hold(&self.workspace.pins, &at, &acting, (&stays.force, least)))
+    }
+
+    /// What holds motions must be within what the normals of the pairs take from each other.
+    fn check_held(
+        &self,
+        contact: &ContactForces,
+        held: &HeldMotions,
+        before: Option<Stays>,
+        v: &Vectors,
+    ) -> Result<(), Cause> {
+        if held.are_none() {
+            return Ok(());
+        }
+        let (problem, pins) = (self.problem, &self.workspace.pins);
+        let at = |node: usize| problem.position(&v.u, node);
+        let acting: Vec<_> = contact.acting().collect();
+        if held.beside_facets(pins, &at, &acting) <= 1.0 {
+            return Ok(());
+        }
+        Err(match before {
+            Some(Stays { force, du, .. }) => pins.unbalanceable(problem, &v.u, &du, &force),
+            None => (held.strongest(pins, problem, &v.u))
+                .map_or(Cause::NotConverged, Cause::Unbalanceable),
+        })
+    }
+
+    /// Contact forces and correction of a pass with pins: where the forces p of the pins, a' p, let the body move as it
+    /// would without them, or stay where it is along what is held.
+    ///
+    /// ```text
+    /// dU = y + W (B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
+    /// ```
+    ///
+    /// Gives the forces by which hinges close their gaps as well.
+    fn balance_pins(
+        &mut self,
+        contact: &mut ContactForces,
+        weight: Option<f64>,
+        (near, held): (&[&Constraint], &mut HeldMotions),
+        v: &mut Vectors,
+    ) -> Result<(Vec<f64>, Pinned), Cause> {
+        let problem = self.problem;
         let dofs: Vec<usize> = self.workspace.pins.dofs().collect();
         let of_bodies = self.workspace.pins.of_bodies();
         let reach = self.workspace.search.reach();
@@ -132,75 +258,129 @@ impl Attempt<'_, '_> {
         // where f vanishes slowly, pins are too stiff for what holds the body
         'rounds: for part in SOFTER {
             let stiffness = (self.workspace)
-                .soften(problem, &near, part)
+                .soften(problem, near, (part, held))
                 .map_err(|error| problem.unsolvable(error))?;
             closing = self.close_hinges(v)?;
             let mut forces: Vec<Vec<f64>> = Vec::new();
             let mut strides = vec![0.0; of_bodies.len()];
             let (mut left, mut small) = (f64::INFINITY, None);
+            let mut holding = Vec::new();
             for step in 0..PIN_STEPS {
                 self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
+                let pins = &self.workspace.pins;
                 let moved: Vec<f64> = dofs.iter().map(|&dof| v.du[dof]).collect();
-                let carried = |k: usize| stiffness[k] * (moved[k] - p[k]);
-                let force: Vec<f64> = (0..dofs.len()).map(carried).collect();
+                let force = stiffness.forces(&difference(&moved, &p));
                 let Equilibrium { load, internal, .. } = &v.equilibrium;
                 let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
                 let others = [largest(load), largest(internal)]
                     .into_iter()
                     .chain(of_pairs);
-                left = largest(&force) / others.fold(0.0, f64::max);
+                let others = others.fold(0.0, f64::max);
+                // f where bodies are to move, the motion times a' where they are held
+                holding = held.along(pins, &force);
+                let gone = held.along(pins, &moved);
+                let soft = &stiffness.soft;
+                let error = |k: usize| force[k] - holding[k] + soft[k] * gone[k];
+                let error: Vec<f64> = (0..dofs.len()).map(error).collect();
+                left = largest(&error) / others;
                 // without any force there is nothing to carry
                 if left.is_nan() || left <= PIN_FORCE {
-                    free.ends();
-                    return Ok(closing);
+                    self.take_held(held, &holding, v);
+                    return Ok((closing, Pinned::Balanced));
                 }
                 let goes_too_far = largest(&moved) > reach;
                 if let Some(before) = step.checked_sub(2).map(|before| &forces[before])
                     && step >= LEAST_PIN_STEPS
                     && left > SMALL_PIN_FORCE
-                    && stay(&force, before, goes_too_far)
+                    && stay(&error, before, goes_too_far)
                 {
-                    stays.get_or_insert_with(|| (force.clone(), v.du.clone(), contact.keys()));
+                    stays.get_or_insert_with(|| Stays {
+                        force: error.clone(),
+                        du: v.du.clone(),
+                        closed: contact.keys(),
+                        others,
+                    });
                     if goes_too_far {
                         break 'rounds;
                     }
                 }
                 if left <= SMALL_PIN_FORCE {
-                    small.get_or_insert_with(|| (p.clone(), left));
+                    small.get_or_insert_with(|| (p.clone(), holding.clone(), left));
                 }
                 for (pins, last) in of_bodies.iter().zip(&mut strides) {
                     let before = forces.last().map_or(&[][..], |force| &force[pins.clone()]);
-                    *last = stride(*last, &force[pins.clone()], before);
+                    *last = stride(*last, &error[pins.clone()], before);
                     for k in pins.clone() {
-                        p[k] = moved[k] + *last * (moved[k] - p[k]);
+                        let way = (force[k] - holding[k]) / soft[k];
+                        p[k] += (1.0 + *last) * way - gone[k];
                     }
                 }
-                forces.push(force);
+                forces.push(error);
             }
-            let stayed = small.filter(|(_, before)| left > SLOW_PIN * before);
+            let stayed = small.filter(|(_, _, before)| left > SLOW_PIN * before);
             let softer = left > WITHIN_TOLERANCE * tolerance && part > SOFTEST_PART;
             match stayed {
                 _ if left > SMALL_PIN_FORCE => {}
                 // a weak spring takes them over slowly
                 Some(_) if softer => {}
                 // what does not fall is round-off in a motion that nothing resists
-                Some((p, _)) => {
+                Some((p, holding, _)) => {
                     self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
-                    free.ends();
-                    return Ok(closing);
+                    self.take_held(held, &holding, v);
+                    return Ok((closing, Pinned::Balanced));
                 }
                 None => {
-                    free.ends();
-                    return Ok(closing);
+                    self.take_held(held, &holding, v);
+                    return Ok((closing, Pinned::Balanced));
                 }
             }
         }
-        if let Some((force, du, closed)) = stays
-            && free.fail(closed)
-        {
-            return Err((self.workspace.pins).unbalanceable(problem, &v.u, &du, &force));
+        let result = stays.map_or(Pinned::Falling, Pinned::Stays);
+        Ok((closing, result))
+    }
+
+    /// Turns what is held with the surfaces of the iterate; whether something is let go.
+    fn follow_held(
+        &self,
+        contact: &ContactForces,
+        held: &mut HeldMotions,
+        v: &mut Vectors,
+    ) -> bool {
+        if held.are_none() {
+            return false;
         }
-        Ok(closing)
+        let at = |node: usize| self.problem.position(&v.u, node);
+        let acting: Vec<_> = contact.acting().collect();
+        let lets_go = held.follow(&self.workspace.pins, &at, &acting);
+        self.set_held(held, v);
+        lets_go
+    }
+
+    /// Takes what holds motions in a pass into the equilibrium, pins carrying the forces `carried` in its place.
+    fn take_held(&self, held: &mut HeldMotions, carried: &[f64], v: &mut Vectors) {
+        if held.are_none() {
+            return;
+        }
+        let change: Vec<f64> = carried.iter().map(|f| -f).collect();
+        held.add_forces(&self.workspace.pins, &change);
+        self.set_held(held, v);
+    }
+
+    /// Sets the forces that hold motions in the equilibrium and the load of a pass.
+    fn set_held(&self, held: &HeldMotions, v: &mut Vectors) {
+        let pins = &self.workspace.pins;
+        let now: Vec<_> = pins.dofs().zip(held.forces(pins)).collect();
+        let before = std::mem::replace(&mut v.equilibrium.held, now.clone());
+        for (k, (dof, force)) in now.into_iter().enumerate() {
+            let change = force - before.get(k).map_or(0.0, |(_, force)| *force);
+            for forces in [
+                &mut v.equilibrium.load,
+                &mut v.equilibrium.out_of_balance,
+                &mut v.load,
+            ] {
+                forces[dof] += change;
+            }
+        }
     }
 
     /// Contact forces and correction of a pass with the forces a' p at the pins.
@@ -208,11 +388,11 @@ impl Attempt<'_, '_> {
         &mut self,
         contact: &mut ContactForces,
         weight: Option<f64>,
-        (stiffness, p): (&[f64], &[f64]),
+        (stiffness, p): (&SoftPins, &[f64]),
         v: &mut Vectors,
     ) -> Result<(), Cause> {
         let mut load = v.load.clone();
-        add_pin_forces(&self.workspace.pins, stiffness, p, &mut load);
+        add_pin_forces(&self.workspace.pins, &stiffness.forces(p), &mut load);
         contact.solve([&v.closing, &load], weight, &mut self.k_star(), &mut v.du)
     }
 

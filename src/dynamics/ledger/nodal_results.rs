@@ -32,6 +32,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
         internal,
         inertia,
         hinges,
+        held,
         ..
     } = &solved.equilibrium;
     // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
@@ -44,6 +45,10 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     let mut reaction = vec![0.0; dofs];
     for p in problem.unknowns.prescribed() {
         reaction[p] = passed_on[p];
+    }
+    // of nodes only, not of the angles of bodies that turn
+    for &(dof, force) in held {
+        reaction[dof] += force;
     }
     let mut results = NodalResults {
         reaction,

@@ -18,7 +18,7 @@ use crate::dynamics::landing::factorize_anew;
 use crate::dynamics::ledger::{Accounts, Ledger, contact_violation, landings};
 use crate::dynamics::results::{
     Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary, SolverCounts, State,
-    Timings,
+    Timings, Unbalanced,
 };
 use crate::dynamics::step::{
     ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, Workspace,
@@ -606,6 +606,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             at: problem.configurations(&self.state.u, &end.u),
             are_held: false,
             out_of_balance: &solved.equilibrium.out_of_balance,
+            held: &solved.held,
         };
         let motion = Motion::at(&end.u, &end.internal);
         let stable = workspace.check_stability(problem, motion, &contact);
@@ -690,7 +691,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
         let path = (!problem.integration.has_rates).then(|| solved.static_path(interval.dt));
         let accounted = (self.accounts).enter(problem, &solved, interval, &ledger);
+        let (held, part) = held_motions(problem, workspace, &solved);
         let solver = SolverCounts {
+            held: part,
             violation: contact_violation(problem, &workspace.search, &self.state, &solved),
             converged: true,
             ..workspace.meter.counts
@@ -714,6 +717,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 true => landings(problem, &self.state, &solved, interval),
                 false => Vec::new(),
             },
+            held,
             solver,
             passes: solved.passes,
             state: solved.end,
@@ -783,4 +787,20 @@ impl<'m, 'o> Runner<'m, 'o> {
         self.observer.increment(&report)?;
         Ok(None)
     }
+}
+
+/// What holds motions that only facets resist in a static increment: the body with the largest force, and the largest
+/// force as a part of the normal forces at its body.
+fn held_motions(
+    problem: &StepProblem,
+    workspace: &Workspace,
+    solved: &Solved,
+) -> (Option<Box<Unbalanced>>, f64) {
+    let (held, u) = (&solved.held, &solved.end.u);
+    let at = |node: usize| problem.position(u, node);
+    let acting: Vec<_> = solved.contact.forces.acting().collect();
+    (
+        held.strongest(&workspace.pins, problem, u),
+        held.part(&workspace.pins, &at, &acting),
+    )
 }

@@ -9,10 +9,11 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use super::bodies::BodyAngles;
+use super::held_motions::HeldMotions;
 use super::hinges::Hinges;
 use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
-use super::pins::{Pins, pin_columns, soften};
+use super::pins::{Pins, SoftPins, pin_columns, soften};
 use super::rank_update::{RankUpdate, Updates};
 use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError};
@@ -187,6 +188,8 @@ pub(crate) struct ClosedConstraints<'a> {
     pub are_held: bool,
     /// Load less internal force, over all dofs, in a static step.
     pub out_of_balance: &'a [f64],
+    /// Motions that are held where the stability of an equilibrium is asked.
+    pub held: &'a HeldMotions,
 }
 
 /// The largest entry of the mass on the diagonal of nodes without mass: no impulse acts there, and M
@@ -429,6 +432,13 @@ impl EffectiveStiffness {
             for (dof, a) in pins.dofs().zip(&self.pins) {
                 blocks.add(map, &[dof], &DMatrix::from_element(1, 1, part * a));
             }
+            if form == StiffnessForm::Stability {
+                let at = |node: usize| problem.position(contact.at.u, node);
+                let stiffness = (contact.held).stiffness(pins, &self.pins, &at, &contact.acting);
+                for (dofs, k) in stiffness {
+                    blocks.add(map, &dofs, &k);
+                }
+            }
         }
         solver.add_blocks(blocks);
     }
@@ -463,9 +473,9 @@ impl<'a> System<'a> {
         &mut self,
         problem: &StepProblem,
         pins: &Pins,
-        (a, part): (&[f64], f64),
+        (a, part, held): (&[f64], f64, DMatrix<f64>),
         constraints: &[&Constraint],
-    ) -> Result<Vec<f64>, LinearError> {
+    ) -> Result<SoftPins, LinearError> {
         self.matrix.updates = Updates::default();
         let map = self.matrix.map().clone();
         let columns = pin_columns(pins, &map, |b| self.solve(b))?;
@@ -476,7 +486,8 @@ impl<'a> System<'a> {
         self.take_back(lcp);
         let dofs = problem.model.dof_count();
         let both = (&map, problem.parts);
-        let (update, stiffness) = soften(pins, both, (a, part), columns, &compliances, dofs);
+        let of_pins = (a, part, held);
+        let (update, stiffness) = soften(pins, both, of_pins, columns, &compliances, dofs);
         self.matrix.updates = Updates::of_pins(update);
         Ok(stiffness)
     }

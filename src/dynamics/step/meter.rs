@@ -78,6 +78,7 @@ impl SolverCounts {
         self.factorizations += other.factorizations;
         self.residual = larger(self.residual, other.residual);
         self.violation = self.violation.larger(other.violation);
+        self.held = larger(self.held, other.held);
         self.converged = self.converged && other.converged;
     }
 }
@@ -125,6 +126,7 @@ mod tests {
                 slip: 12.0 * k as f64,
                 penetration: 13.0 * k as f64,
             },
+            held: 14.0 * k as f64,
             converged: true,
         };
         let mut totals = SolverCounts {

@@ -4,6 +4,7 @@
 mod bodies;
 mod fits;
 mod friction;
+mod held_motions;
 mod hinges;
 mod integration;
 mod loads;
@@ -20,6 +21,7 @@ mod unknowns;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
+pub(crate) use held_motions::HeldMotions;
 pub(crate) use hinges::Hinges;
 pub(crate) use loads::{Interval, StepPlace, TimePoint};
 pub(crate) use mass::{Mass, dot};
@@ -29,7 +31,7 @@ pub(crate) use matrices::{
 #[cfg(test)]
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
-pub(crate) use pins::add_pin_forces;
+pub(crate) use pins::{SoftPins, add_pin_forces};
 pub(crate) use slave_faces::SlaveFaces;
 pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,

@@ -4,6 +4,7 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::bodies::{Hold, holds};
+use super::held_motions::{Normal, Normals, Vertices};
 use super::parts::Parts;
 use super::rank_update::{Columns, RankUpdate};
 use super::step_problem::StepProblem;
@@ -34,6 +35,7 @@ const STIFFEST: f64 = 1e3;
 #[derive(Default)]
 pub(crate) struct Pins {
     bodies: Vec<PinnedBody>,
+    vertices: Vertices,
 }
 
 /// A body with rigid motions that no support holds.
@@ -116,6 +118,7 @@ impl Pins {
         let all = nodes.into_iter().zip(spins).enumerate();
         Pins {
             bodies: all.filter_map(pinned).collect(),
+            vertices: Vertices::new(problem.model),
         }
     }
 
@@ -214,16 +217,35 @@ impl Pins {
     /// That bodies are not in balance with the forces `f` left at their pins, which make the correction `du` at the
     /// displacements `u`: the body with the largest.
     pub fn unbalanceable(&self, problem: &StepProblem, u: &[f64], du: &[f64], f: &[f64]) -> Cause {
-        let at = |node: usize| problem.position(u, node);
-        let mut most = (0.0, Cause::NotConverged);
-        for (body, pins) in self.bodies.iter().zip(self.of_bodies()) {
-            let own = &f[pins];
-            let size = largest(own);
-            if size >= most.0 {
-                most = (size, body.unbalanceable(&at, du, own));
-            }
+        match self.most_unbalanced(problem, u, du, f) {
+            Some(unbalanced) => Cause::Unbalanceable(unbalanced),
+            None => Cause::NotConverged,
         }
-        most.1
+    }
+
+    /// The body with the largest of the forces `f` at the pins, and its motion in the correction `du`.
+    pub fn most_unbalanced(
+        &self,
+        problem: &StepProblem,
+        u: &[f64],
+        du: &[f64],
+        f: &[f64],
+    ) -> Option<Box<Unbalanced>> {
+        let at = |node: usize| problem.position(u, node);
+        let all = self.bodies.iter().zip(self.of_bodies());
+        let size = |pins: &Range<usize>| largest(&f[pins.clone()]);
+        let most = all.max_by(|p, q| size(&p.1).total_cmp(&size(&q.1)));
+        most.map(|(body, pins)| Box::new(body.unbalanced(&at, du, &f[pins])))
+    }
+
+    /// The pairs of the body of this number among those with pins, as its pins see them, in the positions `at`.
+    pub(super) fn normals(
+        &self,
+        body: usize,
+        at: &dyn Fn(usize) -> [f64; 2],
+        acting: &[(&Constraint, &ClosedPair)],
+    ) -> Normals {
+        self.bodies[body].normals(&self.vertices, at, acting)
     }
 
     /// Makes the rigid part of a correction a finite motion of bodies that turn, and limits it to what the search
@@ -311,7 +333,7 @@ impl PinnedBody {
         })
     }
 
-    fn unbalanceable(&self, at: &dyn Fn(usize) -> [f64; 2], du: &[f64], f: &[f64]) -> Cause {
+    fn unbalanced(&self, at: &dyn Fn(usize) -> [f64; 2], du: &[f64], f: &[f64]) -> Unbalanced {
         let pole = pole(self.hold, &self.nodes, at);
         let (mut force, mut moment) = ([0.0; 2], 0.0);
         let frame = self.frame(pole, at);
@@ -321,13 +343,13 @@ impl PinnedBody {
             moment += row[2] * self.size * f;
         }
         let motion = self.motion(at, pole, du).unwrap_or_default();
-        Cause::Unbalanceable(Box::new(Unbalanced {
+        Unbalanced {
             node: self.dofs[0] / 2,
             force,
             moment,
             motion: [motion[0], motion[1], motion[2] / self.size],
             size: self.size,
-        }))
+        }
     }
 
     /// Its motions about a pole.
@@ -340,6 +362,15 @@ impl PinnedBody {
         }
     }
 
+    /// The rigid motions that move one pin by 1 and the others not: Z_p^-1
+    fn motions_of_pins(&self, frame: &Frame) -> Option<DMatrix<f64>> {
+        let m = self.dofs.len();
+        let seen =
+            |i: usize, k: usize| (frame.row(self.dofs[i])).dot(&self.free.fixed_view::<3, 1>(0, k));
+        let z = DMatrix::from_fn(m, m, seen);
+        Some(&self.free * z.try_inverse()?)
+    }
+
     /// Rigid part of a correction: Z_p^-1 dU_p
     fn motion(
         &self,
@@ -347,15 +378,45 @@ impl PinnedBody {
         pole: [f64; 2],
         du: &[f64],
     ) -> Option<Vector3<f64>> {
-        let frame = self.frame(pole, at);
-        let m = self.dofs.len();
-        let seen =
-            |i: usize, k: usize| (frame.row(self.dofs[i])).dot(&self.free.fixed_view::<3, 1>(0, k));
-        let z = DMatrix::from_fn(m, m, seen);
-        let moved = DVector::from_fn(m, |i, _| du[self.dofs[i]]);
-        let part = z.lu().solve(&moved)?;
-        let motion = &self.free * part;
+        let moved = DVector::from_fn(self.dofs.len(), |i, _| du[self.dofs[i]]);
+        let motion = self.motions_of_pins(&self.frame(pole, at))? * moved;
         Some(Vector3::new(motion[0], motion[1], motion[2]))
+    }
+
+    fn normals(
+        &self,
+        vertices: &Vertices,
+        at: &dyn Fn(usize) -> [f64; 2],
+        acting: &[(&Constraint, &ClosedPair)],
+    ) -> Normals {
+        let frame = self.frame(pole(self.hold, &self.nodes, at), at);
+        let Some(motions) = self.motions_of_pins(&frame) else {
+            return Normals(Vec::new());
+        };
+        let is_own = |dof: usize| self.nodes.binary_search(&(dof / 2)).is_ok();
+        let mut normals = Vec::new();
+        for (constraint, pair) in acting {
+            let own = constraint.dofs.iter().filter(|&&dof| is_own(dof)).count();
+            if own == 0 || own == constraint.dofs.len() {
+                continue;
+            }
+            let seen = |row: &[f64]| {
+                let both = constraint.dofs.iter().zip(row);
+                let own = both.filter(|(dof, _)| is_own(**dof));
+                let rigid: Vector3<f64> = own.map(|(&dof, g)| *g * frame.row(dof)).sum();
+                motions.tr_mul(&rigid)
+            };
+            let kinks = constraint.nodes().map(|node| vertices.kink(node, at));
+            normals.push(Normal {
+                row: seen(&constraint.derivative_rows().normal),
+                tangent: seen(&constraint.force_rows.tangential),
+                kink: kinks.fold(0.0, larger),
+                force: pair.force[0],
+                scale: constraint.scale,
+                has_friction: constraint.mu > 0.0,
+            });
+        }
+        Normals(normals)
     }
 
     fn make_finite(&self, at: &dyn Fn(usize) -> [f64; 2], reach: f64, du: &mut [f64]) -> bool {
@@ -468,21 +529,37 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
 }
 
+/// Stiffness of the pins in K'.
+pub(crate) struct SoftPins {
+    /// a' of each along what is free.
+    pub soft: Vec<f64>,
+    /// A' of eq. (12.10).
+    all: DMatrix<f64>,
+}
+
+impl SoftPins {
+    /// A' x: forces of motions of the pins.
+    pub fn forces(&self, x: &[f64]) -> Vec<f64> {
+        let forces = &self.all * DVector::from_column_slice(x);
+        forces.as_slice().to_vec()
+    }
+}
+
 /// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins, `a` of each in K_r, with the columns
 /// of V over the unknowns; and their stiffness a' in K', this part of that of eq. (12.3). `compliances` are Qnn of some pairs.
 ///
 /// ```text
-/// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1/(a' - a) + S^T V)^-1            eq. (12.4)
+/// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1 + B S^T V)^-1 B,  B = A' - a    eq. (12.4)
 /// q = max (Qnn_jj - a |(Gn V)_j|²),  z = max |a (Gn V)_j|²,  a' = z/(100 q)          eq. (12.3)
 /// ```
 pub(crate) fn soften(
     pins: &Pins,
     (map, parts): (&Transformation, &Parts),
-    (a, part): (&[f64], f64),
+    (a, part, held): (&[f64], f64, DMatrix<f64>),
     columns: Vec<Vec<f64>>,
     compliances: &[(&Constraint, f64)],
     dofs: usize,
-) -> (RankUpdate, Vec<f64>) {
+) -> (RankUpdate, SoftPins) {
     let unturned = Rotation::default();
     let works = Columns::works(columns.clone(), (map, &unturned));
     let v = Columns::motions(columns, (map, &unturned), dofs);
@@ -513,26 +590,27 @@ pub(crate) fn soften(
             false => SOFTEST * a,
         }
     };
-    let stiffness: Vec<f64> = bodies.iter().zip(a).map(soft).collect();
+    let soft: Vec<f64> = bodies.iter().zip(a).map(soft).collect();
     let unknown = |dof: usize| map.row(dof).first().map_or(0, |term| term.0);
     let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
     let m = unknowns.len();
-    let mut c = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
-    for (k, (soft, a)) in stiffness.iter().zip(a).enumerate() {
-        let difference = match soft - a {
-            0.0 => -f64::EPSILON * a,
-            difference => difference,
-        };
-        c[(k, k)] += 1.0 / difference;
-    }
-    let c = c.try_inverse().unwrap_or_else(|| DMatrix::zeros(m, m));
-    (RankUpdate::new([v, works], c), stiffness)
+    let g = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
+    // A' = a' + (a - a') D D^T, eq. (12.10)
+    let all = DMatrix::from_fn(m, m, |i, k| {
+        let diagonal = if i == k { soft[i] } else { 0.0 };
+        diagonal + (a[i] - soft[i]) * held[(i, k)]
+    });
+    let b = &all - DMatrix::from_diagonal(&DVector::from_column_slice(a));
+    let c = (DMatrix::identity(m, m) + &b * g).lu().solve(&b);
+    let c = c.unwrap_or_else(|| DMatrix::zeros(m, m));
+    let c = (&c + c.transpose()) / 2.0;
+    (RankUpdate::new([v, works], c), SoftPins { soft, all })
 }
 
-/// Adds the stiffness of all pins to the forces of a pass: a' p at the pinned dofs.
-pub(crate) fn add_pin_forces(pins: &Pins, stiffness: &[f64], p: &[f64], force: &mut [f64]) {
-    for ((dof, a), p) in pins.dofs().zip(stiffness).zip(p) {
-        force[dof] += a * p;
+/// Adds forces at the pins to those of a pass.
+pub(crate) fn add_pin_forces(pins: &Pins, forces: &[f64], to: &mut [f64]) {
+    for (dof, force) in pins.dofs().zip(forces) {
+        to[dof] += force;
     }
 }
 

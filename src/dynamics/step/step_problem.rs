@@ -63,7 +63,9 @@ pub(crate) struct Equilibrium {
     pub u_theta: Vec<f64>,
     /// Forces lambda of the hinges.
     pub hinges: Vec<f64>,
-    /// Load R_theta, with the forces C^T lambda of the hinges.
+    /// Forces that hold motions of a static step, each with its dof.
+    pub held: Vec<(usize, f64)>,
+    /// Load R_theta, with the forces C^T lambda of the hinges and those that hold motions.
     pub load: Vec<f64>,
     /// Internal force F_theta, with that of damping.
     pub internal: Vec<f64>,
@@ -300,6 +302,7 @@ impl StepProblem<'_> {
         let Equilibrium {
             u_theta,
             hinges,
+            held,
             load,
             internal,
             ..
@@ -317,11 +320,12 @@ impl StepProblem<'_> {
             let theta1 = self.integration.theta1;
             (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
             self.unknowns.turning.scale_moments(d, load);
-        } else if !self.hinges.are_none() {
+        } else if !self.hinges.are_none() || !held.is_empty() {
             load.fill(0.0);
         }
         hinges.resize(self.hinges.count(), 0.0);
         self.hinges.add_forces(hinges, load);
+        held.iter().for_each(|(dof, force)| load[*dof] += force);
         Ok(())
     }
 

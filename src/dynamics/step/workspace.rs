@@ -1,10 +1,11 @@
 //! Workspace of the increments of a step: effective stiffness with its factors, contact search,
 //! times and counts. Each operation measures its own time. Section 4 of docs/theory.md.
 
+use super::held_motions::HeldMotions;
 use super::loads::TimePoint;
 use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
-use super::pins::Pins;
+use super::pins::{Pins, SoftPins};
 use super::step_problem::{StepProblem, difference, sum};
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
@@ -71,8 +72,8 @@ impl<'m> Workspace<'m> {
         &mut self,
         problem: &StepProblem,
         constraints: &[&Constraint],
-        part: f64,
-    ) -> Result<Vec<f64>, LinearError> {
+        (part, held): (f64, &HeldMotions),
+    ) -> Result<SoftPins, LinearError> {
         let Workspace {
             stiffness,
             meter,
@@ -80,7 +81,8 @@ impl<'m> Workspace<'m> {
             ..
         } = self;
         let EffectiveStiffness { k, pins: a, .. } = stiffness;
-        System::new(k, meter).soften(problem, pins, (a, part), constraints)
+        let held = held.projection(pins);
+        System::new(k, meter).soften(problem, pins, (a, part, held), constraints)
     }
 
     /// The mass M.
