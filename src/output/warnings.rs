@@ -441,6 +441,7 @@ mod tests {
             hourglass: 0.04,
             open: vec![],
             touches: Touches::default(),
+            held: 0.0,
             dt: 0.1,
             time: 1.0,
             bodies: vec![

@@ -191,6 +191,7 @@ pub fn report(k: usize) -> IncrementReport {
     let (sine, cosine) = (TAU * time).sin_cos();
     IncrementReport {
         increment: k,
+        held: None,
         step: 1,
         time,
         step_time: time,

@@ -4,11 +4,11 @@
 use super::acceleration::Acceleration;
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
-use super::contact_system::ContactSystem;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
 use super::impulses::Before;
-use super::pin_iteration::PinState;
+use super::linear_pass::{Vectors, close_hinges, k_star};
+use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
@@ -149,28 +149,6 @@ impl Solved {
     }
 }
 
-/// Vectors of the passes of an increment.
-#[derive(Default)]
-pub(super) struct Vectors {
-    /// Forces of the iterate.
-    pub equilibrium: Equilibrium,
-    /// Displacement U of the iterate.
-    pub u: Vec<f64>,
-    /// What the predictor leaves of the supports' motion, d_p.
-    d_p: Vec<f64>,
-    /// Its force theta2 K d_p.
-    support_force: Vec<f64>,
-    /// r - theta2 K d_p
-    pub load: Vec<f64>,
-    /// d_p with the motion that closes the hinges.
-    pub closing: Vec<f64>,
-    /// Correction dU.
-    pub du: Vec<f64>,
-    /// Displacement increment after the first pass.
-    tangent: Vec<f64>,
-    residual: Residual,
-}
-
 /// An attempt at one increment.
 pub(crate) struct Attempt<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
@@ -288,7 +266,9 @@ impl<'m> Attempt<'_, 'm> {
             let weight = equal_forces.weight(settled);
             let hinge_forces = match self.workspace.pins.are_none() {
                 true => self.balance(&mut contact.forces, weight, v)?,
-                false => self.iterate_pins(&mut contact.forces, weight, &mut pins, v)?,
+                false => self
+                    .pins()
+                    .iterate(&mut contact.forces, weight, &mut pins, v)?,
             };
             self.take_hinge_forces(hinge_forces, v);
 
@@ -298,7 +278,7 @@ impl<'m> Attempt<'_, 'm> {
             let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
             let ends = contact.rest(problem) && has_converged;
-            self.move_finitely(v);
+            self.pins().move_finitely(v);
             let correction = trace.correction();
             if !ends {
                 equal_forces.take_in(correction, settled);
@@ -395,6 +375,14 @@ impl<'m> Attempt<'_, 'm> {
         (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
     }
 
+    /// The passes with pins.
+    fn pins(&mut self) -> PinIteration<'_, 'm> {
+        PinIteration {
+            problem: self.problem,
+            workspace: self.workspace,
+        }
+    }
+
     /// Contact forces and correction of a pass without pins; gives the forces by which hinges close their gaps.
     fn balance(
         &mut self,
@@ -402,17 +390,14 @@ impl<'m> Attempt<'_, 'm> {
         weight: Option<f64>,
         v: &mut Vectors,
     ) -> Result<Vec<f64>, Cause> {
-        let closing = self.close_hinges(v)?;
-        contact.solve([&v.closing, &v.load], weight, &mut self.k_star(), &mut v.du)?;
+        let closing = close_hinges(self.problem, self.workspace, v)?;
+        contact.solve(
+            [&v.closing, &v.load],
+            weight,
+            &mut k_star(self.problem, self.workspace),
+            &mut v.du,
+        )?;
         Ok(closing)
-    }
-
-    /// K* with its contact problems.
-    pub(super) fn k_star(&mut self) -> ContactSystem<'_> {
-        ContactSystem {
-            system: self.workspace.k(),
-            method: self.problem.method(),
-        }
     }
 
     /// Writes what the predictor leaves of the prescribed motion, d_p, which the first pass makes, and its
@@ -450,24 +435,6 @@ impl<'m> Attempt<'_, 'm> {
             let product = (self.workspace).tangent_product(problem, motion, d_p);
             (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = integration.theta2 * k);
         }
-    }
-
-    /// Writes d_p with the motion that closes the gaps of the hinges; gives the forces that make it.
-    ///
-    /// ```text
-    /// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.8)
-    /// ```
-    pub(super) fn close_hinges(&mut self, v: &mut Vectors) -> Result<Vec<f64>, Cause> {
-        let hinges = &self.problem.hinges;
-        v.closing.clone_from(&v.d_p);
-        if hinges.are_none() {
-            return Ok(Vec::new());
-        }
-        let gaps = sum(&hinges.gaps(&v.u), &hinges.gaps(&v.d_p));
-        let (forces, motion) = self.workspace.k().close(&gaps)?;
-        let both = v.closing.iter_mut().zip(&motion);
-        both.for_each(|(y, m)| *y += m);
-        Ok(forces)
     }
 
     /// Adds the forces of a pass to those of the hinges: what closes their gaps, and what the other forces ask of them.

@@ -589,7 +589,7 @@ mod tests {
     use super::steady_tests::turned;
     use super::*;
     use crate::contact::testing::{self, closed_pairs as pairs};
-    use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium};
+    use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium, HeldMotions};
     use crate::elements::Motion;
     use crate::model::{
         ContactChanges, ContactMass, Frames, Incrementation, Increments, Procedure, Scheme,
@@ -645,6 +645,7 @@ mod tests {
             at: problem.configurations(&still, &still),
             are_held: false,
             out_of_balance: &[],
+            held: &HeldMotions::default(),
         };
         let motion = Motion::at(&still, &[]);
         (workspace.factorize(&problem, DT, motion, &contact)).expect("positive definite");

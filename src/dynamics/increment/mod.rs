@@ -8,6 +8,7 @@ mod contact_system;
 mod convergence;
 mod equal_forces;
 mod impulses;
+mod linear_pass;
 mod pin_iteration;
 mod refactorization;
 mod returned;

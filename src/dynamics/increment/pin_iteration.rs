@@ -3,12 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use super::attempt::{Attempt, Vectors};
 use super::contact_forces::ContactForces;
+use super::linear_pass::{Vectors, close_hinges, k_star};
 use crate::contact::{Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::{
-    Equilibrium, HeldMotions, Parts, SoftPins, add_pin_forces, difference,
+    Equilibrium, HeldMotions, Parts, SoftPins, StepProblem, Workspace, add_pin_forces, difference,
 };
 use crate::linear::largest;
 
@@ -142,12 +142,18 @@ impl PinState {
     }
 }
 
-impl Attempt<'_, '_> {
+/// Passes of a static step whose bodies pins hold.
+pub(super) struct PinIteration<'a, 'm> {
+    pub problem: &'a StepProblem<'m>,
+    pub workspace: &'a mut Workspace<'m>,
+}
+
+impl PinIteration<'_, '_> {
     /// Contact forces and correction of a pass in which pins hold bodies that no support holds. Where they stay in a motion
     /// that only the facets of the mesh resist, it is held.
     ///
     /// Gives the forces by which hinges close their gaps.
-    pub(super) fn iterate_pins(
+    pub fn iterate(
         &mut self,
         contact: &mut ContactForces,
         weight: Option<f64>,
@@ -260,7 +266,7 @@ impl Attempt<'_, '_> {
             let stiffness = (self.workspace)
                 .soften(problem, near, (part, held))
                 .map_err(|error| problem.unsolvable(error))?;
-            closing = self.close_hinges(v)?;
+            closing = close_hinges(self.problem, self.workspace, v)?;
             let mut forces: Vec<Vec<f64>> = Vec::new();
             let mut strides = vec![0.0; of_bodies.len()];
             let (mut left, mut small) = (f64::INFINITY, None);
@@ -393,11 +399,16 @@ impl Attempt<'_, '_> {
     ) -> Result<(), Cause> {
         let mut load = v.load.clone();
         add_pin_forces(&self.workspace.pins, &stiffness.forces(p), &mut load);
-        contact.solve([&v.closing, &load], weight, &mut self.k_star(), &mut v.du)
+        contact.solve(
+            [&v.closing, &load],
+            weight,
+            &mut k_star(self.problem, self.workspace),
+            &mut v.du,
+        )
     }
 
     /// Makes the rigid part of the correction of a pinned body a finite motion.
-    pub(super) fn move_finitely(&self, v: &mut Vectors) {
+    pub fn move_finitely(&self, v: &mut Vectors) {
         let at = |node: usize| self.problem.position(&v.u, node);
         let reach = self.workspace.search.reach();
         self.workspace.pins.make_finite(&at, reach, &mut v.du);

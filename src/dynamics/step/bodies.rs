@@ -132,7 +132,7 @@ pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
 mod tests {
     use super::*;
     use crate::contact::{Constraint, Rows, Scope, testing};
-    use crate::dynamics::step::{ClosedConstraints, Discretization, Workspace};
+    use crate::dynamics::step::{ClosedConstraints, Discretization, HeldMotions, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
         ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
@@ -268,6 +268,7 @@ mod tests {
             at: problem.configurations(&u0, &u1),
             are_held: false,
             out_of_balance: &[],
+            held: &HeldMotions::default(),
         };
         let first = kept.factorize(&problem, 0.1, before, &contact);
         let second = fresh.factorize(&problem, 0.1, after, &contact);

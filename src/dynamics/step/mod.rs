@@ -11,6 +11,7 @@ mod loads;
 mod mass;
 mod matrices;
 mod meter;
+mod normals;
 mod parts;
 mod pins;
 mod rank_update;

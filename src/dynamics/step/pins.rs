@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::bodies::{Hold, holds};
-use super::held_motions::{Normal, Normals, Vertices};
+use super::normals::{Normal, Normals, Vertices};
 use super::parts::Parts;
 use super::rank_update::{Columns, RankUpdate};
 use super::step_problem::StepProblem;

@@ -1,0 +1,126 @@
+//! Normals of the closed pairs of a body as its pins see them, and the facets of its contact surfaces. Section 12 of
+//! docs/theory.md, Neutral motions.
+
+use std::collections::HashMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::Model;
+use crate::vectors::{cross, difference, dot, length};
+
+/// Largest mean slope of the normals of pairs against a motion that they let free.
+const SLOPE: f64 = 0.25;
+/// Cosine of the angle from which on a vertex is a corner of a body.
+const CORNER: f64 = 0.866;
+
+/// The pairs of a body as its pins see them.
+pub(super) struct Normals(pub Vec<Normal>);
+
+/// Normal of a pair.
+pub(super) struct Normal {
+    /// Gn and Gt of the rigid motions that move one pin by 1 and the others not.
+    pub row: DVector<f64>,
+    pub tangent: DVector<f64>,
+    /// Largest sine of the angle between neighbouring segments at its nodes.
+    pub kink: f64,
+    /// Pn
+    pub force: f64,
+    /// Length of the segment.
+    pub scale: f64,
+    pub has_friction: bool,
+}
+
+impl Normals {
+    /// Orthogonal motions that pairs without friction let free.
+    ///
+    /// ```text
+    /// sum_j (Gn_j z)² <= (1/4)² sum_j |Gn_j Z|²      eq. (12.9)
+    /// ```
+    pub fn free(&self) -> Vec<DVector<f64>> {
+        let Some(first) = self.0.first() else {
+            return Vec::new();
+        };
+        if self.0.iter().any(|normal| normal.has_friction) {
+            return Vec::new();
+        }
+        let m = first.row.len();
+        let mut all = DMatrix::zeros(m, m);
+        for normal in &self.0 {
+            all += &normal.row * normal.row.transpose();
+        }
+        let most = SLOPE * SLOPE * all.trace();
+        let eigen = all.symmetric_eigen();
+        let is_free = |k: &usize| eigen.eigenvalues[*k] <= most;
+        let columns = (0..m).filter(is_free);
+        columns
+            .map(|k| eigen.eigenvectors.column(k).into_owned())
+            .collect()
+    }
+
+    /// Force along a motion that facets may make, since their normals differ from those of a smooth surface by up to half
+    /// the angle between neighbours.
+    ///
+    /// ```text
+    /// f_e = sum_j Pn_j |Gt_j z| sin(beta_j)/2      eq. (12.11)
+    /// ```
+    pub fn resolution(&self, m: &DVector<f64>) -> f64 {
+        let of_pair =
+            |normal: &Normal| normal.force * normal.tangent.dot(m).abs() * normal.kink / 2.0;
+        self.0.iter().map(of_pair).sum()
+    }
+
+    /// Stiffness against a motion that facets may make, whose normals change by the angle between neighbours in a length.
+    ///
+    /// ```text
+    /// k_e = sum_j Pn_j (Gt_j z)² sin(beta_j)/l_j      eq. (12.12)
+    /// ```
+    pub fn stiffness(&self, m: &DVector<f64>) -> f64 {
+        let of_pair = |normal: &Normal| {
+            normal.force * normal.kink * normal.tangent.dot(m).powi(2) / normal.scale
+        };
+        self.0.iter().map(of_pair).sum()
+    }
+}
+
+/// The nodes before and after every node of the contact surfaces, where these are smooth.
+#[derive(Default)]
+pub(super) struct Vertices(HashMap<usize, [Option<usize>; 2]>);
+
+impl Vertices {
+    /// Those of the contacts of a model.
+    pub fn new(model: &Model) -> Self {
+        let mut all: HashMap<usize, [Option<usize>; 2]> = HashMap::new();
+        for contact in &model.contacts {
+            for surface in [contact.slave, contact.master] {
+                for [a, b] in model.surfaces[surface].segments(&model.mesh) {
+                    all.entry(b).or_default()[0] = Some(a);
+                    all.entry(a).or_default()[1] = Some(b);
+                }
+            }
+        }
+        let x = &model.mesh.coordinates;
+        all.retain(|&node, [before, after]| match (before, after) {
+            (Some(before), Some(after)) => {
+                let (e, f) = (
+                    difference(x[*before], x[node]),
+                    difference(x[node], x[*after]),
+                );
+                dot(e, f) > CORNER * length(e) * length(f)
+            }
+            _ => false,
+        });
+        Vertices(all)
+    }
+
+    /// Sine of the angle between the segments at a node.
+    pub fn kink(&self, node: usize, at: &dyn Fn(usize) -> [f64; 2]) -> f64 {
+        let Some(&[Some(before), Some(after)]) = self.0.get(&node) else {
+            return 0.0;
+        };
+        let (e, f) = (
+            difference(at(before), at(node)),
+            difference(at(node), at(after)),
+        );
+        cross(e, f).abs() / (length(e) * length(f))
+    }
+}
