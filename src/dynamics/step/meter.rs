@@ -143,6 +143,7 @@ mod tests {
                 overlap: 5.0,
                 ..increment(5).violation
             },
+            held: increment(5).held,
             ..increment(2 + 5 + 3)
         };
         assert_eq!(totals, expected);
