@@ -90,7 +90,7 @@ fn contact_that_would_put_energy_in_is_halved() {
     run(&model, &mut keep).expect("the observer never fails");
     let gains: Vec<f64> = (keep.cutbacks.iter())
         .filter_map(|cutback| match cutback.failure.cause {
-            Cause::GainedEnergy { part } => Some(part),
+            Cause::GainedEnergy { part, .. } => Some(part),
             _ => None,
         })
         .collect();
