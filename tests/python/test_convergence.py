@@ -99,7 +99,7 @@ def test_the_problems_of_the_verification_are_decks_without_faults(tmp_path: Pat
     generate = ROOT / "verification" / "convergence" / "generate.py"
     subprocess.run([sys.executable, generate, "-o", tmp_path], check=True)
     decks = sorted(tmp_path.glob("*.inp"))
-    assert len(decks) == 11
+    assert len(decks) == 12
     for deck in decks:
         command = [program.binary(), "check", deck]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)

@@ -23,11 +23,14 @@ def test_a_beam_lands_round_a_hollow_vertex(job: Job, settings: dict[str, str]) 
         ended(results, 1)
 
 
-def test_corners_of_a_stack_hold_each_other(job: Job) -> None:
+@pytest.mark.parametrize(("kind", "cutbacks"), [("NODE TO SURFACE", 0), ("SURFACE TO SURFACE", 1)])
+def test_corners_of_a_stack_hold_each_other(job: Job, kind: str, cutbacks: int) -> None:
+    # a short part of an increment between two impacts ends above the tolerance by round-off, from surface to surface
     deck = Deck.read(STACK)
+    deck.set_formulation(kind)
     deck.set_increments(deck.dt, 49)
     with Result(job(deck)) as results:
-        ended(results, 0)
+        ended(results, cutbacks)
 
 
 def ended(results: Result, cutbacks: int) -> None:

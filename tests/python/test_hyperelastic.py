@@ -47,8 +47,10 @@ def test_a_free_body_keeps_energy_and_momenta(
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-@pytest.mark.parametrize("pair", [("CPS4", "CPS8R"), ("CPE4", "CPE6"), ("CPS3", "CPS4"), ("CPE8", "CPE3")])
+@pytest.mark.parametrize(
+    ("pair", "friction"),
+    [(("CPS4", "CPS8R"), 0.0), (("CPE4", "CPE6"), 0.3), (("CPS3", "CPS4"), 0.3), (("CPE8", "CPE3"), 0.0)],
+)
 def test_unlike_bodies_in_contact_never_gain_energy(
     tmp_path: Path, pair: tuple[str, str], friction: float, scheme: str
 ) -> None:
