@@ -113,12 +113,7 @@ def ring(kind: str, law: str, damping: str = "") -> Deck:
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_free_ring_keeps_energy_and_momentum(tmp_path: Path, kind: str, scheme: str) -> None:
-    for law, damping in (
-        (ELASTIC, ""),
-        (NEO_HOOKE, ""),
-        ("*HYPERELASTIC, YEOH\n150., 10., 2., 2.E-3, 0., 0.", ""),
-        (NEO_HOOKE, "*DAMPING, BETA=0.002\n"),
-    ):
+    for law, damping in ((ELASTIC, ""), (NEO_HOOKE, "*DAMPING, BETA=0.002\n")):
         deck = ring(kind, law, damping)
         nodes = [(int(row[0]), float(row[1]), float(row[2])) for row in deck.one("NODE").rows]
         rows = [(n, 1, 3.0 * x * y - 2.0) for n, x, y in nodes]
@@ -164,8 +159,10 @@ def blocks(kind: str, other: str, friction: float) -> Deck:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-@pytest.mark.parametrize("pair", [("CAX4", "CAX3"), ("CAX8R", "CAX6"), ("CAX4R", "CAX4I"), ("CAX4H", "CAX8RH")])
+@pytest.mark.parametrize(
+    ("pair", "friction"),
+    [(("CAX4", "CAX3"), 0.3), (("CAX8R", "CAX6"), 0.0), (("CAX4R", "CAX4I"), 0.3), (("CAX4H", "CAX8RH"), 0.0)],
+)
 def test_bodies_of_revolution_in_contact_never_gain_energy(
     tmp_path: Path, pair: tuple[str, str], friction: float, scheme: str
 ) -> None:
