@@ -199,8 +199,8 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     }
 }
 
-/// alpha of the variables after an increment; that of the increment's own end, which has converged, where this one has
-/// not: an alpha that is kept is never NaN.
+/// alpha of the variables after an increment, or alpha of the increment's own end where the former has not converged. An
+/// alpha that is kept is never NaN.
 pub(super) fn finite_or<const A: usize>(
     after: SVector<f64, A>,
     at_end: SVector<f64, A>,
