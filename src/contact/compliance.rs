@@ -31,12 +31,12 @@ pub struct Compliance {
     /// Group of every unknown in the matrix of the elements alone: its body.
     bodies: Vec<usize>,
     /// What has been computed, for all constraints or those of some bodies.
-    inverses: BTreeMap<Scope, Vec<Block>>,
+    inverses: BTreeMap<ConstraintGroup, Vec<Block>>,
 }
 
 /// Constraints whose compliance is computed together.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-pub enum Scope {
+pub enum ConstraintGroup {
     /// All of them.
     All,
     /// Those between the same bodies, given by increasing numbers.
@@ -154,21 +154,23 @@ impl Compliance {
 
     /// The part of the constraints between the same bodies that a constraint belongs to, where parts have so many slave
     /// nodes.
-    pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> Scope {
+    pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> ConstraintGroup {
         let SlaveKey { contact, slave } = constraint.key.slave();
         match self.scope_of(constraint) {
-            Scope::Bodies(bodies) => Scope::Part(bodies, [contact, slave / nodes]),
+            ConstraintGroup::Bodies(bodies) => {
+                ConstraintGroup::Part(bodies, [contact, slave / nodes])
+            }
             other => other,
         }
     }
 
     /// The bodies that a constraint acts on.
-    pub fn scope_of(&self, constraint: &Constraint) -> Scope {
+    pub fn scope_of(&self, constraint: &Constraint) -> ConstraintGroup {
         let terms = constraint.dofs.iter().flat_map(|&dof| self.map.row(dof));
         let mut bodies: Vec<usize> = terms.map(|term| self.bodies[term.0]).collect();
         bodies.sort_unstable();
         bodies.dedup();
-        Scope::Bodies(bodies)
+        ConstraintGroup::Bodies(bodies)
     }
 
     /// Computes the inverse of a scope at the unknowns of `constraints` too, if some are missing. That of all
@@ -178,7 +180,7 @@ impl Compliance {
     /// What the solver says.
     pub fn prepare(
         &mut self,
-        scope: &Scope,
+        scope: &ConstraintGroup,
         constraints: &[&Constraint],
         solver: &mut CheckedSolver,
     ) -> Result<(), LinearError> {
@@ -211,8 +213,10 @@ impl Compliance {
             .map(|&at| blocks[at].unknowns.as_slice())
             .collect();
         let inverses = match scope {
-            Scope::All => solver.inverse_at(&lists)?,
-            Scope::Bodies(_) | Scope::Part(..) => solver.unchecked_inverse_at(&lists),
+            ConstraintGroup::All => solver.inverse_at(&lists)?,
+            ConstraintGroup::Bodies(_) | ConstraintGroup::Part(..) => {
+                solver.unchecked_inverse_at(&lists)
+            }
         };
         for (&at, inverse) in renewed.iter().zip(inverses) {
             blocks[at].inverse = inverse;
@@ -234,7 +238,7 @@ impl Compliance {
     /// zero; it must have been prepared in the scope.
     pub(super) fn for_each_entry(
         &self,
-        scope: &Scope,
+        scope: &ConstraintGroup,
         constraint: &Constraint,
         mut add: impl FnMut(UnknownEntry),
     ) {
@@ -283,17 +287,17 @@ impl Compliance {
     }
 
     /// The blocks of a scope.
-    fn blocks(&self, scope: &Scope) -> &[Block] {
+    fn blocks(&self, scope: &ConstraintGroup) -> &[Block] {
         self.inverses.get(scope).map_or(&[], Vec::as_slice)
     }
 
     /// Number of blocks of a scope.
-    pub(super) fn block_count(&self, scope: &Scope) -> usize {
+    pub(super) fn block_count(&self, scope: &ConstraintGroup) -> usize {
         self.blocks(scope).len()
     }
 
     /// The inverse at the unknowns of a block of a scope, column by column, and their number.
-    pub(super) fn inverse(&self, scope: &Scope, block: usize) -> (&[f64], usize) {
+    pub(super) fn inverse(&self, scope: &ConstraintGroup, block: usize) -> (&[f64], usize) {
         let block = &self.blocks(scope)[block];
         (&block.inverse, block.unknowns.len())
     }

@@ -10,7 +10,7 @@ use crate::vectors::{cross, difference, dot};
 
 /// Motion of a node: x + v t + a t^2/2.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Motion {
+pub struct QuadraticMotion {
     /// Position x at t = 0.
     pub position: [f64; 2],
     /// Velocity v at t = 0.
@@ -19,10 +19,10 @@ pub struct Motion {
     pub acceleration: [f64; 2],
 }
 
-impl Motion {
+impl QuadraticMotion {
     /// The straight path from one position to another within a time of 1.
     pub fn straight(from: [f64; 2], to: [f64; 2]) -> Self {
-        Motion {
+        QuadraticMotion {
             position: from,
             velocity: difference(from, to),
             acceleration: [0.0; 2],
@@ -42,7 +42,7 @@ impl Motion {
 
 /// Sense in which a node crosses the line of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
+pub enum CrossingSense {
     /// From outside the body to its inside.
     Entering,
     /// From inside the body to its outside.
@@ -59,7 +59,7 @@ pub struct Crossing {
     /// Position on the segment, 0 at a and 1 at b.
     pub xi: f64,
     /// Sense.
-    pub direction: Direction,
+    pub direction: CrossingSense,
 }
 
 /// All times within [0, dt] at which the node s meets the segment from a to b, increasing.
@@ -70,7 +70,7 @@ pub struct Crossing {
 ///
 /// For motion of second order r x e is a quartic in time with the sign of the gap. A node that
 /// moves along the line of the segment meets it once, when it reaches one of its ends.
-pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
+pub fn crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
     if is_clear(nodes, dt) {
         return Vec::new();
     }
@@ -88,13 +88,13 @@ pub fn crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
 ///
 /// r x e, -r.e and (r - e).e are quadratic then. Each is positive where its Bernstein coefficients are: for r
 /// and e these are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
-fn is_clear(nodes: &[Motion; 3], dt: f64) -> bool {
+fn is_clear(nodes: &[QuadraticMotion; 3], dt: f64) -> bool {
     if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {
         return false;
     }
-    let end = |node: &Motion| [0, 1].map(|i| node.position[i] + node.velocity[i] * dt);
+    let end = |node: &QuadraticMotion| [0, 1].map(|i| node.position[i] + node.velocity[i] * dt);
     let [s, a, b] = nodes;
-    let between = |p: &Motion, q: &Motion| {
+    let between = |p: &QuadraticMotion, q: &QuadraticMotion| {
         [
             difference(p.position, q.position),
             difference(end(p), end(q)),
@@ -115,7 +115,7 @@ fn is_clear(nodes: &[Motion; 3], dt: f64) -> bool {
 }
 
 /// The same for the infinite line through the segment.
-pub fn line_crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
+pub fn line_crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
     let relative = Relative::new(nodes, dt);
     match relative.cross().zeros() {
         Zeros::At(zeros) => {
@@ -132,11 +132,11 @@ pub fn line_crossings(nodes: &[Motion; 3], dt: f64) -> Vec<Crossing> {
     }
 }
 
-fn direction(zero: Zero) -> Direction {
+fn direction(zero: Zero) -> CrossingSense {
     match (zero.before, zero.after) {
-        (0 | 1, -1) => Direction::Entering,
-        (0 | -1, 1) => Direction::Leaving,
-        _ => Direction::Touching,
+        (0 | 1, -1) => CrossingSense::Entering,
+        (0 | -1, 1) => CrossingSense::Leaving,
+        _ => CrossingSense::Touching,
     }
 }
 
@@ -149,9 +149,9 @@ struct Relative {
 }
 
 impl Relative {
-    fn new([s, a, b]: &[Motion; 3], dt: f64) -> Self {
-        let coefficients = |p: &Motion| {
-            let part = |of: fn(&Motion) -> [f64; 2], factor: f64| {
+    fn new([s, a, b]: &[QuadraticMotion; 3], dt: f64) -> Self {
+        let coefficients = |p: &QuadraticMotion| {
+            let part = |of: fn(&QuadraticMotion) -> [f64; 2], factor: f64| {
                 let (p, a) = (of(p), of(a));
                 [(p[0] - a[0]) * factor, (p[1] - a[1]) * factor]
             };
@@ -224,7 +224,7 @@ impl Relative {
                 .then_some(Crossing {
                     time: t * dt,
                     xi,
-                    direction: Direction::Touching,
+                    direction: CrossingSense::Touching,
                 })
         };
         times.into_iter().find_map(on)
@@ -397,15 +397,19 @@ mod tests {
     const A: [f64; 2] = [1.0, 0.0];
     const B: [f64; 2] = [-1.0, 0.0];
 
-    fn still(position: [f64; 2]) -> Motion {
-        Motion {
+    fn still(position: [f64; 2]) -> QuadraticMotion {
+        QuadraticMotion {
             position,
-            ..Motion::default()
+            ..QuadraticMotion::default()
         }
     }
 
-    fn node(position: [f64; 2], velocity: [f64; 2], acceleration: [f64; 2]) -> [Motion; 3] {
-        let s = Motion {
+    fn node(
+        position: [f64; 2],
+        velocity: [f64; 2],
+        acceleration: [f64; 2],
+    ) -> [QuadraticMotion; 3] {
+        let s = QuadraticMotion {
             position,
             velocity,
             acceleration,
@@ -413,14 +417,14 @@ mod tests {
         [s, still(A), still(B)]
     }
 
-    fn times(nodes: &[Motion; 3], dt: f64) -> Vec<(f64, Direction)> {
+    fn times(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<(f64, CrossingSense)> {
         let found = crossings(nodes, dt);
         found.iter().map(|c| (c.time, c.direction)).collect()
     }
 
     #[test]
     fn straight_motion_enters_and_leaves() {
-        use Direction::{Entering, Leaving};
+        use CrossingSense::{Entering, Leaving};
         let down = node([0.5, 1.0], [0.0, -2.0], [0.0; 2]);
         assert_eq!(
             crossings(&down, 4.0),
@@ -442,7 +446,7 @@ mod tests {
 
     #[test]
     fn a_thrown_node_has_both_roots_or_grazes() {
-        use Direction::{Entering, Leaving, Touching};
+        use CrossingSense::{Entering, Leaving, Touching};
         // y = 1 - 3 t + 2 t²
         let found = times(&node([0.0, 1.0], [0.0, -3.0], [0.0, 4.0]), 2.0);
         assert_eq!(found.len(), 2);
@@ -466,7 +470,7 @@ mod tests {
 
     #[test]
     fn start_and_end_of_the_time_belong_to_it() {
-        use Direction::{Entering, Leaving, Touching};
+        use CrossingSense::{Entering, Leaving, Touching};
         assert_eq!(
             times(&node([0.0; 2], [0.0, -1.0], [0.0; 2]), 1.0),
             [(0.0, Entering)]
@@ -483,7 +487,7 @@ mod tests {
 
     #[test]
     fn a_node_in_the_line_of_the_segment_meets_its_end() {
-        use Direction::Touching;
+        use CrossingSense::Touching;
         let inwards = node([3.0, 0.0], [-1.0, 0.0], [0.0; 2]);
         assert_eq!(times(&inwards, 9.0).len(), 1);
         let [(time, direction)] = times(&inwards, 9.0)[..] else {
@@ -503,7 +507,7 @@ mod tests {
     fn a_segment_without_length_is_met_as_a_point() {
         let point = still([0.0, 0.0]);
         let meets = |velocity: [f64; 2]| {
-            let s = Motion {
+            let s = QuadraticMotion {
                 position: [2.0, 2.0],
                 velocity,
                 acceleration: [0.0; 2],
@@ -518,7 +522,7 @@ mod tests {
     #[test]
     fn a_segment_that_turns_inside_out_is_not_met_from_afar() {
         // b passes through a at t = 1; the node stays away from the line
-        let b = Motion {
+        let b = QuadraticMotion {
             position: [-1.0, 0.0],
             velocity: [1.0, 0.0],
             acceleration: [0.0; 2],
@@ -529,7 +533,7 @@ mod tests {
     #[test]
     fn both_sides_may_move() {
         // plate and node fly along together; the node falls on it
-        let fly = |position: [f64; 2], down: f64| Motion {
+        let fly = |position: [f64; 2], down: f64| QuadraticMotion {
             position,
             velocity: [1e3, -down],
             acceleration: [7.0, 0.0],

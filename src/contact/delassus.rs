@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
-use super::compliance::{Compliance, GroupRows, Responses, Scope, UnknownEntry};
+use super::compliance::{Compliance, ConstraintGroup, GroupRows, Responses, UnknownEntry};
 use super::constraint::Constraint;
 use crate::lcp::FrictionalLcp;
 
@@ -37,7 +37,7 @@ impl DelassusSpace {
 /// turn: their rows of T are others in gaps than in forces, eq. (11.3).
 pub fn frictional_lcp(
     constraints: &[&Constraint],
-    (compliance, scope): (&Compliance, &Scope),
+    (compliance, scope): (&Compliance, &ConstraintGroup),
     constant_terms: &[[f64; 2]],
     space: &mut DelassusSpace,
 ) -> FrictionalLcp {
@@ -67,7 +67,7 @@ const THREADS: usize = 64;
 fn delassus(
     constraints: &[&Constraint],
     compliance: &Compliance,
-    scope: &Scope,
+    scope: &ConstraintGroup,
     space: &mut DelassusSpace,
 ) -> DMatrix<f64> {
     let n = constraints.len();
@@ -170,7 +170,7 @@ impl GroupSum<'_> {
         let piece = if on_threads { PIECE } else { self.n.max(1) };
         let (normals, tangentials) = q.split_at_mut(q.len() / 2);
         let write = |(k, (normals, tangentials))| {
-            Arch::new().dispatch(Columns {
+            Arch::new().dispatch(DelassusColumns {
                 sum: self,
                 first: k * piece,
                 columns: [normals, tangentials],
@@ -188,13 +188,13 @@ impl GroupSum<'_> {
 }
 
 /// The columns of Q of the constraints from the `first` on, normal and tangential.
-struct Columns<'a> {
+struct DelassusColumns<'a> {
     sum: GroupSum<'a>,
     first: usize,
     columns: [&'a mut [f64]; 2],
 }
 
-impl WithSimd for Columns<'_> {
+impl WithSimd for DelassusColumns<'_> {
     type Output = ();
 
     #[inline(always)]

@@ -145,21 +145,21 @@ impl Finder<'_> {
 }
 
 type Map = SMatrix<f64, 2, 8>;
-type Row = SVector<f64, 8>;
+type DiscRow = SVector<f64, 8>;
 
 /// J: turns by a right angle to the left.
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
 /// Positions of the centre s, of the node that turns with the disc, and of a and b, at the start and at the end. Rows have
 /// this order, nodes of the slave first.
-struct Places {
+struct NodePositions {
     form: RowForm,
     nodes: [[[f64; 2]; 4]; 2],
 }
 
-impl Places {
+impl NodePositions {
     fn new(nodes: [usize; 4], at: &Configurations) -> Self {
-        Places {
+        NodePositions {
             form: at.form,
             nodes: [at.start(in_rows(nodes)), at.iterate(in_rows(nodes))],
         }
@@ -168,7 +168,7 @@ impl Places {
     /// The vectors at start and end that a map gives.
     fn vectors(&self, map: &Map) -> [Vector2<f64>; 2] {
         self.nodes
-            .map(|x| map * Row::from_iterator(x.into_iter().flatten()))
+            .map(|x| map * DiscRow::from_iterator(x.into_iter().flatten()))
     }
 
     /// s, a and b.
@@ -243,7 +243,7 @@ struct DiscRows {
     scale: f64,
     kappa: f64,
     /// Tangential rows of the centre alone, force and derivative.
-    of_centre: [Row; 2],
+    of_centre: [DiscRow; 2],
 }
 
 /// The constraint of the centre s of a disc at the segment from a to b, or at an arc; nodes s, a, b and one that turns with
@@ -268,7 +268,7 @@ fn in_rows([s, a, b, arm]: [usize; 4]) -> [usize; 4] {
 }
 
 fn rows(source: &PairTarget, round: &Round, at: &Configurations) -> DiscRows {
-    let places = Places::new(source.nodes, at);
+    let places = NodePositions::new(source.nodes, at);
     let mut rows = match &round.arc {
         None => at_segment(&places, round.radius),
         Some(arc) => at_arc(&places, round.radius, arc),
@@ -310,7 +310,7 @@ fn tilt(
         .as_flattened()
         .iter()
         .map(|&dof| at.u[dof] - at.u0[dof]);
-    let way = rows.of_centre[0].dot(&Row::from_iterator(d));
+    let way = rows.of_centre[0].dot(&DiscRow::from_iterator(d));
     let rise = rise(&of_start, before, centre);
     // a force that leans too far is left as it is: what it gains is cut back
     match way.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * way.abs() {
@@ -319,8 +319,8 @@ fn tilt(
     }
 }
 
-fn row(row: &[f64; 8]) -> Row {
-    Row::from_column_slice(row)
+fn row(row: &[f64; 8]) -> DiscRow {
+    DiscRow::from_column_slice(row)
 }
 
 /// Rows at a segment: those of the centre, the slip with the turns of disc and segment.
@@ -328,14 +328,14 @@ fn row(row: &[f64; 8]) -> Row {
 /// ```text
 /// g = g(x_s) - rho,   Dt = L (xi1 - xi0) - rho (T_s - T_e)    eq. (3.23)
 /// ```
-fn at_segment(places: &Places, radius: f64) -> DiscRows {
+fn at_segment(places: &NodePositions, radius: f64) -> DiscRows {
     let SegmentRows {
         projection,
         force,
         derivative,
     } = rows_between(places.of_segment(), places.form);
     let all = |[sx, sy, ax, ay, bx, by]: [f64; 6]| {
-        Row::from_column_slice(&[sx, sy, 0.0, 0.0, ax, ay, bx, by])
+        DiscRow::from_column_slice(&[sx, sy, 0.0, 0.0, ax, ay, bx, by])
     };
     let maps = arms();
     let [of_segment, of_disc] = maps.map(|map| Turn::new(places.vectors(&map), places.part()));
@@ -375,7 +375,7 @@ struct AtArc {
 }
 
 impl AtArc {
-    fn new(places: &Places, radius: f64, arc: &MasterArc) -> Self {
+    fn new(places: &NodePositions, radius: f64, arc: &MasterArc) -> Self {
         let (part, [e, arm], r_map) = (places.part(), arms(), from_centre(arc));
         let r = places.vectors(&r_map);
         let middle = r[0] + (r[1] - r[0]) * part;
@@ -405,7 +405,7 @@ impl AtArc {
 /// g  = |r| - R - rho,   Bn = 2 r_m/(l0 + l1), or r_1/l1 of end rows
 /// Dt = (r_0 x r_1)/m - m (rho T_s + R T_e)/(rho + R)                  eq. (3.24)
 /// ```
-fn at_arc(places: &Places, radius: f64, arc: &MasterArc) -> DiscRows {
+fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
     let own = AtArc::new(places, radius, arc);
     let [r0, r1] = own.r;
     let [l0, l1] = own.r.map(|r| r.norm());
@@ -449,7 +449,7 @@ pub(super) fn stiffness(
     [pn, pt]: [f64; 2],
     at: &Configurations,
 ) -> DMatrix<f64> {
-    let places = Places::new(source.nodes, at);
+    let places = NodePositions::new(source.nodes, at);
     let rows = rows(source, round, at);
     // the force of a tilted row is Bn^T Pn + Bt^T Pt + kappa Pn times the row of the centre
     let leaning = rows.kappa * pn;
@@ -498,7 +498,7 @@ pub(super) fn stiffness(
             .as_flattened()
             .iter()
             .map(|&dof| at.u[dof] - at.u0[dof]);
-        let way = force.dot(&Row::from_iterator(d));
+        let way = force.dot(&DiscRow::from_iterator(d));
         k -= force * slope.transpose() * (leaning / way);
     }
     let k = (k + k.transpose()) / 2.0;

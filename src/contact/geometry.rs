@@ -713,7 +713,7 @@ pub struct Interior {
 }
 
 /// A line and the elements that it goes through.
-struct Line {
+struct CrossedElements {
     elements: Vec<usize>,
     /// Whether it stays in them up to its end.
     stays: bool,
@@ -809,7 +809,7 @@ impl Interior {
         node: usize,
         depths: f64,
         at: impl Fn(usize) -> [f64; 2],
-    ) -> Option<Line> {
+    ) -> Option<CrossedElements> {
         let s = at(node);
         self.line_to(segment, s, depths, at)
     }
@@ -821,14 +821,14 @@ impl Interior {
         s: [f64; 2],
         depths: f64,
         at: impl Fn(usize) -> [f64; 2],
-    ) -> Option<Line> {
+    ) -> Option<CrossedElements> {
         let first = self.left(segment)?;
         let [a, b] = segment.map(&at);
         let p = project(s, a, b);
         let xi = p.xi.clamp(0.0, 1.0);
         let from = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
         let to = [0, 1].map(|i| s[i] + (depths - 1.0) * p.gap * p.normal[i]);
-        let mut line = Line {
+        let mut line = CrossedElements {
             elements: Vec::new(),
             stays: false,
         };
@@ -878,11 +878,11 @@ impl Interior {
     }
 
     /// Whether a line stays in the body and the node belongs to none of the elements on it.
-    fn is_foreign(&self, line: &Line, node: usize) -> bool {
+    fn is_foreign(&self, line: &CrossedElements, node: usize) -> bool {
         line.stays && !self.has_node(line, node)
     }
 
-    fn has_node(&self, line: &Line, node: usize) -> bool {
+    fn has_node(&self, line: &CrossedElements, node: usize) -> bool {
         let has = |&element: &usize| self.sides(element).any(|[a, _]| a == node);
         line.elements.iter().any(has)
     }

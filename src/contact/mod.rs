@@ -30,9 +30,9 @@ mod tunnelling_tests;
 
 pub use active_constraints::{ActiveConstraints, ConstraintSet};
 pub use closed_pairs::{ClosedPair, ClosedPairs};
-pub use compliance::{Compliance, Scope};
+pub use compliance::{Compliance, ConstraintGroup};
 pub use constraint::{Configurations, Constraint, RowForm, Rows};
-pub use crossing::{Crossing, Direction, Motion, crossings, line_crossings};
+pub use crossing::{Crossing, CrossingSense, QuadraticMotion, crossings, line_crossings};
 pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
 pub use geometry::{

@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::compliance::{Compliance, Scope};
+use super::compliance::{Compliance, ConstraintGroup};
 use super::constraint::{Constraint, Rows};
 use super::delassus::{DelassusSpace, frictional_lcp};
 use super::testing;
@@ -66,7 +66,7 @@ fn compliance_of(constraints: &[&Constraint], solver: &mut CheckedSolver) -> Com
     solver.factorize().expect("positive definite");
     let map = Transformation::identity(DOFS);
     let mut compliance = Compliance::new(map, vec![0; DOFS]);
-    let prepared = compliance.prepare(&Scope::All, constraints, solver);
+    let prepared = compliance.prepare(&ConstraintGroup::All, constraints, solver);
     prepared.expect("solved");
     compliance
 }
@@ -81,7 +81,7 @@ fn delassus_entries_of_many_constraints_are_those_of_a_few_with_the_same_bits_on
     let q = |constraints: &[&Constraint], threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let terms = vec![[0.0; 2]; constraints.len()];
-        let of = (&compliance, &Scope::All);
+        let of = (&compliance, &ConstraintGroup::All);
         let mut space = DelassusSpace::default();
         pool.expect("threads")
             .install(|| frictional_lcp(constraints, of, &terms, &mut space).q)
@@ -102,7 +102,7 @@ fn delassus_entries_are_derivative_rows_times_compliance_times_force_rows() {
     let compliance = compliance_of(&constraints, &mut solver);
     let problem = frictional_lcp(
         &constraints,
-        (&compliance, &Scope::All),
+        (&compliance, &ConstraintGroup::All),
         &[[0.0; 2]; 2],
         &mut DelassusSpace::default(),
     );

@@ -279,8 +279,8 @@ pub struct Territory<'m> {
     reach: f64,
     /// Margin of an entity at rest (length).
     skin: f64,
-    slaves: Side,
-    segments: Side,
+    slaves: SearchedSide,
+    segments: SearchedSide,
     /// Segments of all slaves, one after the other, increasing for each.
     candidates: Vec<u32>,
     /// Where the list of each slave starts, and the end of the last.
@@ -353,8 +353,8 @@ impl<'m> Territory<'m> {
             // of all points of a slave face, whose ends are listed
             reach: reach * mean + contact.half_longest_face(x),
             skin: SEARCH_MARGIN * mean,
-            slaves: Side::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
-            segments: Side::new(contact.segments.clone()),
+            slaves: SearchedSide::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
+            segments: SearchedSide::new(contact.segments.clone()),
             candidates: Vec::new(),
             starts: Vec::new(),
             found: Vec::new(),
@@ -499,7 +499,7 @@ impl<'m> Territory<'m> {
 }
 
 /// The entities of one side of a contact by their end nodes; both ends of a slave node are itself.
-struct Side {
+struct SearchedSide {
     ends: Vec<[usize; 2]>,
     /// Distance that each may travel in the increment (length).
     travel: Vec<f64>,
@@ -511,9 +511,9 @@ struct Side {
     circles: CircleTree,
 }
 
-impl Side {
+impl SearchedSide {
     fn new(ends: Vec<[usize; 2]>) -> Self {
-        Side {
+        SearchedSide {
             travel: vec![0.0; ends.len()],
             reference: Vec::new(),
             margin: Vec::new(),

@@ -9,7 +9,7 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::crossing::{Crossing, Direction, Motion, crossings};
+use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
 use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Projection, Vertex, project};
 use super::keys::ConstraintKey;
 use super::lists::{Recycled, entries};
@@ -569,9 +569,9 @@ impl SlaveNode<'_> {
     pub(crate) fn enters(&self, segment: usize) -> bool {
         let [a, b] = self.surfaces.segments[segment];
         let motions = [self.node(), a, b]
-            .map(|node| Motion::straight(self.start.of(node), self.now.of(node)));
+            .map(|node| QuadraticMotion::straight(self.start.of(node), self.now.of(node)));
         let motions = raised(motions, self.allowed);
-        let is_entering = |c: &Crossing| c.direction == Direction::Entering;
+        let is_entering = |c: &Crossing| c.direction == CrossingSense::Entering;
         crossings(&motions, 1.0).iter().any(is_entering)
     }
 
@@ -739,14 +739,17 @@ impl SlaveNode<'_> {
 
 /// Motions of a node and of the ends of a segment, the node being raised along the normal by the overlap that a fit
 /// allows it at both ends of the path (length).
-pub(super) fn raised([mut s, a, b]: [Motion; 3], allowed: [f64; 2]) -> [Motion; 3] {
+pub(super) fn raised(
+    [mut s, a, b]: [QuadraticMotion; 3],
+    allowed: [f64; 2],
+) -> [QuadraticMotion; 3] {
     if allowed != [0.0; 2] {
         let raised = |part: f64, by: f64| {
             let [x, a, b] = [&s, &a, &b].map(|motion| motion.at(part));
             let normal = project(x, a, b).normal;
             [0, 1].map(|i| x[i] + by * normal[i])
         };
-        s = Motion::straight(raised(0.0, allowed[0]), raised(1.0, allowed[1]));
+        s = QuadraticMotion::straight(raised(0.0, allowed[0]), raised(1.0, allowed[1]));
     }
     [s, a, b]
 }

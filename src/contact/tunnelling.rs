@@ -5,7 +5,7 @@
 //! Section 10 of docs/theory.md, Penetration check.
 
 use super::closed_pairs::ClosedPairs;
-use super::crossing::{Crossing, Direction, Motion, crossings};
+use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
 use super::geometry::{Along, ContactSurfaces, Projection, position, project};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
@@ -90,14 +90,14 @@ impl NodePath<'_> {
         of_nodes.flat_map(|pair| pair.source.target.segments())
     }
 
-    fn motions(&self, segment: usize) -> [Motion; 3] {
+    fn motions(&self, segment: usize) -> [QuadraticMotion; 3] {
         let of_end = |node: usize| {
             let [from, to] = self.u.map(|u| position(self.x, u, node));
-            Motion::straight(from, to)
+            QuadraticMotion::straight(from, to)
         };
         let [a, b] = self.contact.segments[segment].map(of_end);
         raised(
-            [Motion::straight(self.ends[0], self.ends[1]), a, b],
+            [QuadraticMotion::straight(self.ends[0], self.ends[1]), a, b],
             self.allowed,
         )
     }
@@ -112,14 +112,14 @@ impl NodePath<'_> {
     fn entry(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
         events.sort_by(|(_, c), (_, d)| c.time.total_cmp(&d.time));
         for (n, (segment, entering)) in events.iter().enumerate() {
-            if entering.direction != Direction::Entering {
+            if entering.direction != CrossingSense::Entering {
                 continue;
             }
             let is_out = |c: &Crossing| match c.direction {
-                Direction::Leaving => true,
+                CrossingSense::Leaving => true,
                 // it ends on the surface
-                Direction::Touching => c.time >= 1.0,
-                Direction::Entering => false,
+                CrossingSense::Touching => c.time >= 1.0,
+                CrossingSense::Entering => false,
             };
             let leaving = events[n..].iter().find(|(_, c)| is_out(c));
             let is_harmless = match leaving {

@@ -19,7 +19,7 @@ pub struct Card {
     /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
     /// Its data lines.
-    pub rows: Rows,
+    pub rows: DataLines,
     pub(crate) params: Vec<Param>,
 }
 
@@ -121,7 +121,7 @@ impl Card {
 /// The data lines of a card: blocks of the texts of its files, cut into lines and fields when they are
 /// asked for.
 #[derive(Debug, Clone, Default)]
-pub struct Rows {
+pub struct DataLines {
     blocks: Vec<LineBlock>,
     instance: u32,
 }
@@ -138,7 +138,7 @@ struct LineBlock {
     before: u32,
 }
 
-impl Rows {
+impl DataLines {
     /// Adds lines of the file with the text `source`.
     pub(super) fn add(&mut self, lines: Lines, source: &Arc<String>) {
         self.blocks.push(LineBlock {

@@ -5,13 +5,13 @@ use super::text::Text;
 use crate::diagnostics::{Code, Diagnostic, FileId, Sources, Span};
 
 /// A field of a deck with the keyword line that it belongs to.
-struct Entry<'a> {
+struct CardField<'a> {
     card: &'a str,
     field: Text<'a>,
 }
 
 /// The fields of a text in their order, without comments and without the cards that may change.
-fn entries(file: FileId, text: &str) -> impl Iterator<Item = Entry<'_>> {
+fn entries(file: FileId, text: &str) -> impl Iterator<Item = CardField<'_>> {
     let is_said = |line: &Line| !matches!(line.kind(), LineKind::Blank | LineKind::Comment);
     let lines = Lines::new(file, text).filter(is_said);
     let with_cards = lines.scan("", |card, line| {
@@ -25,7 +25,7 @@ fn entries(file: FileId, text: &str) -> impl Iterator<Item = Entry<'_>> {
         !name.eq_ignore_ascii_case("RESTART")
     };
     let fields = with_cards.filter(counts);
-    fields.flat_map(|(card, line)| line.fields().map(move |field| Entry { card, field }))
+    fields.flat_map(|(card, line)| line.fields().map(move |field| CardField { card, field }))
 }
 
 /// The first change of a deck, file by file, against earlier texts with their names.
@@ -51,7 +51,7 @@ pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<D
         }
         let mut old = entries(id, before);
         let mut last = start;
-        for Entry { card, field } in entries(id, file.text()) {
+        for CardField { card, field } in entries(id, file.text()) {
             last = field.span;
             let was = match old.next() {
                 Some(was) if is_same(was.field, field) => continue,
@@ -64,7 +64,7 @@ pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<D
                 format!("the deck has changed since the checkpoint: {what}"),
             ));
         }
-        if let Some(Entry { card, field }) = old.next() {
+        if let Some(CardField { card, field }) = old.next() {
             let message = format!(
                 "the deck has changed since the checkpoint: {name} had `{}` of {card} after this",
                 field.text

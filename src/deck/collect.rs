@@ -1,7 +1,7 @@
 //! Files of a deck: reading them with the files that they include, cutting them into logical lines,
 //! and collecting these into cards. Cards with a reported error are left out.
 
-use super::card::{Card, Instance, Rows};
+use super::card::{Card, DataLines, Instance};
 use super::content::Content;
 use super::keywords::{Data, Keyword, Status};
 use super::lines::{Line, LineKind, Lines, overlong};
@@ -384,7 +384,7 @@ impl Collector<'_> {
             keyword,
             span,
             faulty: false,
-            rows: Rows::default(),
+            rows: DataLines::default(),
             params: Vec::new(),
         });
     }

@@ -79,7 +79,7 @@ pub(super) fn evaluate(
         return Err(fault(at..at + char_len(c), &message));
     }
     let mut used = Vec::new();
-    let scope = Scope {
+    let scope = Evaluation {
         length: text.len(),
         values,
     };
@@ -142,23 +142,23 @@ impl nom::error::ParseError<&str> for Expected {
 /// A node of an expression; `left` are the bytes that are left where it begins.
 #[derive(Debug)]
 enum Tree<'a> {
-    Number(Place<'a>),
+    Number(WordPlace<'a>),
     Text(&'a str),
-    Name(Place<'a>),
-    Call(Place<'a>, Vec<Tree<'a>>),
-    Minus(Place<'a>, Box<Tree<'a>>),
-    Binary(Place<'a>, Box<[Tree<'a>; 2]>),
+    Name(WordPlace<'a>),
+    Call(WordPlace<'a>, Vec<Tree<'a>>),
+    Minus(WordPlace<'a>, Box<Tree<'a>>),
+    Binary(WordPlace<'a>, Box<[Tree<'a>; 2]>),
 }
 
 /// A word of an expression and the bytes that are left where it begins.
-type Place<'a> = (usize, &'a str);
+type WordPlace<'a> = (usize, &'a str);
 
 type Parsed<'a, T> = IResult<&'a str, T, Expected>;
 
 /// A word, with its place, behind blanks.
 fn placed<'a>(
     mut word: impl Parser<&'a str, Output = &'a str, Error = Expected>,
-) -> impl FnMut(&'a str) -> Parsed<'a, Place<'a>> {
+) -> impl FnMut(&'a str) -> Parsed<'a, WordPlace<'a>> {
     move |input| {
         let input = input.trim_start();
         let (rest, word) = word.parse(input)?;
@@ -168,7 +168,7 @@ fn placed<'a>(
 
 /// Operands with operators between them, from left to right.
 fn chain<'a>(
-    operator: fn(&'a str) -> Parsed<'a, Place<'a>>,
+    operator: fn(&'a str) -> Parsed<'a, WordPlace<'a>>,
     operand: fn(&'a str) -> Parsed<'a, Tree<'a>>,
     input: &'a str,
 ) -> Parsed<'a, Tree<'a>> {
@@ -179,14 +179,14 @@ fn chain<'a>(
 }
 
 fn sum(input: &str) -> Parsed<'_, Tree<'_>> {
-    fn operator(input: &str) -> Parsed<'_, Place<'_>> {
+    fn operator(input: &str) -> Parsed<'_, WordPlace<'_>> {
         placed(alt((tag("+"), tag("-")))).parse(input)
     }
     chain(operator, product, input)
 }
 
 fn product(input: &str) -> Parsed<'_, Tree<'_>> {
-    fn operator(input: &str) -> Parsed<'_, Place<'_>> {
+    fn operator(input: &str) -> Parsed<'_, WordPlace<'_>> {
         placed(alt((tag("*"), tag("/")))).parse(input)
     }
     chain(operator, factor, input)
@@ -285,14 +285,14 @@ fn number(input: &str) -> Parsed<'_, Tree<'_>> {
 }
 
 /// Evaluates the nodes of an expression.
-struct Scope<'v> {
+struct Evaluation<'v> {
     /// Bytes of the expression.
     length: usize,
     values: &'v BTreeMap<String, Value>,
 }
 
-impl Scope<'_> {
-    fn fault(&self, (left, word): Place, message: &str) -> Fault {
+impl Evaluation<'_> {
+    fn fault(&self, (left, word): WordPlace, message: &str) -> Fault {
         let at = self.length - left;
         fault(at..at + word.len(), message)
     }
@@ -331,7 +331,7 @@ impl Scope<'_> {
         }
     }
 
-    fn number(&self, place: Place) -> Result<Value, Fault> {
+    fn number(&self, place: WordPlace) -> Result<Value, Fault> {
         let is_whole = place.1.bytes().all(|byte| byte.is_ascii_digit());
         match (is_whole, place.1.parse()) {
             (true, Ok(value)) => Ok(Value::Whole(value)),
@@ -339,7 +339,7 @@ impl Scope<'_> {
         }
     }
 
-    fn real(&self, value: &Value, place: Place) -> Result<f64, Fault> {
+    fn real(&self, value: &Value, place: WordPlace) -> Result<f64, Fault> {
         match value {
             Value::Whole(value) => Ok(*value as f64),
             Value::Real(value) => Ok(*value),
@@ -347,14 +347,14 @@ impl Scope<'_> {
         }
     }
 
-    fn finite(&self, place: Place, value: f64) -> Result<Value, Fault> {
+    fn finite(&self, place: WordPlace, value: f64) -> Result<Value, Fault> {
         match value.is_finite() {
             true => Ok(Value::Real(value)),
             false => Err(self.fault(place, "this has no finite value")),
         }
     }
 
-    fn binary(&self, place: Place, a: &Value, b: &Value) -> Result<Value, Fault> {
+    fn binary(&self, place: WordPlace, a: &Value, b: &Value) -> Result<Value, Fault> {
         if let (Value::Whole(a), Value::Whole(b)) = (a, b) {
             let whole = match place.1 {
                 "+" => a.checked_add(*b),
@@ -379,7 +379,7 @@ impl Scope<'_> {
         self.finite(place, value)
     }
 
-    fn call(&self, place: Place, arguments: &[Value]) -> Result<Value, Fault> {
+    fn call(&self, place: WordPlace, arguments: &[Value]) -> Result<Value, Fault> {
         let keeps_whole = matches!(place.1, "abs" | "min" | "max");
         let wholes = || {
             arguments.iter().map(|value| match value {

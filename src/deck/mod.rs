@@ -17,7 +17,7 @@ mod parameters;
 mod resolve;
 mod text;
 
-pub use card::{Card, Instance, Param, Placement, Rows};
+pub use card::{Card, DataLines, Instance, Param, Placement};
 pub use change::first_change;
 pub use collect::Deck;
 pub use keywords::{

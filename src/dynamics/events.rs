@@ -10,8 +10,9 @@ use super::results::State;
 use super::step::{HeldMotions, Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
 use crate::contact::{
-    ActiveConstraints, ClosedPairs, Constraint, ConstraintKey, ConstraintSet, Crossing, Direction,
-    ListedSlave, Motion, NodeAtSegment, Projection, crossings, line_crossings,
+    ActiveConstraints, ClosedPairs, Constraint, ConstraintKey, ConstraintSet, Crossing,
+    CrossingSense, ListedSlave, NodeAtSegment, Projection, QuadraticMotion, crossings,
+    line_crossings,
 };
 
 /// Part of a nominal increment within which impacts are taken together; no subincrement is
@@ -46,7 +47,7 @@ pub(crate) struct Subincrements<'a, 'm> {
 
 /// A node goes into a body, or a mean gap from surface to surface becomes negative.
 #[derive(Debug, Clone, Copy)]
-struct Entry {
+struct Intrusion {
     pair: NodeAtSegment,
     /// Overlap that the node may have with the segment (length); none of a mean.
     allowed: Option<f64>,
@@ -54,7 +55,7 @@ struct Entry {
     time: f64,
 }
 
-impl Entry {
+impl Intrusion {
     /// Its gap at the end of a trial and the length that this is relative to; no number where the mean is over nothing.
     fn gap(&self, problem: &StepProblem, trial: &Trial) -> [f64; 2] {
         match self.allowed {
@@ -105,7 +106,7 @@ impl FreeMotion<'_> {
         u0: &[f64],
         nodes: [usize; 3],
         allowed: f64,
-    ) -> [Motion; 3] {
+    ) -> [QuadraticMotion; 3] {
         let Path { v, a, .. } = self.path;
         let [mut s, a, b] = nodes.map(|node| motion(problem, u0, v, a, node));
         if allowed != 0.0 {
@@ -141,8 +142,8 @@ impl FreeMotion<'_> {
     /// between its ends its motion is an estimate.
     fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
         let stays = |&(k, crossing): &(usize, &Crossing)| {
-            let is_out = |c: &Crossing| c.direction == Direction::Leaving && c.time < self.end;
-            crossing.direction == Direction::Entering && !found[k..].iter().any(is_out)
+            let is_out = |c: &Crossing| c.direction == CrossingSense::Leaving && c.time < self.end;
+            crossing.direction == CrossingSense::Entering && !found[k..].iter().any(is_out)
         };
         let mut numbered = found.iter().enumerate();
         numbered.find(stays).map(|(_, crossing)| crossing.time)
@@ -200,7 +201,7 @@ impl<'m> Subincrements<'_, 'm> {
             let trial = Trial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
             impact.take_in(trial.clone(), is_before);
             // a node that has just bounced off has hardly a gap at the start: there its motion tells
-            let expected = |entry: &Entry| {
+            let expected = |entry: &Intrusion| {
                 let gap = |trial: &Trial| entry.gap(problem, trial)[0];
                 let root = impact.root(gap).filter(|root| *root >= group);
                 root.unwrap_or(entry.time)
@@ -233,7 +234,7 @@ impl<'m> Subincrements<'_, 'm> {
                 entries.clear();
                 continue;
             }
-            let is_met = |entry: &Entry| {
+            let is_met = |entry: &Intrusion| {
                 let [gap, length] = entry.gap(problem, &trial);
                 gap.abs() <= IMPACT_GAP * length
             };
@@ -280,7 +281,7 @@ impl<'m> Subincrements<'_, 'm> {
         }
     }
 
-    fn join_at_start(&self, active: &mut ActiveConstraints, entry: Entry) {
+    fn join_at_start(&self, active: &mut ActiveConstraints, entry: Intrusion) {
         if entry.allowed.is_none() {
             active.join_mean_at_start(entry.pair.key);
             return;
@@ -301,7 +302,7 @@ impl<'m> Subincrements<'_, 'm> {
         path: &Path,
         tau: f64,
         solved: Option<&Solved>,
-    ) -> Vec<Entry> {
+    ) -> Vec<Intrusion> {
         let (problem, u0) = (self.problem, &self.start.u);
         let motion = FreeMotion {
             path,
@@ -330,12 +331,12 @@ impl<'m> Subincrements<'_, 'm> {
                     || active.has_joined(pair.key.slave())
                     || has_constraint(pair.nodes[0]))
         };
-        let mut entries: Vec<Entry> = Vec::new();
+        let mut entries: Vec<Intrusion> = Vec::new();
         for c in left_out {
             // nodes that have gone in by less are found by their motion
             let least = if c.is_weighted() { 0.0 } else { CLOSED_GAP };
             if c.gap < -least * c.scale {
-                let entry = |time| Entry {
+                let entry = |time| Intrusion {
                     pair: c.pair(),
                     allowed: (!c.is_weighted()).then_some(c.allowed_at_start()),
                     time,
@@ -361,7 +362,7 @@ impl<'m> Subincrements<'_, 'm> {
                     if may_enter {
                         let time = motion.entry(problem, u0, (pair, allowed));
                         let allowed = Some(allowed);
-                        entries.extend(time.map(|time| Entry {
+                        entries.extend(time.map(|time| Intrusion {
                             pair,
                             allowed,
                             time,
@@ -384,7 +385,7 @@ impl<'m> Subincrements<'_, 'm> {
         active: &ActiveConstraints,
         motion: &FreeMotion,
         solved: &Solved,
-    ) -> Option<Entry> {
+    ) -> Option<Intrusion> {
         let (problem, u0) = (self.problem, &self.start.u);
         let closed = [&self.start.contact, &solved.end.contact];
         let unsolved = problem.unsolved(&solved.d);
@@ -397,7 +398,7 @@ impl<'m> Subincrements<'_, 'm> {
             ..*motion
         };
         let time = through.entry(problem, u0, (pair, 0.0)).unwrap_or(0.0);
-        Some(Entry {
+        Some(Intrusion {
             pair,
             allowed: Some(0.0),
             time,

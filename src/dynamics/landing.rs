@@ -8,7 +8,8 @@ use nalgebra::DMatrix;
 
 use super::increment::{PairReturn, Release, Solved};
 use super::patterns::{
-    FrictionLoad, Pattern, ReturnLoad, RigidBodies, given, pattern, shares, signs, turning_bodies,
+    FrictionLoad, ReturnLoad, RigidBodies, VelocityPattern, given, pattern, shares, signs,
+    turning_bodies,
 };
 use super::results::{Cause, State};
 use super::step::{ClosedConstraints, HeldMotions, StepProblem, Workspace, difference, dot, sum};
@@ -200,7 +201,7 @@ pub(super) fn give_back(
     let v_s = bodies.support_velocity(problem, v);
     let relative = difference(v, &v_s);
     // b_j = w_j.M V1 - s_j, s_j = V_s.M w_j - (dt²/2) V_s.f_j, eq. (6.10)
-    let motion = |pattern: &Pattern, force: &[f64]| {
+    let motion = |pattern: &VelocityPattern, force: &[f64]| {
         let given = dt * dt / 2.0 * dot(&v_s, force);
         let b = dot(&relative, &pattern.momentum) + given;
         (b, dot(&v_s, &pattern.momentum) - given)
@@ -215,7 +216,7 @@ pub(super) fn give_back(
         s.push(s_j);
     }
     // A_jk = w_j.M w_k
-    let products = |patterns: &[Pattern]| {
+    let products = |patterns: &[VelocityPattern]| {
         let n = patterns.len();
         DMatrix::from_fn(n, n, |j, k| dot(&patterns[j].w, &patterns[k].momentum))
     };
@@ -234,7 +235,7 @@ pub(super) fn give_back(
     let a = products(&patterns);
     let most: Vec<f64> = loads.iter().map(|load| load.most).collect();
     let y = shares(&a, &b, &energies, &signs, &most);
-    for (Pattern { w, .. }, y) in patterns.iter().zip(&y) {
+    for (VelocityPattern { w, .. }, y) in patterns.iter().zip(&y) {
         v.iter_mut().zip(w).for_each(|(v, w)| *v += y * w);
     }
     let mut given = given(&a, &b, &y);

@@ -32,16 +32,16 @@ pub(crate) struct FrictionLoad {
 
 /// A pattern of velocity.
 #[derive(Clone)]
-pub(super) struct Pattern {
+pub(super) struct VelocityPattern {
     /// w, over all dofs.
     pub w: Vec<f64>,
     /// M w.
     pub momentum: Vec<f64>,
 }
 
-impl Pattern {
+impl VelocityPattern {
     /// Adds another pattern.
-    pub fn add(&mut self, other: &Pattern) {
+    pub fn add(&mut self, other: &VelocityPattern) {
         let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
         add(&mut self.w, &other.w);
         add(&mut self.momentum, &other.momentum);
@@ -60,12 +60,12 @@ pub(super) fn pattern(
     dt: f64,
     bodies: &RigidBodies,
     force: &[f64],
-) -> Result<Pattern, Cause> {
+) -> Result<VelocityPattern, Cause> {
     let mut w = (workspace.k()).respond(force)?;
     bodies.correct(problem, dt, force, &mut w);
     bodies.keep_turning(problem, &mut w);
     let momentum = problem.mass.times(&w);
-    Ok(Pattern { w, momentum })
+    Ok(VelocityPattern { w, momentum })
 }
 
 /// Whether a rigid body that turns is a part of each body.

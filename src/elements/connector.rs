@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 use smallvec::SmallVec;
 
 use super::solid::{Increment, Motion, TangentPart};
-use crate::model::{Connector, ConnectorLaw, Direction, Model};
+use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Model};
 
 /// Two entries for each node.
 pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
@@ -70,8 +70,8 @@ impl PlacedConnector {
             found.map_or(*node, |(_, turning)| model.angle_of(turning) / 2)
         };
         let nodes = match connector.direction {
-            Direction::Angle => connector.nodes.iter().map(angle_at).collect(),
-            Direction::Line | Direction::Fixed(_) => connector.nodes.clone(),
+            ConnectorDirection::Angle => connector.nodes.iter().map(angle_at).collect(),
+            ConnectorDirection::Line | ConnectorDirection::Fixed(_) => connector.nodes.clone(),
         };
         let reference = match connector.nodes[..] {
             [a, b] => at(b) - at(a),
@@ -92,7 +92,7 @@ impl PlacedConnector {
 
     /// Takes in the length of the body whose angle is the first dof of a pair.
     pub(super) fn measure_angle(&mut self, pair: usize, length: f64) {
-        if self.connector.direction == Direction::Angle {
+        if self.connector.direction == ConnectorDirection::Angle {
             let all = self.nodes.iter().zip(&mut self.lengths);
             let own = all.filter(|(node, _)| **node == pair);
             own.for_each(|(_, own)| *own = length);
@@ -122,7 +122,7 @@ impl PlacedConnector {
         let nodes = self.nodes();
         let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
         match (self.connector.direction, nodes) {
-            (Direction::Line, &[a, b]) => {
+            (ConnectorDirection::Line, &[a, b]) => {
                 let r = self.reference + of(b) - of(a);
                 let l = r.norm();
                 let n = r / l;
@@ -132,7 +132,7 @@ impl PlacedConnector {
                     line: Some((r, l)),
                 }
             }
-            (Direction::Fixed([i, j]), nodes) => {
+            (ConnectorDirection::Fixed([i, j]), nodes) => {
                 let axis = |i: usize| Vector2::ith(i, 1.0);
                 let value = |(node, i): (&usize, usize)| u[2 * node + i];
                 let first = nodes.first().map_or(0.0, |node| value((node, i)));
@@ -143,7 +143,7 @@ impl PlacedConnector {
                     line: None,
                 }
             }
-            (Direction::Angle, nodes) => {
+            (ConnectorDirection::Angle, nodes) => {
                 let [a, b] = self.lengths.map(|length| 1.0 / length);
                 let angle = |k: usize, part: f64| nodes.get(k).map_or(0.0, |n| u[2 * n] * part);
                 Elongation {
@@ -152,7 +152,7 @@ impl PlacedConnector {
                     line: None,
                 }
             }
-            (Direction::Line, _) => Elongation {
+            (ConnectorDirection::Line, _) => Elongation {
                 value: 0.0,
                 gradient: [Vector2::zeros(); 2],
                 line: None,
@@ -179,7 +179,7 @@ impl PlacedConnector {
             let n = (r0 + r1) / (l0 + l1);
             between.gradient = [-n, n];
         }
-        if self.connector.direction == Direction::Angle {
+        if self.connector.direction == ConnectorDirection::Angle {
             for (k, &node) in self.nodes.iter().enumerate() {
                 let half = (u1[2 * node] - u0[2 * node]) / self.lengths[k] / 2.0;
                 // dtheta/c and d theta_1/dc = 1/(1 + c²/4)
@@ -236,7 +236,7 @@ impl PlacedConnector {
                 let [l0, l1] = between.ends;
                 self.vector(curve.mean(l0, l1), &between.gradient)
             }
-            (None, Some([u0, u1])) if self.connector.direction == Direction::Angle => {
+            (None, Some([u0, u1])) if self.connector.direction == ConnectorDirection::Angle => {
                 let gradient = self.between(u0, u1).gradient;
                 self.vector(curve.at(self.at(motion.end).value), &gradient)
             }
@@ -345,7 +345,7 @@ mod tests {
 
     fn connectors(law: ConnectorLaw) -> Vec<PlacedConnector> {
         let table = ForceCurve::Table(vec![[-2.0, -3.0], [-0.05, -0.5], [0.1, 0.4], [2.0, 1.0]]);
-        let directions = [Direction::Line, Direction::Fixed([0, 1])];
+        let directions = [ConnectorDirection::Line, ConnectorDirection::Fixed([0, 1])];
         let mut model = Model::default();
         model.mesh.coordinates = X.to_vec();
         let of = |direction| {

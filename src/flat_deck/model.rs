@@ -4,9 +4,10 @@
 use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::Law;
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorLaw, Contact, Curve, Damping, Direction,
-    Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material, Mesh, Model,
-    Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase, Wear,
+    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorDirection, ConnectorLaw, Contact, Curve,
+    Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material,
+    Mesh, Model, Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase,
+    Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -544,9 +545,9 @@ fn write_connectors(model: &Model, lines: &mut DeckWriter) {
             ForceCurve::Table(_) => lines.card(keyword, [set_of, "NONLINEAR".to_owned()]),
         }
         let directions = match direction {
-            Direction::Line => None,
-            Direction::Fixed(both) => Some(both.map(|axis| axis + 1)),
-            Direction::Angle => Some([6; 2]),
+            ConnectorDirection::Line => None,
+            ConnectorDirection::Fixed(both) => Some(both.map(|axis| axis + 1)),
+            ConnectorDirection::Angle => Some([6; 2]),
         };
         if let Some(both) = directions {
             let count = group[0].nodes.len();

@@ -429,7 +429,7 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
 
 /// A load as it stands in a data line.
 #[derive(Clone, PartialEq)]
-struct Entry {
+struct LoadLine {
     /// Loaded element, for body forces.
     element: Option<usize>,
     /// Node, unless an element is loaded.
@@ -446,7 +446,7 @@ struct Entry {
 
 /// LoadCards of the keywords `*CLOAD` and `*DLOAD`.
 #[derive(Default)]
-pub(super) struct LoadCards([Vec<Entry>; 2]);
+pub(super) struct LoadCards([Vec<LoadLine>; 2]);
 
 impl LoadCards {
     /// The loads of a step.
@@ -499,13 +499,13 @@ impl LoadCards {
 /// Element or target, and what acts there.
 type Key<'e> = (Option<usize>, &'e str, &'e str);
 
-impl Entry {
+impl LoadLine {
     fn key(&self) -> Key<'_> {
         (self.element, &self.target, &self.kind)
     }
 
-    fn new<T>(target: String, kind: impl Into<String>, load: &Load<T>) -> Entry {
-        Entry {
+    fn new<T>(target: String, kind: impl Into<String>, load: &Load<T>) -> LoadLine {
+        LoadLine {
             element: None,
             target,
             kind: kind.into(),
@@ -524,13 +524,13 @@ impl Entry {
     }
 }
 
-fn point_load(load: &Load<PointLoad>, model: &Model) -> Entry {
+fn point_load(load: &Load<PointLoad>, model: &Model) -> LoadLine {
     let PointLoad { dof } = load.at;
     let [label, direction] = dof_fields(dof, model);
-    Entry::new(label, direction, load)
+    LoadLine::new(label, direction, load)
 }
 
-fn body_force(load: &Load<BodyForce>) -> Entry {
+fn body_force(load: &Load<BodyForce>) -> LoadLine {
     let BodyForce {
         element,
         direction,
@@ -541,60 +541,60 @@ fn body_force(load: &Load<BodyForce>) -> Entry {
         (false, true) => "BX",
         (false, false) => "BY",
     };
-    Entry {
+    LoadLine {
         element: Some(element),
         direction: if per_mass {
             direction.map(number).to_vec()
         } else {
             Vec::new()
         },
-        ..Entry::new(String::new(), kind, load)
+        ..LoadLine::new(String::new(), kind, load)
     }
 }
 
-fn centrifugal_force(load: &Load<CentrifugalForce>, model: &Model) -> Entry {
+fn centrifugal_force(load: &Load<CentrifugalForce>, model: &Model) -> LoadLine {
     let CentrifugalForce { element, axis } = load.at;
     let direction = match model.mesh.elements[element].element_type.is_ring() {
         true => ["0.", "1.", "0."],
         false => ["0.", "0.", "1."],
     };
     let place = axis.map(number).into_iter().chain([number(0.0)]);
-    Entry {
+    LoadLine {
         element: Some(element),
         direction: place.chain(direction.map(str::to_owned)).collect(),
-        ..Entry::new(String::new(), "CENTRIF", load)
+        ..LoadLine::new(String::new(), "CENTRIF", load)
     }
 }
 
-fn pressure(load: &Load<Pressure>, model: &Model) -> Entry {
+fn pressure(load: &Load<Pressure>, model: &Model) -> LoadLine {
     let Pressure { face } = load.at;
     let label = model.mesh.elements[face.element].label;
-    Entry::new(label.to_string(), format!("P{}", face.side + 1), load)
+    LoadLine::new(label.to_string(), format!("P{}", face.side + 1), load)
 }
 
-fn traction(load: &Load<Traction>, model: &Model) -> Entry {
+fn traction(load: &Load<Traction>, model: &Model) -> LoadLine {
     let Traction { face, direction } = load.at;
     let label = model.mesh.elements[face.element].label;
-    Entry {
+    LoadLine {
         direction: direction.map(number).to_vec(),
         is_traction: true,
-        ..Entry::new(label.to_string(), format!("TRVEC{}", face.side + 1), load)
+        ..LoadLine::new(label.to_string(), format!("TRVEC{}", face.side + 1), load)
     }
 }
 
 /// All loads of the places where they are not those of the step before: a load that ramps takes the place
 /// of all that were there.
-fn at_changed_places(entries: &[Entry], carried: &[Entry]) -> Vec<Entry> {
+fn at_changed_places(entries: &[LoadLine], carried: &[LoadLine]) -> Vec<LoadLine> {
     let (now, before) = (by_key(entries), by_key(carried));
-    let is_changed = |entry: &&Entry| {
+    let is_changed = |entry: &&LoadLine| {
         let key = entry.key();
         now.get(&key) != before.get(&key)
     };
     entries.iter().filter(is_changed).cloned().collect()
 }
 
-fn by_key(entries: &[Entry]) -> HashMap<Key<'_>, Vec<&Entry>> {
-    let mut by_key: HashMap<Key, Vec<&Entry>> = HashMap::new();
+fn by_key(entries: &[LoadLine]) -> HashMap<Key<'_>, Vec<&LoadLine>> {
+    let mut by_key: HashMap<Key, Vec<&LoadLine>> = HashMap::new();
     for entry in entries {
         by_key.entry(entry.key()).or_default().push(entry);
     }
@@ -602,15 +602,15 @@ fn by_key(entries: &[Entry]) -> HashMap<Key<'_>, Vec<&Entry>> {
 }
 
 /// LoadCards with body forces that are alike in one entry, where they act on all elements or on a set.
-fn grouped(entries: Vec<Entry>, model: &Model) -> Vec<Entry> {
-    let mut groups: Vec<(Entry, Vec<usize>)> = Vec::new();
+fn grouped(entries: Vec<LoadLine>, model: &Model) -> Vec<LoadLine> {
+    let mut groups: Vec<(LoadLine, Vec<usize>)> = Vec::new();
     let mut rest = Vec::new();
     for entry in entries {
         let Some(element) = entry.element else {
             rest.push(entry);
             continue;
         };
-        let alike = Entry {
+        let alike = LoadLine {
             element: None,
             ..entry
         };
@@ -630,7 +630,7 @@ fn grouped(entries: Vec<Entry>, model: &Model) -> Vec<Entry> {
             },
             |field| vec![field],
         );
-        targets.into_iter().map(move |target| Entry {
+        targets.into_iter().map(move |target| LoadLine {
             target,
             ..entry.clone()
         })
@@ -642,13 +642,13 @@ fn grouped(entries: Vec<Entry>, model: &Model) -> Vec<Entry> {
 fn write_cards(
     keyword: &str,
     operation: Option<String>,
-    entries: &[Entry],
+    entries: &[LoadLine],
     model: &Model,
     lines: &mut DeckWriter,
 ) {
-    let card = |first: Option<&Entry>, lines: &mut DeckWriter| {
+    let card = |first: Option<&LoadLine>, lines: &mut DeckWriter| {
         let amplitude = first
-            .and_then(Entry::amplitude)
+            .and_then(LoadLine::amplitude)
             .map(|index| &model.amplitudes[index]);
         let amplitude = amplitude.map(|amplitude| named("AMPLITUDE", &amplitude.name));
         let is_dead = first.is_some_and(|entry| entry.is_traction);
@@ -659,8 +659,9 @@ fn write_cards(
     if entries.is_empty() {
         card(None, lines);
     }
-    let alike =
-        |a: &Entry, b: &Entry| a.amplitude() == b.amplitude() && a.is_traction == b.is_traction;
+    let alike = |a: &LoadLine, b: &LoadLine| {
+        a.amplitude() == b.amplitude() && a.is_traction == b.is_traction
+    };
     for entries in entries.chunk_by(alike) {
         card(entries.first(), lines);
         for entry in entries {

@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use sprs::{CsMat, CsMatBase, CsMatView};
 
 use super::Transformation;
+use super::multifrontal::Pattern;
 use crate::archive::{Archive, ArchiveError};
 
 /// Marks an entry of an element matrix that equations distribute over several entries.
@@ -59,12 +60,6 @@ struct Coupling {
     position: u32,
     /// Terms of its row and its column, whose coefficients are multiplied.
     terms: [u32; 2],
-}
-
-/// Columns of a matrix by their rows, increasing.
-struct Pattern {
-    starts: Vec<usize>,
-    rows: Vec<usize>,
 }
 
 impl Pattern {
@@ -444,12 +439,12 @@ pub(super) struct BlockSum {
     /// Their positions among the values.
     positions: Vec<usize>,
     /// Values of the matrix that are next to each other in the sum, too.
-    runs: Vec<Run>,
+    runs: Vec<ConsecutiveValues>,
 }
 
 /// Consecutive values of a matrix in a sum.
 #[derive(Debug)]
-struct Run {
+struct ConsecutiveValues {
     /// The first of them in the matrix, and in the sum.
     from: usize,
     to: usize,
@@ -463,12 +458,15 @@ impl BlockSum {
         let ends = ends.raw_storage();
         let mut starts = Vec::with_capacity(n + 1);
         let mut rows = Vec::with_capacity(matrix.nnz() + places.len());
-        let (mut positions, mut runs) = (Vec::with_capacity(places.len()), Vec::<Run>::new());
+        let (mut positions, mut runs) = (
+            Vec::with_capacity(places.len()),
+            Vec::<ConsecutiveValues>::new(),
+        );
         let mut taken = 0;
         let mut take_until = |end: usize, rows: &mut Vec<usize>| {
             match runs.last_mut() {
                 Some(run) if run.to + run.length == rows.len() => run.length += end - taken,
-                _ => runs.push(Run {
+                _ => runs.push(ConsecutiveValues {
                     from: taken,
                     to: rows.len(),
                     length: end - taken,
@@ -514,7 +512,7 @@ impl BlockSum {
     pub fn fill(&mut self, matrix: CsMatView<'_, f64>, blocks: &AddedBlocks) {
         let (values, own) = (self.sum.data_mut(), matrix.data());
         self.positions.iter().for_each(|&at| values[at] = 0.0);
-        for Run { from, to, length } in &self.runs {
+        for ConsecutiveValues { from, to, length } in &self.runs {
             values[*to..to + length].copy_from_slice(&own[*from..from + length]);
         }
         for &(column, row, value) in &blocks.entries {

@@ -16,7 +16,7 @@ const RUN: usize = 4;
 const NODES: usize = 8192;
 
 /// Values of two rows at consecutive nodes.
-struct Run {
+struct ConsecutiveNodes {
     first: u32,
     values: [[f64; ROWS]; RUN],
 }
@@ -25,13 +25,13 @@ struct Run {
 pub struct NodalMatrix {
     /// Start of every two rows in `runs`, and their end.
     starts: Vec<usize>,
-    runs: Vec<Run>,
+    runs: Vec<ConsecutiveNodes>,
 }
 
 impl NodalMatrix {
     /// A symmetric matrix.
     pub fn new(matrix: CsMatView<'_, f64>) -> Self {
-        let (mut starts, mut runs) = (vec![0], Vec::<Run>::new());
+        let (mut starts, mut runs) = (vec![0], Vec::<ConsecutiveNodes>::new());
         let mut entries = Vec::new();
         for first_row in (0..matrix.cols()).step_by(ROWS) {
             entries.clear();
@@ -44,14 +44,14 @@ impl NodalMatrix {
             entries.sort_unstable_by_key(|entry| entry.0);
             let start = runs.len();
             for &(node, row, value) in &entries {
-                let covers = |run: &Run| node < run.first as usize + RUN;
+                let covers = |run: &ConsecutiveNodes| node < run.first as usize + RUN;
                 if !runs[start..].last().is_some_and(covers) {
-                    runs.push(Run {
+                    runs.push(ConsecutiveNodes {
                         first: node as u32,
                         values: [[0.0; ROWS]; RUN],
                     });
                 }
-                if let Some(Run { first, values }) = runs.last_mut() {
+                if let Some(ConsecutiveNodes { first, values }) = runs.last_mut() {
                     values[node - *first as usize][row] = value;
                 }
             }
@@ -95,7 +95,7 @@ impl WithSimd for Product<'_> {
         let ends = starts[self.first / ROWS..].windows(2);
         for (part, ends) in self.part.chunks_mut(ROWS).zip(ends) {
             let mut sums = [[0.0; 2]; ROWS];
-            for Run { first, values } in &runs[ends[0]..ends[1]] {
+            for ConsecutiveNodes { first, values } in &runs[ends[0]..ends[1]] {
                 let v = &self.v[*first as usize..];
                 match v.first_chunk::<RUN>() {
                     Some(v) => add_run(values, v, &mut sums),

@@ -11,7 +11,7 @@ pub struct Connector {
     /// Its node, whose other end is the ground, or its two nodes.
     pub nodes: SmallVec<[usize; 2]>,
     /// What its elongation is.
-    pub direction: Direction,
+    pub direction: ConnectorDirection,
     /// What its force follows.
     pub law: ConnectorLaw,
     /// Its force.
@@ -22,8 +22,8 @@ impl Connector {
     /// Whether its forces on its nodes have no resultant.
     pub fn has_no_resultant(&self) -> bool {
         let alike = match self.direction {
-            Direction::Line | Direction::Angle => true,
-            Direction::Fixed([first, second]) => first == second,
+            ConnectorDirection::Line | ConnectorDirection::Angle => true,
+            ConnectorDirection::Fixed([first, second]) => first == second,
         };
         alike && self.nodes.len() == 2
     }
@@ -35,7 +35,7 @@ impl Connector {
             ConnectorLaw::Dashpot => "DASHPOT",
         };
         let form = match (self.direction, self.nodes.len()) {
-            (Direction::Line, _) => "A",
+            (ConnectorDirection::Line, _) => "A",
             (_, 1) => "1",
             (_, _) => "2",
         };
@@ -45,7 +45,7 @@ impl Connector {
 
 /// What the elongation of a connector is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
+pub enum ConnectorDirection {
     /// The distance of its nodes less that of the reference configuration; the line turns with them.
     Line,
     /// The displacement of the first node in the first direction (0 = x, 1 = y) less that of the second node

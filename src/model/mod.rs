@@ -20,7 +20,7 @@ mod tie;
 pub use crate::materials::Plane;
 use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
-pub use connector::{Connector, ConnectorLaw, Direction, ForceCurve};
+pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
     ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Hinge,
     Interaction, Reach, RigidBody, RigidProfile, Surface, SurfaceKind, TurningBody, Wear,

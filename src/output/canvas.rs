@@ -24,7 +24,7 @@ const INK: &str = "#222222";
 const GREY: &str = "#777777";
 
 /// A point of the picture, or a way in it, in pixels; y downwards.
-pub(super) type Point = [f64; 2];
+pub(super) type Pixels = [f64; 2];
 
 /// Colour of the line and its width in pixels.
 #[derive(Clone, Copy)]
@@ -85,7 +85,7 @@ impl Canvas {
     }
 
     /// The point of the picture where a place of the model lies: the model is in the middle.
-    pub fn at(&self, x: [f64; 2]) -> Point {
+    pub fn at(&self, x: [f64; 2]) -> Pixels {
         let from_middle = |i: usize| {
             let [low, high] = [self.extents[0][i], self.extents[1][i]];
             (x[i] - (low / 2.0 + high / 2.0)) * self.scale
@@ -100,7 +100,7 @@ impl Canvas {
     }
 
     /// The point of a place that is shown and where there is room for a mark, which takes it.
-    pub fn room(&self, place: [f64; 2], spacing: &mut Spacing) -> Option<Point> {
+    pub fn room(&self, place: [f64; 2], spacing: &mut Spacing) -> Option<Pixels> {
         let at = self.at(place);
         (self.area.holds(place) && spacing.takes(at)).then_some(at)
     }
@@ -160,7 +160,7 @@ impl Canvas {
     }
 
     /// A filled polygon of points.
-    pub fn polygon(&mut self, points: &[Point], colour: &str) {
+    pub fn polygon(&mut self, points: &[Pixels], colour: &str) {
         let points: Vec<String> = points
             .iter()
             .map(|[x, y]| format!("{x:.1},{y:.1}"))
@@ -172,14 +172,14 @@ impl Canvas {
     }
 
     /// A dot with its middle at a point.
-    pub fn dot(&mut self, [x, y]: Point, radius: f64, colour: &str) {
+    pub fn dot(&mut self, [x, y]: Pixels, radius: f64, colour: &str) {
         self.tag(&format!(
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>"
         ));
     }
 
     /// A filled rectangle about a point, half as wide and high as it says.
-    fn rectangle(&mut self, [x, y]: Point, [half_width, half_height]: Point, colour: &str) {
+    fn rectangle(&mut self, [x, y]: Pixels, [half_width, half_height]: Pixels, colour: &str) {
         let ([x0, x1], [y0, y1]) = (
             [x - half_width, x + half_width],
             [y - half_height, y + half_height],
@@ -188,12 +188,12 @@ impl Canvas {
     }
 
     /// A square: neither direction moves.
-    pub fn fixed(&mut self, at: Point, colour: &str) {
+    pub fn fixed(&mut self, at: Pixels, colour: &str) {
         self.rectangle(at, [3.5, 3.5], colour);
     }
 
     /// A triangle below the node (y is held) or on its left (x is held).
-    pub fn guided(&mut self, [x, y]: Point, direction: usize, colour: &str) {
+    pub fn guided(&mut self, [x, y]: Pixels, direction: usize, colour: &str) {
         let (half, deep) = (3.5, 7.0);
         let corners = match direction {
             0 => [[x, y], [x - deep, y - half], [x - deep, y + half]],
@@ -203,7 +203,7 @@ impl Canvas {
     }
 
     /// An arrow from `from` by `way`.
-    pub fn arrow(&mut self, from: Point, way: Point, pen: Pen) {
+    pub fn arrow(&mut self, from: Pixels, way: Pixels, pen: Pen) {
         let length = way[0].hypot(way[1]);
         if !(length > 0.0 && length.is_finite()) {
             return;
@@ -227,7 +227,7 @@ impl Canvas {
     }
 
     /// Text with a white rim; `anchor` is start, middle or end.
-    pub fn label(&mut self, [x, y]: Point, anchor: &str, colour: &str, text: &str) {
+    pub fn label(&mut self, [x, y]: Pixels, anchor: &str, colour: &str, text: &str) {
         let text = escaped(text);
         let place = format!("x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\"");
         let rim = "fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"3\"";
@@ -285,7 +285,7 @@ impl Canvas {
         y + MARGIN
     }
 
-    fn symbol(&mut self, symbol: Symbol, [x, y]: Point) {
+    fn symbol(&mut self, symbol: Symbol, [x, y]: Pixels) {
         let line = format!("M{x:.1} {y:.1}h26");
         match symbol {
             Symbol::Fill(colour) => self.rectangle([x + 13.0, y], [13.0, 6.0], colour),
@@ -390,7 +390,7 @@ fn escaped(text: &str) -> String {
 /// Keeps marks of one kind apart: few are drawn where many would cover each other.
 pub(super) struct Spacing {
     distance: f64,
-    taken: HashMap<[i64; 2], Point>,
+    taken: HashMap<[i64; 2], Pixels>,
 }
 
 impl Spacing {
@@ -403,10 +403,10 @@ impl Spacing {
     }
 
     /// Whether there is room at a point; takes it.
-    pub fn takes(&mut self, at: Point) -> bool {
+    pub fn takes(&mut self, at: Pixels) -> bool {
         // a cell has room for one mark
         let cell = at.map(|x| (x / self.distance * std::f64::consts::SQRT_2).floor() as i64);
-        let is_near = |[x, y]: &Point| (x - at[0]).hypot(y - at[1]) < self.distance;
+        let is_near = |[x, y]: &Pixels| (x - at[0]).hypot(y - at[1]) < self.distance;
         for i in -2..=2 {
             for j in -2..=2 {
                 let other = [cell[0].saturating_add(i), cell[1].saturating_add(j)];

@@ -4,7 +4,7 @@
 use hdf5::Group;
 
 use super::balance::Balance;
-use super::column::{Columns, Layout, Mostly, group, set_attribute};
+use super::column::{GrowingColumns, Layout, Mostly, group, set_attribute};
 use super::format::{scientific, wrap};
 use super::warnings::BALANCE;
 use crate::dynamics::{ContactResultant, IncrementReport};
@@ -138,9 +138,12 @@ impl Check {
 }
 
 /// Creates `/history/certificate`; the attribute `bound` of each dataset is its bound.
-pub(crate) fn create<'m>(history: &Group, model: &Model) -> hdf5::Result<Columns<'m, Checks>> {
+pub(crate) fn create<'m>(
+    history: &Group,
+    model: &Model,
+) -> hdf5::Result<GrowingColumns<'m, Checks>> {
     let at = group(history, "certificate")?;
-    let mut columns = Columns::new();
+    let mut columns = GrowingColumns::new();
     for (k, check) in CHECKS
         .iter()
         .enumerate()

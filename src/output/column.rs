@@ -375,7 +375,7 @@ struct Count<R> {
 }
 
 /// Datasets that grow together: each report `R` appends rows to every one.
-pub(crate) struct Columns<'m, R> {
+pub(crate) struct GrowingColumns<'m, R> {
     all: Vec<Box<dyn Growing<R> + 'm>>,
     counts: Vec<Count<R>>,
     /// Reports whose rows wait in memory; one with many events counts as several.
@@ -384,10 +384,10 @@ pub(crate) struct Columns<'m, R> {
     most: usize,
 }
 
-impl<'m, R> Columns<'m, R> {
+impl<'m, R> GrowingColumns<'m, R> {
     /// No datasets yet.
     pub fn new() -> Self {
-        Columns {
+        GrowingColumns {
             all: Vec::new(),
             counts: Vec::new(),
             waiting: 0,

@@ -34,7 +34,7 @@ pub(crate) struct Console {
     lost: Option<io::Error>,
     verbosity: Verbosity,
     table: Table,
-    progress: Progress,
+    progress: ProgressLine,
     pub log: Log,
 }
 
@@ -49,7 +49,7 @@ impl Console {
             lost: None,
             verbosity,
             table: Table::new(model),
-            progress: Progress::new(model, live),
+            progress: ProgressLine::new(model, live),
             log,
         }
     }
@@ -220,7 +220,7 @@ const TICKS: u64 = 10_000;
 const TOLD: f64 = 0.01;
 
 /// The live line below the table; nothing when the output is not a terminal.
-pub(crate) struct Progress {
+pub(crate) struct ProgressLine {
     bar: Option<ProgressBar>,
     nominal: NominalIncrements,
 }
@@ -232,7 +232,7 @@ struct NominalIncrements {
     started: Instant,
 }
 
-impl Progress {
+impl ProgressLine {
     /// A live line, or none.
     pub fn new(model: &Model, live: bool) -> Self {
         let steps = model.steps.iter().map(|step| step.increments);
@@ -247,7 +247,7 @@ impl Progress {
             bar.set_style(style());
             bar
         });
-        Progress { bar, nominal }
+        ProgressLine { bar, nominal }
     }
 
     /// Shows an increment.

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use hdf5::Group;
 use hdf5::types::FixedAscii;
 
-use super::column::{Columns, Layout, Meaning, Mostly, Number, constant, group, set_attribute};
+use super::column::{
+    GrowingColumns, Layout, Meaning, Mostly, Number, constant, group, set_attribute,
+};
 use super::frames::{Frame, expected_frames};
 use super::local::Local;
 use super::model_group::{body_numbers, connectivity};
@@ -25,13 +27,13 @@ pub(crate) fn create<'m>(
     root: &Group,
     model: &Model,
     local: &Arc<Elements>,
-) -> hdf5::Result<Columns<'m, Frame>> {
+) -> hdf5::Result<GrowingColumns<'m, Frame>> {
     let grid = group(root, "VTKHDF")?;
     write_type(&grid)?;
     let lines = model.rigid_segments();
     write_mesh(&grid, &model.mesh, &lines)?;
     let at = group(&grid, "Steps")?;
-    let mut steps = Columns::new();
+    let mut steps = GrowingColumns::new();
     steps.count(&at, "NSteps", |_| 1)?;
     per_frame(&mut steps, &at, "Values", &[], TIME, |frame| frame.time)?;
     for (name, row, text, value) in STEPS {
@@ -59,7 +61,7 @@ pub(crate) fn create<'m>(
 
 /// Creates a dataset with a value of every frame, in a row of the given shape.
 fn per_frame<'m, T: Number + 'm>(
-    all: &mut Columns<'m, Frame>,
+    all: &mut GrowingColumns<'m, Frame>,
     at: &Group,
     name: &str,
     row: &[usize],
@@ -79,7 +81,7 @@ struct FieldGroup<'m> {
     offsets: Group,
     first_field: Option<&'static str>,
     /// These fields and the datasets created before them.
-    columns: Columns<'m, Frame>,
+    columns: GrowingColumns<'m, Frame>,
     /// Rows of a frame.
     rows: usize,
     /// Frames of a chunk of the fields, where these are short.
@@ -87,20 +89,20 @@ struct FieldGroup<'m> {
 }
 
 /// Shape of a row of a field, and of the part of it that is written; the rest is zero.
-type Row = (&'static [usize], &'static [usize]);
+type RowShape = (&'static [usize], &'static [usize]);
 
-const SCALAR: Row = (&[], &[]);
+const SCALAR: RowShape = (&[], &[]);
 /// A symmetric tensor in the plane: xx yy xy.
-const PLANE_TENSOR: Row = (&[3], &[3]);
+const PLANE_TENSOR: RowShape = (&[3], &[3]);
 /// A vector in the plane, whose third component is zero.
-const IN_SPACE: Row = (&[3], &[2]);
+const IN_SPACE: RowShape = (&[3], &[2]);
 
 impl<'m> FieldGroup<'m> {
     /// Creates a field with the first rows of its frames; `values` appends what a frame has to whole rows.
     fn add<T: Number + 'm>(
         &mut self,
         name: &'static str,
-        (row, given): Row,
+        (row, given): RowShape,
         mostly: Mostly,
         meaning: Meaning,
         values: impl FnMut(&Frame, &mut Vec<T>) + 'm,
@@ -397,7 +399,7 @@ const STEPS: [(&str, &[usize], &str, i64); 5] = [
 /// A field of the nodes: name, row, what most rows hold, dimension, meaning and values.
 type NodalField = (
     &'static str,
-    Row,
+    RowShape,
     Mostly,
     &'static str,
     &'static str,

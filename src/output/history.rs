@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use hdf5::Group;
 
-use super::column::{Columns, Layout, Meaning, Mostly, ROWS, constant, group, text_attribute};
+use super::column::{
+    GrowingColumns, Layout, Meaning, Mostly, ROWS, constant, group, text_attribute,
+};
 use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
 use super::fields::{LOGARITHMIC_AROUND, PLASTIC_STRAIN, STRAIN_AROUND};
 use super::local::Local;
@@ -21,13 +23,13 @@ use crate::elements::{
     logarithmic_of,
 };
 use crate::model::{
-    Bodies, Contact, Direction, HistorySet, Incrementation, LandingRule, Model, RigidBody, Set,
-    Step,
+    Bodies, ConnectorDirection, Contact, HistorySet, Incrementation, LandingRule, Model, RigidBody,
+    Set, Step,
 };
 use crate::vectors::cross;
 
 /// What a dataset holds of a record `Q`.
-enum Value<Q> {
+enum Content<Q> {
     Real(fn(&Q) -> f64),
     Vector(fn(&Q) -> [f64; 2]),
     Tensor(fn(&Q) -> [f64; 3]),
@@ -40,15 +42,15 @@ enum Value<Q> {
     Bodies(fn(&Q) -> [Option<usize>; 2]),
 }
 
-use Value::{Count, Flag, Node, Real, Segment, Tensor, Vector};
+use Content::{Count, Flag, Node, Real, Segment, Tensor, Vector};
 
 /// A dataset of the records `Q`: name, dimension, what it holds, and its value.
-type Entry<Q> = (&'static str, &'static str, &'static str, Value<Q>);
+type DatasetEntry<Q> = (&'static str, &'static str, &'static str, Content<Q>);
 
 /// The datasets of the history while they are created.
 pub(crate) struct History<'m> {
     model: &'m Model,
-    columns: Columns<'m, IncrementReport>,
+    columns: GrowingColumns<'m, IncrementReport>,
 }
 
 impl<'m> History<'m> {
@@ -57,11 +59,11 @@ impl<'m> History<'m> {
         root: &Group,
         model: &'m Model,
         local: &Arc<Elements>,
-    ) -> hdf5::Result<Columns<'m, IncrementReport>> {
+    ) -> hdf5::Result<GrowingColumns<'m, IncrementReport>> {
         let at = group(root, "history")?;
         let mut history = History {
             model,
-            columns: Columns::new(),
+            columns: GrowingColumns::new(),
         };
         history.columns.count(&at, ROWS, |_| 1)?;
         history.table(&at, &[], &INCREMENT, |r, each| each(r))?;
@@ -142,7 +144,7 @@ impl<'m> History<'m> {
         &mut self,
         at: &Group,
         records: &[usize],
-        entries: &[Entry<Q>],
+        entries: &[DatasetEntry<Q>],
         each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
     ) -> hdf5::Result<()> {
         self.rows_of(at, records, Mostly::Varied, entries, each)
@@ -152,7 +154,7 @@ impl<'m> History<'m> {
     fn events<Q: 'm>(
         &mut self,
         at: &Group,
-        entries: &[Entry<Q>],
+        entries: &[DatasetEntry<Q>],
         each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
     ) -> hdf5::Result<()> {
         self.rows_of(at, &[], Mostly::Late, entries, each)
@@ -163,7 +165,7 @@ impl<'m> History<'m> {
         at: &Group,
         records: &[usize],
         mostly: Mostly,
-        entries: &[Entry<Q>],
+        entries: &[DatasetEntry<Q>],
         each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
     ) -> hdf5::Result<()> {
         let label = |node: usize| self.model.mesh.node_labels[node] as i64;
@@ -193,7 +195,7 @@ impl<'m> History<'m> {
                 Segment(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
                     each(r, &mut |q| v.extend(of(q).map(label)));
                 }),
-                Value::Bodies(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
+                Content::Bodies(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
                     each(r, &mut |q| v.extend(of(q).map(number)));
                 }),
                 Flag(of) => {
@@ -261,7 +263,7 @@ impl<'m> History<'m> {
             ("rotary_connectors", true, ROTARY_CONNECTOR),
         ] {
             let all = connectors.iter().enumerate();
-            let own = all.filter(|(_, c)| (c.direction == Direction::Angle) == is_rotary);
+            let own = all.filter(|(_, c)| (c.direction == ConnectorDirection::Angle) == is_rotary);
             let (places, labels): (Vec<usize>, Vec<i64>) =
                 own.map(|(place, c)| (place, c.label as i64)).unzip();
             if places.is_empty() {
@@ -578,7 +580,7 @@ fn sum(nodes: &[usize], values: &[f64]) -> [f64; 2] {
 }
 
 #[rustfmt::skip]
-const INCREMENT: [Entry<IncrementReport>; 3] = [
+const INCREMENT: [DatasetEntry<IncrementReport>; 3] = [
     ("time", "time", "time at the end of the increment", Real(|r| r.time)),
     ("dt", "time", "length of the increment", Real(|r| r.dt)),
     ("step", "1", "number of the step, from 1", Count(|r| r.step)),
@@ -601,7 +603,7 @@ const ROTARY_CONNECTOR: [(&str, &str, &str, OfConnector); 3] = [
 ];
 
 #[rustfmt::skip]
-const ENERGY: [Entry<Energy>; 12] = [
+const ENERGY: [DatasetEntry<Energy>; 12] = [
     ("kinetic", "energy", "kinetic energy", Real(|e| e.kinetic)),
     ("strain", "energy", "strain energy, with that of springs", Real(|e| e.strain)),
     ("external_work", "energy",
@@ -627,7 +629,7 @@ const ENERGY: [Entry<Energy>; 12] = [
 ];
 
 #[rustfmt::skip]
-const MOMENTUM: [Entry<Momentum>; 4] = [
+const MOMENTUM: [DatasetEntry<Momentum>; 4] = [
     ("linear", "mass*length/time", "linear momentum", Vector(|m| m.linear)),
     ("damped_linear", "mass*length/time",
      "linear momentum taken by mass-proportional damping since the start", Vector(|m| m.damped_linear)),
@@ -638,13 +640,13 @@ const MOMENTUM: [Entry<Momentum>; 4] = [
 
 /// Redistributed mass has this dataset too; where no node gives its mass up it is `angular`.
 #[rustfmt::skip]
-const CONSISTENT: [Entry<Momentum>; 1] = [
+const CONSISTENT: [DatasetEntry<Momentum>; 1] = [
     ("consistent_angular", "mass*length^2/time", "angular momentum about the origin of the consistent mass",
      Real(|m| m.consistent_angular.unwrap_or(m.angular))),
 ];
 
 #[rustfmt::skip]
-const BODY: [Entry<BodyResult>; 7] = [
+const BODY: [DatasetEntry<BodyResult>; 7] = [
     ("center", "length", "centre of mass", Vector(|b| b.center)),
     ("velocity", "length/time", "velocity of the centre of mass", Vector(|b| b.velocity)),
     ("contact_force", "force", "force of all contacts on the body", Vector(|b| b.contact_force)),
@@ -657,7 +659,7 @@ const BODY: [Entry<BodyResult>; 7] = [
 ];
 
 #[rustfmt::skip]
-const LARGEST_STRAIN: [Entry<IncrementReport>; 1] = [
+const LARGEST_STRAIN: [DatasetEntry<IncrementReport>; 1] = [
     ("largest_principal", "1",
      "largest absolute principal value of the Green-Lagrange strain in the plane, of all integration points",
      Real(|r| r.strain.strain)),
@@ -668,7 +670,7 @@ const LARGEST_ELASTIC: Meaning = (
 );
 
 #[rustfmt::skip]
-const CONTACT: [Entry<ContactResultant>; 27] = [
+const CONTACT: [DatasetEntry<ContactResultant>; 27] = [
     ("force", "force", "contact force on the slave surface", Vector(|c| c.force)),
     ("moment", "force*length", "moment of the force about the origin", Real(|c| c.moment)),
     ("normal", "force", "sum of the normal forces Pn", Real(|c| c.normal)),
@@ -719,21 +721,21 @@ const CONTACT: [Entry<ContactResultant>; 27] = [
 
 /// A contact whose master is rigid has this dataset too.
 #[rustfmt::skip]
-const REFERENCE_MOMENT: [Entry<ContactResultant>; 1] = [
+const REFERENCE_MOMENT: [DatasetEntry<ContactResultant>; 1] = [
     ("reference_moment", "force*length", "moment of the force about the reference node of the master",
      Real(|c| c.reference_moment)),
 ];
 
 /// A surface that touches itself has these datasets too.
 #[rustfmt::skip]
-const CONTACT_ON_BODY: [Entry<ContactOnBody>; 2] = [
+const CONTACT_ON_BODY: [DatasetEntry<ContactOnBody>; 2] = [
     ("body_force", "force", "force of this contact on each body", Vector(|b| b.force)),
     ("body_moment", "force*length", "moment of that force about the origin", Real(|b| b.moment)),
 ];
 
 /// A landing with its increment.
 #[rustfmt::skip]
-const IMPACT: [Entry<(usize, Landing)>; 6] = [
+const IMPACT: [DatasetEntry<(usize, Landing)>; 6] = [
     ("time", "time", "time of the landing", Real(|(_, l)| l.time)),
     ("xi", "1", "place on the segment: 0 at its first node, 1 at its second", Real(|(_, l)| l.xi)),
     ("approach_speed", "length/time", "-dg/dt just before the landing", Real(|(_, l)| l.approach_speed)),
@@ -744,7 +746,7 @@ const IMPACT: [Entry<(usize, Landing)>; 6] = [
 
 /// A return with its increment.
 #[rustfmt::skip]
-const RETURN: [Entry<(usize, ReturnedImpulse)>; 8] = [
+const RETURN: [DatasetEntry<(usize, ReturnedImpulse)>; 8] = [
     ("time", "time", "time at the end of the increment", Real(|(_, r)| r.time)),
     ("normal", "force*time",
      "total normal impulse of the pair in the increment: dt Pn + Phi and what is given back",
@@ -760,7 +762,7 @@ const RETURN: [Entry<(usize, ReturnedImpulse)>; 8] = [
 ];
 
 #[rustfmt::skip]
-const TOUCH: [Entry<Touch>; 10] = [
+const TOUCH: [DatasetEntry<Touch>; 10] = [
     ("start", "time", "time at the start of its first increment", Real(|t| t.start)),
     ("end", "time", "time at the end of its last increment", Real(|t| t.end)),
     ("impulse", "force*time", "size of the impulse on each of the bodies", Real(|t| t.impulse)),
@@ -771,7 +773,7 @@ const TOUCH: [Entry<Touch>; 10] = [
     ("last", "1", "its last increment", Count(|t| t.last)),
     ("nodes", "1", "most nodes of one side in contact at a time", Count(|t| t.nodes)),
     ("corner", "1", "1 where it reached a corner of an outline", Count(|t| t.is_at_corner.into())),
-    ("bodies", "1", "its bodies; -1 for a rigid surface", Value::Bodies(|t| t.bodies)),
+    ("bodies", "1", "its bodies; -1 for a rigid surface", Content::Bodies(|t| t.bodies)),
     ("node", "1", "number of a slave node that landed first", Node(|t| t.node)),
 ];
 
@@ -790,14 +792,14 @@ const REFERENCE_NODE: [VectorEntry; 2] = [
 ];
 
 #[rustfmt::skip]
-const REACTION: [Entry<RigidReaction>; 2] = [
+const REACTION: [DatasetEntry<RigidReaction>; 2] = [
     ("force", "force", "reaction: the force that holds the body", Vector(|r| r.force)),
     ("moment", "force*length", "moment of the reaction about the reference node", Real(|r| r.moment)),
 ];
 
 /// A body that turns has these datasets too.
 #[rustfmt::skip]
-const TURNING: [Entry<RigidReaction>; 4] = [
+const TURNING: [DatasetEntry<RigidReaction>; 4] = [
     ("angle", "1", "angle since the start, in radians", Real(|r| r.angle)),
     ("angular_velocity", "1/time", "angular velocity", Real(|r| r.angular_velocity)),
     ("center", "length", "position of the centre of mass", Vector(|r| r.center)),
@@ -826,7 +828,7 @@ const MEANS_OF_NODES: [VectorEntry; 3] = [
 ];
 
 #[rustfmt::skip]
-const ELEMENT: [Entry<ElementResult>; 10] = [
+const ELEMENT: [DatasetEntry<ElementResult>; 10] = [
     ("S", STRESS.0, STRESS.1, Tensor(|e| e.stress)),
     ("E", STRAIN.0, STRAIN.1, Tensor(|e| e.strain)),
     ("S33", ACROSS.0, ACROSS.1, Real(|e| e.across)),
@@ -840,7 +842,7 @@ const ELEMENT: [Entry<ElementResult>; 10] = [
 ];
 
 #[rustfmt::skip]
-const LOCAL: [Entry<LocalResult>; 13] = [
+const LOCAL: [DatasetEntry<LocalResult>; 13] = [
     ("S", "force/length^2", "Cauchy stress xx yy xy", Tensor(|e| e.result.stress)),
     ("E", "1", "Green-Lagrange strain xx yy xy (xy: the tensor component)", Tensor(|e| e.result.strain)),
     ("LE", "1", "logarithmic strain xx yy xy (xy: the tensor component)", Tensor(|e| e.logarithmic_strain)),
@@ -857,7 +859,7 @@ const LOCAL: [Entry<LocalResult>; 13] = [
 ];
 
 #[rustfmt::skip]
-const SOLVER: [Entry<SolverCounts>; 10] = [
+const SOLVER: [DatasetEntry<SolverCounts>; 10] = [
     ("passes", "1", "predictor and corrector passes", Count(|s| s.passes)),
     ("lcps", "1", "complementarity problems solved", Count(|s| s.lcps)),
     ("lcp_size", "1", "largest number of pairs in one of them", Count(|s| s.lcp_size)),

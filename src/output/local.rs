@@ -8,7 +8,7 @@ use crate::elements::{ElementNodes, Elements, LocalResult};
 use crate::model::{HistorySet, Model};
 
 /// Where results are.
-enum Places {
+enum ResultPlaces {
     /// At the integration points of elements (indices), one element after the other.
     Points(Vec<usize>),
     /// At the nodes of elements.
@@ -18,13 +18,13 @@ enum Places {
 /// Results at places of elements.
 pub(super) struct Local {
     elements: Arc<Elements>,
-    places: Places,
+    places: ResultPlaces,
     /// The latest results, and what they are of.
     latest: RefCell<(Option<usize>, Vec<LocalResult>)>,
 }
 
 impl Local {
-    fn new(elements: &Arc<Elements>, places: Places) -> Self {
+    fn new(elements: &Arc<Elements>, places: ResultPlaces) -> Self {
         Local {
             elements: elements.clone(),
             places,
@@ -34,22 +34,22 @@ impl Local {
 
     /// At the integration points of the `members` (indices), one element after the other.
     pub fn at_points(elements: &Arc<Elements>, members: &[usize]) -> Self {
-        Self::new(elements, Places::Points(members.to_vec()))
+        Self::new(elements, ResultPlaces::Points(members.to_vec()))
     }
 
     /// At the nodes of the `members` (indices), whose indices increase.
     pub fn at_nodes(elements: &Arc<Elements>, members: &[usize]) -> Self {
         Self::new(
             elements,
-            Places::Nodes(ElementNodes::new(elements, members)),
+            ResultPlaces::Nodes(ElementNodes::new(elements, members)),
         )
     }
 
     /// The nodes (indices); none of integration points.
     pub fn nodes(&self) -> Vec<usize> {
         match &self.places {
-            Places::Points(_) => Vec::new(),
-            Places::Nodes(nodes) => nodes.nodes().collect(),
+            ResultPlaces::Points(_) => Vec::new(),
+            ResultPlaces::Nodes(nodes) => nodes.nodes().collect(),
         }
     }
 
@@ -58,11 +58,11 @@ impl Local {
         if self.latest.borrow().0 != Some(number) {
             let (all, State { u, internal, .. }) = (&self.elements, state);
             let results = match &self.places {
-                Places::Points(members) => {
+                ResultPlaces::Points(members) => {
                     let of = |&e: &usize| all.at_points(e, u, internal);
                     members.iter().flat_map(of).collect()
                 }
-                Places::Nodes(nodes) => nodes.results(all, u, internal),
+                ResultPlaces::Nodes(nodes) => nodes.results(all, u, internal),
             };
             *self.latest.borrow_mut() = (Some(number), results);
         }

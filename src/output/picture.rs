@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use super::canvas::{Canvas, Pen, Point, Spacing, Symbol, Window};
+use super::canvas::{Canvas, Pen, Pixels, Spacing, Symbol, Window};
 use crate::contact::project;
 use crate::model::{
     Bodies, Element, Face, Model, Rate, Support, SupportMotion, Surface, SurfaceKind,
@@ -41,7 +41,7 @@ const ARROWS_APART: f64 = 18.0;
 /// A place of the model (length).
 type Location = [f64; 2];
 /// A line between two places.
-type Line = [Location; 2];
+type Stroke = [Location; 2];
 /// An arrow at a place of the model along a vector of the model.
 type Vector = (Location, [f64; 2]);
 
@@ -105,8 +105,8 @@ impl Picture<'_> {
             let places = |nodes: &Vec<usize>| nodes.iter().map(|&node| x[node]).collect();
             let loops: Vec<Vec<Location>> = loops(outline).iter().map(places).collect();
             self.canvas.fill(&loops, colour, OUTLINE);
-            let inside: Vec<Line> = inside.iter().map(|side| side.map(|n| x[n])).collect();
-            let length = |[a, b]: &Line| self.canvas.pixels((b[0] - a[0]).hypot(b[1] - a[1]));
+            let inside: Vec<Stroke> = inside.iter().map(|side| side.map(|n| x[n])).collect();
+            let length = |[a, b]: &Stroke| self.canvas.pixels((b[0] - a[0]).hypot(b[1] - a[1]));
             if inside.iter().map(length).sum::<f64>() > SMALLEST * inside.len() as f64 {
                 self.canvas.lines(&inside, SIDES);
             }
@@ -152,7 +152,7 @@ impl Picture<'_> {
     }
 
     /// The segments of a surface.
-    fn lines_of(&self, surface: &Surface) -> Vec<Line> {
+    fn lines_of(&self, surface: &Surface) -> Vec<Stroke> {
         let segments = surface.segments(&self.model.mesh).into_iter();
         segments.map(|s| s.map(|node| self.x[node])).collect()
     }
@@ -183,7 +183,7 @@ impl Picture<'_> {
     /// The name of a surface beside the middle of what is shown of it, on the side of its normal.
     fn surface_name(&mut self, surface: &Surface, pen: Pen) {
         let lines = self.lines_of(surface).into_iter();
-        let parts: Vec<Line> = lines.filter_map(|line| self.canvas.part(line)).collect();
+        let parts: Vec<Stroke> = lines.filter_map(|line| self.canvas.part(line)).collect();
         let (place, normal) = match parts.get(parts.len() / 2) {
             Some(&[a, b]) => (middle([a, b]), project(a, a, b).normal),
             None => {
@@ -244,7 +244,7 @@ impl Picture<'_> {
         self.arrows(&moving, MOTION, "prescribed motion");
     }
 
-    fn support(&mut self, at: Point, is_held: [bool; 2]) {
+    fn support(&mut self, at: Pixels, is_held: [bool; 2]) {
         if is_held == [true; 2] {
             self.canvas.fixed(at, SUPPORT);
             self.canvas
@@ -307,7 +307,7 @@ impl Picture<'_> {
 }
 
 /// The middle of a line.
-fn middle([a, b]: Line) -> Location {
+fn middle([a, b]: Stroke) -> Location {
     [0, 1].map(|i| a[i] / 2.0 + b[i] / 2.0)
 }
 

@@ -8,7 +8,7 @@ use std::{fs, io};
 use hdf5::{File, FileBuilder};
 
 use super::checks::{self, Checks};
-use super::column::Columns;
+use super::column::GrowingColumns;
 use super::error::{at, io_error};
 use super::fields;
 use super::frames::Frame;
@@ -32,9 +32,9 @@ pub(super) struct ResultFile<'m> {
     /// Its path once the first frame is complete.
     path: PathBuf,
     file: File,
-    fields: Columns<'m, Frame>,
-    history: Columns<'m, IncrementReport>,
-    checks: Columns<'m, Checks>,
+    fields: GrowingColumns<'m, Frame>,
+    history: GrowingColumns<'m, IncrementReport>,
+    checks: GrowingColumns<'m, Checks>,
     record: RecordWriter,
     space: Space,
     pace: Pace,

@@ -8,7 +8,9 @@ use super::mesh_index::{ConnectorElement, ConnectorKind, MeshIndex};
 use super::outline::Outline;
 use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
-use crate::model::{Connector, ConnectorLaw, Direction, ForceCurve, Model, Procedure, Step};
+use crate::model::{
+    Connector, ConnectorDirection, ConnectorLaw, ForceCurve, Model, Procedure, Step,
+};
 
 fn keyword(law: ConnectorLaw) -> &'static str {
     match law {
@@ -174,13 +176,13 @@ fn force(
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),
     targets: Targets,
     cx: &mut Context,
-) -> Option<(Direction, ForceCurve)> {
+) -> Option<(ConnectorDirection, ForceCurve)> {
     let mut rows = card.rows.iter().peekable();
     let is_blank = |row: &Line| row.fields().all(|field| field.is_empty());
     let direction = match kind.form {
         'A' => {
             rows.next_if(is_blank);
-            Some(Direction::Line)
+            Some(ConnectorDirection::Line)
         }
         _ => (rows.next()).and_then(|row| directions(row, (kind, elements), targets, cx)),
     };
@@ -210,7 +212,7 @@ fn directions(
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),
     targets: Targets,
     cx: &mut Context,
-) -> Option<Direction> {
+) -> Option<ConnectorDirection> {
     row.at_most(kind.nodes(), cx.d);
     let mut both = [0; 2];
     let mut angles = 0;
@@ -239,8 +241,8 @@ fn directions(
         }
     }
     match angles {
-        0 => Some(Direction::Fixed(both)),
-        _ if angles == kind.nodes() => Some(Direction::Angle),
+        0 => Some(ConnectorDirection::Fixed(both)),
+        _ if angles == kind.nodes() => Some(ConnectorDirection::Angle),
         _ => {
             let message = "an angle and a displacement have no difference";
             cx.error(Code::BadDof, row.span(), message)
@@ -314,7 +316,7 @@ fn report_short(mesh_index: &MeshIndex, all: &[Option<Connector>], cx: &mut Cont
     let coordinates = &mesh_index.mesh.coordinates;
     for (element, connector) in mesh_index.connectors.iter().zip(all) {
         if let Some(Connector {
-            direction: Direction::Line,
+            direction: ConnectorDirection::Line,
             nodes,
             ..
         }) = connector

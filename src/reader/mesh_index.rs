@@ -24,7 +24,7 @@ pub(crate) struct MeshIndex {
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
     /// Point elements, whose indices follow those of the line elements.
-    pub points: Vec<Point>,
+    pub points: Vec<PointElement>,
     /// Springs and dashpots.
     pub connectors: Vec<ConnectorElement>,
     /// Places of the plane elements.
@@ -39,7 +39,7 @@ pub(crate) struct MeshIndex {
 
 /// An element at one node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Point {
+pub(crate) struct PointElement {
     /// What it has.
     pub kind: PointKind,
     /// Its node.

@@ -6,7 +6,9 @@
 use super::context::Context;
 use super::label::{LabelList, LabelMap};
 use super::mesh_index;
-use super::mesh_index::{ConnectorElement, ConnectorKind, Group, MeshIndex, Point, PointKind};
+use super::mesh_index::{
+    ConnectorElement, ConnectorKind, Group, MeshIndex, PointElement, PointKind,
+};
 use super::names::Labelled;
 use super::outline::Outline;
 use crate::deck::{Card, Line, Text};
@@ -248,7 +250,7 @@ impl MeshReading {
                 self.other_lines.insert(label, span.line);
                 self.lines.push(LineElement { label, nodes, span });
             }
-            ElementKind::Point(kind) => {
+            ElementKind::PointElement(kind) => {
                 self.other_lines.insert(label, span.line);
                 self.points.push((kind, LineElement { label, nodes, span }));
             }
@@ -365,7 +367,7 @@ impl MeshReading {
             mesh_index.elements.insert(point.label, labelled);
             mesh_index
                 .points
-                .extend(point.nodes.first().map(|&node| Point {
+                .extend(point.nodes.first().map(|&node| PointElement {
                     kind,
                     node,
                     span: point.span,
@@ -434,7 +436,7 @@ pub(super) enum ElementKind {
     /// Two nodes that name a side of a plane element.
     Line,
     /// A node with mass or inertia.
-    Point(PointKind),
+    PointElement(PointKind),
     /// A spring or dashpot.
     Connector(ConnectorKind),
 }
@@ -445,7 +447,7 @@ impl ElementKind {
         match self {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
             ElementKind::Line => 2,
-            ElementKind::Point(_) => 1,
+            ElementKind::PointElement(_) => 1,
             ElementKind::Connector(kind) => kind.nodes(),
         }
     }
@@ -458,8 +460,8 @@ pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> 
         return Some(ElementKind::Line);
     }
     match folded.as_str() {
-        "MASS" => return Some(ElementKind::Point(PointKind::Mass)),
-        "ROTARYI" => return Some(ElementKind::Point(PointKind::RotaryInertia)),
+        "MASS" => return Some(ElementKind::PointElement(PointKind::Mass)),
+        "ROTARYI" => return Some(ElementKind::PointElement(PointKind::RotaryInertia)),
         _ => {}
     }
     if let Some(kind) = ConnectorKind::from_name(&folded) {

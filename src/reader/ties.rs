@@ -29,7 +29,7 @@ pub(crate) struct Ties {
 }
 
 /// A row of `*TIE` with what the card says of it.
-struct Row {
+struct TieRow {
     name: String,
     slave: usize,
     master: usize,
@@ -97,7 +97,7 @@ fn rows_of(
     names: &mut Names,
     (mesh_index, sets, surfaces): (&MeshIndex, &Sets, &Surfaces),
     cx: &mut Context,
-) -> Vec<Row> {
+) -> Vec<TieRow> {
     let name = match card.has("NAME") {
         true => names.new_name(card, cx),
         false => Some(Name::plain(&format!("TIE-{}", names.typed().count() + 1))),
@@ -116,7 +116,7 @@ fn rows_of(
         let Some((slave, master)) = pair(row, surfaces, cx) else {
             continue;
         };
-        rows.push(Row {
+        rows.push(TieRow {
             name: match count {
                 1 => name.typed.clone(),
                 _ => format!("{}-{}", name.typed, number + 1),
@@ -195,7 +195,7 @@ struct Faced {
 }
 
 impl Faced {
-    fn new(row: &Row, surfaces: &[Surface], mesh_index: &MeshIndex) -> Self {
+    fn new(row: &TieRow, surfaces: &[Surface], mesh_index: &MeshIndex) -> Self {
         let mesh = &mesh_index.mesh;
         let segments = surfaces[row.master].segments(mesh);
         let of_master: HashSet<usize> = segments.as_flattened().iter().copied().collect();
@@ -281,7 +281,7 @@ impl<'a> Nearest<'a> {
 }
 
 /// Moves the slave nodes of a row onto the master, free of strain.
-fn adjust(row: &Row, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Context) {
+fn adjust(row: &TieRow, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Context) {
     let mesh = &mut mesh_index.mesh;
     let before = mesh.coordinates.clone();
     let (mut count, mut most) = (0, (0.0, 0));
@@ -314,7 +314,7 @@ fn adjust(row: &Row, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Context
 
 /// Reports nodes that are not tied: too far from the master, or tied already.
 fn report(
-    row: &Row,
+    row: &TieRow,
     own: &[(usize, Segment)],
     (far, elsewhere): (&[usize], &[usize]),
     mesh_index: &MeshIndex,
@@ -368,7 +368,7 @@ fn report(
 
 /// Nodes of the master that lie at segments of the slave between tied nodes.
 fn covered(
-    row: &Row,
+    row: &TieRow,
     own: &[(usize, Segment)],
     surfaces: &[Surface],
     mesh_index: &MeshIndex,

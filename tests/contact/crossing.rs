@@ -1,7 +1,7 @@
 //! Crossings of moving nodes and segments against dense sampling.
 
 use crate::random::Random;
-use stickslip::contact::{Direction, Motion, crossings, project};
+use stickslip::contact::{CrossingSense, QuadraticMotion, crossings, project};
 
 const CASES: usize = 100_000;
 const SAMPLES: usize = 2000;
@@ -14,8 +14,8 @@ fn vector(random: &mut Random, size: f64) -> [f64; 2] {
 
 /// Kinds of motions: everything at random, no accelerations, all flying together, the node near an
 /// end of the segment, the node thrown so that it grazes the segment or nearly so, round numbers.
-fn case(random: &mut Random, kind: usize) -> [Motion; 3] {
-    let mut motion = || Motion {
+fn case(random: &mut Random, kind: usize) -> [QuadraticMotion; 3] {
+    let mut motion = || QuadraticMotion {
         position: vector(random, 1.0),
         velocity: vector(random, 2.0),
         acceleration: vector(random, 4.0),
@@ -25,7 +25,8 @@ fn case(random: &mut Random, kind: usize) -> [Motion; 3] {
         1 => nodes.iter_mut().for_each(|m| m.acceleration = [0.0; 2]),
         2 => {
             let v = vector(random, 50.0);
-            let flying = |m: &mut Motion| m.velocity = [0, 1].map(|i| m.velocity[i] + v[i]);
+            let flying =
+                |m: &mut QuadraticMotion| m.velocity = [0, 1].map(|i| m.velocity[i] + v[i]);
             nodes.iter_mut().for_each(flying);
         }
         3 => {
@@ -39,18 +40,18 @@ fn case(random: &mut Random, kind: usize) -> [Motion; 3] {
             let (k, t0) = (random.range(0.5, 4.0), random.range(0.1, 0.9));
             let h = [0.0, 1e-3, -1e-3, -1e-6][random.below(4)];
             nodes = [
-                Motion {
+                QuadraticMotion {
                     position: [random.range(-0.8, 0.8), h + k * t0 * t0],
                     velocity: [0.0, -2.0 * k * t0],
                     acceleration: [0.0, 2.0 * k],
                 },
-                Motion {
+                QuadraticMotion {
                     position: [1.0, 0.0],
-                    ..Motion::default()
+                    ..QuadraticMotion::default()
                 },
-                Motion {
+                QuadraticMotion {
                     position: [-1.0, 0.0],
-                    ..Motion::default()
+                    ..QuadraticMotion::default()
                 },
             ];
         }
@@ -67,7 +68,7 @@ fn case(random: &mut Random, kind: usize) -> [Motion; 3] {
 }
 
 /// Gap times the length of the segment, and xi.
-fn place(nodes: &[Motion; 3], t: f64) -> (f64, f64) {
+fn place(nodes: &[QuadraticMotion; 3], t: f64) -> (f64, f64) {
     let [s, a, b] = nodes.map(|m| m.at(t));
     let (r, e) = ([s[0] - a[0], s[1] - a[1]], [b[0] - a[0], b[1] - a[1]]);
     let square = e[0] * e[0] + e[1] * e[1];
@@ -99,8 +100,8 @@ fn no_crossing_is_missed() {
             {
                 sampled += 1;
                 let direction = match before.0 > 0.0 {
-                    true => Direction::Entering,
-                    false => Direction::Leaving,
+                    true => CrossingSense::Entering,
+                    false => CrossingSense::Leaving,
                 };
                 let within = times[0] - 1e-12..=times[1] + 1e-12;
                 assert!(
@@ -132,14 +133,14 @@ fn no_crossing_is_missed() {
 fn grazing_is_reported_and_a_near_miss_is_not() {
     for (h, expected) in [(0.0, 1), (1e-9, 0), (-1e-9, 2)] {
         // y = h + (t - 0.3)² above a segment at rest
-        let s = Motion {
+        let s = QuadraticMotion {
             position: [0.1, h + 0.09],
             velocity: [0.0, -0.6],
             acceleration: [0.0, 2.0],
         };
-        let rest = |x: f64| Motion {
+        let rest = |x: f64| QuadraticMotion {
             position: [x, 0.0],
-            ..Motion::default()
+            ..QuadraticMotion::default()
         };
         let found = crossings(&[s, rest(1.0), rest(-1.0)], 1.0);
         assert_eq!(found.len(), expected, "{h}: {found:?}");
@@ -152,7 +153,7 @@ fn scaling_by_powers_of_two_changes_times_and_places_by_no_bit() {
     let (length, time) = (2.0_f64.powi(-37), 2.0_f64.powi(21));
     for kind in (0..6).cycle().take(3000) {
         let nodes = case(&mut random, kind);
-        let scaled = nodes.map(|m| Motion {
+        let scaled = nodes.map(|m| QuadraticMotion {
             position: m.position.map(|x| x * length),
             velocity: m.velocity.map(|v| v * length / time),
             acceleration: m.acceleration.map(|a| a * length / time / time),

@@ -15,16 +15,16 @@ const DEPENDENT: f64 = 1e-6;
 
 /// A pass from the iterate d to f(d) = d + dU.
 #[derive(Debug, Clone, Default)]
-struct Step {
+struct PassStep {
     /// dU, of every body beside its increment.
     correction: Vec<f64>,
     /// f(d)
     image: Vec<f64>,
 }
 
-impl Step {
+impl PassStep {
     /// Adds a times another.
-    fn add(&mut self, a: f64, other: &Step) {
+    fn add(&mut self, a: f64, other: &PassStep) {
         axpy(a, &other.correction, &mut self.correction);
         axpy(a, &other.image, &mut self.image);
     }
@@ -33,9 +33,9 @@ impl Step {
 /// What the last passes with the same closed pairs say about the solution.
 #[derive(Debug, Default)]
 pub(super) struct Acceleration {
-    last: Option<Step>,
+    last: Option<PassStep>,
     /// Changes from pass to pass, their corrections orthonormal.
-    changes: Vec<Step>,
+    changes: Vec<PassStep>,
 }
 
 impl Acceleration {
@@ -55,7 +55,7 @@ impl Acceleration {
             self.changes.clear();
         }
         if rate > SLOW && correction > ROUND_OFF * tolerance {
-            let pass = Step {
+            let pass = PassStep {
                 correction: parts.beside_increments(d, du),
                 image: d.iter().zip(&*du).map(|(d, du)| d + du).collect(),
             };
@@ -70,7 +70,7 @@ impl Acceleration {
     /// ```text
     /// d <- f - sum (e_j.c) f_j,   e_j = c_j the orthonormal changes of the correction, f_j those of f
     /// ```
-    fn next(&mut self, pass: Step) -> Vec<f64> {
+    fn next(&mut self, pass: PassStep) -> Vec<f64> {
         if let Some(mut change) = self.last.replace(pass.clone()) {
             change.add(-1.0, &pass);
             self.take_in(change);
@@ -84,7 +84,7 @@ impl Acceleration {
     }
 
     /// Makes a change orthonormal to those before and remembers it.
-    fn take_in(&mut self, mut change: Step) {
+    fn take_in(&mut self, mut change: PassStep) {
         if self.changes.len() == MEMORY {
             self.changes.remove(0);
         }
@@ -132,7 +132,7 @@ mod tests {
         for _ in 0..4 {
             let image = image(&d);
             let correction = image.iter().zip(&d).map(|(f, d)| f - d).collect();
-            d = acceleration.next(Step { correction, image });
+            d = acceleration.next(PassStep { correction, image });
         }
         for (d, end) in d.iter().zip([10.0, 1.0 / 1.5, -2.0]) {
             assert!((d - end).abs() < 1e-11, "{d} {end}");
@@ -144,7 +144,7 @@ mod tests {
         let mut acceleration = Acceleration::default();
         for d in [0.0, 1.0, 3.0] {
             let step = |value: f64| vec![value, 0.0];
-            let next = acceleration.next(Step {
+            let next = acceleration.next(PassStep {
                 correction: step(2.0 - d),
                 image: step(2.0),
             });

@@ -6,7 +6,7 @@ use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
-use super::impulses::Before;
+use super::impulses::EarlierPass;
 use super::linear_pass::{Vectors, close_hinges, k_star};
 use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
@@ -353,7 +353,7 @@ impl<'m> Attempt<'_, 'm> {
         );
 
         // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
-        let last = Before::new(&v.equilibrium, correction, self.interval.dt);
+        let last = EarlierPass::new(&v.equilibrium, correction, self.interval.dt);
         let ContactStates {
             impulses, found, ..
         } = contact;

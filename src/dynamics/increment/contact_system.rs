@@ -10,7 +10,7 @@
 use std::collections::BTreeMap;
 
 use super::equal_forces::FIRST_WEIGHT;
-use crate::contact::{ClosedPair, ClosedPairs, Constraint, Scope};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintGroup};
 use crate::dynamics::results::{Cause, FailedLcp};
 use crate::dynamics::step::{ResponseVectors, System};
 use crate::lcp::{
@@ -129,7 +129,8 @@ impl ContactSystem<'_> {
         guess: &Guess,
         closed: &mut ClosedPairs,
     ) -> Result<usize, Cause> {
-        let mut problem = (self.system).frictional_lcp(&Scope::All, constraints, constant_terms)?;
+        let mut problem =
+            (self.system).frictional_lcp(&ConstraintGroup::All, constraints, constant_terms)?;
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
@@ -209,7 +210,7 @@ const PART: usize = 64;
 const COUPLING: f64 = 0.1;
 
 /// Gaps and slips of the constraints of a problem under any forces.
-struct Motion<'r, 'a> {
+struct GapsAndSlips<'r, 'a> {
     response: &'r mut Response<'a>,
     constraints: &'r [&'r Constraint],
     /// eps Q_kk of eq. (5.3), zero without a weight.
@@ -218,7 +219,7 @@ struct Motion<'r, 'a> {
     near: Vec<[f64; 2]>,
 }
 
-impl Motion<'_, '_> {
+impl GapsAndSlips<'_, '_> {
     /// g + G W B^T P + eps diag(Q) (P - P^0), g being gaps and slips without these forces.
     fn under(&mut self, system: &mut ContactSystem, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let constraints = self.constraints.iter().copied();
@@ -242,13 +243,13 @@ impl ContactSystem<'_> {
     pub(super) fn by_bodies(
         &self,
         constraints: &[&Constraint],
-    ) -> Option<BTreeMap<Scope, Vec<usize>>> {
+    ) -> Option<BTreeMap<ConstraintGroup, Vec<usize>>> {
         let may_be_parted = self.method == LcpMethod::Hybrid && !self.system.couples_bodies();
         if constraints.len() < LEAST || !may_be_parted {
             return None;
         }
-        let blocks_by = |scope_of: &dyn Fn(&Constraint) -> Scope| {
-            let mut blocks: BTreeMap<Scope, Vec<usize>> = BTreeMap::new();
+        let blocks_by = |scope_of: &dyn Fn(&Constraint) -> ConstraintGroup| {
+            let mut blocks: BTreeMap<ConstraintGroup, Vec<usize>> = BTreeMap::new();
             for (k, constraint) in constraints.iter().enumerate() {
                 blocks.entry(scope_of(constraint)).or_default().push(k);
             }
@@ -283,7 +284,7 @@ impl ContactSystem<'_> {
         let Some((blocks, held)) = self.blocks(constraints, &by_bodies, guess)? else {
             return Ok(None);
         };
-        let mut motion = Motion {
+        let mut motion = GapsAndSlips {
             response,
             constraints,
             held,
@@ -323,7 +324,7 @@ impl ContactSystem<'_> {
     fn blocks(
         &mut self,
         all: &[&Constraint],
-        by_bodies: &BTreeMap<Scope, Vec<usize>>,
+        by_bodies: &BTreeMap<ConstraintGroup, Vec<usize>>,
         guess: &Guess,
     ) -> Result<Option<ProblemBlocks>, LinearError> {
         let mut held = vec![[0.0; 2]; all.len()];
@@ -333,7 +334,7 @@ impl ContactSystem<'_> {
             let n = constraints.len();
             let terms = vec![[0.0; 2]; n];
             let mut problem = self.system.frictional_lcp(scope, &constraints, &terms)?;
-            if matches!(scope, Scope::Part(..)) && n >= PART / 2 && is_coupled(&problem) {
+            if matches!(scope, ConstraintGroup::Part(..)) && n >= PART / 2 && is_coupled(&problem) {
                 return Ok(None);
             }
             for (k, &contact) in contacts.iter().enumerate() {

@@ -87,7 +87,7 @@ impl Impulses {
         workspace: &mut Workspace,
         constraints: &[Constraint],
         start: &State,
-        before: &Before,
+        before: &EarlierPass,
     ) -> Result<(), Cause> {
         let dt = before.dt;
         if !problem.has_impulses() {
@@ -215,7 +215,7 @@ impl Impulses {
         workspace: &mut Workspace,
         constraints: &[Constraint],
         start: &'a State,
-        before: &Before,
+        before: &EarlierPass,
     ) -> Result<StartVelocity<'a>, Cause> {
         self.solve(problem, workspace, constraints, start, before)?;
         match problem.integration.lags() {
@@ -424,7 +424,7 @@ const EXACT: f64 = 1e-2;
 const STEADY: f64 = 1e-3;
 
 /// The pass before.
-pub(crate) struct Before<'a> {
+pub(crate) struct EarlierPass<'a> {
     /// Forces of its iterate.
     forces: &'a Equilibrium,
     /// Its relative correction.
@@ -433,10 +433,10 @@ pub(crate) struct Before<'a> {
     pub dt: f64,
 }
 
-impl<'a> Before<'a> {
+impl<'a> EarlierPass<'a> {
     /// A pass with the forces of its iterate and its relative correction, in an increment of length dt.
     pub fn new(forces: &'a Equilibrium, correction: f64, dt: f64) -> Self {
-        Before {
+        EarlierPass {
             forces,
             correction,
             dt,
@@ -455,7 +455,7 @@ pub(super) struct Steady<'a> {
     pub problem: &'a StepProblem<'a>,
     /// Largest diagonal entries of (2/dt²) M of every part.
     pub inertia: &'a [f64],
-    pub before: &'a Before<'a>,
+    pub before: &'a EarlierPass<'a>,
     pub v0: &'a [f64],
 }
 
@@ -735,7 +735,7 @@ mod tests {
             let closed = pairs([0]);
             let mut impulses = Impulses::new(&closed, Vec::new());
             let mut pass = |impulses: &mut Impulses, angle, correction| {
-                let before = Before::new(&forces, correction, DT);
+                let before = EarlierPass::new(&forces, correction, DT);
                 let rows = [turned(angle)];
                 (impulses.start_velocity(problem, workspace, &rows, &start, &before))
                     .expect("solved");

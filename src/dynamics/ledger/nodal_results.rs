@@ -5,8 +5,8 @@
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
 use crate::contact::{
-    ClosedPair, Configurations, Constraint, Crossing, Direction, Motion, RowForm, crossings,
-    line_crossings, project,
+    ClosedPair, Configurations, Constraint, Crossing, CrossingSense, QuadraticMotion, RowForm,
+    crossings, line_crossings, project,
 };
 use crate::dynamics::increment::{ContactForces, Solved};
 use crate::dynamics::results::{
@@ -326,9 +326,9 @@ pub(crate) fn motion(
     v: &[f64],
     a: &[f64],
     node: usize,
-) -> Motion {
+) -> QuadraticMotion {
     let of = |v: &[f64]| [v[2 * node], v[2 * node + 1]];
-    Motion {
+    QuadraticMotion {
         position: problem.position(u, node),
         velocity: of(v),
         acceleration: of(a),
@@ -337,13 +337,13 @@ pub(crate) fn motion(
 
 /// First time in [0, dt] at which the node reaches the segment, or else its line, from outside; 0
 /// when it is inside at the start, dt when it stays outside.
-fn impact_time(motions: &[Motion; 3], dt: f64) -> f64 {
+fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
     let [s, a, b] = motions.map(|m| m.position);
     if project(s, a, b).gap <= 0.0 {
         return 0.0;
     }
     let first = |found: Vec<Crossing>| {
-        let from_outside = |c: &&Crossing| c.direction != Direction::Leaving;
+        let from_outside = |c: &&Crossing| c.direction != CrossingSense::Leaving;
         found.iter().find(from_outside).map(|c| c.time)
     };
     first(crossings(motions, dt))
@@ -387,14 +387,14 @@ mod tests {
 
     /// Time at which a node thrown from the height `c`, y = a t² + b t + c, lands on a segment.
     fn landing_time(a: f64, b: f64, c: f64, dt: f64) -> f64 {
-        let s = Motion {
+        let s = QuadraticMotion {
             position: [0.2, c],
             velocity: [0.0, b],
             acceleration: [0.0, 2.0 * a],
         };
-        let rest = |x: f64| Motion {
+        let rest = |x: f64| QuadraticMotion {
             position: [x, 0.0],
-            ..Motion::default()
+            ..QuadraticMotion::default()
         };
         impact_time(&[s, rest(1.0), rest(-1.0)], dt)
     }

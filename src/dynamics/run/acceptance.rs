@@ -16,7 +16,7 @@ const GAIN_HALVINGS: u32 = 5;
 
 /// Where a subincrement starts from: state and energies at the end of the last one.
 #[derive(Clone, Copy)]
-pub(crate) struct Before<'a> {
+pub(crate) struct SubincrementStart<'a> {
     pub state: &'a State,
     pub ledger: &'a Ledger,
 }
@@ -33,7 +33,7 @@ impl Accepted {
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,
-        before: Before,
+        before: SubincrementStart,
         mut subincrement: Subincrement,
         halvings: u32,
         nominal: &NominalIncrement,
@@ -96,7 +96,7 @@ fn finish_motion(
 fn accept(
     problem: &StepProblem,
     workspace: &Workspace,
-    before: Before,
+    before: SubincrementStart,
     dt: f64,
     solved: &Solved,
     may_be_halved: bool,

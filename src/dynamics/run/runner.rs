@@ -3,7 +3,7 @@
 
 use std::{io, iter};
 
-use super::acceptance::{Accepted, Before, failure, failure_at_start, start_failure};
+use super::acceptance::{Accepted, SubincrementStart, failure, failure_at_start, start_failure};
 use super::time_control::{
     Automatic, Bisection, Ended, ImpactControl, NominalIncrement, Span, TimeControl,
     nominal_increments,
@@ -94,7 +94,7 @@ fn nominal_controls(
 
 /// How far a run has come.
 #[derive(Default, serde::Serialize, serde::Deserialize)]
-struct Progress {
+struct RunProgress {
     /// Number of the step, from 1.
     step: usize,
     /// Displacement and velocity at its start.
@@ -143,7 +143,7 @@ struct Runner<'m, 'o> {
     accuracy: Option<TruncationError>,
     accounts: Accounts,
     summary: RunSummary,
-    progress: Progress,
+    progress: RunProgress,
     observer: &'o mut dyn Observer,
 }
 
@@ -178,7 +178,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 solver: SolverCounts::at_start(),
                 timings: Timings::default(),
             },
-            progress: Progress::default(),
+            progress: RunProgress::default(),
             observer,
         }
     }
@@ -284,10 +284,10 @@ impl<'m, 'o> Runner<'m, 'o> {
         resumed: Option<Archive>,
     ) -> Result<Outcome, RunError> {
         if resumed.is_none() {
-            self.progress = Progress {
+            self.progress = RunProgress {
                 step: place.number,
                 start: [self.state.u.clone(), self.state.v.clone()],
-                ..Progress::default()
+                ..RunProgress::default()
             };
         }
         let start = self.progress.start.each_ref().map(Vec::as_slice);
@@ -445,7 +445,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             }
             let halvings = control.halvings();
             let attempt = self.attempt(problem, workspace, span);
-            let before = Before {
+            let before = SubincrementStart {
                 state: &self.state,
                 ledger: &self.ledger,
             };

@@ -131,7 +131,7 @@ pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Constraint, Rows, Scope, testing};
+    use crate::contact::{Constraint, ConstraintGroup, Rows, testing};
     use crate::dynamics::step::{ClosedConstraints, Discretization, HeldMotions, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
@@ -242,7 +242,8 @@ mod tests {
             all.extend(response.expect("solved"));
         }
         let constraint = constraint();
-        let lcp = (workspace.k()).frictional_lcp(&Scope::All, &[&constraint], &[[0.0; 2]]);
+        let lcp =
+            (workspace.k()).frictional_lcp(&ConstraintGroup::All, &[&constraint], &[[0.0; 2]]);
         all.extend(lcp.expect("prepared").q.iter());
         all
     }

@@ -10,19 +10,19 @@ use crate::model::{FormerFriction, Friction, Model, Step};
 /// Friction of the contacts in a step.
 pub(crate) struct Frictions<'m> {
     model: &'m Model,
-    of_contacts: Vec<Course<'m>>,
+    of_contacts: Vec<FrictionOfContact<'m>>,
     /// Where the pressure counts.
     faces: Option<SlaveFaces>,
 }
 
 /// Friction of a contact.
-struct Course<'m> {
+struct FrictionOfContact<'m> {
     friction: &'m Friction,
     /// One that gives way to it.
     from: Option<&'m FormerFriction>,
 }
 
-impl Course<'_> {
+impl FrictionOfContact<'_> {
     fn all(&self) -> impl Iterator<Item = &Friction> {
         let from = self.from.map(|from| &from.friction);
         [Some(self.friction), from].into_iter().flatten()
@@ -55,18 +55,20 @@ impl Course<'_> {
 impl<'m> Frictions<'m> {
     /// That of a model in a step.
     pub fn new(model: &'m Model, step: &'m Step) -> Self {
-        let own = model.contacts.iter().map(|contact| Course {
+        let own = model.contacts.iter().map(|contact| FrictionOfContact {
             friction: &contact.interaction.friction,
             from: None,
         });
-        let mut of_contacts: Vec<Course> = own.collect();
+        let mut of_contacts: Vec<FrictionOfContact> = own.collect();
         for change in &step.contacts.friction {
-            of_contacts[change.contact] = Course {
+            of_contacts[change.contact] = FrictionOfContact {
                 friction: &change.friction,
                 from: change.from.as_ref(),
             };
         }
-        let counts = of_contacts.iter().any(Course::depends_on_pressure);
+        let counts = of_contacts
+            .iter()
+            .any(FrictionOfContact::depends_on_pressure);
         Frictions {
             model,
             faces: counts.then(|| SlaveFaces::new(model)),

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::rank_update::{Columns, RankUpdate};
+use super::rank_update::{RankUpdate, UpdateColumns};
 use crate::linear::{LinearError, Rotation, Transformation};
 use crate::model::Hinge;
 
@@ -82,8 +82,8 @@ impl Hinges {
             columns[1].push(solve(&map.restrict_derivatives(&force))?);
         }
         let [of_forces, of_motions] = columns;
-        let v = Columns::motions(of_forces, (map, rotation), dofs);
-        let y = Columns::works(of_motions, (map, rotation));
+        let v = UpdateColumns::motions(of_forces, (map, rotation), dofs);
+        let y = UpdateColumns::works(of_motions, (map, rotation));
         let gaps: Vec<Vec<f64>> = v.of_dofs.iter().map(|column| self.gaps(column)).collect();
         let m = self.rows.len();
         let s = DMatrix::from_fn(m, m, |i, k| gaps[k][i]);

@@ -18,7 +18,8 @@ use super::rank_update::{RankUpdate, Updates};
 use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
-    ClosedPair, Compliance, Configurations, Constraint, DelassusSpace, Scope, frictional_lcp,
+    ClosedPair, Compliance, Configurations, Constraint, ConstraintGroup, DelassusSpace,
+    frictional_lcp,
 };
 use crate::elements::{Motion, TangentPart};
 use crate::lcp::{
@@ -35,7 +36,7 @@ pub(crate) struct FactoredMatrix {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
     /// Factors of the last complementarity problems.
-    pub kept: BTreeMap<Scope, KeptFactors>,
+    pub kept: BTreeMap<ConstraintGroup, KeptFactors>,
     /// Memory of its Delassus operators.
     pub space: DelassusSpace,
     /// Memory of its solves.
@@ -111,7 +112,7 @@ impl FactoredMatrix {
         } = self;
         solver.carry(archive)?;
         compliance.carry(archive, solver)?;
-        let mut scopes: Vec<Scope> = kept.keys().cloned().collect();
+        let mut scopes: Vec<ConstraintGroup> = kept.keys().cloned().collect();
         archive.carry(&mut scopes)?;
         if archive.is_reading() {
             kept.clear();
@@ -131,7 +132,7 @@ impl FactoredMatrix {
     /// Solves for the columns of the compliance that `constraints` need.
     pub fn prepare(
         &mut self,
-        scope: &Scope,
+        scope: &ConstraintGroup,
         constraints: &[&Constraint],
     ) -> Result<(), LinearError> {
         let Self {
@@ -480,7 +481,7 @@ impl<'a> System<'a> {
         let map = self.matrix.map().clone();
         let columns = pin_columns(pins, &map, |b| self.solve(b))?;
         let none = vec![[0.0; 2]; constraints.len()];
-        let lcp = self.frictional_lcp(&Scope::All, constraints, &none)?;
+        let lcp = self.frictional_lcp(&ConstraintGroup::All, constraints, &none)?;
         let numbered = constraints.iter().enumerate();
         let compliances: Vec<_> = numbered.map(|(j, &c)| (c, lcp.q[(j, j)])).collect();
         self.take_back(lcp);
@@ -653,19 +654,19 @@ impl<'a> System<'a> {
 
     /// The part of the constraints between the same bodies that a constraint belongs to, where parts have so many slave
     /// nodes.
-    pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> Scope {
+    pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> ConstraintGroup {
         self.matrix.compliance.part_of(constraint, nodes)
     }
 
     /// The bodies that a constraint acts on.
-    pub fn scope_of(&self, constraint: &Constraint) -> Scope {
+    pub fn scope_of(&self, constraint: &Constraint) -> ConstraintGroup {
         self.matrix.compliance.scope_of(constraint)
     }
 
     /// The complementarity problem of constraints of a scope with the given gaps and slips without forces.
     pub fn frictional_lcp(
         &mut self,
-        scope: &Scope,
+        scope: &ConstraintGroup,
         constraints: &[&Constraint],
         constant_terms: &[[f64; 2]],
     ) -> Result<FrictionalLcp, LinearError> {
@@ -698,7 +699,7 @@ impl<'a> System<'a> {
         method: LcpMethod,
     ) -> Result<FrictionalSolution, LcpError> {
         let Self { matrix, meter } = self;
-        let kept = matrix.kept.entry(Scope::All).or_default();
+        let kept = matrix.kept.entry(ConstraintGroup::All).or_default();
         let solve = || solve_similar(problem, Some(warm), method, kept);
         let solution = meter.time(|t| &mut t.lcp, solve)?;
         self.meter.count_lcp(warm.len(), solution.counters);
@@ -712,7 +713,7 @@ impl<'a> System<'a> {
 
     /// Takes the memory of a solution that is not needed any more.
     pub fn take_back_solution(&mut self, solution: FrictionalSolution) {
-        let kept = self.matrix.kept.entry(Scope::All).or_default();
+        let kept = self.matrix.kept.entry(ConstraintGroup::All).or_default();
         kept.take(solution);
     }
 
@@ -731,12 +732,12 @@ impl<'a> System<'a> {
     }
 
     /// Takes the factors of the last complementarity problem of a scope.
-    pub fn take_kept(&mut self, scope: &Scope) -> KeptFactors {
+    pub fn take_kept(&mut self, scope: &ConstraintGroup) -> KeptFactors {
         self.matrix.kept.remove(scope).unwrap_or_default()
     }
 
     /// Keeps the factors of the last complementarity problem of a scope.
-    pub fn keep(&mut self, scope: Scope, kept: KeptFactors) {
+    pub fn keep(&mut self, scope: ConstraintGroup, kept: KeptFactors) {
         self.matrix.kept.insert(scope, kept);
     }
 }

@@ -24,27 +24,27 @@ pub(crate) struct Parts {
     body_of: Vec<usize>,
     bodies: usize,
     /// Dofs of one body after the other, and of one part after the other.
-    runs_of_bodies: Vec<Run>,
-    runs_of_parts: Vec<Run>,
+    runs_of_bodies: Vec<DofRun>,
+    runs_of_parts: Vec<DofRun>,
 }
 
 /// A value of every body, or part: up to eight are stored in place.
 pub(crate) type PerBody = SmallVec<[f64; 8]>;
 
 /// Consecutive dofs or unknowns of a body or part.
-pub(crate) struct Run {
+pub(crate) struct DofRun {
     group: usize,
     places: Range<usize>,
 }
 
-impl Run {
+impl DofRun {
     /// The runs of all nodes or unknowns, whose groups are given, with so many values each.
-    fn all(groups: &[usize], values: usize) -> Vec<Run> {
+    fn all(groups: &[usize], values: usize) -> Vec<DofRun> {
         let mut end = 0;
         let run = |of_group: &[usize]| {
             let start = end;
             end += values * of_group.len();
-            Run {
+            DofRun {
                 group: of_group[0],
                 places: start..end,
             }
@@ -72,8 +72,8 @@ impl Parts {
             }
         }
         Parts {
-            runs_of_bodies: Run::all(&body, 2),
-            runs_of_parts: Run::all(&part, 2),
+            runs_of_bodies: DofRun::all(&body, 2),
+            runs_of_parts: DofRun::all(&part, 2),
             body,
             part,
             body_of,
@@ -102,13 +102,13 @@ impl Parts {
     }
 
     /// Unknowns of one part after the other; their dofs are given.
-    pub fn of_unknowns(&self, dof_of: &[usize]) -> Vec<Run> {
+    pub fn of_unknowns(&self, dof_of: &[usize]) -> Vec<DofRun> {
         let parts: Vec<usize> = dof_of.iter().map(|&dof| self.part(dof)).collect();
-        Run::all(&parts, 1)
+        DofRun::all(&parts, 1)
     }
 
     /// Largest absolute value of every part; `values` over the unknowns, of which the runs are.
-    pub fn largest_of_unknowns(&self, runs: &[Run], values: &[f64]) -> PerBody {
+    pub fn largest_of_unknowns(&self, runs: &[DofRun], values: &[f64]) -> PerBody {
         largest_of(runs, self.body_of.len(), values)
     }
 
@@ -220,15 +220,15 @@ fn unite(first: &mut [usize], nodes: &[usize]) {
 }
 
 /// Largest absolute value of every group, given by its runs; `values` over all dofs.
-fn largest_of(runs: &[Run], count: usize, values: &[f64]) -> PerBody {
+fn largest_of(runs: &[DofRun], count: usize, values: &[f64]) -> PerBody {
     let mut most = smallvec![0.0; count];
     enlarge(&mut most, runs, values);
     most
 }
 
 /// Makes the value of every group at least the largest absolute value that it has among `values`.
-fn enlarge(most: &mut [f64], runs: &[Run], values: &[f64]) {
-    for Run { group, places } in runs {
+fn enlarge(most: &mut [f64], runs: &[DofRun], values: &[f64]) {
+    for DofRun { group, places } in runs {
         most[*group] = larger(most[*group], largest(&values[places.clone()]));
     }
 }

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use super::bodies::{Hold, holds};
 use super::normals::{Normal, Normals, Vertices};
 use super::parts::Parts;
-use super::rank_update::{Columns, RankUpdate};
+use super::rank_update::{RankUpdate, UpdateColumns};
 use super::step_problem::StepProblem;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, Unbalanced};
@@ -561,8 +561,8 @@ pub(crate) fn soften(
     dofs: usize,
 ) -> (RankUpdate, SoftPins) {
     let unturned = Rotation::default();
-    let works = Columns::works(columns.clone(), (map, &unturned));
-    let v = Columns::motions(columns, (map, &unturned), dofs);
+    let works = UpdateColumns::works(columns.clone(), (map, &unturned));
+    let v = UpdateColumns::motions(columns, (map, &unturned), dofs);
     let bodies: Vec<usize> = pins.bodies().collect();
     let soft = |(&body, &a): (&usize, &f64)| {
         let (mut q, mut z, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);

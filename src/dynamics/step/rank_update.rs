@@ -49,7 +49,7 @@ impl Updates {
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct RankUpdate {
     /// Columns of V and of Y.
-    columns: [Columns; 2],
+    columns: [UpdateColumns; 2],
     /// C.
     c: DMatrix<f64>,
     /// Y^T b of the solve that is under way.
@@ -58,14 +58,14 @@ pub(crate) struct RankUpdate {
 
 /// Columns of an update.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Columns {
+pub(crate) struct UpdateColumns {
     /// Over the unknowns.
     pub of_unknowns: Vec<Vec<f64>>,
     /// Over all dofs.
     pub of_dofs: Vec<Vec<f64>>,
 }
 
-impl Columns {
+impl UpdateColumns {
     /// Motions: R T of columns over the unknowns, T of the derivatives.
     pub fn motions(
         of_unknowns: Vec<Vec<f64>>,
@@ -78,7 +78,7 @@ impl Columns {
             rotation.turn(&mut all);
             all
         };
-        Columns {
+        UpdateColumns {
             of_dofs: of_unknowns.iter().map(expand).collect(),
             of_unknowns,
         }
@@ -95,7 +95,7 @@ impl Columns {
             rotation.turn(&mut all);
             all
         };
-        Columns {
+        UpdateColumns {
             of_dofs: of_unknowns.iter().map(expand).collect(),
             of_unknowns,
         }
@@ -104,7 +104,7 @@ impl Columns {
 
 impl RankUpdate {
     /// That with the columns V and Y, and C.
-    pub fn new(columns: [Columns; 2], c: DMatrix<f64>) -> Self {
+    pub fn new(columns: [UpdateColumns; 2], c: DMatrix<f64>) -> Self {
         RankUpdate {
             columns,
             projected: vec![0.0; c.nrows()],
@@ -182,7 +182,7 @@ impl RankUpdate {
         let (n, m) = (constraints.len(), self.c.nrows());
         type Row = fn(&Constraint, &[f64]) -> f64;
         let [motions, works] = self.columns.each_ref();
-        let seen = |normal: Row, tangential: Row, columns: &Columns| {
+        let seen = |normal: Row, tangential: Row, columns: &UpdateColumns| {
             DMatrix::from_fn(2 * n, m, |i, k| match i < n {
                 true => normal(constraints[i], &columns.of_dofs[k]),
                 false => tangential(constraints[i - n], &columns.of_dofs[k]),

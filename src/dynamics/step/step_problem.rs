@@ -12,7 +12,7 @@ use super::hinges::Hinges;
 use super::integration::Integration;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
-use super::parts::{Parts, Run};
+use super::parts::{DofRun, Parts};
 use super::turning::TurningBody;
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
@@ -42,7 +42,7 @@ pub(crate) struct StepProblem<'m> {
     pub integration: Integration,
     pub unknowns: Unknowns<'m>,
     /// Unknowns of the parts.
-    pub parts_of_unknowns: Vec<Run>,
+    pub parts_of_unknowns: Vec<DofRun>,
     pub loads: Loads<'m>,
     pub fits: Fits<'m>,
     pub hinges: Hinges,

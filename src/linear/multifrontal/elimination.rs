@@ -6,7 +6,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use sprs::CsMatView;
 
-use super::factor::{Entries, Factor, LimbFactor, Place};
+use super::factor::{Entries, Factor, LimbFactor, PivotPlace};
 use super::front::Front;
 use super::supernodes::Layout;
 
@@ -168,12 +168,12 @@ impl WithSimd for OfLimb<'_> {
 impl Front {
     /// Adds what eliminating a child has left.
     #[inline(always)]
-    fn add(&mut self, update: &[f64], runs: &[Run]) {
+    fn add(&mut self, update: &[f64], runs: &[ConsecutiveRows]) {
         let mut rest = update;
         for (k, run) in runs.iter().enumerate() {
             for column in run.row..run.row + run.length {
                 let to = &mut self.values[column * self.stride..(column + 1) * self.stride];
-                let own = Run {
+                let own = ConsecutiveRows {
                     row: column,
                     length: run.row + run.length - column,
                 };
@@ -207,7 +207,7 @@ pub struct Assembly {
     children: Vec<Child>,
     /// End of the children of every supernode.
     child_ends: Vec<usize>,
-    runs: Vec<Run>,
+    runs: Vec<ConsecutiveRows>,
     stack: UpdateStack,
 }
 
@@ -233,7 +233,7 @@ pub struct Child {
 
 /// Rows below a supernode that are next to each other in the front of its parent, too.
 #[derive(Debug, Clone, Copy)]
-pub struct Run {
+pub struct ConsecutiveRows {
     /// First row in the front.
     pub row: usize,
     /// Number of rows.
@@ -310,7 +310,7 @@ impl Assembly {
             };
             match self.runs[first_run..].last_mut() {
                 Some(run) if run.row + run.length == row => run.length += 1,
-                _ => self.runs.push(Run { row, length: 1 }),
+                _ => self.runs.push(ConsecutiveRows { row, length: 1 }),
             }
         }
         let end = self.runs.len();
@@ -333,7 +333,7 @@ impl Assembly {
     }
 
     /// Children of a supernode with their runs.
-    pub fn children(&self, s: usize) -> impl Iterator<Item = (Child, &[Run])> {
+    pub fn children(&self, s: usize) -> impl Iterator<Item = (Child, &[ConsecutiveRows])> {
         let range = start(&self.child_ends, s)..self.child_ends[s];
         range.map(|k| {
             let start = k.checked_sub(1).map_or(0, |k| self.children[k].end);
@@ -381,11 +381,11 @@ fn children(factor: &Factor, number: usize) -> Vec<Vec<(usize, usize)>> {
         for s in 0..of_child.supernodes() {
             if let Some(row) = of_child.supernode(s).rows_below().next() {
                 let place = match of_child.trunk {
-                    Some(limb) if row >= of_child.unknowns.len() => Place {
+                    Some(limb) if row >= of_child.unknowns.len() => PivotPlace {
                         limb,
                         row: row - of_child.unknowns.len(),
                     },
-                    _ => Place { limb: below, row },
+                    _ => PivotPlace { limb: below, row },
                 };
                 if place.limb == number {
                     children[limb.supernode_of(place.row)].push((below, s));
@@ -398,7 +398,7 @@ fn children(factor: &Factor, number: usize) -> Vec<Vec<(usize, usize)>> {
 
 impl LimbFactor {
     /// Row of the limb, whose number is given, at a place; none if it is not in it or its trunk.
-    fn row(&self, number: usize, place: Place) -> Option<usize> {
+    fn row(&self, number: usize, place: PivotPlace) -> Option<usize> {
         match self.trunk {
             _ if place.limb == number => Some(place.row),
             Some(trunk) if place.limb == trunk => Some(self.unknowns.len() + place.row),

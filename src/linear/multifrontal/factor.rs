@@ -16,7 +16,7 @@ const SUBSTITUTION: usize = 800_000;
 
 /// Where the unknown of a pivot is.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Place {
+pub struct PivotPlace {
     /// Its limb.
     pub limb: usize,
     /// Its row there.
@@ -63,7 +63,7 @@ pub struct Factor {
     /// Number of branches.
     pub branches: usize,
     /// Place of every unknown.
-    pub places: Vec<Place>,
+    pub places: Vec<PivotPlace>,
     /// Number of entries of L.
     entries: usize,
     /// L, limb by limb.
@@ -71,8 +71,8 @@ pub struct Factor {
 }
 
 /// Places of pivots in the limbs, in their order.
-struct Places {
-    of_pivots: Vec<Place>,
+struct PivotPlaces {
+    of_pivots: Vec<PivotPlace>,
     /// Number of own rows of every limb.
     sizes: Vec<usize>,
 }
@@ -83,8 +83,8 @@ impl Factor {
         let all = 0..supernodes.count();
         let work: Vec<usize> = all.map(|s| supernodes.entries(s)).collect();
         let (limbs, branches) = cut(&supernodes.parents(), &work);
-        let in_limbs = Places::new(supernodes, &limbs, unknowns.len());
-        let mut places = vec![Place::default(); unknowns.len()];
+        let in_limbs = PivotPlaces::new(supernodes, &limbs, unknowns.len());
+        let mut places = vec![PivotPlace::default(); unknowns.len()];
         for (&unknown, place) in unknowns.iter().zip(&in_limbs.of_pivots) {
             places[unknown] = *place;
         }
@@ -170,20 +170,20 @@ impl Factor {
     }
 }
 
-impl Places {
+impl PivotPlaces {
     fn new(supernodes: &Supernodes, limbs: &[Limb], unknowns: usize) -> Self {
-        let mut of_pivots = vec![Place::default(); unknowns];
+        let mut of_pivots = vec![PivotPlace::default(); unknowns];
         let mut sizes = Vec::new();
         for (number, limb) in limbs.iter().enumerate() {
             let mut rows = 0..;
             for &s in &limb.supernodes {
                 for (place, row) in of_pivots[supernodes.columns(s)].iter_mut().zip(&mut rows) {
-                    *place = Place { limb: number, row };
+                    *place = PivotPlace { limb: number, row };
                 }
             }
             sizes.push(rows.start);
         }
-        Places { of_pivots, sizes }
+        PivotPlaces { of_pivots, sizes }
     }
 
     /// Room for the factors of a limb.
@@ -200,8 +200,8 @@ impl Places {
             ..LimbFactor::default()
         };
         let row = |&pivot: &usize| match self.of_pivots[pivot] {
-            Place { limb, row } if limb == number => row,
-            Place { row, .. } => own + row,
+            PivotPlace { limb, row } if limb == number => row,
+            PivotPlace { row, .. } => own + row,
         };
         for &s in &limb.supernodes {
             let columns = supernodes.columns(s);

@@ -243,8 +243,10 @@ impl LinearSolver for MultifrontalLdl {
 /// Where a matrix has entries.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Pattern {
-    starts: Vec<usize>,
-    rows: Vec<usize>,
+    /// First entry of every column, and the number of entries.
+    pub starts: Vec<usize>,
+    /// Rows of the entries, column after column, increasing.
+    pub rows: Vec<usize>,
 }
 
 impl Pattern {

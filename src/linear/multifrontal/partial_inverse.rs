@@ -9,7 +9,7 @@ use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-use super::factor::{Factor, LimbFactor, Place};
+use super::factor::{Factor, LimbFactor, PivotPlace};
 
 /// A column of L^-1 E whose entries above are all smaller than this ends there: what it would add to the
 /// inverse is below round-off, see docs/numerics.md, Compliance of the pairs. The unit vectors have no dimension.
@@ -22,7 +22,7 @@ const CHUNK: usize = 96;
 const SMALL: usize = 16;
 
 /// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
-struct Rows {
+struct Contributions {
     /// Columns (places in the list of unknowns) that are not zero, increasing, with their places in the values.
     columns: Vec<[usize; 2]>,
     /// Rows of the limb, increasing.
@@ -69,7 +69,7 @@ impl InverseSpace {
     }
 
     /// Adds up fronts on the given rows: their columns, and the values column by column.
-    fn assemble(&mut self, all: &[usize], fronts: Vec<Rows>) -> (Vec<usize>, Vec<f64>) {
+    fn assemble(&mut self, all: &[usize], fronts: Vec<Contributions>) -> (Vec<usize>, Vec<f64>) {
         let of_fronts = fronts.iter().flat_map(|front| &front.columns);
         let mut columns: Vec<usize> = of_fronts.map(|column| column[0]).collect();
         if fronts.len() > 1 {
@@ -144,7 +144,7 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize], space: &mut InverseSpace)
             Some((place, rows)) if !kept.is_empty() => {
                 let s = factor.limbs[place.limb].supernode_of(place.row);
                 let fronts = waiting.entry((place.limb, s)).or_default();
-                fronts.push(Rows {
+                fronts.push(Contributions {
                     columns: kept,
                     rows,
                     values,
@@ -185,11 +185,11 @@ fn eliminate(l: &[f64], [size, length]: [usize; 2], x: &mut [f64]) {
 }
 
 /// The unit vectors of the unknowns, by limb and supernode.
-fn units(factor: &Factor, unknowns: &[usize]) -> BTreeMap<(usize, usize), Vec<Rows>> {
-    let mut units: BTreeMap<(usize, usize), Vec<Rows>> = BTreeMap::new();
+fn units(factor: &Factor, unknowns: &[usize]) -> BTreeMap<(usize, usize), Vec<Contributions>> {
+    let mut units: BTreeMap<(usize, usize), Vec<Contributions>> = BTreeMap::new();
     for (column, &unknown) in unknowns.iter().enumerate() {
-        let Place { limb, row } = factor.places[unknown];
-        let unit = Rows {
+        let PivotPlace { limb, row } = factor.places[unknown];
+        let unit = Contributions {
             columns: vec![[column, 0]],
             rows: vec![row],
             values: vec![1.0],
@@ -202,7 +202,11 @@ fn units(factor: &Factor, unknowns: &[usize]) -> BTreeMap<(usize, usize), Vec<Ro
 }
 
 /// The rows below a supernode of a limb as those of the limb of the first one, and where that is; none below a root.
-fn above(limb: &LimbFactor, number: usize, mut rows: Vec<usize>) -> Option<(Place, Vec<usize>)> {
+fn above(
+    limb: &LimbFactor,
+    number: usize,
+    mut rows: Vec<usize>,
+) -> Option<(PivotPlace, Vec<usize>)> {
     let (&first, own) = (rows.first()?, limb.unknowns.len());
     let limb = match limb.trunk.filter(|_| first >= own) {
         Some(trunk) => {
@@ -212,7 +216,7 @@ fn above(limb: &LimbFactor, number: usize, mut rows: Vec<usize>) -> Option<(Plac
         None => number,
     };
     let row = rows[0];
-    Some((Place { limb, row }, rows))
+    Some((PivotPlace { limb, row }, rows))
 }
 
 /// Does something with all chunks, on threads if there are several.
@@ -225,7 +229,7 @@ fn for_chunks<T: Send>(chunks: &mut [T], action: impl Fn(&mut T) + Sync + Send) 
 }
 
 /// Columns of the inverse that are handled together.
-struct Part<'a> {
+struct ColumnGroup<'a> {
     /// Place of the first column among those that are not zero, and these.
     first: usize,
     columns: &'a [usize],
@@ -276,7 +280,7 @@ impl Finished {
             let end = columns.last().map_or(start, |last| last + 1);
             let own;
             (own, rest) = rest.split_at_mut((end - start) * m);
-            parts.push(Part {
+            parts.push(ColumnGroup {
                 first,
                 columns,
                 inverse: own,

@@ -4,18 +4,18 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::factor::{Factor, LimbFactor, Place};
+use super::factor::{Factor, LimbFactor, PivotPlace};
 
 /// One right-hand side b on its way through P^T L D L^T P x = b, limb by limb.
 #[derive(Default)]
 pub struct Substitution {
-    limbs: Vec<Side>,
+    limbs: Vec<LimbVectors>,
     has_paths: bool,
 }
 
 /// The right-hand side on a limb; vectors over its rows.
 #[derive(Default)]
-struct Side {
+struct LimbVectors {
     /// z = L^-1 P b in its own rows; what these take from those of the trunk.
     z: Vec<f64>,
     /// L^-T D^-1 z, where it has been asked for.
@@ -30,8 +30,8 @@ struct Side {
 fn for_each(
     threads: bool,
     limbs: &[LimbFactor],
-    sides: &mut [Side],
-    action: impl Fn(usize, &LimbFactor, &mut Side) + Sync,
+    sides: &mut [LimbVectors],
+    action: impl Fn(usize, &LimbFactor, &mut LimbVectors) + Sync,
 ) {
     if threads {
         let all = limbs.par_iter().zip(sides).enumerate().with_max_len(1);
@@ -52,7 +52,8 @@ impl Substitution {
     /// Makes room for right-hand sides of a factor, without paths.
     pub fn adapt(&mut self, factor: &Factor) {
         self.has_paths = false;
-        self.limbs.resize_with(factor.limbs.len(), Side::default);
+        self.limbs
+            .resize_with(factor.limbs.len(), LimbVectors::default);
         for (side, limb) in self.limbs.iter_mut().zip(&factor.limbs) {
             side.z.resize(limb.length, 0.0);
             side.x.resize(limb.length, 0.0);
@@ -63,7 +64,7 @@ impl Substitution {
 
     /// The paths of the unknowns at the given places to the root of the elimination tree: the parent of
     /// a supernode is that of its first row below.
-    pub fn set_paths(&mut self, factor: &Factor, places: impl Iterator<Item = Place>) {
+    pub fn set_paths(&mut self, factor: &Factor, places: impl Iterator<Item = PivotPlace>) {
         let limbs = &factor.limbs;
         let mut is_on_path: Vec<Vec<bool>> = limbs
             .iter()
@@ -80,7 +81,7 @@ impl Substitution {
                 match (limb.supernode(s).rows.first(), limb.trunk) {
                     (Some(&row), _) if (row as usize) < own => place.row = row as usize,
                     (Some(&row), Some(trunk)) => {
-                        place = Place {
+                        place = PivotPlace {
                             limb: trunk,
                             row: row as usize - own,
                         };
@@ -120,7 +121,7 @@ impl Substitution {
     }
 
     /// z <- z + L^-1 f, f having entries at places of the paths only.
-    pub fn add(&mut self, factor: &Factor, f: impl Iterator<Item = (Place, f64)>) {
+    pub fn add(&mut self, factor: &Factor, f: impl Iterator<Item = (PivotPlace, f64)>) {
         let limbs = &factor.limbs;
         for (limb, side) in limbs.iter().zip(&mut self.limbs) {
             side.clear_path(limb);
@@ -163,7 +164,7 @@ impl Substitution {
     }
 
     /// x at a place of the paths.
-    pub fn x(&self, place: Place) -> f64 {
+    pub fn x(&self, place: PivotPlace) -> f64 {
         self.limbs[place.limb].x[place.row]
     }
 
@@ -193,7 +194,7 @@ fn add(x: &mut [f64], y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(x, y)| *x += y);
 }
 
-impl Side {
+impl LimbVectors {
     /// z <- L^-1 z
     fn forward(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self { z: x, work, .. } = self;
@@ -266,7 +267,7 @@ impl Side {
     }
 
     /// x in the rows of the trunk; `above` are the limbs from `first` on.
-    fn stand_on(&mut self, limb: &LimbFactor, above: &[Side], first: usize) {
+    fn stand_on(&mut self, limb: &LimbFactor, above: &[LimbVectors], first: usize) {
         if let Some(trunk) = limb.trunk {
             self.x[limb.unknowns.len()..].copy_from_slice(&above[trunk - first].x);
         }
