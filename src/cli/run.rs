@@ -14,7 +14,7 @@ use crate::diagnostics::{Diagnostics, Sources};
 use crate::dynamics::{Outcome, RunError, resume};
 use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{
-    Checkpoint, Checkpoints, Claim, Interrupt, JobFiles, ModelEcho, Origin, ResultWriter,
+    Checkpoint, Checkpoints, Claim, Interrupt, JobFiles, ModelEcho, RestartOrigin, ResultWriter,
     RunRecord, Verbosity, check_memory, check_names, frames, program_lines, scientific, solver,
 };
 use crate::prepare::{MemoryNeed, PreparedModel};
@@ -43,7 +43,7 @@ pub(super) fn run(
         None => old_job.as_ref().map(Checkpoint::as_earlier_deck),
     };
     let mut loaded = load(&args.deck, earlier_deck.clone(), numerics)?;
-    let origin = Origin {
+    let origin = RestartOrigin {
         deck: texts(&loaded.sources),
         options: args.options(),
         settings: args.deck.settings.clone(),

@@ -11,7 +11,7 @@ use super::keys::NodeAtSegment;
 use super::lists::Recycled;
 use super::search::{ListedSlave, Search};
 use super::surface_to_surface::find_points;
-use super::targets::{ContactTarget, PairTarget, SlaveNode, Targets};
+use super::targets::{ContactTarget, ContactTargets, PairTarget, SlaveNode};
 use super::tolerances::KEPT_BEYOND_ENDS;
 
 /// Writes the pairs of all contacts between the displacements `u0` of the start of an increment and `u`
@@ -69,7 +69,7 @@ pub fn find_targets(
             allowed: listed.allowed(),
         };
         let found = node.targets(listed.candidates());
-        let mut own = Targets::new();
+        let mut own = ContactTargets::new();
         while let Some(pair) = before.next_if(|pair| pair.key.slave <= listed.key) {
             own.push(pair.target);
         }
@@ -100,7 +100,7 @@ pub fn find_means(
 
 /// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the
 /// weights of the iterate, and adds what is found beside them.
-fn keep(node: &SlaveNode, found: &Targets, beyond: f64, targets: &mut Targets) {
+fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut ContactTargets) {
     targets.retain(|target| node.is_over(target, beyond));
     let kept = targets.len();
     for target in found {

@@ -175,7 +175,7 @@ impl PairTarget {
 }
 
 /// The targets of a node, mostly one.
-pub type Targets = SmallVec<[ContactTarget; 4]>;
+pub type ContactTargets = SmallVec<[ContactTarget; 4]>;
 
 /// Segments near a node, mostly few.
 type Segments = SmallVec<[usize; 8]>;
@@ -203,8 +203,8 @@ pub fn rise(start: &Projection, before: f64, s: [f64; 2]) -> f64 {
 impl SlaveNode<'_> {
     /// The targets of the node in the order of their segments; the candidates must come in this
     /// order.
-    pub fn targets(&self, candidates: impl Iterator<Item = Candidate>) -> Targets {
-        let mut targets = Targets::new();
+    pub fn targets(&self, candidates: impl Iterator<Item = Candidate>) -> ContactTargets {
+        let mut targets = ContactTargets::new();
         let mut faced = Segments::new();
         self.list_faced(candidates, &mut faced);
         match faced.as_slice() {
@@ -224,7 +224,7 @@ impl SlaveNode<'_> {
     }
 
     /// Adds the target in a run of segments, and those across concave corners near it.
-    fn add_targets(&self, run: &[usize], targets: &mut Targets) {
+    fn add_targets(&self, run: &[usize], targets: &mut ContactTargets) {
         let (segment, target) = if let Some(target) = self.slid_on(run) {
             (target.segment, target)
         } else {

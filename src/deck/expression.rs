@@ -22,19 +22,19 @@ use nom::{IResult, Parser};
 
 /// Value of a parameter. Whole numbers stay whole under +, -, *, ** and where a function keeps them.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Value {
+pub(super) enum ParameterValue {
     Whole(i64),
     Real(f64),
     Text(String),
 }
 
-impl Value {
+impl ParameterValue {
     /// As it stands in a deck: a real number with all its digits, and with a decimal point or an exponent.
     pub fn written(&self) -> String {
         match self {
-            Value::Whole(value) => value.to_string(),
-            Value::Real(value) => format!("{value:?}"),
-            Value::Text(text) => text.clone(),
+            ParameterValue::Whole(value) => value.to_string(),
+            ParameterValue::Real(value) => format!("{value:?}"),
+            ParameterValue::Text(text) => text.clone(),
         }
     }
 }
@@ -56,8 +56,8 @@ const MOST_OPERATORS: usize = 1000;
 /// The value of an expression, and the names that it uses.
 pub(super) fn evaluate(
     text: &str,
-    values: &BTreeMap<String, Value>,
-) -> Result<(Value, Vec<String>), Fault> {
+    values: &BTreeMap<String, ParameterValue>,
+) -> Result<(ParameterValue, Vec<String>), Fault> {
     let operators = text.bytes().filter(|byte| b"(-+*/".contains(byte)).count();
     if operators > MOST_OPERATORS || nesting(text) > DEEPEST {
         return Err(fault(0..text.len(), "the expression is too long"));
@@ -79,7 +79,7 @@ pub(super) fn evaluate(
         return Err(fault(at..at + char_len(c), &message));
     }
     let mut used = Vec::new();
-    let scope = Evaluation {
+    let scope = Evaluator {
         length: text.len(),
         values,
     };
@@ -285,23 +285,25 @@ fn number(input: &str) -> Parsed<'_, Tree<'_>> {
 }
 
 /// Evaluates the nodes of an expression.
-struct Evaluation<'v> {
+struct Evaluator<'v> {
     /// Bytes of the expression.
     length: usize,
-    values: &'v BTreeMap<String, Value>,
+    values: &'v BTreeMap<String, ParameterValue>,
 }
 
-impl Evaluation<'_> {
+impl Evaluator<'_> {
     fn fault(&self, (left, word): WordPlace, message: &str) -> Fault {
         let at = self.length - left;
         fault(at..at + word.len(), message)
     }
 
-    fn value(&self, tree: &Tree, used: &mut Vec<String>) -> Result<Value, Fault> {
+    fn value(&self, tree: &Tree, used: &mut Vec<String>) -> Result<ParameterValue, Fault> {
         match tree {
-            Tree::Text(text) => Ok(Value::Text((*text).to_owned())),
+            Tree::Text(text) => Ok(ParameterValue::Text((*text).to_owned())),
             Tree::Number(place) => self.number(*place),
-            Tree::Name((_, "pi")) if !self.values.contains_key("pi") => Ok(Value::Real(PI)),
+            Tree::Name((_, "pi")) if !self.values.contains_key("pi") => {
+                Ok(ParameterValue::Real(PI))
+            }
             Tree::Name(place) => {
                 let value = self.values.get(place.1).cloned();
                 used.push(place.1.to_owned());
@@ -314,8 +316,8 @@ impl Evaluation<'_> {
                 })
             }
             Tree::Minus(place, operand) => match self.value(operand, used)? {
-                Value::Whole(value) => Ok(Value::Whole(-value)),
-                value => Ok(Value::Real(-self.real(&value, *place)?)),
+                ParameterValue::Whole(value) => Ok(ParameterValue::Whole(-value)),
+                value => Ok(ParameterValue::Real(-self.real(&value, *place)?)),
             },
             Tree::Binary(place, operands) => {
                 let [a, b] = operands.each_ref().map(|operand| self.value(operand, used));
@@ -331,31 +333,38 @@ impl Evaluation<'_> {
         }
     }
 
-    fn number(&self, place: WordPlace) -> Result<Value, Fault> {
+    fn number(&self, place: WordPlace) -> Result<ParameterValue, Fault> {
         let is_whole = place.1.bytes().all(|byte| byte.is_ascii_digit());
         match (is_whole, place.1.parse()) {
-            (true, Ok(value)) => Ok(Value::Whole(value)),
+            (true, Ok(value)) => Ok(ParameterValue::Whole(value)),
             _ => self.finite(place, place.1.parse().unwrap_or(f64::NAN)),
         }
     }
 
-    fn real(&self, value: &Value, place: WordPlace) -> Result<f64, Fault> {
+    fn real(&self, value: &ParameterValue, place: WordPlace) -> Result<f64, Fault> {
         match value {
-            Value::Whole(value) => Ok(*value as f64),
-            Value::Real(value) => Ok(*value),
-            Value::Text(text) => Err(self.fault(place, &format!("the text '{text}' is no number"))),
+            ParameterValue::Whole(value) => Ok(*value as f64),
+            ParameterValue::Real(value) => Ok(*value),
+            ParameterValue::Text(text) => {
+                Err(self.fault(place, &format!("the text '{text}' is no number")))
+            }
         }
     }
 
-    fn finite(&self, place: WordPlace, value: f64) -> Result<Value, Fault> {
+    fn finite(&self, place: WordPlace, value: f64) -> Result<ParameterValue, Fault> {
         match value.is_finite() {
-            true => Ok(Value::Real(value)),
+            true => Ok(ParameterValue::Real(value)),
             false => Err(self.fault(place, "this has no finite value")),
         }
     }
 
-    fn binary(&self, place: WordPlace, a: &Value, b: &Value) -> Result<Value, Fault> {
-        if let (Value::Whole(a), Value::Whole(b)) = (a, b) {
+    fn binary(
+        &self,
+        place: WordPlace,
+        a: &ParameterValue,
+        b: &ParameterValue,
+    ) -> Result<ParameterValue, Fault> {
+        if let (ParameterValue::Whole(a), ParameterValue::Whole(b)) = (a, b) {
             let whole = match place.1 {
                 "+" => a.checked_add(*b),
                 "-" => a.checked_sub(*b),
@@ -364,7 +373,7 @@ impl Evaluation<'_> {
                 _ => None,
             };
             if let Some(value) = whole {
-                return Ok(Value::Whole(value));
+                return Ok(ParameterValue::Whole(value));
             }
         }
         let [a, b] = [self.real(a, place)?, self.real(b, place)?];
@@ -379,11 +388,15 @@ impl Evaluation<'_> {
         self.finite(place, value)
     }
 
-    fn call(&self, place: WordPlace, arguments: &[Value]) -> Result<Value, Fault> {
+    fn call(
+        &self,
+        place: WordPlace,
+        arguments: &[ParameterValue],
+    ) -> Result<ParameterValue, Fault> {
         let keeps_whole = matches!(place.1, "abs" | "min" | "max");
         let wholes = || {
             arguments.iter().map(|value| match value {
-                Value::Whole(value) => Some(*value),
+                ParameterValue::Whole(value) => Some(*value),
                 _ => None,
             })
         };
@@ -396,7 +409,7 @@ impl Evaluation<'_> {
                 _ => None,
             };
             if let Some(value) = value {
-                return Ok(Value::Whole(value));
+                return Ok(ParameterValue::Whole(value));
             }
         }
         let x: Result<Vec<f64>, Fault> = arguments
@@ -440,11 +453,11 @@ const FUNCTIONS: [&str; 14] = [
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Result<Value, Fault> {
+    fn of(text: &str) -> Result<ParameterValue, Fault> {
         let values = [
-            ("mu", Value::Real(0.3)),
-            ("n", Value::Whole(4)),
-            ("name", Value::Text("STEEL".into())),
+            ("mu", ParameterValue::Real(0.3)),
+            ("n", ParameterValue::Whole(4)),
+            ("name", ParameterValue::Text("STEEL".into())),
         ];
         let values = values.map(|(name, value)| (name.to_owned(), value)).into();
         evaluate(text, &values).map(|(value, _)| value)

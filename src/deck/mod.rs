@@ -21,7 +21,7 @@ pub use card::{Card, DataLines, Instance, Param, Placement};
 pub use change::first_change;
 pub use collect::Deck;
 pub use keywords::{
-    Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value,
+    Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes, Value,
     dimensions_json, find_keyword, keyword_reference, keywords,
 };
 pub use lines::Line;

@@ -6,14 +6,14 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::expression::{Value, evaluate};
+use super::expression::{ParameterValue, evaluate};
 use super::lines::{Line, LineKind, Lines};
 use crate::diagnostics::{Code, Diagnostics, Replaced, Sources, Span, closest};
 
 /// The parameters of a deck that is being read.
 #[derive(Default)]
 pub(super) struct Parameters {
-    values: BTreeMap<String, Value>,
+    values: BTreeMap<String, ParameterValue>,
     /// Where they are defined.
     places: BTreeMap<String, Span>,
     /// Those that something uses.
@@ -145,7 +145,7 @@ impl Parameters {
             self.used.insert(name.to_owned());
             text.push_str(&line.text[rest.start..bytes.start]);
             let (column, typed) = (text.chars().count() as u32 + 1, line.span_of(bytes.clone()));
-            match self.values.get(name).map(Value::written) {
+            match self.values.get(name).map(ParameterValue::written) {
                 Some(value) => {
                     text.push_str(&value);
                     replaced.push(Replaced {

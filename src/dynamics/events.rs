@@ -57,7 +57,7 @@ struct Intrusion {
 
 impl Intrusion {
     /// Its gap at the end of a trial and the length that this is relative to; no number where the mean is over nothing.
-    fn gap(&self, problem: &StepProblem, trial: &Trial) -> [f64; 2] {
+    fn gap(&self, problem: &StepProblem, trial: &EventTrial) -> [f64; 2] {
         match self.allowed {
             Some(allowed) => {
                 let place = problem.positions(&trial.u).place(self.pair.nodes);
@@ -171,8 +171,8 @@ impl<'m> Subincrements<'_, 'm> {
         let means = self.workspace.means(problem, [&start.u; 2]);
         let search = &self.workspace.search;
         let mut active = ActiveConstraints::new(search, &start.u, &means, &start.contact);
-        let begin = || Trial::new(0.0, &start.u, &means);
-        let mut impact = ImpactTime::new(begin());
+        let begin = || EventTrial::new(0.0, &start.u, &means);
+        let mut impact = ImpactSearch::new(begin());
         let (mut tau, mut guess, mut before) = (rest, None, None);
         let mut entries = Vec::new();
         for _ in 0..TRIALS {
@@ -198,11 +198,11 @@ impl<'m> Subincrements<'_, 'm> {
             } else if entries.is_empty() {
                 return Ok(self.converged(tau, solved));
             }
-            let trial = Trial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
+            let trial = EventTrial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
             impact.take_in(trial.clone(), is_before);
             // a node that has just bounced off has hardly a gap at the start: there its motion tells
             let expected = |entry: &Intrusion| {
-                let gap = |trial: &Trial| entry.gap(problem, trial)[0];
+                let gap = |trial: &EventTrial| entry.gap(problem, trial)[0];
                 let root = impact.root(gap).filter(|root| *root >= group);
                 root.unwrap_or(entry.time)
             };
@@ -229,7 +229,7 @@ impl<'m> Subincrements<'_, 'm> {
                         .iter()
                         .for_each(|entry| active.join(entry.pair.key.slave()));
                 }
-                (impact, before, guess) = (ImpactTime::new(begin()), None, Some(path));
+                (impact, before, guess) = (ImpactSearch::new(begin()), None, Some(path));
                 tau = rest;
                 entries.clear();
                 continue;
@@ -453,7 +453,7 @@ impl<'m> Subincrements<'_, 'm> {
 
 /// A converged subincrement that starts like the others.
 #[derive(Clone)]
-pub(crate) struct Trial {
+pub(crate) struct EventTrial {
     /// Its length tau.
     length: f64,
     /// Displacements at its end.
@@ -462,13 +462,13 @@ pub(crate) struct Trial {
     means: Vec<(ConstraintKey, [f64; 2])>,
 }
 
-impl Trial {
+impl EventTrial {
     /// That of the given length, whose end has the displacements `u` and some constraints.
     fn new(length: f64, u: &[f64], constraints: &[Constraint]) -> Self {
         let weighted = constraints.iter().filter(|c| c.is_weighted());
         let mut means: Vec<_> = weighted.map(|c| (c.key, [c.gap, c.scale])).collect();
         means.sort_unstable_by_key(|(key, _)| *key);
-        Trial {
+        EventTrial {
             length,
             u: u.to_vec(),
             means,
@@ -483,21 +483,21 @@ impl Trial {
 }
 
 /// Looks for the length of a subincrement that ends at the first impact.
-pub(crate) struct ImpactTime {
+pub(crate) struct ImpactSearch {
     /// The longest trial that ends before an impact; at first the start.
-    before: Trial,
+    before: EventTrial,
     /// The shortest one that ends after it.
-    after: Option<Trial>,
+    after: Option<EventTrial>,
     /// The one that the last trial has taken the place of.
-    old: Option<Trial>,
+    old: Option<EventTrial>,
     /// The last two changes of the length.
     steps: [f64; 2],
 }
 
-impl ImpactTime {
+impl ImpactSearch {
     /// Begins with the start, a trial without length.
-    pub fn new(start: Trial) -> Self {
-        ImpactTime {
+    pub fn new(start: EventTrial) -> Self {
+        ImpactSearch {
             before: start,
             after: None,
             old: None,
@@ -506,7 +506,7 @@ impl ImpactTime {
     }
 
     /// Takes in a trial that ends before, or after, an impact.
-    pub fn take_in(&mut self, trial: Trial, is_before: bool) {
+    pub fn take_in(&mut self, trial: EventTrial, is_before: bool) {
         self.old = match is_before {
             true => Some(std::mem::replace(&mut self.before, trial)),
             false => self.after.replace(trial),
@@ -515,7 +515,7 @@ impl ImpactTime {
 
     /// When the gap that a pair has at the end of a trial is zero: by inverse quadratic interpolation of
     /// three trials, or else linear interpolation of two. None where it has no change of sign.
-    pub fn root(&self, gap: impl Fn(&Trial) -> f64) -> Option<f64> {
+    pub fn root(&self, gap: impl Fn(&EventTrial) -> f64) -> Option<f64> {
         let (low, high) = (&self.before, self.after.as_ref()?);
         let (g, h) = (gap(low), gap(high));
         if !(g >= 0.0 && h < 0.0) {
@@ -556,8 +556,8 @@ mod tests {
 
     /// Number of trials until the root of a gap is found to 1e-10, from the length 1 on.
     fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
-        let trial = |tau: f64| Trial::new(tau, &[gap(tau)], &[]);
-        let (mut search, mut tau) = (ImpactTime::new(trial(0.0)), 1.0);
+        let trial = |tau: f64| EventTrial::new(tau, &[gap(tau)], &[]);
+        let (mut search, mut tau) = (ImpactSearch::new(trial(0.0)), 1.0);
         (1..40).find(|_| {
             search.take_in(trial(tau), gap(tau) >= 0.0);
             let expected = search.root(|trial| trial.u[0]);
@@ -589,10 +589,10 @@ mod tests {
 
     #[test]
     fn a_gap_that_jumps_is_bracketed() {
-        let (mut search, mut tau) = (ImpactTime::new(Trial::new(0.0, &[1.0], &[])), 1.0);
+        let (mut search, mut tau) = (ImpactSearch::new(EventTrial::new(0.0, &[1.0], &[])), 1.0);
         for _ in 0..12 {
             let gap = if tau < 0.4 { 1.0 } else { -1e-6 };
-            search.take_in(Trial::new(tau, &[gap], &[]), gap > 0.0);
+            search.take_in(EventTrial::new(tau, &[gap], &[]), gap > 0.0);
             let root = search.root(|trial| trial.u[0]);
             tau = search.next(tau, root);
         }

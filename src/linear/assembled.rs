@@ -29,14 +29,14 @@ type SharedPattern = CsMatBase<f64, usize, Arc<[usize]>, Arc<[usize]>, Vec<f64>>
 #[derive(Debug, Clone)]
 pub struct Assembled {
     matrix: SharedPattern,
-    positions: Arc<Positions>,
+    positions: Arc<EntryPositions>,
     /// Coefficients of the terms of T that couplings take.
     coefficients: Vec<f64>,
 }
 
 /// Where the entries of the element matrices are added.
 #[derive(Debug)]
-struct Positions {
+struct EntryPositions {
     /// Position in the values of the entries of every element matrix, column by column: of every
     /// entry, or of every other one where the next is added to the next value.
     positions: Vec<u32>,
@@ -135,7 +135,7 @@ fn elements_of<I: Iterator<Item = (usize, usize)>>(
     (starts, elements)
 }
 
-impl Positions {
+impl EntryPositions {
     /// Finds the positions of the entries of the next element matrix, over the given dofs.
     fn place(&mut self, pattern: &Pattern, map: &Transformation, dofs: &[usize]) {
         let mut unknowns: SmallVec<[usize; DOFS]> = SmallVec::new();
@@ -217,7 +217,7 @@ impl Assembled {
     pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
         let (n, pattern) = (map.unknowns(), Pattern::new(map, elements));
         let entries: usize = elements.iter().map(|dofs| dofs.len().pow(2)).sum();
-        let mut positions = Positions {
+        let mut positions = EntryPositions {
             positions: Vec::with_capacity(entries),
             starts: Vec::with_capacity(elements.len() + 1),
             diagonal: (0..n).map(|i| pattern.position(i, i)).collect(),
@@ -263,7 +263,7 @@ impl Assembled {
 
     /// Adds `factor` times the matrix `k` (column by column) of an element.
     pub fn add(&mut self, element: usize, k: &[f64], factor: f64) {
-        let Positions {
+        let EntryPositions {
             positions, starts, ..
         } = &*self.positions;
         let positions = &positions[starts[element]..starts[element + 1]];
@@ -292,7 +292,7 @@ impl Assembled {
 
     /// Whether an element adds to any value.
     pub fn depends_on(&self, element: usize) -> bool {
-        let Positions {
+        let EntryPositions {
             positions, starts, ..
         } = &*self.positions;
         let positions = &positions[starts[element]..starts[element + 1]];

@@ -29,7 +29,7 @@ use crate::model::{
 use crate::vectors::cross;
 
 /// What a dataset holds of a record `Q`.
-enum Content<Q> {
+enum DatasetContent<Q> {
     Real(fn(&Q) -> f64),
     Vector(fn(&Q) -> [f64; 2]),
     Tensor(fn(&Q) -> [f64; 3]),
@@ -42,10 +42,10 @@ enum Content<Q> {
     Bodies(fn(&Q) -> [Option<usize>; 2]),
 }
 
-use Content::{Count, Flag, Node, Real, Segment, Tensor, Vector};
+use DatasetContent::{Count, Flag, Node, Real, Segment, Tensor, Vector};
 
 /// A dataset of the records `Q`: name, dimension, what it holds, and its value.
-type DatasetEntry<Q> = (&'static str, &'static str, &'static str, Content<Q>);
+type DatasetEntry<Q> = (&'static str, &'static str, &'static str, DatasetContent<Q>);
 
 /// The datasets of the history while they are created.
 pub(crate) struct History<'m> {
@@ -195,9 +195,11 @@ impl<'m> History<'m> {
                 Segment(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
                     each(r, &mut |q| v.extend(of(q).map(label)));
                 }),
-                Content::Bodies(of) => all.add(at, name, counts(&[2]), about, move |r, v| {
-                    each(r, &mut |q| v.extend(of(q).map(number)));
-                }),
+                DatasetContent::Bodies(of) => {
+                    all.add(at, name, counts(&[2]), about, move |r, v| {
+                        each(r, &mut |q| v.extend(of(q).map(number)));
+                    })
+                }
                 Flag(of) => {
                     let flags = Layout::one_by_one::<u8>(records, mostly);
                     all.add(at, name, flags, about, move |r, v: &mut Vec<u8>| {
@@ -773,7 +775,7 @@ const TOUCH: [DatasetEntry<Touch>; 10] = [
     ("last", "1", "its last increment", Count(|t| t.last)),
     ("nodes", "1", "most nodes of one side in contact at a time", Count(|t| t.nodes)),
     ("corner", "1", "1 where it reached a corner of an outline", Count(|t| t.is_at_corner.into())),
-    ("bodies", "1", "its bodies; -1 for a rigid surface", Content::Bodies(|t| t.bodies)),
+    ("bodies", "1", "its bodies; -1 for a rigid surface", DatasetContent::Bodies(|t| t.bodies)),
     ("node", "1", "number of a slave node that landed first", Node(|t| t.node)),
 ];
 

@@ -44,7 +44,7 @@ pub use job::{Claim, JobFiles};
 pub use memory::{MemoryError, check_memory, memory_need};
 pub use model_group::{check_names, contact_names};
 pub use picture::picture;
-pub use restart::{Checkpoint, CheckpointError, Origin};
+pub use restart::{Checkpoint, CheckpointError, RestartOrigin};
 pub use result_summary::{ResultSummary, SummaryError};
 pub use run_record::{RunRecord, UNFINISHED};
 pub use writer::{Checkpoints, Interrupt, ResultWriter};

@@ -24,7 +24,7 @@ pub struct Checkpoint {
     /// The program that wrote it: version and commit.
     pub program: String,
     /// How the deck was read and run.
-    pub origin: Origin,
+    pub origin: RestartOrigin,
     /// Time at the end of the last increment.
     pub time: f64,
     /// Its step, and its number in the step.
@@ -39,7 +39,7 @@ pub struct Checkpoint {
 
 /// Deck and options of a run, which the run that goes on must have as well.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Origin {
+pub struct RestartOrigin {
     /// The deck with its includes, file by file: name and text.
     pub deck: Vec<(String, String)>,
     /// Options that change what is computed or written.

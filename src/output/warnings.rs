@@ -344,13 +344,13 @@ pub(crate) struct Touches {
     /// Number of touches that matter.
     all: usize,
     /// Those of too few increments: their number and the one with the fewest.
-    brief: Worst,
+    brief: WorstTouch,
     /// Those of too few nodes.
-    narrow: Worst,
+    narrow: WorstTouch,
 }
 
 /// Number of touches that are not resolved, and the worst.
-type Worst = Option<(usize, Touch)>;
+type WorstTouch = Option<(usize, Touch)>;
 
 impl Touches {
     /// Of all touches of a run those that matter beside its largest energy.
@@ -420,7 +420,10 @@ fn join(touch: &mut Touch, next: &Touch) {
     touch.energy = (touch.energy.sqrt() + next.energy.sqrt()).powi(2);
 }
 
-fn worst<'t>(touches: impl Iterator<Item = &'t Touch> + Clone, of: fn(&Touch) -> usize) -> Worst {
+fn worst<'t>(
+    touches: impl Iterator<Item = &'t Touch> + Clone,
+    of: fn(&Touch) -> usize,
+) -> WorstTouch {
     let worst = touches.clone().min_by_key(|touch| of(touch))?;
     Some((touches.count(), *worst))
 }

@@ -17,7 +17,7 @@ use super::frames::{Frame, FrameSchedule};
 use super::job::Claim;
 use super::model_group::check_names;
 use super::monitor::{Monitor, Remarks, lcp_lines, timing_lines};
-use super::restart::{Checkpoint, Origin};
+use super::restart::{Checkpoint, RestartOrigin};
 use super::result_file::ResultFile;
 use super::run_record::RunRecord;
 use super::status::StatusFile;
@@ -64,7 +64,7 @@ pub struct Checkpoints {
     /// The program: version and commit.
     pub program: String,
     /// Deck and options of the run.
-    pub origin: Origin,
+    pub origin: RestartOrigin,
     /// Wall-clock time from one to the next, where the deck does not say when.
     pub every: Option<Duration>,
 }

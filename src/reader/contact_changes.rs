@@ -21,7 +21,7 @@ pub(crate) struct ContactHistory<'a> {
     /// Friction of each, in the end where a change is under way.
     friction: Vec<Friction>,
     /// Changes under way by amplitudes.
-    under_way: Vec<Option<UnderWay>>,
+    under_way: Vec<Option<ChangeUnderWay>>,
     /// Those that do not act, increasing.
     removed: Vec<usize>,
     /// Total time at which the step starts, and duration of the step before.
@@ -31,7 +31,7 @@ pub(crate) struct ContactHistory<'a> {
 
 /// A change of friction that follows an amplitude.
 #[derive(Clone)]
-struct UnderWay {
+struct ChangeUnderWay {
     from: Friction,
     amplitude: usize,
     /// Place of the amplitude's name.
@@ -154,7 +154,7 @@ impl<'a> ContactHistory<'a> {
             let from = before[contact].clone();
             if let Some(amplitude) = amplitude.filter(|_| from.ramps_to(&now)) {
                 follows = true;
-                self.under_way[contact] = Some(UnderWay {
+                self.under_way[contact] = Some(ChangeUnderWay {
                     from,
                     amplitude,
                     span,
@@ -185,7 +185,7 @@ impl<'a> ContactHistory<'a> {
     /// Ends changes under way with some amplitudes.
     fn end_changes(&mut self, ends: impl Fn(&Amplitude) -> bool, cx: &mut Context) {
         for contact in 0..self.under_way.len() {
-            let curve = |change: &UnderWay| self.amplitudes.named.all.get(change.amplitude);
+            let curve = |change: &ChangeUnderWay| self.amplitudes.named.all.get(change.amplitude);
             let change = self.under_way[contact].take_if(|change| curve(change).is_some_and(&ends));
             if let Some(change) = change {
                 self.check_end(&change, cx);
@@ -194,7 +194,7 @@ impl<'a> ContactHistory<'a> {
     }
 
     /// A change by an amplitude must be complete at the end of the step before.
-    fn check_end(&self, change: &UnderWay, cx: &mut Context) {
+    fn check_end(&self, change: &ChangeUnderWay, cx: &mut Context) {
         let Some(curve) = self.amplitudes.named.all.get(change.amplitude) else {
             return;
         };

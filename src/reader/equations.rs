@@ -29,13 +29,13 @@ struct Term {
 }
 
 /// An equation of single dofs, u_dof = sum c_k u_k.
-struct Solved {
+struct SolvedEquation {
     terms: Vec<(usize, f64)>,
     span: Span,
 }
 
 /// Equations by the dofs that they eliminate.
-type ByDof = BTreeMap<usize, Solved>;
+type ByDof = BTreeMap<usize, SolvedEquation>;
 
 /// Reads all equations with their places: those between eliminated dofs are substituted into each
 /// other.
@@ -50,7 +50,7 @@ pub(crate) fn read(
     for cut in cuts {
         for Equation { dof, terms } in cut.equations() {
             let span = cut.span;
-            solved.insert(dof, Solved { terms, span });
+            solved.insert(dof, SolvedEquation { terms, span });
         }
     }
     for card in outline.model_cards("EQUATION") {
@@ -180,7 +180,7 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
             let c = -term.coefficient / first.coefficient;
             (2 * at(term) + term.direction, c)
         });
-        let equation = Solved {
+        let equation = SolvedEquation {
             terms: others.collect(),
             span: first.span,
         };
@@ -211,9 +211,9 @@ fn of_ties(ties: &Ties, targets: Targets, steps: &[Step], cx: &mut Context) -> B
         {
             let Equation { dof, terms } = equation;
             match tied_and_prescribed(dof, &terms, steps) {
-                Prescribed::Not => drop(solved.insert(dof, Solved { terms, span })),
-                Prescribed::Alike => {}
-                Prescribed::Otherwise => held.push(dof),
+                PrescribedDof::Not => drop(solved.insert(dof, SolvedEquation { terms, span })),
+                PrescribedDof::Alike => {}
+                PrescribedDof::Otherwise => held.push(dof),
             }
         }
         if let Some(&dof) = held.first() {
@@ -269,7 +269,7 @@ fn of_links(
                 terms[index] = (dof, 1.0 / weight);
                 dof = first;
             }
-            if solved.insert(dof, Solved { terms, span }).is_some() {
+            if solved.insert(dof, SolvedEquation { terms, span }).is_some() {
                 let message = format!("{} follows other nodes already", name(dof, targets));
                 cx.error(Code::Coupling, span, message);
             }
@@ -278,7 +278,7 @@ fn of_links(
 }
 
 /// Whether a tied dof is prescribed.
-enum Prescribed {
+enum PrescribedDof {
     Not,
     /// As the dofs of the master in the same direction are: its support makes what the tie would.
     Alike,
@@ -286,7 +286,7 @@ enum Prescribed {
 }
 
 /// Whether a tied dof is prescribed, and in all steps as those of the same direction that it follows.
-fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> Prescribed {
+fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> PrescribedDof {
     let motion = |step: &Step, dof: usize| -> Option<SupportMotion> {
         let supports = &step.supports;
         let found = supports.binary_search_by_key(&dof, |support| support.dof);
@@ -294,16 +294,16 @@ fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> Pr
     };
     let same_direction = || terms.iter().filter(|(to, _)| to % 2 == dof % 2);
     if steps.iter().all(|step| motion(step, dof).is_none()) {
-        return Prescribed::Not;
+        return PrescribedDof::Not;
     }
     let alike = steps.iter().all(|step| {
         let own = motion(step, dof);
         own.is_some() && same_direction().all(|(to, _)| motion(step, *to) == own)
     });
     if alike {
-        Prescribed::Alike
+        PrescribedDof::Alike
     } else {
-        Prescribed::Otherwise
+        PrescribedDof::Otherwise
     }
 }
 
@@ -332,7 +332,7 @@ fn report_prescribed(solved: &ByDof, steps: &[Step], targets: Targets, cx: &mut 
 fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Equation, Span)> {
     let mut equations = BTreeMap::new();
     for dof in elimination_order(&solved) {
-        let Some(Solved { terms: own, span }) = solved.remove(&dof) else {
+        let Some(SolvedEquation { terms: own, span }) = solved.remove(&dof) else {
             continue;
         };
         let mut terms = BTreeMap::new();

@@ -338,7 +338,7 @@ pub(crate) fn dof_name(dof: usize, rigid_bodies: &[Rigid], mesh_index: &MeshInde
 
 /// How a rigid body moves in all steps.
 #[derive(Clone, Copy, PartialEq)]
-enum RigidMotion {
+enum BodyMotion {
     /// By the supports of its nodes, which are those of the reference node.
     Translates,
     /// It has an angle of its own, with this number.
@@ -359,17 +359,17 @@ pub(crate) fn complete(
         let turns = turns(rigid, angle_dof(number, mesh), steps, velocity);
         count += usize::from(turns);
         match turns {
-            true => RigidMotion::Turns(count - 1),
-            false => RigidMotion::Translates,
+            true => BodyMotion::Turns(count - 1),
+            false => BodyMotion::Translates,
         }
     });
-    let motions: Vec<RigidMotion> = motions.collect();
+    let motions: Vec<BodyMotion> = motions.collect();
     let all = rigid_bodies.iter().zip(&motions).enumerate();
     for (number, (rigid, motion)) in all {
         let angle = angle_dof(number, mesh);
         match motion {
-            RigidMotion::Translates => report_moments(rigid, angle, steps, cx),
-            RigidMotion::Turns(_) => {
+            BodyMotion::Translates => report_moments(rigid, angle, steps, cx),
+            BodyMotion::Turns(_) => {
                 complete_turning(rigid, angle, mesh_index, steps, cx);
                 report_own_velocities(rigid, angle, mesh_index, velocity, cx);
             }
@@ -397,12 +397,12 @@ pub(crate) fn complete(
     let nodes = mesh.dof_count();
     let angles = velocity.split_off(nodes.min(velocity.len()));
     for (number, motion) in motions.iter().enumerate() {
-        if let RigidMotion::Turns(_) = motion {
+        if let BodyMotion::Turns(_) = motion {
             let omega = angles.get(angle_dof(number, mesh) - nodes);
             velocity.extend([0.0, 0.0, omega.copied().unwrap_or(0.0), 0.0]);
         }
     }
-    let body = |(rigid, motion): (&Rigid, &RigidMotion)| RigidBody {
+    let body = |(rigid, motion): (&Rigid, &BodyMotion)| RigidBody {
         name: rigid.name.clone(),
         surface: rigid.surface,
         reference: rigid.reference,
@@ -410,8 +410,8 @@ pub(crate) fn complete(
         elements: rigid.elements.clone(),
         is_coupling: rigid.is_coupling,
         turning: match *motion {
-            RigidMotion::Translates => None,
-            RigidMotion::Turns(number) => Some(TurningBody {
+            BodyMotion::Translates => None,
+            BodyMotion::Turns(number) => Some(TurningBody {
                 number,
                 masses: rigid.masses.clone(),
                 rotary_inertia: rigid.rotary_inertia,
@@ -463,12 +463,12 @@ pub(crate) fn check(
 }
 
 /// The dof with the number that the angle of a body has among those that turn; none of a body that does not.
-fn renumbered(dof: usize, motions: &[RigidMotion], mesh: &Mesh) -> Option<usize> {
+fn renumbered(dof: usize, motions: &[BodyMotion], mesh: &Mesh) -> Option<usize> {
     match dof.checked_sub(angle_dof(0, mesh)) {
         None => Some(dof),
         Some(number) => match motions.get(number / 4)? {
-            RigidMotion::Turns(number) => Some(angle_dof(*number, mesh)),
-            RigidMotion::Translates => None,
+            BodyMotion::Turns(number) => Some(angle_dof(*number, mesh)),
+            BodyMotion::Translates => None,
         },
     }
 }
@@ -632,7 +632,7 @@ fn report_empty_coupling(
 /// nodes.
 fn follow(
     rigid_bodies: &[Rigid],
-    of_bodies: &[RigidMotion],
+    of_bodies: &[BodyMotion],
     mesh_index: &MeshIndex,
     step: usize,
     supports: &mut Vec<Support>,
@@ -641,7 +641,7 @@ fn follow(
     let mut motions: BTreeMap<usize, SupportMotion> = BTreeMap::new();
     motions.extend(supports.iter().map(|support| (support.dof, support.motion)));
     let all = rigid_bodies.iter().zip(of_bodies);
-    for (rigid, _) in all.filter(|(_, motion)| **motion == RigidMotion::Translates) {
+    for (rigid, _) in all.filter(|(_, motion)| **motion == BodyMotion::Translates) {
         for direction in 0..2 {
             let Some(&motion) = motions.get(&(2 * rigid.reference + direction)) else {
                 report_free(rigid, direction, step, cx);

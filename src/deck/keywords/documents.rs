@@ -2,7 +2,7 @@
 //! dimensions as JSON for programs that change the units of a deck.
 
 use super::keywords;
-use super::types::{Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes};
+use super::types::{Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes};
 use crate::diagnostics::wrapped;
 use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
@@ -252,7 +252,7 @@ pub(super) fn meaning(parameter: &Parameter) -> String {
 }
 
 /// A kind of data lines: which ones, their fields, and the dimensions of those that have one.
-pub(super) fn form(form: &RowForm) -> String {
+pub(super) fn form(form: &DataLineForm) -> String {
     let names: Vec<&str> = form.fields().map(|field| field.name).collect();
     let over = if form.repeating > 0 { ", ..." } else { "" };
     let dimensions: Vec<String> = form.fields().filter_map(dimension).collect();
@@ -270,7 +270,7 @@ fn dimension(field: Field) -> Option<String> {
 }
 
 /// Which lines are of a kind.
-fn condition(form: &RowForm) -> String {
+fn condition(form: &DataLineForm) -> String {
     let under = form.parameter.map(|parameter| match parameter {
         (name, "") => format!("with `{name}`"),
         (name, value) => format!("with `{name}={value}`"),
@@ -316,7 +316,7 @@ fn entry(keyword: &Keyword) -> Option<String> {
     Some(format!("\"{}\": {content}", keyword.name))
 }
 
-fn row(form: &RowForm) -> Json {
+fn row(form: &DataLineForm) -> Json {
     let fields: Vec<Json> = form.fields().map(|field| quantity(field.holds)).collect();
     let mut row = json!({"fields": fields});
     if let Some(parameter) = form.parameter {

@@ -6,7 +6,9 @@ mod table;
 mod types;
 
 pub use documents::{dimensions_json, keyword_reference};
-pub use types::{Data, Field, Keyword, Parameter, Quantity, RowForm, Scope, Status, Takes, Value};
+pub use types::{
+    Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes, Value,
+};
 
 use super::text::fold;
 use std::collections::HashMap;

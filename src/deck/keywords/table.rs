@@ -16,7 +16,7 @@
 //!
 //! A line that begins with four blanks continues the one before; lines with two stars are comments.
 
-use super::types::{Data, Keyword, Parameter, RowForm, Scope, Status, Takes, Value};
+use super::types::{Data, DataLineForm, Keyword, Parameter, Scope, Status, Takes, Value};
 
 /// The keywords of a text, in its order.
 pub(super) fn read(text: &'static str) -> Vec<Keyword> {
@@ -172,9 +172,9 @@ fn value(line: &'static str) -> Value {
 }
 
 /// `condition | condition | fields`
-fn form(line: &'static str) -> RowForm {
+fn form(line: &'static str) -> DataLineForm {
     let (conditions, fields) = line.rsplit_once(" | ").unwrap_or(("", line));
-    let mut form = RowForm {
+    let mut form = DataLineForm {
         parameter: None,
         word: None,
         first: false,

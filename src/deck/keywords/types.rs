@@ -28,9 +28,9 @@ pub enum Data {
     /// It takes none.
     None,
     /// Any number of rows; the first form that fits a row holds.
-    Rows(&'static [RowForm]),
+    Rows(&'static [DataLineForm]),
     /// At least one row.
-    Required(&'static [RowForm]),
+    Required(&'static [DataLineForm]),
     /// Free text.
     Text,
     /// Words that are not looked at.
@@ -41,7 +41,7 @@ pub enum Data {
 
 impl Data {
     /// The kinds of data lines.
-    pub fn forms(self) -> &'static [RowForm] {
+    pub fn forms(self) -> &'static [DataLineForm] {
         match self {
             Data::Rows(forms) | Data::Required(forms) => forms,
             Data::None | Data::Text | Data::Words | Data::Skipped => &[],
@@ -200,7 +200,7 @@ pub struct Field {
 
 /// The fields of a kind of data line; the conditions say which lines are of this kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RowForm {
+pub struct DataLineForm {
     /// Parameter and value of the keyword line that these lines belong to; an empty value stands
     /// for a parameter without value.
     pub parameter: Option<(&'static str, &'static str)>,
@@ -214,7 +214,7 @@ pub struct RowForm {
     pub repeating: usize,
 }
 
-impl RowForm {
+impl DataLineForm {
     /// The fields.
     pub fn fields(&self) -> impl Iterator<Item = Field> {
         self.fields

@@ -36,7 +36,7 @@ pub(super) struct Trace {
     pub worst: Option<Worst>,
     /// Number of passes before they last began with the predictor.
     earlier: usize,
-    contact: ContactHistory,
+    contact: PassContacts,
     /// Largest force that the passes were to balance, of the first pass and of the last.
     unbalanced: Option<[f64; 2]>,
 }
@@ -183,14 +183,14 @@ struct Touch {
 
 /// Closed pairs after each of the last passes.
 #[derive(Debug, Default)]
-pub(super) struct ContactHistory {
+pub(super) struct PassContacts {
     /// Those of one pass after the other.
     touches: Vec<Touch>,
     /// Their number in every pass.
     counts: VecDeque<usize>,
 }
 
-impl ContactHistory {
+impl PassContacts {
     /// Forgets the passes so far.
     pub fn clear(&mut self) {
         self.touches.clear();
@@ -368,7 +368,7 @@ mod alternation_tests {
     }
 
     fn alternations(passes: &[&[Touch]]) -> Vec<Alternation> {
-        let mut history = ContactHistory::default();
+        let mut history = PassContacts::default();
         passes
             .iter()
             .for_each(|touches| history.push(touches.iter().copied()));

@@ -30,12 +30,12 @@ pub(crate) struct Touches {
     corners: Vec<bool>,
     /// Number of increments so far.
     increments: usize,
-    under_way: BTreeMap<[Partner; 2], UnderWay>,
+    under_way: BTreeMap<[Partner; 2], TouchUnderWay>,
 }
 
 /// A touch that has not ended.
 #[derive(Default, serde::Serialize, serde::Deserialize)]
-struct UnderWay {
+struct TouchUnderWay {
     touch: Touch,
     /// Impulse on the first partner.
     impulse: [f64; 2],
@@ -84,7 +84,7 @@ impl Touches {
         }
         for (both, pairs) in &pairs {
             let under_way = (self.under_way.entry(*both))
-                .or_insert_with(|| UnderWay::begin(*both, pairs, interval, self.increments));
+                .or_insert_with(|| TouchUnderWay::begin(*both, pairs, interval, self.increments));
             under_way.touch.last = self.increments;
             under_way.measure(bodies, pairs, &self.corners);
             for (slave, work) in under_way.hand_over(pairs, &solved.d) {
@@ -92,7 +92,7 @@ impl Touches {
             }
         }
         self.add_impulses(bodies, solved, interval.dt);
-        let has_ended = |under_way: &UnderWay| under_way.touch.last < self.increments;
+        let has_ended = |under_way: &TouchUnderWay| under_way.touch.last < self.increments;
         let ended: Vec<[Partner; 2]> = (self.under_way.iter())
             .filter(|(_, under_way)| has_ended(under_way))
             .map(|(both, _)| *both)
@@ -160,7 +160,7 @@ fn sides(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     )
 }
 
-impl UnderWay {
+impl TouchUnderWay {
     /// A touch that begins with some pairs in an increment, whose number is given.
     fn begin(
         both: [Partner; 2],
@@ -168,7 +168,7 @@ impl UnderWay {
         interval: Interval,
         increment: usize,
     ) -> Self {
-        UnderWay {
+        TouchUnderWay {
             touch: Touch {
                 bodies: both.map(Partner::body),
                 node: pairs[0].0.pair().nodes[0],
@@ -176,7 +176,7 @@ impl UnderWay {
                 first: increment,
                 ..Touch::default()
             },
-            ..UnderWay::default()
+            ..TouchUnderWay::default()
         }
     }
 

@@ -5,7 +5,7 @@ use std::{io, iter};
 
 use super::acceptance::{Accepted, SubincrementStart, failure, failure_at_start, start_failure};
 use super::time_control::{
-    Automatic, Bisection, Ended, ImpactControl, NominalIncrement, Span, TimeControl,
+    Automatic, Bisection, Ended, ImpactControl, NextSubincrement, NominalIncrement, TimeControl,
     nominal_increments,
 };
 use super::truncation_error::{Ends, TruncationError};
@@ -539,7 +539,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
-        span: Span,
+        span: NextSubincrement,
     ) -> Result<Subincrement, FailedSubincrement> {
         workspace.meter.counts = SolverCounts::default();
         if !problem.integration.has_rates {

@@ -15,7 +15,7 @@ use crate::model::{Incrementation, Increments};
 
 /// The next subincrement of a time control.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Span {
+pub(crate) struct NextSubincrement {
     pub interval: Interval,
     /// Whether the next impact ends it.
     pub until_impact: bool,
@@ -26,7 +26,7 @@ pub(crate) struct Span {
 /// Divides one nominal increment.
 pub(crate) trait TimeControl {
     /// The next subincrement; none at the end of the nominal increment.
-    fn next(&self) -> Option<Span>;
+    fn next(&self) -> Option<NextSubincrement>;
 
     /// Number of halvings of the next subincrement.
     fn halvings(&self) -> u32;
@@ -164,9 +164,9 @@ impl TimeControl for Bisection {
         archive.carry(halvings)
     }
 
-    fn next(&self) -> Option<Span> {
+    fn next(&self) -> Option<NextSubincrement> {
         let interval = || self.nominal.part(self.part, self.halvings);
-        (self.part < 1 << self.halvings).then(|| Span {
+        (self.part < 1 << self.halvings).then(|| NextSubincrement {
             interval: interval(),
             until_impact: false,
             nominal: self.nominal.length,
@@ -230,11 +230,11 @@ impl TimeControl for ImpactControl {
         archive.carry(ends)
     }
 
-    fn next(&self) -> Option<Span> {
+    fn next(&self) -> Option<NextSubincrement> {
         let to = *self.ends.last()?;
         let NominalIncrement { place, length, .. } = self.nominal;
         let is_whole = self.from == self.nominal.from && to == self.nominal.to;
-        Some(Span {
+        Some(NextSubincrement {
             interval: Interval {
                 start: place.time_point(self.from),
                 end: place.time_point(to),
@@ -364,7 +364,7 @@ impl TimeControl for Automatic {
         archive.carry(events)
     }
 
-    fn next(&self) -> Option<Span> {
+    fn next(&self) -> Option<NextSubincrement> {
         let left = self.nominal.to - self.from;
         let by_error = matches!(self.increments.incrementation, Incrementation::Error { .. });
         let (end, dt) = if self.dt >= left * (1.0 - LEFT_OVER) {
@@ -379,7 +379,7 @@ impl TimeControl for Automatic {
             let end = self.from + self.dt;
             (end, end - self.from)
         };
-        (left > 0.0).then(|| Span {
+        (left > 0.0).then(|| NextSubincrement {
             interval: Interval {
                 start: self.nominal.place.time_point(self.from),
                 end: self.nominal.place.time_point(end),
@@ -527,7 +527,7 @@ mod tests {
     fn parts_join_as_soon_as_they_align() {
         let mut control = Bisection::new(nominal());
         let mut lengths = Vec::new();
-        while let Some(Span { interval, .. }) = control.next() {
+        while let Some(NextSubincrement { interval, .. }) = control.next() {
             // the first half of the increment needs two halvings, its second none
             if interval.start.step < 0.34 && interval.dt > 0.026 {
                 control.failed(&interval, None);
@@ -600,7 +600,7 @@ mod impact_control_tests {
     fn contacts_that_chatter_do_not_stall() {
         let mut control = ImpactControl::new(nominal());
         let mut count = 0;
-        while let Some(Span {
+        while let Some(NextSubincrement {
             interval,
             until_impact: true,
             ..
@@ -631,7 +631,7 @@ mod automatic_tests {
         };
         let mut control = Automatic::new(nominal().place, increments, false);
         let (mut lengths, mut has_failed) = (Vec::new(), false);
-        while let Some(Span { interval, .. }) = control.next() {
+        while let Some(NextSubincrement { interval, .. }) = control.next() {
             if interval.end.step > 0.51 && !has_failed {
                 has_failed = true;
                 assert!(control.may_be_cut(interval.dt, 1e-3));
@@ -663,7 +663,7 @@ mod automatic_tests {
         };
         let mut control = Automatic::new(nominal().place, increments, false);
         let [mut accepted, mut repeated] = [Vec::new(), Vec::new()];
-        while let Some(Span { interval, .. }) = control.next() {
+        while let Some(NextSubincrement { interval, .. }) = control.next() {
             let error = error(interval.start.step, interval.dt);
             match control.largest_error(interval.dt) {
                 Some(tolerance) if error > tolerance => {
