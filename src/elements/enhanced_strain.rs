@@ -452,94 +452,16 @@ impl Formulation for EnhancedStrain {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elements::block::Shape;
     use crate::elements::formulation::evaluate;
-    use crate::elements::shapes::Quadrilateral;
-    use crate::materials::{
-        Committed, ConstitutiveLaw, Law, NeoHooke, Plane, PlaneLaw, Plastic, SmallStrainModuli,
-    };
-
-    const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
-
-    fn corners() -> SMatrix<f64, 2, 4> {
-        SMatrix::from_columns(&CORNERS.map(|p| p.into()))
-    }
-
-    fn quad() -> Reference<4, 4> {
-        Quadrilateral::reference(&Quadrilateral::map(&corners(), 0.5))
-    }
-
-    /// All laws and planes.
-    fn laws() -> Vec<PlaneLaw> {
-        let rubber = NeoHooke {
-            c10: 200.0,
-            d1: 2e-3,
-        };
-        let laws = [Law::elastic(1000.0, 0.3), Law::NeoHooke(rubber)];
-        let planes = [Plane::Strain, Plane::Stress];
-        let all = laws
-            .iter()
-            .flat_map(|law| planes.map(|plane| law.in_plane(plane)));
-        all.collect()
-    }
-
-    /// Some displacements of moderate size, the same for every run.
-    fn displacements(seed: usize) -> SMatrix<f64, 2, 4> {
-        SMatrix::from_fn(|i, a| (((seed + 7 * a + 3 * i) * 37) % 23) as f64 / 100.0 - 0.11)
-    }
-
-    fn force(law: &PlaneLaw, configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
-        EnhancedStrain::internal_force::<4, 4>(&quad(), &Committed::new(law, &[]), configuration).0
-    }
-
-    fn energy(law: &PlaneLaw, u: &SMatrix<f64, 2, 4>) -> f64 {
-        evaluate::<EnhancedStrain, 4, 4>(&quad(), &Committed::new(law, &[]), u).energy
-    }
-
-    /// Difference quotient of a function of the displacements by the dof j.
-    fn quotient<T>(f: impl Fn(SMatrix<f64, 2, 4>) -> T, j: usize) -> T
-    where
-        T: std::ops::Sub<Output = T> + std::ops::Div<f64, Output = T>,
-    {
-        let (u, h) = (displacements(5), 1e-6);
-        let mut du = SMatrix::<f64, 2, 4>::zeros();
-        du[j] = h;
-        (f(u + du) - f(u - du)) / (2.0 * h)
-    }
+    use crate::elements::testing::{check_compressed, displacements, laws, quad};
+    use crate::materials::{Committed, ConstitutiveLaw, Law, Plane, Plastic, SmallStrainModuli};
 
     #[test]
-    fn force_and_tangent_are_derivatives_of_the_energy() {
+    fn elements_with_enhanced_strains_fulfil_what_all_have_to() {
         for law in laws() {
-            let at = Configuration::At(displacements(5));
-            let (found, material) = (force(&law, &at), Committed::new(&law, &[]));
-            let k = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &at);
-            for j in 0..8 {
-                let slope = quotient(|u| energy(&law, &u), j);
-                assert!((found[j] - slope).abs() < 1e-7 * found.norm(), "{j}");
-                let column = quotient(|u| force(&law, &Configuration::At(u)), j);
-                for i in 0..8 {
-                    assert!((k[(i, j)] - column[i]).abs() < 1e-7 * k.norm(), "({i},{j})");
-                }
-            }
-            assert!((k - k.transpose()).norm() < 1e-13 * k.norm());
+            quad().check_all::<EnhancedStrain, 8>(&law);
         }
-    }
-
-    #[test]
-    fn the_energy_momentum_force_does_exactly_the_work_of_the_strain_energy() {
-        for law in laws() {
-            for size in [1.0, 1e-3, 1e-6] {
-                let u0 = displacements(5);
-                let u1 = u0 + displacements(11) * size;
-                let force = force(&law, &Configuration::Between(u0, u1));
-                let (work, change) = (force.dot(&(u1 - u0)), energy(&law, &u1) - energy(&law, &u0));
-                assert!((work - change).abs() < 1e-13 * energy(&law, &u1), "{size}");
-                let x = corners() + (u0 + u1) / 2.0;
-                let moments = (0..4).map(|a| x[(0, a)] * force[(1, a)] - x[(1, a)] * force[(0, a)]);
-                assert!(force.column_sum().norm() < 1e-13 * force.norm());
-                assert!(moments.sum::<f64>().abs() < 1e-13 * force.norm());
-            }
-        }
+        check_compressed::<EnhancedStrain>();
     }
 
     #[test]
@@ -548,8 +470,9 @@ mod tests {
         for law in laws() {
             for size in [1e-8, 1e-9, 1e-10] {
                 let (u0, d) = (displacements(5), displacements(11) * size);
-                let found = force(&law, &Configuration::Between(u0, u0 + d));
-                let exact = force(&law, &Configuration::At(u0 + d / 2.0));
+                let found =
+                    quad().force::<EnhancedStrain>(&law, &Configuration::Between(u0, u0 + d));
+                let exact = quad().force::<EnhancedStrain>(&law, &Configuration::At(u0 + d / 2.0));
                 assert!((found - exact).norm() < 1e-13 * exact.norm(), "{size}");
             }
         }
@@ -572,10 +495,14 @@ mod tests {
             let z0 = vec![0.0; 4 * law.variables() + STRAINS];
             let material = Committed::new(&law, &z0);
             let force = |configuration: &Configuration<4>| {
-                EnhancedStrain::internal_force::<4, 4>(&quad(), &material, configuration).0
+                EnhancedStrain::internal_force::<4, 4>(&quad().element, &material, configuration).0
             };
             let u = displacements(5) * 0.5;
-            let k = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &Configuration::At(u));
+            let k = EnhancedStrain::tangent::<4, 4, 8>(
+                &quad().element,
+                &material,
+                &Configuration::At(u),
+            );
             for j in 0..8 {
                 let mut du = SMatrix::<f64, 2, 4>::zeros();
                 du[j] = 1e-6;
@@ -588,79 +515,16 @@ mod tests {
             // the work of an increment is the change of the stored energy and what is dissipated
             let (mut z, u0) = (z0.clone(), SMatrix::zeros());
             let increment = Configuration::Between(u0, u);
-            let dissipated = EnhancedStrain::update::<4, 4>(&quad(), &material, &increment, &mut z);
+            let dissipated =
+                EnhancedStrain::update::<4, 4>(&quad().element, &material, &increment, &mut z);
             let energy = |z: &[f64], u: &SMatrix<f64, 2, 4>| {
-                evaluate::<EnhancedStrain, 4, 4>(&quad(), &Committed::new(&law, z), u).energy
+                evaluate::<EnhancedStrain, 4, 4>(&quad().element, &Committed::new(&law, z), u)
+                    .energy
             };
             let work = force(&increment).dot(&u);
             let error = work - (energy(&z, &u) - energy(&z0, &u0)) - dissipated;
             assert!(dissipated > 0.02 * work, "{dissipated} {work}");
             assert!(error.abs() < 1e-12 * work, "{error}");
-        }
-    }
-
-    #[test]
-    fn only_rigid_motions_have_no_stiffness() {
-        for law in laws() {
-            let at = Configuration::At(SMatrix::zeros());
-            let material = Committed::new(&law, &[]);
-            let k = EnhancedStrain::tangent::<4, 4, 8>(&quad(), &material, &at);
-            let values = k.symmetric_eigenvalues();
-            let zero = values.iter().filter(|v| v.abs() < 1e-12 * k.norm());
-            assert_eq!(zero.count(), 3, "{values}");
-            assert!(values.iter().all(|&v| v > -1e-12 * k.norm()));
-        }
-    }
-
-    #[test]
-    fn homogeneous_deformation_is_exact() {
-        // patch test of a distorted element: the strains of the element stay zero
-        use crate::elements::displacement::Displacement;
-        let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * corners();
-        for law in laws() {
-            let material = Committed::new(&law, &[]);
-            let found = evaluate::<EnhancedStrain, 4, 4>(&quad(), &material, &u);
-            let exact = evaluate::<Displacement, 4, 4>(&quad(), &material, &u);
-            assert!((found.energy - exact.energy).abs() < 1e-13 * exact.energy);
-            for (a, b) in found.stress.iter().zip(exact.stress) {
-                assert!((a - b).abs() < 1e-12 * exact.von_mises());
-            }
-            let at = Configuration::At(u);
-            let exact = Displacement::internal_force::<4, 4>(&quad(), &material, &at).0;
-            assert!((force(&law, &at) - exact).norm() < 1e-12 * exact.norm());
-        }
-    }
-
-    #[test]
-    fn rigid_rotation_gives_no_internal_force() {
-        for law in laws() {
-            for degrees in (0..=360).step_by(15) {
-                let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
-                let u = Matrix2::new(cos, -sin, sin, cos) * corners() - corners();
-                let force = force(&law, &Configuration::At(u));
-                assert!(force.amax() < 1e-11 * 1000.0, "{degrees}: {}", force.amax());
-            }
-        }
-    }
-
-    #[test]
-    fn a_block_compressed_to_a_fifth_stays_stable() {
-        // uniaxial, neo-Hooke: no eigenvalue of the tangent but the rotation's is negative in the hourglass pattern
-        let law = laws()[2].clone();
-        let material = Committed::new(&law, &[]);
-        let x = SMatrix::from_columns(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]].map(|p| p.into()));
-        let square = Quadrilateral::reference(&Quadrilateral::map(&x, 1.0));
-        for percent in (20..=95).step_by(5) {
-            let u = Matrix2::new(0.0, 0.0, 0.0, f64::from(percent) / 100.0 - 1.0) * x;
-            let at = Configuration::At(u);
-            let k = EnhancedStrain::tangent::<4, 4, 8>(&square, &material, &at);
-            for i in 0..2 {
-                let mode = SVector::<f64, 8>::from_fn(|j, _| match j % 2 == i {
-                    true => alternating(j / 2),
-                    false => 0.0,
-                });
-                assert!(mode.dot(&(k * mode)) > 0.0, "{percent} {i}");
-            }
         }
     }
 }

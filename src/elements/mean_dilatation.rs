@@ -241,121 +241,13 @@ fn add_second_of_volume<const N: usize, const D: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::elements::block::Shape;
-    use crate::elements::formulation::evaluate;
-    use crate::elements::shapes::Quadrilateral;
-    use crate::materials::{Committed, Law, Plane, PlaneLaw};
-
-    const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.3], [1.7, 1.9], [-0.2, 1.2]];
-
-    fn corners() -> SMatrix<f64, 2, 4> {
-        SMatrix::from_columns(&CORNERS.map(|p| p.into()))
-    }
-
-    fn quad() -> Reference<4, 4> {
-        Quadrilateral::reference(&Quadrilateral::map(&corners(), 0.5))
-    }
-
-    fn nearly_incompressible() -> PlaneLaw {
-        Law::elastic(1000.0, 0.49).in_plane(Plane::Strain)
-    }
-
-    /// Some displacements of moderate size, the same for every run.
-    fn displacements(seed: usize) -> SMatrix<f64, 2, 4> {
-        SMatrix::from_fn(|i, a| (((seed + 7 * a + 3 * i) * 37) % 23) as f64 / 100.0 - 0.11)
-    }
-
-    fn force(configuration: &Configuration<4>) -> SMatrix<f64, 2, 4> {
-        MeanDilatation::internal_force::<4, 4>(
-            &quad(),
-            &Committed::new(&nearly_incompressible(), &[]),
-            configuration,
-        )
-        .0
-    }
-
-    fn energy(u: &SMatrix<f64, 2, 4>) -> f64 {
-        evaluate::<MeanDilatation, 4, 4>(&quad(), &Committed::new(&nearly_incompressible(), &[]), u)
-            .energy
-    }
-
-    /// Difference quotient of a function of the displacements in direction j.
-    fn quotient<T>(f: impl Fn(SMatrix<f64, 2, 4>) -> T, j: usize) -> T
-    where
-        T: std::ops::Sub<Output = T> + std::ops::Div<f64, Output = T>,
-    {
-        let (mut step, h) = (SMatrix::<f64, 2, 4>::zeros(), 1e-6);
-        step[j] = h;
-        (f(displacements(5) + step) - f(displacements(5) - step)) / (2.0 * h)
-    }
+    use super::MeanDilatation;
+    use crate::elements::testing::quad;
+    use crate::materials::{Law, Plane};
 
     #[test]
-    fn internal_force_is_the_derivative_of_the_strain_energy() {
-        let found = force(&Configuration::At(displacements(5)));
-        for j in 0..8 {
-            let expected = quotient(|u| energy(&u), j);
-            assert!((found[j] - expected).abs() < 1e-8 * found.norm(), "{j}");
-        }
-    }
-
-    #[test]
-    fn tangent_is_the_derivative_of_the_internal_force() {
-        let at = Configuration::At(displacements(5));
-        let k = MeanDilatation::tangent::<4, 4, 8>(
-            &quad(),
-            &Committed::new(&nearly_incompressible(), &[]),
-            &at,
-        );
-        for j in 0..8 {
-            let column = quotient(|u| force(&Configuration::At(u)), j);
-            for i in 0..8 {
-                assert!((k[(i, j)] - column[i]).abs() < 1e-8 * k.norm(), "({i},{j})");
-            }
-        }
-        assert!((k - k.transpose()).norm() < 1e-14 * k.norm());
-    }
-
-    #[test]
-    fn the_energy_momentum_force_does_exactly_the_work_of_the_strain_energy() {
-        let (u0, u1) = (displacements(5), displacements(11));
-        let force = force(&Configuration::Between(u0, u1));
-        let (work, change) = (force.dot(&(u1 - u0)), energy(&u1) - energy(&u0));
-        assert!(
-            (work - change).abs() < 1e-13 * energy(&u1),
-            "{work} {change}"
-        );
-        // no resultant, and no moment about the origin in the mid configuration
-        let x = corners() + (u0 + u1) / 2.0;
-        let moment: f64 = (0..4)
-            .map(|a| x[(0, a)] * force[(1, a)] - x[(1, a)] * force[(0, a)])
-            .sum();
-        assert!(force.column_sum().norm() < 1e-13 * force.norm());
-        assert!(moment.abs() < 1e-13 * force.norm());
-    }
-
-    #[test]
-    fn rigid_rotation_gives_no_internal_force() {
-        for degrees in (0..=360).step_by(15) {
-            let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
-            let u = Matrix2::new(cos, -sin, sin, cos) * corners() - corners();
-            let force = force(&Configuration::At(u));
-            assert!(force.amax() < 1e-11 * 1000.0, "{degrees}: {}", force.amax());
-        }
-    }
-
-    #[test]
-    fn in_a_homogeneous_deformation_both_formulations_agree() {
-        use crate::elements::displacement::Displacement;
-        let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * corners();
-        let (element, material) = (quad(), nearly_incompressible());
-        let mean = evaluate::<MeanDilatation, 4, 4>(&element, &Committed::new(&material, &[]), &u);
-        let standard =
-            evaluate::<Displacement, 4, 4>(&element, &Committed::new(&material, &[]), &u);
-        assert!((mean.energy - standard.energy).abs() < 1e-13 * standard.energy);
-        assert!((mean.across - standard.across).abs() < 1e-13 * standard.across.abs());
-        for (a, b) in mean.stress.iter().zip(standard.stress) {
-            assert!((a - b).abs() < 1e-12 * mean.von_mises());
-        }
+    fn nearly_incompressible_elements_fulfil_what_all_have_to() {
+        let law = Law::elastic(1000.0, 0.49).in_plane(Plane::Strain);
+        quad().check_all::<MeanDilatation, 8>(&law);
     }
 }

@@ -21,6 +21,8 @@ mod reduced;
 mod ring;
 mod shapes;
 mod solid;
+#[cfg(test)]
+mod testing;
 
 pub use all::{Elements, Inverted, Updated};
 pub use connector::{ConnectorState, PlacedConnector};
