@@ -230,18 +230,22 @@ fn rows_of(rows: usize, row: &[usize]) -> Vec<usize> {
     [&[rows], row].concat()
 }
 
+/// Appends the rows of a report to values. It is not a type parameter of [`Column`]: some 160 datasets would each have
+/// their own code for the same.
+type Values<'m, R, T> = Box<dyn FnMut(&R, &mut Vec<T>) + 'm>;
+
 /// A dataset that grows by rows; `values` appends to the rows that wait in memory those of a report.
-struct Column<T, F> {
+struct Column<'m, R, T> {
     dataset: Dataset,
     layout: Layout,
-    values: F,
+    values: Values<'m, R, T>,
     /// Rows in the file.
     written: usize,
     /// Values of the rows not in the file yet, one row after the other.
     pending: Vec<T>,
 }
 
-impl<T: Number, F> Column<T, F> {
+impl<R, T: Number> Column<'_, R, T> {
     /// The next rows from `first` on, up to the border of a chunk, that are not left out. The first
     /// chunk never is: with it the dataset gets its tree of chunks, to which its header then points
     /// before frames are there that a run killed in the middle of a write could make unreadable.
@@ -301,7 +305,7 @@ trait Growing<R> {
     fn copy(&mut self, earlier: &File, rows: usize) -> hdf5::Result<()>;
 }
 
-impl<R, T: Number, F: FnMut(&R, &mut Vec<T>)> Growing<R> for Column<T, F> {
+impl<R, T: Number> Growing<R> for Column<'_, R, T> {
     fn push(&mut self, report: &R) -> usize {
         let before = self.pending.len();
         (self.values)(report, &mut self.pending);
@@ -384,7 +388,7 @@ pub(crate) struct GrowingColumns<'m, R> {
     most: usize,
 }
 
-impl<'m, R> GrowingColumns<'m, R> {
+impl<'m, R: 'm> GrowingColumns<'m, R> {
     /// No datasets yet.
     pub fn new() -> Self {
         GrowingColumns {
@@ -419,6 +423,17 @@ impl<'m, R> GrowingColumns<'m, R> {
         layout: Layout,
         meaning: Meaning,
         values: impl FnMut(&R, &mut Vec<T>) + 'm,
+    ) -> hdf5::Result<()> {
+        self.add_column(at, name, layout, meaning, Box::new(values))
+    }
+
+    fn add_column<T: Number + 'm>(
+        &mut self,
+        at: &Group,
+        name: &str,
+        layout: Layout,
+        meaning: Meaning,
+        values: Values<'m, R, T>,
     ) -> hdf5::Result<()> {
         self.all.push(Box::new(Column {
             dataset: layout.create::<T>(at, name, meaning)?,
