@@ -2,14 +2,24 @@
 
 use std::collections::BTreeMap;
 
+use smallvec::SmallVec;
+
 use crate::contact::{Constraint, ConstraintKey, SlaveKey};
 use crate::dynamics::increment::{ContactForces, Solved};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, difference, dot};
 use crate::elements::Motion;
 
+/// Nodes of a slave surface, and what a normal force of 1 of a pair is there.
+type OnSlaveSurface = SmallVec<[(usize, [f64; 2]); 4]>;
+
+/// The nodes of the slave surface that a pair acts on.
+pub(super) fn on_slave_surface(constraint: &Constraint) -> OnSlaveSurface {
+    constraint.forces_on_slave_surface([1.0, 0.0]).collect()
+}
+
 /// Work of the contact forces of a pair in an increment.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct PairWork {
     /// The pair.
     pub key: ConstraintKey,
@@ -21,6 +31,8 @@ pub(crate) struct PairWork {
     pub friction: f64,
     /// Normal force times the way that the pair slides (energy).
     pub sliding: f64,
+    /// Where it acts. A pair that has opened is no pair of the end any more.
+    pub slaves: OnSlaveSurface,
 }
 
 /// Work of the pairs in an increment whose forces act all the time:
@@ -37,6 +49,7 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
             fit: pn * constraint.shrinkage,
             friction: -(pt * slip),
             sliding: pn * slip.abs(),
+            slaves: on_slave_surface(constraint),
         }
     };
     let acting = solved
@@ -136,17 +149,23 @@ impl EndForces {
     /// work of tangential forces friction does not dissipate:
     ///
     /// ```text
-    /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2,  -(1 + Pn0/Pn1)/2 Pt1.(Bt1 d)                       eq. (12.8)
+    /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2
+    /// -(1 + Pn0/Pn1)/2 Pt1.(Bt1 d),   max(0, -Pt0.(Bt0 d)/2) where Pn1 = 0              eq. (12.8)
     /// ```
     ///
-    /// A pair that slides has |Pt| = mu Pn all the way, and Pn is linear: it slides with the mean force.
+    /// A pair that slides has |Pt| = mu Pn all the way, and Pn is linear: it slides with the mean force. One that opens has
+    /// only the force of its start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
         let (before, after) = (self.normal_forces(), end.normal_forces());
-        let mean = |slave: SlaveKey| {
+        // the mean of Pn as a part of the force at the start or at the end
+        let mean = |slave: SlaveKey, is_end: bool| {
             let of = |sums: &BTreeMap<SlaveKey, f64>| sums.get(&slave).copied().unwrap_or(0.0);
-            let (p0, p1) = (of(&before), of(&after));
-            if p1 > 0.0 { (1.0 + p0 / p1) / 2.0 } else { 1.0 }
+            match (of(&before), of(&after)) {
+                (p0, p1) if p1 > 0.0 && is_end => (1.0 + p0 / p1) / 2.0,
+                (_, p1) if p1 > 0.0 || is_end => 0.0,
+                _ => 0.5,
+            }
         };
         let all = solved.contact.forces.iter();
         let fitted = all.filter(|(constraint, _)| constraint.shrinkage != 0.0);
@@ -157,24 +176,19 @@ impl EndForces {
         let mut works = Vec::new();
         for (forces, is_end) in [(self, false), (end, true)] {
             for (constraint, [pn, pt]) in &forces.pairs {
-                let slip = constraint.tangential_motion(d);
+                let slave = constraint.key.slave();
+                let (slip, mean) = (constraint.tangential_motion(d), mean(slave, is_end));
                 let work = pt * slip;
-                let parts = shrinkage.get(&constraint.key.slave()).unwrap_or(&0.0);
+                let parts = shrinkage.get(&slave).unwrap_or(&0.0);
                 tangential += work / 2.0;
+                let friction = -mean * work;
                 works.push(PairWork {
                     key: constraint.key,
                     normal: pn * (constraint.normal_motion(d) - parts) / 2.0,
                     fit: pn * parts / 2.0,
-                    friction: if is_end {
-                        -mean(constraint.key.slave()) * work
-                    } else {
-                        0.0
-                    },
-                    sliding: if is_end {
-                        mean(constraint.key.slave()) * pn * slip.abs()
-                    } else {
-                        0.0
-                    },
+                    friction: if is_end { friction } else { friction.max(0.0) },
+                    sliding: mean * pn * slip.abs(),
+                    slaves: on_slave_surface(constraint),
                 });
             }
         }

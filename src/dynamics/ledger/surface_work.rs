@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::pair_work::PairWork;
+use super::pair_work::{PairWork, on_slave_surface};
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{Constraint, ConstraintKey};
 use crate::dynamics::increment::Solved;
@@ -72,23 +72,28 @@ impl SurfaceWork {
             .map(|(constraint, _)| (constraint.key, constraint))
             .collect();
         let u = &solved.equilibrium.u_theta;
-        let given_back = solved.returned.pairs.iter().map(|pair| {
-            let mu = constraints
-                .get(&pair.key)
-                .map_or(0.0, |constraint| constraint.mu);
-            let sliding = if mu > 0.0 { pair.friction / mu } else { 0.0 };
-            (pair.key, -pair.friction, -sliding)
+        let given_back = solved.returned.pairs.iter().filter_map(|pair| {
+            let constraint = constraints.get(&pair.key)?;
+            let sliding = match constraint.mu > 0.0 {
+                true => pair.friction / constraint.mu,
+                false => 0.0,
+            };
+            Some((
+                pair.key,
+                -pair.friction,
+                -sliding,
+                on_slave_surface(constraint),
+            ))
         });
         let works = works
             .iter()
-            .map(|work| (work.key, work.friction, work.sliding));
-        for (key, friction, sliding) in works.chain(given_back) {
+            .map(|work| (work.key, work.friction, work.sliding, work.slaves.clone()));
+        for (key, friction, sliding, slaves) in works.chain(given_back) {
             let interaction = &problem.model.contacts[key.contact()].interaction;
-            let is_asked = interaction.wear.is_some() || interaction.heat.is_some();
-            let Some(constraint) = constraints.get(&key).filter(|_| is_asked) else {
+            if interaction.wear.is_none() && interaction.heat.is_none() {
                 continue;
-            };
-            for (node, normal) in constraint.forces_on_slave_surface([1.0, 0.0]) {
+            }
+            for (node, normal) in slaves {
                 let area = faces.area(node, normal, |node| problem.position(u, node));
                 if area > 0.0 {
                     self.sums.work[node] += friction / area;
