@@ -10,10 +10,12 @@ use rayon::prelude::*;
 
 use super::chunk::{MAX_CHUNK, TangentSweep};
 use super::connector::{ConnectorState, PlacedConnector};
-use super::damping::ElementDamping;
+use super::damping::{ElementDamping, between};
 use super::element::{AnyChunk, AnyElement, Geometry};
 use super::formulation::ElementResult;
-use super::solid::{ElementMatrix, ElementVector, Increment, MAX_NODES, Motion, TangentPart};
+use super::solid::{
+    ElementMatrix, ElementVector, Increment, MAX_DOFS, MAX_NODES, Motion, TangentPart,
+};
 use crate::materials::{Committed, PlaneLaw};
 use crate::model::{Element, ElementType, Model, Shape, Thickness};
 
@@ -64,6 +66,8 @@ pub struct Elements {
     rigid: Vec<AnyElement>,
     /// Elements with damping, increasing.
     pub(super) damped: Vec<(usize, ElementDamping)>,
+    /// Places in `damped` of the elements that are in no chunk.
+    damped_parts: Vec<usize>,
     /// Springs and dashpots, whose places in lists follow those of the elements.
     connectors: Vec<PlacedConnector>,
     /// Reference positions of all nodes (length).
@@ -109,6 +113,7 @@ impl Elements {
             parts: Vec::new(),
             rigid: Vec::new(),
             damped: Vec::new(),
+            damped_parts: Vec::new(),
             connectors: Vec::new(),
             coordinates: model.mesh.coordinates.clone(),
             dofs: model.dof_count(),
@@ -160,6 +165,8 @@ impl Elements {
             let damping = ElementDamping::new(|rho| all.geometry(index).mass(rho), material, plane);
             all.damped.extend(damping.map(|damping| (index, damping)));
         }
+        let is_part = |&at: &usize| matches!(all.places[all.damped[at].0].1, Place::Part(_));
+        all.damped_parts = (0..all.damped.len()).filter(is_part).collect();
         let placed = |connector| PlacedConnector::new(connector, model);
         all.connectors = model.connectors.iter().map(placed).collect();
         all
@@ -409,7 +416,7 @@ impl Elements {
     /// The first element that is turned inside out.
     pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
         let Space { forces, .. } = &mut *self.space();
-        if !self.sum_chunks(motion) {
+        if !self.sum_chunks(|chunk| chunk.sum_forces(motion)) {
             self.chunks.iter().for_each(AnyChunk::clear_sums);
             return Err(self.inverted(motion));
         }
@@ -438,9 +445,8 @@ impl Elements {
         rayon::current_num_threads() > 1 && self.len() >= 2 * PARALLEL_CHUNK
     }
 
-    /// Sums up the forces of the elements in chunks. False where one is turned inside out.
-    fn sum_chunks(&self, motion: Motion) -> bool {
-        let sum = |chunk: &AnyChunk| chunk.sum_forces(motion);
+    /// Sums up forces of the elements in chunks. False where one is turned inside out.
+    fn sum_chunks(&self, sum: impl Fn(&AnyChunk) -> bool + Sync + Send) -> bool {
         if self.is_worth_threads() {
             let sums = self.chunks.par_iter().map(sum);
             sums.reduce(|| true, |all, chunk| all && chunk)
@@ -499,6 +505,7 @@ impl Elements {
             let sweep = TangentSweep {
                 motion,
                 part,
+                viscous: false,
                 wanted: &wanted,
             };
             chunk.for_each_tangent(sweep, block_tangents, &mut add);
@@ -535,18 +542,20 @@ impl Elements {
     /// at whose nodes `v` is zero cost nothing.
     pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
-        for element in (0..self.len()).filter(|&e| !self.is_rigid(e)) {
-            let moves = |&node: &usize| v[2 * node] != 0.0 || v[2 * node + 1] != 0.0;
-            if self.nodes(element).iter().any(moves) {
-                let k = self.whole_tangent(element, motion);
-                add_product(self.nodes(element), &k, v, &mut product);
-            }
-        }
-        for spring in &self.connectors {
-            let k = spring.tangent(motion, TangentPart::Whole);
-            add_product(spring.nodes(), &k, v, &mut product);
-        }
+        let moves = |&node: &usize| v[2 * node] != 0.0 || v[2 * node + 1] != 0.0;
+        let wanted = |element: usize| self.nodes(element).iter().any(moves);
+        self.for_each_tangent(motion, TangentPart::Whole, wanted, |place, k| {
+            add_product(self.nodes_at(place), k, v, &mut product);
+        });
         product
+    }
+
+    /// Nodes at a place of [`Self::connected`].
+    fn nodes_at(&self, place: usize) -> &[usize] {
+        match place.checked_sub(self.len()) {
+            None => self.nodes(place),
+            Some(connector) => self.connectors[connector].nodes(),
+        }
     }
 
     /// Whether any element is damped, or there is a dashpot.
@@ -563,8 +572,26 @@ impl Elements {
     /// Force of damping F_d in an increment of length `dt` with the displacement increment `d`, eq.
     /// (4.16), 2 N entries.
     pub fn damping_force(&self, increment: Increment, d: &[f64], dt: f64) -> Vec<f64> {
-        let impulses = self.of_damped(|element, damping| damping.impulse(element, increment, d));
-        let mut force = self.sum_of_damped(&impulses);
+        let mut force = self.mass_damping_impulse(d);
+        self.sum_chunks(|chunk| {
+            chunk.sum_viscous(between(increment));
+            true
+        });
+        self.chunks
+            .iter()
+            .for_each(|chunk| chunk.add_sums(&mut force));
+        let parts = self.damped_parts.par_iter().with_min_len(PARALLEL_CHUNK);
+        let impulse = |&at: &usize| {
+            let (element, damping) = &self.damped[at];
+            (
+                *element,
+                damping.viscous_impulse(&self.element(*element), increment),
+            )
+        };
+        let impulses: Vec<_> = parts.map(impulse).collect();
+        for (element, impulse) in impulses {
+            add_vector(self.nodes(element), &impulse, &mut force);
+        }
         for (_, dashpot) in self.dashpots() {
             add_vector(dashpot.nodes(), &dashpot.impulse(increment, dt), &mut force);
         }
@@ -575,7 +602,14 @@ impl Elements {
     /// Impulse that mass-proportional damping takes in a displacement increment, alpha M d, 2 N entries
     /// (force time).
     pub fn mass_damping_impulse(&self, d: &[f64]) -> Vec<f64> {
-        self.sum_of_damped(&self.of_damped(|element, damping| damping.mass_impulse(element, d)))
+        let mut sum = vec![0.0; self.dofs];
+        for (element, damping) in &self.damped {
+            let nodes = self.nodes(*element);
+            if let Some(impulse) = damping.mass_impulse(nodes, d) {
+                add_vector(nodes, &impulse, &mut sum);
+            }
+        }
+        sum
     }
 
     /// Energy d.F_d that damping dissipates in an increment of length `dt` with the displacement
@@ -588,19 +622,45 @@ impl Elements {
         (self.of_damped(work).iter().sum::<f64>() + dashpots.sum::<f64>()) / dt
     }
 
-    /// Calls `add(place, c)` with the damping matrix of every damped element and dashpot in order in an increment of
-    /// length `dt`, eq. (4.19), or
-    /// its positive part, c being D x D column by column (force time/length).
+    /// Calls `add(place, c)` with the damping matrices of every damped element and dashpot in an increment of length
+    /// `dt`, eq. (4.19), or their positive part, c being D x D column by column (force time/length). An element may
+    /// have two, one of the viscosity and one of its mass.
     pub fn for_each_damping(
         &self,
         (increment, dt): (Increment, f64),
         part: TangentPart,
         mut add: impl FnMut(usize, &[f64]),
     ) {
-        let of = |element: &_, damping: &ElementDamping| damping.matrix(element, increment, part);
-        for ((element, _), c) in self.damped.iter().zip(self.of_damped(of)) {
-            let d = 2 * self.nodes(*element).len();
-            add(*element, &c[..d * d]);
+        let Space { block_tangents, .. } = &mut *self.space();
+        let mut add_half = |element: usize, c: &[f64]| {
+            let mut half = [0.0; MAX_DOFS * MAX_DOFS];
+            half.iter_mut().zip(c).for_each(|(half, c)| *half = c / 2.0);
+            add(element, &half[..c.len()]);
+        };
+        for chunk in self.chunks.iter().filter(|chunk| chunk.is_viscous()) {
+            let sweep = TangentSweep {
+                motion: between(increment),
+                part,
+                viscous: true,
+                wanted: &|_| true,
+            };
+            chunk.for_each_tangent(sweep, block_tangents, &mut add_half);
+        }
+        let parts = self.damped_parts.par_iter().with_min_len(PARALLEL_CHUNK);
+        let viscous = |&at: &usize| {
+            let (element, damping) = &self.damped[at];
+            (
+                *element,
+                damping.viscous_tangent(&self.element(*element), increment, part),
+            )
+        };
+        let matrices: Vec<_> = parts.map(viscous).collect();
+        let masses = self.damped.iter().filter_map(|(element, damping)| {
+            Some((*element, damping.mass_matrix(self.nodes(*element).len())?))
+        });
+        for (element, c) in matrices.into_iter().chain(masses) {
+            let d = 2 * self.nodes(element).len();
+            add(element, &c[..d * d]);
         }
         for (place, dashpot) in self.dashpots() {
             add(place, &dashpot.damping(increment, dt));
@@ -610,14 +670,9 @@ impl Elements {
     /// Cd v with the damping matrix in an increment of length `dt`, 2 N entries.
     pub fn damping_product(&self, increment: Increment, dt: f64, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
-        for (element, damping) in &self.damped {
-            let c = damping.matrix(&self.element(*element), increment, TangentPart::Whole);
-            add_product(self.nodes(*element), &c, v, &mut product);
-        }
-        for (_, dashpot) in self.dashpots() {
-            let c = dashpot.damping(increment, dt);
-            add_product(dashpot.nodes(), &c, v, &mut product);
-        }
+        self.for_each_damping((increment, dt), TangentPart::Whole, |place, c| {
+            add_product(self.nodes_at(place), c, v, &mut product);
+        });
         product
     }
 
@@ -626,15 +681,6 @@ impl Elements {
         let damped = self.damped.par_iter().with_min_len(PARALLEL_CHUNK);
         let all = damped.map(|(element, damping)| of(&self.element(*element), damping));
         all.collect()
-    }
-
-    /// Sum of vectors of the damped elements, 2 N entries.
-    fn sum_of_damped(&self, vectors: &[ElementVector]) -> Vec<f64> {
-        let mut sum = vec![0.0; self.dofs];
-        for ((element, _), vector) in self.damped.iter().zip(vectors) {
-            add_vector(self.nodes(*element), vector, &mut sum);
-        }
-        sum
     }
 }
 
@@ -715,6 +761,15 @@ mod tests {
 
     fn wave(scale: f64, k: f64) -> Vec<f64> {
         (0..36).map(|i| scale * (k * f64::from(i)).sin()).collect()
+    }
+
+    /// Models of quadrilaterals with mean dilatation.
+    fn with_mean_dilatation() -> [Model; 3] {
+        let mean = ElementType {
+            formulation: Formulation::MeanDilatation,
+            ..ElementType::CPE4
+        };
+        models().map(|m| model(m.materials[0].law.clone(), mean))
     }
 
     fn models() -> [Model; 3] {
@@ -807,6 +862,7 @@ mod tests {
         for (model, motion) in models()
             .iter()
             .chain(&quadratic)
+            .chain(&with_mean_dilatation())
             .flat_map(|m| [(m, between), (m, Motion::at(&u1, &[]))])
         {
             let elements = Elements::new(model);
@@ -897,12 +953,7 @@ mod tests {
 
     #[test]
     fn an_end_inside_out_is_found_where_halfway_nothing_is() {
-        let mean = ElementType {
-            formulation: Formulation::MeanDilatation,
-            ..ElementType::CPE4
-        };
-        let with_mean = models().map(|m| model(m.materials[0].law.clone(), mean));
-        for model in models().iter().chain(&with_mean) {
+        for model in models().iter().chain(&with_mean_dilatation()) {
             // heights become -0.2 of themselves, halfway 0.4
             let coordinates = model.mesh.coordinates.iter();
             let u: Vec<f64> = coordinates.flat_map(|x| [0.0, -1.2 * x[1]]).collect();

@@ -8,6 +8,7 @@ use std::array::from_fn;
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
+use super::displacement::Displacement;
 use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
 use crate::materials::lanes::{LANES, Lanes, Positive, SymmetricLanes};
 use crate::materials::{LawInLanes, StrainChange, TangentLanes};
@@ -119,25 +120,20 @@ impl<const N: usize, const P: usize> Block<N, P> {
         })
     }
 
-    /// Internal force F = int B_L^T S dOmega, eq. (2.5) (force), and whether det F is positive at all
-    /// points.
+    /// sum_p B_L^T S of stresses with their weights in displacement gradients H (force).
     #[inline(always)]
-    pub fn force<S: Shape<N, P>>(
+    pub fn nodal_forces<S: Shape<N, P>>(
         &self,
-        law: &impl LawInLanes,
-        motion: &BlockMotion<N>,
-    ) -> (NodalLanes<N>, Positive) {
-        let mut positive = Positive::default();
+        h_and_s: impl Fn(usize) -> (TensorLanes, SymmetricLanes),
+    ) -> NodalLanes<N> {
         let mut q = [[[Lanes::ZERO; 2]; P]; 2];
-        let u = motion.derivatives::<S, P>();
         for p in 0..P {
-            let deformation = self.deformation(p, &u, &mut positive);
-            let s = scaled(&deformation.stress(law), self.volume[p]);
             // B_L^T S of node a is F S dh_a/dX = (F S J^-T) dh_a/dr, J = dX/dr
-            let piola = times_symmetric(&deformation_gradient(deformation.h()), &s);
+            let (h, s) = h_and_s(p);
+            let piola = times_symmetric(&deformation_gradient(&h), &s);
             [q[0][p], q[1][p]] = times_transposed(&piola, &self.inverse[p]);
         }
-        ([S::nodal_sums(&q[0]), S::nodal_sums(&q[1])], positive)
+        [S::nodal_sums(&q[0]), S::nodal_sums(&q[1])]
     }
 
     /// Deformation at a point, given natural derivatives; `positive` takes in det F.
@@ -165,7 +161,7 @@ impl<const N: usize, const P: usize> Block<N, P> {
 
     /// H = du/dr J^-1 at a point, eq. (2.1).
     #[inline(always)]
-    fn gradient(&self, p: usize, u: &[[[Lanes; 2]; P]; 2]) -> TensorLanes {
+    pub fn gradient(&self, p: usize, u: &[[[Lanes; 2]; P]; 2]) -> TensorLanes {
         let [r, s] = &self.inverse[p];
         let row = |[dr, ds]: [Lanes; 2]| [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]];
         [row(u[0][p]), row(u[1][p])]
@@ -220,7 +216,7 @@ fn half_of_square(a: &TensorLanes) -> SymmetricLanes {
 
 /// A + B.
 #[inline(always)]
-fn plus(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
+pub fn plus(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
     [
         [a[0][0] + b[0][0], a[0][1] + b[0][1]],
         [a[1][0] + b[1][0], a[1][1] + b[1][1]],
@@ -322,36 +318,103 @@ impl Deformation {
     }
 }
 
-impl<const N: usize, const P: usize> Block<N, P> {
-    /// Adds K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (force/length), in the energy-momentum form
-    /// with B_L of the mid configuration, symmetric: entries [a][b] with a <= b.
+/// How force, tangent and results of elements side by side follow from their motion.
+pub trait BlockFormulation {
+    /// Internal force, eq. (2.5) (force), and whether det F is positive at all points.
+    fn force<S: Shape<N, P>, const N: usize, const P: usize>(
+        block: &Block<N, P>,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+    ) -> (NodalLanes<N>, Positive);
+
+    /// Adds the symmetric tangent (force/length): entries [a][b] with a <= b.
+    fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
+        block: &Block<N, P>,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+        k: &mut MatrixLanes<N>,
+    );
+
+    /// Results of the elements at displacements.
+    fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
+        block: &Block<N, P>,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+    ) -> [ElementResult; LANES];
+}
+
+impl BlockFormulation for Displacement {
+    /// F = int B_L^T S dOmega
+    #[inline(always)]
+    fn force<S: Shape<N, P>, const N: usize, const P: usize>(
+        block: &Block<N, P>,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+    ) -> (NodalLanes<N>, Positive) {
+        let mut positive = Positive::default();
+        let mut points = [([[Lanes::ZERO; 2]; 2], [Lanes::ZERO; 3]); P];
+        let u = motion.derivatives::<S, P>();
+        for p in 0..P {
+            let deformation = block.deformation(p, &u, &mut positive);
+            let s = scaled(&deformation.stress(law), block.volume[p]);
+            points[p] = (*deformation.h(), s);
+        }
+        (block.nodal_forces::<S>(|p| points[p]), positive)
+    }
+
+    /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6), in the energy-momentum form with B_L of the mid
+    /// configuration.
     ///
     /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.
     #[inline(always)]
-    pub fn add_tangent<S: Shape<N, P>>(
-        &self,
+    fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
+        block: &Block<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     ) {
         let u = motion.derivatives::<S, P>();
         for p in 0..P {
-            let deformation = self.deformation(p, &u, &mut Positive::default());
-            let s = scaled(&deformation.stress(law), self.volume[p]);
+            let deformation = block.deformation(p, &u, &mut Positive::default());
+            let s = scaled(&deformation.stress(law), block.volume[p]);
             let c = deformation.tangent(law);
             let c = [
-                scaled(&c[0], self.volume[p]),
-                scaled(&c[1], self.volume[p]),
-                scaled(&c[2], self.volume[p]),
+                scaled(&c[0], block.volume[p]),
+                scaled(&c[1], block.volume[p]),
+                scaled(&c[2], block.volume[p]),
             ];
             let a = elasticity(&deformation_gradient(deformation.h()), &s, &c);
-            add_products(k, &self.gradients::<S>(p), &a);
+            add_products(k, &block.gradients::<S>(p), &a);
         }
     }
 
+    #[inline(always)]
+    fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
+        block: &Block<N, P>,
+        law: &impl LawInLanes,
+        motion: &BlockMotion<N>,
+    ) -> [ElementResult; LANES] {
+        let u = motion.derivatives::<S, P>();
+        let mut sums = Sums::new();
+        for p in 0..P {
+            let h = *block.deformation(p, &u, &mut Positive::default()).h();
+            let strain = green_lagrange(&h);
+            let point = ResultPoint {
+                h,
+                strain,
+                determinant: determinant(&h),
+                s: law.stress(&strain),
+            };
+            sums.add(law, &point, block.volume[p]);
+        }
+        sums.results()
+    }
+}
+
+impl<const N: usize, const P: usize> Block<N, P> {
     /// Gradients dh_a/dX = dh_a/dr J^-1 of the nodes at a point.
     #[inline(always)]
-    fn gradients<S: Shape<N, P>>(&self, p: usize) -> [[Lanes; 2]; N] {
+    pub fn gradients<S: Shape<N, P>>(&self, p: usize) -> [[Lanes; 2]; N] {
         let [r, s] = &self.inverse[p];
         let mut gradients = [[Lanes::ZERO; 2]; N];
         for (gradient, &[hr, hs]) in gradients.iter_mut().zip(&S::FUNCTIONS.natural[p]) {
@@ -364,11 +427,11 @@ impl<const N: usize, const P: usize> Block<N, P> {
 /// Elasticity A = dP/dF, P = F S, of the first Piola-Kirchhoff stress.
 ///
 /// A_iIjJ = F_iK C_KILJ F_jL + delta_ij S_IJ; entry [2 j + J] of the stress of row i, [I].
-type Elasticity = [[[Lanes; 2]; 4]; 2];
+pub type Elasticity = [[[Lanes; 2]; 4]; 2];
 
 /// A of a deformation gradient, a stress and its tangent in Voigt order.
 #[inline(always)]
-fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elasticity {
+pub fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elasticity {
     let mut a = [[[Lanes::ZERO; 2]; 4]; 2];
     for j in 0..2 {
         let [x, y] = f[j];
@@ -402,7 +465,7 @@ fn times(&[xx, yy, xy]: &SymmetricLanes, &[x, y]: &[Lanes; 2]) -> [Lanes; 2] {
 
 /// Adds g_a . A . g_b for a <= b.
 #[inline(always)]
-fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N], a: &Elasticity) {
+pub fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N], a: &Elasticity) {
     for second in 0..N {
         let [x, y] = g[second];
         for i in 0..2 {
@@ -417,9 +480,21 @@ fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N], a: 
     }
 }
 
+/// What the results of an integration point follow from.
+pub struct ResultPoint {
+    /// Displacement gradient H.
+    pub h: TensorLanes,
+    /// Strain that the material has.
+    pub strain: SymmetricLanes,
+    /// Determinant of the deformation gradient in the plane that the material has.
+    pub determinant: Lanes,
+    /// Stress that does work on the strain of the displacements (force/length^2).
+    pub s: SymmetricLanes,
+}
+
 /// Sums over the integration points, each times its weight.
 #[derive(Clone, Copy)]
-struct Sums {
+pub struct Sums {
     energy: Lanes,
     stress: SymmetricLanes,
     across: Lanes,
@@ -429,45 +504,33 @@ struct Sums {
     principal: [f64; LANES],
 }
 
-impl<const N: usize, const P: usize> Block<N, P> {
-    /// Results of the elements at displacements.
+impl Sums {
+    /// No points.
     #[inline(always)]
-    pub fn evaluate<S: Shape<N, P>>(
-        &self,
-        law: &impl LawInLanes,
-        motion: &BlockMotion<N>,
-    ) -> [ElementResult; LANES] {
-        let u = motion.derivatives::<S, P>();
-        let mut sums = Sums {
+    pub fn new() -> Self {
+        Sums {
             energy: Lanes::ZERO,
             stress: [Lanes::ZERO; 3],
             across: Lanes::ZERO,
             strain: [Lanes::ZERO; 3],
             volume: Lanes::ZERO,
             principal: [0.0; LANES],
-        };
-        for p in 0..P {
-            let deformation = self.deformation(p, &u, &mut Positive::default());
-            sums.add(law, &deformation, self.volume[p]);
         }
-        from_fn(|lane| sums.result(lane))
     }
-}
 
-impl Sums {
     /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz/J.
     #[inline(always)]
-    fn add(&mut self, law: &impl LawInLanes, deformation: &Deformation, weight: Lanes) {
-        let (h, e) = (deformation.h(), green_lagrange(deformation.h()));
-        let (f, det) = (deformation_gradient(h), determinant(h));
-        let [stretch, stress] = law.across(&e);
-        let sigma = times_transposed(&times_symmetric(&f, &law.stress(&e)), &f);
-        let over_j = weight / (det * stretch);
-        self.energy += law.stored_energy(&e) * weight;
+    pub fn add(&mut self, law: &impl LawInLanes, point: &ResultPoint, weight: Lanes) {
+        let (h, e) = (&point.h, green_lagrange(&point.h));
+        let f = deformation_gradient(h);
+        let [stretch, stress] = law.across(&point.strain);
+        let sigma = times_transposed(&times_symmetric(&f, &point.s), &f);
+        let over_j = weight / (determinant(h) * stretch);
+        self.energy += law.stored_energy(&point.strain) * weight;
         self.stress[0] += sigma[0][0] * over_j;
         self.stress[1] += sigma[1][1] * over_j;
         self.stress[2] += sigma[0][1] * over_j;
-        self.across += stress * stretch / det * weight;
+        self.across += stress * stretch / point.determinant * weight;
         for (sum, e) in self.strain.iter_mut().zip(&e) {
             *sum += *e * weight;
         }
@@ -488,6 +551,12 @@ impl Sums {
             let strain = mean.0[lane].abs() + shear.0[lane];
             *most = -smaller(-*most, -strain);
         }
+    }
+
+    /// The means of the elements.
+    #[inline(always)]
+    pub fn results(&self) -> [ElementResult; LANES] {
+        from_fn(|lane| self.result(lane))
     }
 
     /// The means of one element.

@@ -12,11 +12,11 @@ use nalgebra::SMatrix;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::block::{Block, BlockMotion, MatrixLanes, NodalLanes, Shape};
+use super::block::{Block, BlockFormulation, BlockMotion, MatrixLanes, NodalLanes, Shape};
 use super::formulation::{ElementResult, Reference};
 use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::lanes::{LANES, Lanes, Positive};
-use crate::materials::{LawInLanes, PlaneLaw, in_lanes};
+use crate::materials::{LawInLanes, PlaneLaw, Viscosity, in_lanes};
 
 /// Elements of a chunk at most.
 pub const MAX_CHUNK: usize = 1024;
@@ -28,12 +28,14 @@ const PARALLEL_BLOCKS: usize = 64;
 pub struct TangentSweep<'a, W> {
     pub motion: Motion<'a>,
     pub part: TangentPart,
+    /// Whether the stress is that of the viscosity.
+    pub viscous: bool,
     /// Whether the tangent of an element is needed.
     pub wanted: &'a W,
 }
 
-/// Elements of one shape and material.
-pub struct Chunk<const N: usize, const P: usize, S> {
+/// Elements of one shape, formulation and material.
+pub struct Chunk<const N: usize, const P: usize, S, F> {
     /// Elements (indices), lane after lane and block after block.
     elements: Vec<usize>,
     /// Node indices, increasing; blocks have places in this list.
@@ -41,13 +43,18 @@ pub struct Chunk<const N: usize, const P: usize, S> {
     /// Blocks; places of the last that no element fills have the last element with no volume.
     blocks: Vec<Block<N, P>>,
     law: PlaneLaw,
+    viscosity: Option<Viscosity>,
     /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
     /// them.
     sums: Mutex<Vec<[f64; 2]>>,
-    shape: PhantomData<S>,
+    kind: PhantomData<(S, F)>,
 }
 
-impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
+impl<const N: usize, const P: usize, S, F> Chunk<N, P, S, F>
+where
+    S: Shape<N, P> + Sync,
+    F: BlockFormulation + Sync,
+{
     /// A chunk of elements (indices) with their nodes, between nodes at the coordinates `x`, of the
     /// thickness `t`.
     pub fn new(
@@ -55,7 +62,7 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
         of: &[[usize; N]],
         x: &[[f64; 2]],
         t: f64,
-        law: PlaneLaw,
+        (law, viscosity): (PlaneLaw, Option<Viscosity>),
     ) -> Self {
         let mut nodes: Vec<usize> = of.iter().flatten().copied().collect();
         nodes.sort_unstable();
@@ -76,7 +83,8 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
             elements,
             nodes,
             law,
-            shape: PhantomData,
+            viscosity,
+            kind: PhantomData,
         }
     }
 
@@ -100,6 +108,24 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
             sums: &mut sums,
         }));
         positive.everywhere()
+    }
+
+    /// Whether the material has viscosity.
+    pub fn is_viscous(&self) -> bool {
+        self.viscosity.is_some()
+    }
+
+    /// Adds the forces of the viscosity in a motion, over the length of the increment, to the sums, eq. (4.16).
+    pub fn sum_viscous(&self, motion: Motion) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(law) = self.viscosity.as_ref().filter(|_| self.is_strained(motion)) {
+            Arch::new().dispatch(ForceSweep {
+                chunk: self,
+                law,
+                motion,
+                sums: &mut sums,
+            });
+        }
     }
 
     /// Adds the sums to a vector over all dofs, and makes them zero.
@@ -147,7 +173,7 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
                 add(element, k);
             }
         };
-        let (all, TangentSweep { motion, part, .. }) = (0..self.blocks.len(), &sweep);
+        let all = 0..self.blocks.len();
         if rayon::current_num_threads() > 1 {
             space.resize(self.blocks.len() * of_block, 0.0);
             let blocks = space.par_chunks_exact_mut(of_block);
@@ -155,39 +181,49 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
             let pairs = pairs.with_min_len(PARALLEL_BLOCKS);
             pairs
                 .filter(|(number, _)| wanted(number))
-                .for_each(|(number, k)| self.write_tangents(number, *motion, *part, k));
+                .for_each(|(number, k)| self.write_tangents(number, &sweep, k));
             all.filter(wanted)
                 .for_each(|number| add_block(number, &space[number * of_block..][..of_block]));
         } else {
             space.resize(of_block, 0.0);
             for number in all.filter(wanted) {
-                self.write_tangents(number, *motion, *part, space);
+                self.write_tangents(number, &sweep, space);
                 add_block(number, space);
             }
         }
     }
 
     /// Writes the tangents of the elements of a block.
-    fn write_tangents(
-        &self,
-        number: usize,
-        motion: Motion,
-        part: TangentPart,
-        tangents: &mut [f64],
-    ) {
-        let block = &self.blocks[number];
-        in_lanes!(&self.law, law => Arch::new().dispatch(Tangents {
-            chunk: self,
-            law,
-            block,
-            motion,
-            tangents,
-        }));
-        if part == TangentPart::Positive {
+    fn write_tangents<W>(&self, number: usize, sweep: &TangentSweep<W>, tangents: &mut [f64]) {
+        match &self.viscosity {
+            Some(viscosity) if sweep.viscous => {
+                self.write_tangents_of(viscosity, number, sweep.motion, tangents);
+            }
+            _ => in_lanes!(&self.law, law => {
+                self.write_tangents_of(law, number, sweep.motion, tangents)
+            }),
+        }
+        if sweep.part == TangentPart::Positive {
             for matrix in tangents.chunks_exact_mut(4 * N * N) {
                 take_positive_part(matrix, 2 * N);
             }
         }
+    }
+
+    fn write_tangents_of(
+        &self,
+        law: &impl LawInLanes,
+        number: usize,
+        motion: Motion,
+        tangents: &mut [f64],
+    ) {
+        Arch::new().dispatch(Tangents {
+            chunk: self,
+            law,
+            block: &self.blocks[number],
+            motion,
+            tangents,
+        });
     }
 
     /// Whether some nodes move otherwise than the others. If none does no element is strained, as in
@@ -212,7 +248,7 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
     ) -> Positive {
         let mut positive = Positive::default();
         for block in &self.blocks {
-            let (force, of_block) = block.force::<S>(law, &motion(block));
+            let (force, of_block) = F::force::<S, N, P>(block, law, &motion(block));
             positive = positive.both(of_block);
             for (a, places) in block.nodes.iter().enumerate() {
                 for (lane, &place) in places.iter().enumerate() {
@@ -249,16 +285,17 @@ impl<const N: usize, const P: usize, S: Shape<N, P> + Sync> Chunk<N, P, S> {
 }
 
 /// A sweep over internal forces with the vector instructions of the processor.
-struct ForceSweep<'a, const N: usize, const P: usize, S, L> {
-    chunk: &'a Chunk<N, P, S>,
+struct ForceSweep<'a, const N: usize, const P: usize, S, F, L> {
+    chunk: &'a Chunk<N, P, S, F>,
     law: &'a L,
     motion: Motion<'a>,
     sums: &'a mut [[f64; 2]],
 }
 
-impl<const N: usize, const P: usize, S, L> WithSimd for ForceSweep<'_, N, P, S, L>
+impl<const N: usize, const P: usize, S, F, L> WithSimd for ForceSweep<'_, N, P, S, F, L>
 where
     S: Shape<N, P> + Sync,
+    F: BlockFormulation + Sync,
     L: LawInLanes,
 {
     type Output = Positive;
@@ -277,15 +314,16 @@ where
 }
 
 /// Results of all elements with the vector instructions of the processor.
-struct Evaluation<'a, const N: usize, const P: usize, S, L> {
-    chunk: &'a Chunk<N, P, S>,
+struct Evaluation<'a, const N: usize, const P: usize, S, F, L> {
+    chunk: &'a Chunk<N, P, S, F>,
     law: &'a L,
     u: &'a [f64],
 }
 
-impl<const N: usize, const P: usize, S, L> WithSimd for Evaluation<'_, N, P, S, L>
+impl<const N: usize, const P: usize, S, F, L> WithSimd for Evaluation<'_, N, P, S, F, L>
 where
     S: Shape<N, P> + Sync,
+    F: BlockFormulation + Sync,
     L: LawInLanes,
 {
     type Output = Vec<(usize, ElementResult)>;
@@ -295,7 +333,7 @@ where
         let Self { chunk, law, u } = self;
         let mut results = Vec::with_capacity(chunk.elements.len());
         for (block, elements) in chunk.blocks.iter().zip(chunk.elements.chunks(LANES)) {
-            let of_block = block.evaluate::<S>(law, &chunk.at(block, u));
+            let of_block = F::evaluate::<S, N, P>(block, law, &chunk.at(block, u));
             results.extend(elements.iter().copied().zip(of_block));
         }
         results
@@ -303,8 +341,8 @@ where
 }
 
 /// Tangents of a block with the vector instructions of the processor.
-struct Tangents<'a, const N: usize, const P: usize, S, L> {
-    chunk: &'a Chunk<N, P, S>,
+struct Tangents<'a, const N: usize, const P: usize, S, F, L> {
+    chunk: &'a Chunk<N, P, S, F>,
     law: &'a L,
     block: &'a Block<N, P>,
     motion: Motion<'a>,
@@ -312,9 +350,10 @@ struct Tangents<'a, const N: usize, const P: usize, S, L> {
     tangents: &'a mut [f64],
 }
 
-impl<const N: usize, const P: usize, S, L> WithSimd for Tangents<'_, N, P, S, L>
+impl<const N: usize, const P: usize, S, F, L> WithSimd for Tangents<'_, N, P, S, F, L>
 where
     S: Shape<N, P> + Sync,
+    F: BlockFormulation + Sync,
     L: LawInLanes,
 {
     type Output = ();
@@ -326,8 +365,11 @@ where
         } = self;
         let (mut k, end) = ([[[[Lanes::ZERO; 2]; 2]; N]; N], self.motion.end);
         match self.motion.start {
-            None => block.add_tangent::<S>(law, &chunk.at(block, end), &mut k),
-            Some(start) => block.add_tangent::<S>(law, &chunk.between(block, [start, end]), &mut k),
+            None => F::add_tangent::<S, N, P>(block, law, &chunk.at(block, end), &mut k),
+            Some(start) => {
+                let motion = chunk.between(block, [start, end]);
+                F::add_tangent::<S, N, P>(block, law, &motion, &mut k);
+            }
         }
         let matrices = self.tangents.chunks_exact_mut(4 * N * N);
         for (lane, matrix) in matrices.enumerate() {

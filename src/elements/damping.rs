@@ -4,7 +4,7 @@
 use super::element::AnyElement;
 use super::solid::{ElementMatrix, ElementVector, Increment, MAX_DOFS, Motion, TangentPart};
 use crate::materials::{Plane, Viscosity};
-use crate::model::{Damping, Material};
+use crate::model::Material;
 
 /// Damping of an element whose material has it.
 pub(super) struct ElementDamping {
@@ -16,63 +16,63 @@ pub(super) struct ElementDamping {
 impl ElementDamping {
     /// Damping of an element of a material, if it has any; `mass` gives its mass with a density.
     pub fn new(mass: impl Fn(f64) -> Vec<f64>, material: &Material, plane: Plane) -> Option<Self> {
-        let Damping { alpha, beta } = material.damping;
-        let moduli = material.law.small_strain();
-        let viscosity = (beta > 0.0).then(|| Viscosity::new(beta, moduli, plane));
+        let alpha = material.damping.alpha;
+        let viscosity = viscosity(material, plane);
         let mass = (alpha > 0.0).then(|| mass(alpha * material.density));
         (viscosity.is_some() || mass.is_some()).then_some(ElementDamping { viscosity, mass })
     }
 
-    /// F_d dt, eq. (4.16): int B_L^T S_d dt dOmega with B_L of the mid configuration, and alpha M d.
-    pub fn impulse(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> ElementVector {
-        let mut impulse = self.mass_impulse(element, d);
-        if let Some(viscosity) = &self.viscosity {
-            let (viscous, _) = element.force(viscosity, between(increment));
-            impulse.iter_mut().zip(viscous).for_each(|(p, v)| *p += v);
-        }
-        impulse
+    /// int B_L^T S_d dt dOmega with B_L of the mid configuration, eq. (4.16).
+    pub fn viscous_impulse(&self, element: &AnyElement, increment: Increment) -> ElementVector {
+        let viscosity = self.viscosity.as_ref();
+        viscosity.map_or([0.0; MAX_DOFS], |v| element.force(v, between(increment)).0)
     }
 
-    /// alpha M d, eq. (4.16).
-    pub fn mass_impulse(&self, element: &AnyElement, d: &[f64]) -> ElementVector {
-        let (mut impulse, nodes) = ([0.0; MAX_DOFS], element.nodes());
+    /// alpha M d between some nodes, eq. (4.16), where there is any.
+    pub fn mass_impulse(&self, nodes: &[usize], d: &[f64]) -> Option<ElementVector> {
+        self.mass.as_ref()?;
+        let mut impulse = [0.0; MAX_DOFS];
         for (a, b, m) in self.mass_entries(nodes.len()) {
             for i in 0..2 {
                 impulse[2 * a + i] += m * d[2 * nodes[b] + i];
             }
         }
-        impulse
+        Some(impulse)
     }
 
     /// int S_d dt:dE dOmega + d.(alpha M d), eq. (4.18).
     pub fn work(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> f64 {
         let viscosity = self.viscosity.as_ref();
         let viscous = viscosity.map_or(0.0, |v| element.work(v, between(increment)));
-        let impulse = self.mass_impulse(element, d);
+        let impulse = self.mass_impulse(element.nodes(), d).into_iter().flatten();
         let of_mass = element.dofs().zip(impulse).map(|(dof, p)| p * d[dof]);
         viscous + of_mass.sum::<f64>()
     }
 
-    /// Cd = alpha M + 1/2 (int B_L^T 2 V B_L + B_NL^T S_d dt B_NL dOmega), eq. (4.19), or its
-    /// positive part.
-    pub fn matrix(
+    /// 1/2 (int B_L^T 2 V B_L + B_NL^T S_d dt B_NL dOmega), eq. (4.19), or its positive part.
+    pub fn viscous_tangent(
         &self,
         element: &AnyElement,
         increment: Increment,
         part: TangentPart,
     ) -> ElementMatrix {
         let viscosity = self.viscosity.as_ref();
-        let mut matrix = viscosity.map_or([0.0; MAX_DOFS * MAX_DOFS], |viscosity| {
+        viscosity.map_or([0.0; MAX_DOFS * MAX_DOFS], |viscosity| {
             let tangent = element.tangent(viscosity, between(increment), part);
             tangent.map(|entry| entry / 2.0)
-        });
-        let n = element.nodes().len();
+        })
+    }
+
+    /// alpha M between `n` nodes, eq. (4.19), where there is any.
+    pub fn mass_matrix(&self, n: usize) -> Option<ElementMatrix> {
+        self.mass.as_ref()?;
+        let mut matrix = [0.0; MAX_DOFS * MAX_DOFS];
         for (a, b, m) in self.mass_entries(n) {
             for i in 0..2 {
                 matrix[(2 * b + i) * 2 * n + 2 * a + i] += m;
             }
         }
-        matrix
+        Some(matrix)
     }
 
     /// Entries of alpha M of `n` nodes: row, column, value.
@@ -82,8 +82,14 @@ impl ElementDamping {
     }
 }
 
+/// Viscosity of a material, if it has any.
+pub(super) fn viscosity(material: &Material, plane: Plane) -> Option<Viscosity> {
+    let beta = material.damping.beta;
+    (beta > 0.0).then(|| Viscosity::new(beta, material.law.small_strain(), plane))
+}
+
 /// The motion in which viscosity acts: that of the increment, in either scheme.
-fn between([u0, u1]: Increment) -> Motion {
+pub(super) fn between([u0, u1]: Increment) -> Motion {
     Motion {
         start: Some(u0),
         ..Motion::at(u1, &[])
@@ -96,7 +102,7 @@ mod tests {
     use crate::elements::Elements;
     use crate::materials::yielding::Yielding;
     use crate::materials::{Law, NeoHooke};
-    use crate::model::{Element, ElementType, Formulation, Model, Section};
+    use crate::model::{Damping, Element, ElementType, Formulation, Model, Section};
 
     const DAMPING: Damping = Damping {
         alpha: 0.7,

@@ -5,8 +5,11 @@ use nalgebra::SMatrix;
 use smallvec::SmallVec;
 
 use super::chunk::{Chunk, TangentSweep};
+use super::damping::viscosity;
+use super::displacement::Displacement;
 use super::formulation::{ElementResult, PointResults};
 use super::hourglass::variables;
+use super::mean_dilatation::MeanDilatation;
 use super::ring::{self, Ring};
 use super::shapes::{
     Quad4, Quad4Enhanced, Quad4MeanDilatation, Quad4Reduced, Quad8, Quad8Reduced,
@@ -14,7 +17,9 @@ use super::shapes::{
 };
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
 use super::{block, enhanced_strain, formulation};
-use crate::materials::{Committed, ConstitutiveLaw, PlaneLaw, RingStressAtPoints, StressAtPoints};
+use crate::materials::{
+    Committed, ConstitutiveLaw, PlaneLaw, RingStressAtPoints, StressAtPoints, Viscosity,
+};
 use crate::model::{ElementType, Formulation, Model, Shape, Thickness};
 
 /// An element of any type.
@@ -175,15 +180,17 @@ impl AnyElement {
 /// A chunk of elements of any type that is swept by blocks.
 pub(super) enum AnyChunk {
     /// T3, displacement formulation.
-    Tri3(Chunk<3, 1, Triangle>),
+    Tri3(Chunk<3, 1, Triangle, Displacement>),
     /// Q4, displacement formulation.
-    Quad4(Chunk<4, 4, Quadrilateral>),
+    Quad4(Chunk<4, 4, Quadrilateral, Displacement>),
+    /// Q4, mean dilatation.
+    Quad4MeanDilatation(Chunk<4, 4, Quadrilateral, MeanDilatation>),
     /// T6, displacement formulation.
-    Tri6(Chunk<6, 3, QuadraticTriangle>),
+    Tri6(Chunk<6, 3, QuadraticTriangle, Displacement>),
     /// Q8, displacement formulation.
-    Quad8(Chunk<8, 9, Serendipity>),
+    Quad8(Chunk<8, 9, Serendipity, Displacement>),
     /// Q8, displacement formulation with 2 x 2 points.
-    Quad8Reduced(Chunk<8, 4, ReducedSerendipity>),
+    Quad8Reduced(Chunk<8, 4, ReducedSerendipity, Displacement>),
 }
 
 /// Evaluates an expression for the chunk in an [`AnyChunk`], whatever its type.
@@ -192,6 +199,7 @@ macro_rules! with_chunk {
         match $any {
             AnyChunk::Tri3($chunk) => $value,
             AnyChunk::Quad4($chunk) => $value,
+            AnyChunk::Quad4MeanDilatation($chunk) => $value,
             AnyChunk::Tri6($chunk) => $value,
             AnyChunk::Quad8($chunk) => $value,
             AnyChunk::Quad8Reduced($chunk) => $value,
@@ -202,9 +210,8 @@ macro_rules! with_chunk {
 impl AnyChunk {
     /// Whether elements of a type and law are swept by blocks.
     pub fn has(element_type: &ElementType, law: &PlaneLaw) -> bool {
-        let by_element = [Formulation::MeanDilatation, Formulation::Enhanced];
         law.variables() == 0
-            && !by_element.contains(&element_type.formulation)
+            && element_type.formulation != Formulation::Enhanced
             && *element_type != ElementType::CPE4R
             && *element_type != ElementType::CPS4R
             && !element_type.has_all_strains()
@@ -213,9 +220,14 @@ impl AnyChunk {
     /// Elements (indices) of the model of one type and section, and their law.
     pub fn new(model: &Model, elements: &[usize], law: PlaneLaw) -> Self {
         let first = &model.mesh.elements[elements[0]];
-        let (element_type, t) = (first.element_type, model.sections[first.section].thickness);
+        let (element_type, section) = (first.element_type, &model.sections[first.section]);
+        let viscosity = viscosity(&model.materials[section.material], element_type.plane);
+        let (t, law) = (section.thickness, (law, viscosity));
         match (element_type.shape, element_type.formulation) {
             (Shape::Tri3, _) => Self::Tri3(chunk(model, elements, t, law)),
+            (Shape::Quad4, Formulation::MeanDilatation) => {
+                Self::Quad4MeanDilatation(chunk(model, elements, t, law))
+            }
             (Shape::Quad4, _) => Self::Quad4(chunk(model, elements, t, law)),
             (Shape::Tri6, _) => Self::Tri6(chunk(model, elements, t, law)),
             (Shape::Quad8, Formulation::Reduced) => {
@@ -231,6 +243,9 @@ impl AnyChunk {
             Self::Tri3(chunk) => AnyElement::Tri3(Solid::new(first(nodes), chunk.reference(place))),
             Self::Quad4(chunk) => {
                 AnyElement::Quad4(Solid::new(first(nodes), chunk.reference(place)))
+            }
+            Self::Quad4MeanDilatation(chunk) => {
+                AnyElement::Quad4MeanDilatation(Solid::new(first(nodes), chunk.reference(place)))
             }
             Self::Tri6(chunk) => {
                 let element = Solid::new(first(nodes), chunk.reference(place));
@@ -250,6 +265,16 @@ impl AnyChunk {
     /// Sums up internal forces. False where an element is turned inside out.
     pub fn sum_forces(&self, motion: Motion) -> bool {
         with_chunk!(self, chunk => chunk.sum_forces(motion))
+    }
+
+    /// As [`Chunk::is_viscous`].
+    pub fn is_viscous(&self) -> bool {
+        with_chunk!(self, chunk => chunk.is_viscous())
+    }
+
+    /// Sums up the forces of the viscosity.
+    pub fn sum_viscous(&self, motion: Motion) {
+        with_chunk!(self, chunk => chunk.sum_viscous(motion))
     }
 
     /// Adds the sums of the last sweep to a vector over all dofs.
@@ -301,12 +326,16 @@ where
 }
 
 /// A chunk of elements of the shape S.
-fn chunk<S: block::Shape<N, P> + Sync, const N: usize, const P: usize>(
+fn chunk<S, F, const N: usize, const P: usize>(
     model: &Model,
     elements: &[usize],
     t: f64,
-    law: PlaneLaw,
-) -> Chunk<N, P, S> {
+    law: (PlaneLaw, Option<Viscosity>),
+) -> Chunk<N, P, S, F>
+where
+    S: block::Shape<N, P> + Sync,
+    F: block::BlockFormulation + Sync,
+{
     let mesh = &model.mesh;
     let nodes = elements.iter().map(|&e| first(&mesh.elements[e].nodes));
     let nodes: Vec<_> = nodes.collect();

@@ -15,6 +15,7 @@ mod formulation;
 mod hourglass;
 mod local_solution;
 mod mean_dilatation;
+mod mean_dilatation_lanes;
 mod mean_gradient;
 mod recovery;
 mod reduced;

@@ -12,8 +12,8 @@ use super::{Across, ConstitutiveLaw, PlaneSaintVenantKirchhoff, Strains};
 /// not fit its registers.
 pub const LANES: usize = 2;
 
-/// A number of every element of a block.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A number of every element of a block; the default is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Lanes(pub [f64; LANES]);
 
 /// Components xx, yy, xy of a symmetric tensor.
@@ -38,6 +38,12 @@ impl Lanes {
     pub fn sqrt(self) -> Lanes {
         let [a, b] = self.0;
         Lanes([a.sqrt(), b.sqrt()])
+    }
+
+    /// 1/x, and a large number for x = 0.
+    #[inline(always)]
+    pub fn inverse(self) -> Lanes {
+        Lanes(self.0.map(|x| 1.0 / x.max(f64::MIN_POSITIVE)))
     }
 
     /// 1/x^(1/3) of positive numbers that are not subnormal; NaN of others. A third of the exponent gives a start r within 4 %,
@@ -155,6 +161,18 @@ pub fn combined(
 
 /// Tangent in Voigt order.
 pub type TangentLanes = [[Lanes; 3]; 3];
+
+/// S:E of symmetric tensors.
+#[inline(always)]
+pub fn contract(s: &SymmetricLanes, e: &SymmetricLanes) -> Lanes {
+    s[0] * e[0] + s[1] * e[1] + s[2] * e[2] * 2.0
+}
+
+/// C:E in Voigt order.
+#[inline(always)]
+pub fn times(c: &TangentLanes, [xx, yy, xy]: &SymmetricLanes) -> SymmetricLanes {
+    from_fn(|i| c[i][0] * *xx + c[i][1] * *yy + c[i][2] * (*xy * 2.0))
+}
 
 /// Strains between which a stress is taken: (E0 + E1)/2 and (E1 - E0)/2.
 #[derive(Clone, Copy)]

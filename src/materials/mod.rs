@@ -23,6 +23,7 @@ mod solid;
 mod solid_laws;
 pub mod symmetric;
 mod viscosity;
+mod viscosity_lanes;
 #[cfg(test)]
 pub(crate) mod yielding;
 

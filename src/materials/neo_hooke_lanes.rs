@@ -6,7 +6,9 @@ use std::array::from_fn;
 
 use super::NeoHooke;
 use super::hyperelastic::{NO_CHANGE, NO_CHANGE_OF_TANGENT};
-use super::lanes::{Lanes, LawInLanes, StrainChange, SymmetricLanes, TangentLanes, combined};
+use super::lanes::{
+    Lanes, LawInLanes, StrainChange, SymmetricLanes, TangentLanes, combined, contract, times,
+};
 
 /// Measures of the change of volume and shape at a strain.
 struct Dilatation {
@@ -55,18 +57,6 @@ impl Dilatation {
     fn distortion(&self) -> Lanes {
         self.b * self.b * (self.b + 3.0) - self.q
     }
-}
-
-/// S:E of symmetric tensors.
-#[inline(always)]
-fn contract(s: &SymmetricLanes, e: &SymmetricLanes) -> Lanes {
-    s[0] * e[0] + s[1] * e[1] + s[2] * e[2] * 2.0
-}
-
-/// C:E in Voigt order.
-#[inline(always)]
-fn times(c: &TangentLanes, [xx, yy, xy]: &SymmetricLanes) -> SymmetricLanes {
-    from_fn(|i| c[i][0] * *xx + c[i][1] * *yy + c[i][2] * (*xy * 2.0))
 }
 
 impl NeoHooke {

@@ -23,9 +23,9 @@ use super::{
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
     /// 2 beta mu (force time/length^2).
-    shape: f64,
+    pub(super) shape: f64,
     /// beta (kappa - mu), since dS has the part -(dJ/2) G (force time/length^2).
-    volume: f64,
+    pub(super) volume: f64,
 }
 
 impl Viscosity {
