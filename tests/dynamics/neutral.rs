@@ -202,3 +202,134 @@ fn a_block_slides_off_an_elastic_floor_that_slopes_ever_so_little() {
         );
     }
 }
+
+/// A disc of 8 by 8 elements, turned by an angle, between two elastic plates, the upper of which is pressed down.
+fn disc_between_plates(angle: f64, from_surface: bool) -> String {
+    let (mut text, after) = grid("LOW", [12, 3], [-2.0, -2.0, 4.0, 1.0], [0, 0]);
+    let (upper, [node, element]) = grid("UP", [10, 3], [-2.0, 1.0, 4.0, 1.0], after);
+    text += &upper;
+    let number = |i: usize, j: usize| node + 1 + 9 * j + i;
+    let (sin, cos) = f64::sin_cos(angle);
+    text += "*NODE\n";
+    for (j, i) in (0..=8).flat_map(|j| (0..=8).map(move |i| (j, i))) {
+        // squares become circles towards the outline
+        let [u, v] = [i, j].map(|k| k as f64 / 4.0 - 1.0);
+        let (square, round) = (u.abs().max(v.abs()), u.hypot(v));
+        let part = if round > 0.0 {
+            1.0 - square + square * square / round
+        } else {
+            1.0
+        };
+        let [x, y] = [part * (cos * u - sin * v), part * (sin * u + cos * v)];
+        text += &format!("{}, {x:?}, {y:?}\n", number(i, j));
+    }
+    text += "*ELEMENT, TYPE=CPE4, ELSET=DISC\n";
+    for (j, i) in (0..8).flat_map(|j| (0..8).map(move |i| (j, i))) {
+        let [a, b, c, d] =
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| number(i, j));
+        text += &format!("{}, {a}, {b}, {c}, {d}\n", element + 1 + 8 * j + i);
+    }
+    let numbers = |nodes: std::ops::Range<usize>| {
+        let all: Vec<String> = nodes.map(|node| node.to_string()).collect();
+        all.join(", ")
+    };
+    let (held, head) = (numbers(1..14), numbers(52 + 34..52 + 45));
+    let form = if from_surface {
+        ", TYPE=SURFACE TO SURFACE"
+    } else {
+        ""
+    };
+    text += &format!(
+        "*NSET, NSET=HELD\n{held}\n*NSET, NSET=HEAD\n{head}\n*SURFACE, NAME=SKIN\nDISC\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=DISC, MATERIAL=M\n\
+         *SOLID SECTION, ELSET=LOW, MATERIAL=M\n*SOLID SECTION, ELSET=UP, MATERIAL=M\n\
+         *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.0\n*CONTACT PAIR, INTERACTION=DRY{form}\nSKIN, LOW_TOP\n\
+         *CONTACT PAIR, INTERACTION=DRY{form}\nSKIN, UP_FOOT\n*BOUNDARY\nHELD, 1, 2\nHEAD, 1, 1\n\
+         *STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\nHEAD, 2, 2, -0.02\n*END STEP\n"
+    );
+    text
+}
+
+#[test]
+fn a_disc_without_friction_stays_between_the_plates_that_press_it() {
+    for from_surface in [false, true] {
+        for angle in [0.0, 0.1, std::f64::consts::PI / 16.0] {
+            let (keep, failure) = run_deck(&disc_between_plates(angle, from_surface));
+            assert_eq!(failure, None, "{angle} {from_surface}");
+            let last = keep.reports.last().expect("reports");
+            let [below, above] = [0, 1].map(|k| last.contacts[k].force[1].abs());
+            assert!(
+                below > 1.0 && (below - above).abs() < 1e-9 * below,
+                "{below} {above}"
+            );
+            assert!(last.solver.held < 1e-3, "{}", last.solver.held);
+        }
+    }
+}
+
+#[test]
+fn a_block_on_one_that_sinks_in_more_at_one_side_slides_off() {
+    let pile = Pile {
+        off: 0.37,
+        blocks: 2,
+        from_surface: true,
+        ..PILE
+    };
+    let (_, failure) = pile.run();
+    let failure = failure.expect("it slides");
+    assert!(
+        matches!(failure.cause, Cause::Unbalanceable(_)),
+        "{}",
+        failure.cause
+    );
+}
+
+/// A block on an elastic floor, off its middle, whose top moves down with that of a post beside it by equations.
+fn block_with_a_post() -> String {
+    let (mut text, after) = grid("LOW", [10, 2], [0.0, 0.0, 5.0, 1.0], [0, 0]);
+    let (block, next) = grid("BLOCK", [4, 2], [1.7, 1.0, 2.0, 1.0], after);
+    let (post, _) = grid("POST", [2, 4], [6.0, 0.0, 1.0, 2.0], next);
+    text += &block;
+    text += &post;
+    let set = |nodes: std::ops::RangeInclusive<usize>| {
+        let all: Vec<String> = nodes.map(|node| node.to_string()).collect();
+        all.join(", ")
+    };
+    let foot = next[0] + 1;
+    for node in after[0] + 11..=after[0] + 15 {
+        text += &format!("*EQUATION\n2\n{node}, 2, 1.0, {}, 2, -1.0\n", foot + 12);
+    }
+    text += &format!(
+        "*NSET, NSET=GROUND\n{}\n*NSET, NSET=FOOT\n{}\n",
+        set(1..=11),
+        set(foot..=foot + 2)
+    );
+    text += "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n";
+    for name in ["LOW", "BLOCK", "POST"] {
+        text += &format!("*SOLID SECTION, ELSET={name}, MATERIAL=M\n");
+    }
+    text + "*SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.0\n*CONTACT PAIR, INTERACTION=DRY\nBLOCK_FOOT, LOW_TOP\n\
+           *BOUNDARY\nGROUND, 1, 2\nFOOT, 1, 2\n*STEP, NLGEOM\n*STATIC\n1., 1.\n*DLOAD\n\
+           BLOCK, GRAV, 9.81, 0.0, -1.0\n*END STEP\n"
+}
+
+#[test]
+fn what_equations_join_to_held_parts_is_held_where_they_leave_it_free() {
+    let (keep, failure) = run_deck(&block_with_a_post());
+    assert_eq!(failure, None);
+    let last = keep.reports.last().expect("reports");
+    assert!(last.solver.passes <= 6, "{}", last.solver.passes);
+    assert!(
+        last.solver.held > 1e-8 && last.solver.held < 3e-3,
+        "{}",
+        last.solver.held
+    );
+    let sum = |i: usize| last.nodal.reaction.iter().skip(i).step_by(2).sum::<f64>();
+    let weight = 9.81 * 2.0;
+    assert!(sum(0).abs() < 1e-9 * weight, "{}", sum(0));
+    assert!(
+        (sum(1) - weight).abs() < 1e-9 * weight,
+        "{} {weight}",
+        sum(1)
+    );
+}

@@ -254,6 +254,7 @@ impl<'m> Attempt<'_, 'm> {
             let state = [settled, factors.stagnate()];
             let may_end = contact.impulses.are_at_rest() && factors.are_near();
             if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
+                self.pins().check_held(&contact.forces, &pins, v)?;
                 return self.finish(&d, contact, pins.held, v, true);
             }
 
@@ -297,6 +298,7 @@ impl<'m> Attempt<'_, 'm> {
             }
             has_no_pairs &= contact.forces.closed.is_empty();
             if ends {
+                self.pins().check_held(&contact.forces, &pins, v)?;
                 return self.finish(&d, contact, pins.held, v, false);
             }
         }

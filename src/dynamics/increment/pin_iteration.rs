@@ -3,6 +3,8 @@
 
 use std::collections::BTreeSet;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::contact_forces::ContactForces;
 use super::linear_pass::{Vectors, close_hinges, k_star};
 use crate::contact::{Constraint, ConstraintKey};
@@ -34,6 +36,8 @@ const SETTLED_PIN: f64 = 1e-3;
 const HARDLY_FALLS: f64 = 0.9;
 /// Passes with the same closed pairs in which forces of pins stay after which there is no equilibrium.
 const FREE_PASSES: usize = 3;
+/// Error of the resultant of forces beside round-off of one of them.
+const RESULTANT: f64 = 10.0;
 /// Constraints of a body that the stiffness of its pins is taken from.
 const NEAR: usize = 12;
 
@@ -57,6 +61,11 @@ fn stride(last: f64, f: &[f64], f_last: &[f64]) -> f64 {
     } else {
         most
     }
+}
+
+fn product(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
+    let product = matrix * DVector::from_column_slice(vector);
+    product.as_slice().to_vec()
 }
 
 /// Whether forces of pins have settled since `before`; or grow with the way of a body that goes too far, as they do where
@@ -109,11 +118,18 @@ fn nearest(contact: &ContactForces, parts: &Parts) -> Vec<Constraint> {
 /// What the steps of a pass have come to.
 enum Pinned {
     /// Pins carry nothing but what is held.
-    Balanced,
+    Balanced(Pushed),
     /// Their forces still fall.
     Falling,
     /// They stay.
     Stays(Stays),
+}
+
+/// Forces at pins, and normal forces of all bodies with pins, before the bodies have gone anywhere in a pass.
+#[derive(Default)]
+struct Pushed {
+    pins: Vec<f64>,
+    bodies: Vec<f64>,
 }
 
 /// Forces at pins that stay, with the correction and the closed pairs that belong to them, and the other forces.
@@ -128,6 +144,8 @@ struct Stays {
 #[derive(Default)]
 pub(super) struct PinState {
     free: FreePasses,
+    /// What was seen before motions were held.
+    before: Option<Stays>,
     /// Motions that are held.
     pub held: HeldMotions,
 }
@@ -163,30 +181,37 @@ impl PinIteration<'_, '_> {
         let problem = self.problem;
         let near = nearest(contact, problem.parts);
         let near: Vec<&Constraint> = near.iter().collect();
-        let PinState { free, held } = state;
+        let PinState { free, before, held } = state;
         self.follow_held(contact, held, v);
-        let mut first: Option<Stays> = None;
+        let [mut has_held, mut has_held_back] = [false; 2];
         loop {
             let (closing, result) = self.balance_pins(contact, weight, (&near, held), v)?;
             let stays = match result {
                 // in balance other pairs may be closed
-                Pinned::Balanced if self.follow_held(contact, held, v) => continue,
-                Pinned::Balanced => {
+                Pinned::Balanced(_) if self.follow_held(contact, held, v) => continue,
+                Pinned::Balanced(pushed) => {
+                    if !has_held_back && let Some(force) = self.left_behind(contact, pushed) {
+                        has_held_back = true;
+                        self.hold(contact, weight, (&near, held, (&force, 0.0)), v)?;
+                        continue;
+                    }
                     free.ends();
-                    self.check_held(contact, held, first, v)?;
                     return Ok(closing);
                 }
                 Pinned::Falling => return Ok(closing),
                 Pinned::Stays(stays) => stays,
             };
-            let may_hold = first.is_none() && !stays.closed.is_empty();
-            if may_hold && self.hold(contact, weight, (&near, held, &stays), v)? {
-                first = Some(stays);
+            let may_hold = !has_held && !stays.closed.is_empty();
+            let large = (&stays.force[..], SMALL_PIN_FORCE * stays.others);
+            if may_hold && self.hold(contact, weight, (&near, held, large), v)? {
+                has_held = true;
+                *before = Some(stays);
                 continue;
             }
+            let seen = if has_held { before.take() } else { None };
             let Stays {
                 force, du, closed, ..
-            } = first.unwrap_or(stays);
+            } = seen.unwrap_or(stays);
             return match free.fail(closed) {
                 true => Err((self.workspace.pins).unbalanceable(problem, &v.u, &du, &force)),
                 false => Ok(closing),
@@ -194,13 +219,30 @@ impl PinIteration<'_, '_> {
         }
     }
 
-    /// Holds the free motions of bodies that pins do not let come to rest; whether there are any. What they are is seen
-    /// before the bodies have gone anywhere.
+    /// Forces at the pins of bodies that were pushed away from all that touched them, before they went.
+    fn left_behind(&self, contact: &ContactForces, pushed: Pushed) -> Option<Vec<f64>> {
+        let pins = &self.workspace.pins;
+        let acting: Vec<_> = contact.acting().collect();
+        let now = pins.normal_forces(&acting);
+        let mut force = pushed.pins;
+        let mut is_any = false;
+        let bodies = pins.of_bodies().into_iter();
+        for (own, (before, now)) in bodies.zip(pushed.bodies.iter().zip(now)) {
+            match *before > 0.0 && now <= SMALL_PIN_FORCE * before {
+                true => is_any = true,
+                false => force[own].fill(0.0),
+            }
+        }
+        is_any.then_some(force)
+    }
+
+    /// Holds the free motions of bodies with forces at their pins, larger than a least one; whether there are any. What they
+    /// are is seen before the bodies have gone anywhere.
     fn hold(
         &mut self,
         contact: &mut ContactForces,
         weight: Option<f64>,
-        (near, held, stays): (&[&Constraint], &mut HeldMotions, &Stays),
+        (near, held, force): (&[&Constraint], &mut HeldMotions, (&[f64], f64)),
         v: &mut Vectors,
     ) -> Result<bool, Cause> {
         let problem = self.problem;
@@ -211,16 +253,14 @@ impl PinIteration<'_, '_> {
         self.solve_with_pins(contact, weight, (&stiffness, &none), v)?;
         let at = |node: usize| problem.position(&v.u, node);
         let acting: Vec<_> = contact.acting().collect();
-        let least = SMALL_PIN_FORCE * stays.others;
-        Ok(held.hold(&self.workspace.pins, &at, &acting, (&stays.force, least)))
+        Ok(held.hold(&self.workspace.pins, &at, &acting, force))
     }
 
-    /// What holds motions must be within what the normals of the pairs take from each other.
-    fn check_held(
+    /// What holds motions in an increment that has converged must be within what facets make of its normal forces.
+    pub fn check_held(
         &self,
         contact: &ContactForces,
-        held: &HeldMotions,
-        before: Option<Stays>,
+        PinState { held, before, .. }: &PinState,
         v: &Vectors,
     ) -> Result<(), Cause> {
         if held.are_none() {
@@ -229,11 +269,13 @@ impl PinIteration<'_, '_> {
         let (problem, pins) = (self.problem, &self.workspace.pins);
         let at = |node: usize| problem.position(&v.u, node);
         let acting: Vec<_> = contact.acting().collect();
-        if held.beside_facets(pins, &at, &acting) <= 1.0 {
+        let noise = RESULTANT * pins.round_off(&self.workspace.stiffness.pins);
+        let errors = [problem.settings.tolerance, noise];
+        if held.beside_facets(pins, &at, &acting, errors) <= 1.0 {
             return Ok(());
         }
         Err(match before {
-            Some(Stays { force, du, .. }) => pins.unbalanceable(problem, &v.u, &du, &force),
+            Some(Stays { force, du, .. }) => pins.unbalanceable(problem, &v.u, du, force),
             None => (held.strongest(pins, problem, &v.u))
                 .map_or(Cause::NotConverged, Cause::Unbalanceable),
         })
@@ -259,8 +301,10 @@ impl PinIteration<'_, '_> {
         let of_bodies = self.workspace.pins.of_bodies();
         let reach = self.workspace.search.reach();
         let tolerance = problem.settings.tolerance;
+        let held_part = held.projection(&self.workspace.pins);
         let mut p = vec![0.0; dofs.len()];
         let (mut stays, mut closing) = (None, Vec::new());
+        let mut pushed = None;
         // where f vanishes slowly, pins are too stiff for what holds the body
         'rounds: for part in SOFTER {
             let stiffness = (self.workspace)
@@ -270,29 +314,34 @@ impl PinIteration<'_, '_> {
             let mut forces: Vec<Vec<f64>> = Vec::new();
             let mut strides = vec![0.0; of_bodies.len()];
             let (mut left, mut small) = (f64::INFINITY, None);
+            let a = &self.workspace.stiffness.pins;
+            // the forces of the pass, of which round-off is no force of pins
+            let mut others = self.workspace.pins.round_off(a) / SMALL_PIN_FORCE;
             let mut holding = Vec::new();
             for step in 0..PIN_STEPS {
                 self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
-                let pins = &self.workspace.pins;
                 let moved: Vec<f64> = dofs.iter().map(|&dof| v.du[dof]).collect();
-                let force = stiffness.forces(&difference(&moved, &p));
+                let way = difference(&moved, &p);
+                let force = stiffness.forces(&way);
                 let Equilibrium { load, internal, .. } = &v.equilibrium;
                 let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
-                let others = [largest(load), largest(internal)]
-                    .into_iter()
-                    .chain(of_pairs);
-                let others = others.fold(0.0, f64::max);
+                let all = [largest(load), largest(internal)].into_iter();
+                others = all.chain(of_pairs).fold(others, f64::max);
                 // f where bodies are to move, the motion times a' where they are held
-                holding = held.along(pins, &force);
-                let gone = held.along(pins, &moved);
+                holding = product(&held_part.transpose(), &force);
+                let gone = product(&held_part, &moved);
                 let soft = &stiffness.soft;
                 let error = |k: usize| force[k] - holding[k] + soft[k] * gone[k];
                 let error: Vec<f64> = (0..dofs.len()).map(error).collect();
                 left = largest(&error) / others;
-                // without any force there is nothing to carry
-                if left.is_nan() || left <= PIN_FORCE {
+                let pushed = pushed.get_or_insert_with(|| Pushed {
+                    pins: error.clone(),
+                    bodies: (self.workspace.pins)
+                        .normal_forces(&contact.acting().collect::<Vec<_>>()),
+                });
+                if left <= PIN_FORCE {
                     self.take_held(held, &holding, v);
-                    return Ok((closing, Pinned::Balanced));
+                    return Ok((closing, Pinned::Balanced(std::mem::take(pushed))));
                 }
                 let goes_too_far = largest(&moved) > reach;
                 if let Some(before) = step.checked_sub(2).map(|before| &forces[before])
@@ -313,12 +362,12 @@ impl PinIteration<'_, '_> {
                 if left <= SMALL_PIN_FORCE {
                     small.get_or_insert_with(|| (p.clone(), holding.clone(), left));
                 }
+                let of_held = product(&held_part, &way);
                 for (pins, last) in of_bodies.iter().zip(&mut strides) {
                     let before = forces.last().map_or(&[][..], |force| &force[pins.clone()]);
                     *last = stride(*last, &error[pins.clone()], before);
                     for k in pins.clone() {
-                        let way = (force[k] - holding[k]) / soft[k];
-                        p[k] += (1.0 + *last) * way - gone[k];
+                        p[k] += (1.0 + *last) * (way[k] - of_held[k]) - gone[k];
                     }
                 }
                 forces.push(error);
@@ -333,11 +382,11 @@ impl PinIteration<'_, '_> {
                 Some((p, holding, _)) => {
                     self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
                     self.take_held(held, &holding, v);
-                    return Ok((closing, Pinned::Balanced));
+                    return Ok((closing, Pinned::Balanced(pushed.unwrap_or_default())));
                 }
                 None => {
                     self.take_held(held, &holding, v);
-                    return Ok((closing, Pinned::Balanced));
+                    return Ok((closing, Pinned::Balanced(pushed.unwrap_or_default())));
                 }
             }
         }

@@ -790,7 +790,7 @@ impl<'m, 'o> Runner<'m, 'o> {
 }
 
 /// What holds motions that only facets resist in a static increment: the body with the largest force, and the largest
-/// force as a part of the normal forces at its body.
+/// force as a part of the normal forces at its body, where it is more than the tolerance.
 fn held_motions(
     problem: &StepProblem,
     workspace: &Workspace,
@@ -799,8 +799,9 @@ fn held_motions(
     let (held, u) = (&solved.held, &solved.end.u);
     let at = |node: usize| problem.position(u, node);
     let acting: Vec<_> = solved.contact.forces.acting().collect();
-    (
-        held.strongest(&workspace.pins, problem, u),
-        held.part(&workspace.pins, &at, &acting),
-    )
+    let part = held.part(&workspace.pins, &at, &acting);
+    match part > problem.settings.tolerance {
+        true => (held.strongest(&workspace.pins, problem, u), part),
+        false => (None, 0.0),
+    }
 }

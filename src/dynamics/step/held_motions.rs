@@ -3,7 +3,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::pins::Pins;
+use super::pins::{PinMotions, Pins};
 use super::step_problem::StepProblem;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::Unbalanced;
@@ -12,7 +12,7 @@ use crate::linear::{larger, largest};
 /// Part of a motion along free ones from which on it is one of them.
 const ALONG: f64 = 0.7;
 
-/// Motions that are held, of every body its own, in the space of its pins.
+/// Motions that are held, of every body its own.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct HeldMotions(Vec<HeldBody>);
 
@@ -20,9 +20,19 @@ pub(crate) struct HeldMotions(Vec<HeldBody>);
 struct HeldBody {
     /// Its number among those with pins.
     body: usize,
-    /// Orthogonal motions of its pins, each of size 1.
-    directions: Vec<DVector<f64>>,
-    /// Forces at its pins.
+    directions: Vec<Direction>,
+    /// Resultant of what holds it, along the free rigid motions of the body.
+    force: DVector<f64>,
+}
+
+/// A rigid motion that is held, one of some that are orthogonal and of size 1.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Direction {
+    /// D: parts of the free rigid motions.
+    rigid: DVector<f64>,
+    /// Z_p D: motion of the pins.
+    motion: DVector<f64>,
+    /// Z_p^-T D: forces at the pins with the resultant D.
     force: DVector<f64>,
 }
 
@@ -33,13 +43,35 @@ fn along(directions: &[DVector<f64>], vector: &DVector<f64>) -> DVector<f64> {
     parts.fold(zero, |sum, part| sum + part)
 }
 
+impl HeldBody {
+    /// A body that is held along orthogonal rigid motions with what they take of a resultant.
+    fn new(body: usize, pins: &PinMotions, rigid: Vec<DVector<f64>>, force: &DVector<f64>) -> Self {
+        let force = along(&rigid, force);
+        let seen = |rigid: DVector<f64>| Direction {
+            motion: pins.motions(&rigid),
+            force: pins.forces(&rigid),
+            rigid,
+        };
+        HeldBody {
+            body,
+            directions: rigid.into_iter().map(seen).collect(),
+            force,
+        }
+    }
+
+    fn rigid(&self) -> Vec<DVector<f64>> {
+        let all = self.directions.iter();
+        all.map(|direction| direction.rigid.clone()).collect()
+    }
+}
+
 impl HeldMotions {
     /// Whether none is held.
     pub fn are_none(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// D D^T over all pins, D being the motions that are held.
+    /// P of eq. (12.10) over all pins: the part of their motions that is held.
     pub fn projection(&self, pins: &Pins) -> DMatrix<f64> {
         let of_bodies = pins.of_bodies();
         let m = of_bodies.last().map_or(0, |own| own.end);
@@ -48,43 +80,35 @@ impl HeldMotions {
             let own = of_bodies[held.body].clone();
             let size = (own.len(), own.len());
             let mut block = all.view_mut((own.start, own.start), size);
-            for motion in &held.directions {
-                block += motion * motion.transpose();
+            for Direction { motion, force, .. } in &held.directions {
+                block += motion * force.transpose();
             }
         }
         all
     }
 
-    /// Part of forces or motions at the pins along what is held.
-    pub fn along(&self, pins: &Pins, all: &[f64]) -> Vec<f64> {
-        let mut part = vec![0.0; all.len()];
-        let of_bodies = pins.of_bodies();
-        for held in &self.0 {
-            let own = of_bodies[held.body].clone();
-            let of_body = along(
-                &held.directions,
-                &DVector::from_column_slice(&all[own.clone()]),
-            );
-            part[own].copy_from_slice(of_body.as_slice());
-        }
-        part
-    }
-
     /// Forces at all pins.
     pub fn forces(&self, pins: &Pins) -> Vec<f64> {
         let of_bodies = pins.of_bodies();
-        let mut forces = vec![0.0; of_bodies.last().map_or(0, |range| range.end)];
+        let mut forces = DVector::zeros(of_bodies.last().map_or(0, |range| range.end));
         for held in &self.0 {
-            forces[of_bodies[held.body].clone()].copy_from_slice(held.force.as_slice());
+            let own = of_bodies[held.body].clone();
+            let mut of_body = forces.rows_mut(own.start, own.len());
+            for Direction { rigid, force, .. } in &held.directions {
+                of_body += force * rigid.dot(&held.force);
+            }
         }
-        forces
+        forces.as_slice().to_vec()
     }
 
     /// Adds forces at all pins to what holds.
     pub fn add_forces(&mut self, pins: &Pins, forces: &[f64]) {
         let of_bodies = pins.of_bodies();
         for held in &mut self.0 {
-            held.force += DVector::from_column_slice(&forces[of_bodies[held.body].clone()]);
+            let own = DVector::from_column_slice(&forces[of_bodies[held.body].clone()]);
+            for Direction { rigid, motion, .. } in &held.directions {
+                held.force += rigid * motion.dot(&own);
+            }
         }
     }
 
@@ -96,20 +120,25 @@ impl HeldMotions {
         acting: &[(&Constraint, &ClosedPair)],
     ) -> bool {
         let mut lets_go = false;
-        for held in &mut self.0 {
+        let mut all = Vec::new();
+        for held in std::mem::take(&mut self.0) {
             let free = pins.normals(held.body, at, acting).free();
-            let old = std::mem::take(&mut held.directions);
-            for direction in &old {
-                let mut own = along(&free, direction);
-                own -= along(&held.directions, &own);
+            let mut rigid: Vec<DVector<f64>> = Vec::new();
+            for direction in held.rigid() {
+                let mut own = along(&free, &direction);
+                own -= along(&rigid, &own);
                 if own.norm() >= ALONG {
-                    held.directions.push(own.normalize());
+                    rigid.push(own.normalize());
                 }
             }
-            held.force = along(&held.directions, &held.force);
-            lets_go |= held.directions.len() < old.len();
+            lets_go |= rigid.len() < held.directions.len();
+            if !rigid.is_empty()
+                && let Some(motions) = pins.motions(held.body, at)
+            {
+                all.push(HeldBody::new(held.body, &motions, rigid, &held.force));
+            }
         }
-        self.0.retain(|held| !held.directions.is_empty());
+        self.0 = all;
         lets_go
     }
 
@@ -123,32 +152,32 @@ impl HeldMotions {
     ) -> bool {
         let mut is_new = false;
         for (body, own) in pins.of_bodies().into_iter().enumerate() {
-            let directions = pins.normals(body, at, acting).free();
-            if largest(&force[own.clone()]) <= least || directions.is_empty() {
+            let rigid = pins.normals(body, at, acting).free();
+            if largest(&force[own.clone()]) <= least || rigid.is_empty() {
                 continue;
             }
+            let Some(motions) = pins.motions(body, at) else {
+                continue;
+            };
             let place = self.0.iter().position(|held| held.body == body);
             let before = place.map(|place| self.0.swap_remove(place));
             let (known, force) = match before {
-                Some(held) => (held.directions.len(), along(&directions, &held.force)),
+                Some(held) => (held.directions.len(), held.force),
                 None => (0, DVector::zeros(own.len())),
             };
-            is_new |= directions.len() > known;
-            self.0.push(HeldBody {
-                body,
-                directions,
-                force,
-            });
+            is_new |= rigid.len() > known;
+            self.0.push(HeldBody::new(body, &motions, rigid, &force));
         }
         is_new
     }
 
-    /// Largest force that holds a body, beside what facets resolve.
+    /// Largest force that holds a body, beside what facets resolve and errors: a part of the normal forces, and a force.
     pub fn beside_facets(
         &self,
         pins: &Pins,
         at: &dyn Fn(usize) -> [f64; 2],
         acting: &[(&Constraint, &ClosedPair)],
+        [tolerance, noise]: [f64; 2],
     ) -> f64 {
         let part = |held: &HeldBody| {
             let force = held.force.norm();
@@ -157,7 +186,7 @@ impl HeldMotions {
                 true => &held.force / force,
                 false => return 0.0,
             };
-            force / normals.resolution(&motion)
+            force / (normals.resolution(&motion) + tolerance * normals.force() + noise)
         };
         self.0.iter().map(part).fold(0.0, f64::max)
     }
@@ -169,11 +198,8 @@ impl HeldMotions {
         at: &dyn Fn(usize) -> [f64; 2],
         acting: &[(&Constraint, &ClosedPair)],
     ) -> f64 {
-        let part = |held: &HeldBody| {
-            let normals = pins.normals(held.body, at, acting).0;
-            let all: f64 = normals.iter().map(|normal| normal.force).sum();
-            held.force.norm() / all
-        };
+        let part =
+            |held: &HeldBody| held.force.norm() / pins.normals(held.body, at, acting).force();
         self.0.iter().map(part).fold(0.0, larger)
     }
 
@@ -207,15 +233,18 @@ impl HeldMotions {
         for (body, own) in pins.of_bodies().into_iter().enumerate() {
             let a = a[own.start];
             let own = &dofs[own];
-            let mut add = |motion: &DVector<f64>, k: f64| {
-                all.push((own.to_vec(), k * motion * motion.transpose()));
+            let mut add = |force: &DVector<f64>, k: f64| {
+                all.push((own.to_vec(), k * force * force.transpose()));
             };
             let held = self.0.iter().filter(|held| held.body == body);
             let directions = held.flat_map(|held| &held.directions);
-            directions.for_each(|motion| add(motion, a));
+            directions.for_each(|direction| add(&direction.force, a));
+            let Some(motions) = pins.motions(body, at) else {
+                continue;
+            };
             let normals = pins.normals(body, at, acting);
             for motion in normals.free() {
-                add(&motion, normals.stiffness(&motion));
+                add(&motions.forces(&motion), normals.stiffness(&motion));
             }
         }
         all

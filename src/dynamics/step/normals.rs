@@ -1,4 +1,4 @@
-//! Normals of the closed pairs of a body as its pins see them, and the facets of its contact surfaces. Section 12 of
+//! Normals of the closed pairs of a body along its rigid motions, and the facets of its contact surfaces. Section 12 of
 //! docs/theory.md, Neutral motions.
 
 use std::collections::HashMap;
@@ -13,14 +13,16 @@ const SLOPE: f64 = 0.25;
 /// Cosine of the angle from which on a vertex is a corner of a body.
 const CORNER: f64 = 0.866;
 
-/// The pairs of a body as its pins see them.
+/// The pairs of a body along its free rigid motions.
 pub(super) struct Normals(pub Vec<Normal>);
 
 /// Normal of a pair.
 pub(super) struct Normal {
-    /// Gn and Gt of the rigid motions that move one pin by 1 and the others not.
+    /// Gn Z and Gt Z
     pub row: DVector<f64>,
     pub tangent: DVector<f64>,
+    /// |Gn Z0|², Z0 being all rigid motions of the body, those that supports hold too.
+    pub size: f64,
     /// Largest sine of the angle between neighbouring segments at its nodes.
     pub kink: f64,
     /// Pn
@@ -31,10 +33,15 @@ pub(super) struct Normal {
 }
 
 impl Normals {
+    /// Sum of Pn.
+    pub fn force(&self) -> f64 {
+        self.0.iter().map(|normal| normal.force).sum()
+    }
+
     /// Orthogonal motions that pairs without friction let free.
     ///
     /// ```text
-    /// sum_j (Gn_j z)² <= (1/4)² sum_j |Gn_j Z|²      eq. (12.9)
+    /// sum_j (Gn_j z)² <= (1/4)² sum_j |Gn_j Z0|²      eq. (12.9)
     /// ```
     pub fn free(&self) -> Vec<DVector<f64>> {
         let Some(first) = self.0.first() else {
@@ -44,11 +51,11 @@ impl Normals {
             return Vec::new();
         }
         let m = first.row.len();
-        let mut all = DMatrix::zeros(m, m);
+        let (mut all, mut most) = (DMatrix::zeros(m, m), 0.0);
         for normal in &self.0 {
             all += &normal.row * normal.row.transpose();
+            most += SLOPE * SLOPE * normal.size;
         }
-        let most = SLOPE * SLOPE * all.trace();
         let eigen = all.symmetric_eigen();
         let is_free = |k: &usize| eigen.eigenvalues[*k] <= most;
         let columns = (0..m).filter(is_free);

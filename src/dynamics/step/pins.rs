@@ -12,7 +12,7 @@ use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, Unbalanced};
 use crate::linear::{LinearError, Rotation, Transformation, larger, largest};
 use crate::model::Equation;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Largest motion of a node, and angle (rad), by which a pass moves a body as a rigid one: of the reach of the search.
@@ -38,8 +38,10 @@ pub(crate) struct Pins {
     vertices: Vertices,
 }
 
-/// A body with rigid motions that no support holds.
+/// A body with rigid motions that no support holds, or a part of a body that equations join to others and in which they
+/// leave it free.
 struct PinnedBody {
+    /// The body of its nodes.
     body: usize,
     /// Its nodes, and the centres of mass of the rigid bodies in it that turn, increasing.
     nodes: Vec<usize>,
@@ -55,6 +57,24 @@ struct PinnedBody {
     size: f64,
     /// Dofs that are pinned, one per free motion.
     dofs: Vec<usize>,
+}
+
+/// What the pins of a body see of its free rigid motions, Z_p, and its inverse.
+pub(super) struct PinMotions {
+    seen: DMatrix<f64>,
+    inverse: DMatrix<f64>,
+}
+
+impl PinMotions {
+    /// Z_p z: motions of the pins of a free motion.
+    pub fn motions(&self, z: &DVector<f64>) -> DVector<f64> {
+        &self.seen * z
+    }
+
+    /// Z_p^-T f: forces at the pins with the resultant f along the free motions.
+    pub fn forces(&self, f: &DVector<f64>) -> DVector<f64> {
+        self.inverse.tr_mul(f)
+    }
 }
 
 /// Dof L theta of an angle, with the length L.
@@ -110,14 +130,26 @@ impl Pins {
         for &node in problem.elements.connected().flatten() {
             has_elements[node] = true;
         }
+        let components = problem.model.mesh.bodies();
         let pinned = |(body, (nodes, spins)): (usize, (Vec<usize>, Vec<Spin>))| {
-            let movable = has_unknowns[body] && nodes.len() > 1;
+            if !has_unknowns[body] || nodes.len() <= 1 {
+                return Vec::new();
+            }
             let of_body = (body, holds[body], has_elements.as_slice());
-            movable.then(|| PinnedBody::new(problem, of_body, (nodes, spins)))?
+            let parts = match spins.is_empty() {
+                true => components_of(&nodes, &components, &has_elements),
+                false => Vec::new(),
+            };
+            if let Some(whole) = PinnedBody::new(problem, of_body, (nodes, spins)) {
+                return vec![whole];
+            }
+            // what equations join may move where they ask for nothing
+            let part = |nodes| PinnedBody::new(problem, of_body, (nodes, Vec::new()));
+            parts.into_iter().filter_map(part).collect()
         };
         let all = nodes.into_iter().zip(spins).enumerate();
         Pins {
-            bodies: all.filter_map(pinned).collect(),
+            bodies: all.flat_map(pinned).collect(),
             vertices: Vertices::new(problem.model),
         }
     }
@@ -141,9 +173,9 @@ impl Pins {
             .flat_map(|body| body.dofs.iter().copied())
     }
 
-    /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii, eq. (12.2). That of a rigid body without
-    /// pairs is the mean over its own unknowns, where springs give them stiffness, and that of any rigid body is at
-    /// least `force` over its size.
+    /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of its body, eq. (12.2). That of a
+    /// rigid body, to which springs give them stiffness, is at least the mean over all unknowns where pairs touch it, and
+    /// always at least `force` over its size.
     pub fn stiffnesses(
         &self,
         diagonal: &[f64],
@@ -162,11 +194,8 @@ impl Pins {
                 .filter(|(dof, row)| is_own(dof / 2) && row.len() == 1)
                 .map(|(_, row)| diagonal[row[0].0]);
             let touches = || acting.iter().any(|(c, _)| c.nodes().any(is_own));
-            let own = match body.is_rigid {
-                true => mean(&mut unknowns.into_iter()),
-                false => 0.0,
-            };
-            let a = match own > 0.0 && !touches() {
+            let own = mean(&mut unknowns.into_iter());
+            let a = match own > 0.0 && (!body.is_rigid || !touches()) {
                 true => own,
                 false => larger(own, of_all),
             };
@@ -195,6 +224,14 @@ impl Pins {
                 }
             }
         }
+    }
+
+    /// Largest round-off of the forces at the pins, `a` being the stiffness of each in K*: 4 eps a |x|, x being the size of a
+    /// body.
+    pub fn round_off(&self, a: &[f64]) -> f64 {
+        let all = self.bodies.iter().zip(self.of_bodies());
+        all.map(|(body, pins)| 4.0 * f64::EPSILON * a[pins.start] * body.size)
+            .fold(0.0, larger)
     }
 
     /// Places of the pins of every body among all.
@@ -238,7 +275,29 @@ impl Pins {
         most.map(|(body, pins)| Box::new(body.unbalanced(&at, du, &f[pins])))
     }
 
-    /// The pairs of the body of this number among those with pins, as its pins see them, in the positions `at`.
+    /// What the pins of the body of this number among those with pins see of its free motions in the positions `at`,
+    /// unless they do not see all.
+    pub(super) fn motions(
+        &self,
+        body: usize,
+        at: &dyn Fn(usize) -> [f64; 2],
+    ) -> Option<PinMotions> {
+        let body = &self.bodies[body];
+        let frame = body.frame(pole(body.hold, &body.nodes, at), at);
+        body.motions_of_pins(&frame)
+    }
+
+    /// Sum of the normal forces at every body.
+    pub fn normal_forces(&self, acting: &[(&Constraint, &ClosedPair)]) -> Vec<f64> {
+        let of_body = |body: &PinnedBody| {
+            let is_own = |node: usize| body.nodes.binary_search(&node).is_ok();
+            let own = acting.iter().filter(|(c, _)| c.nodes().any(is_own));
+            own.map(|(_, pair)| pair.force[0]).sum()
+        };
+        self.bodies.iter().map(of_body).collect()
+    }
+
+    /// The pairs of the body of this number among those with pins along its free motions, in the positions `at`.
     pub(super) fn normals(
         &self,
         body: usize,
@@ -294,11 +353,12 @@ impl PinnedBody {
         {
             gram += row(dof) * row(dof).transpose();
         }
-        let equations = model.equations.iter().filter(|e| own(e.dof));
+        // the other nodes of its equations stand
+        let own_row = |dof: usize| if own(dof) { row(dof) } else { Vector3::zeros() };
         let is_rigid = |e: &&Equation| !e.terms.iter().any(|term| moves_parts(term.0));
-        for Equation { dof, terms } in equations.filter(is_rigid) {
-            let of_terms: Vector3<f64> = terms.iter().map(|&(to, c)| c * row(to)).sum();
-            let asked = row(*dof) - of_terms;
+        for Equation { dof, terms } in model.equations.iter().filter(is_rigid) {
+            let of_terms: Vector3<f64> = terms.iter().map(|&(to, c)| c * own_row(to)).sum();
+            let asked = own_row(*dof) - of_terms;
             gram += asked * asked.transpose();
         }
         if model.mesh.is_axisymmetric() {
@@ -362,13 +422,14 @@ impl PinnedBody {
         }
     }
 
-    /// The rigid motions that move one pin by 1 and the others not: Z_p^-1
-    fn motions_of_pins(&self, frame: &Frame) -> Option<DMatrix<f64>> {
+    /// Z_p, what its pins see of its free motions, unless they do not see all.
+    fn motions_of_pins(&self, frame: &Frame) -> Option<PinMotions> {
         let m = self.dofs.len();
         let seen =
             |i: usize, k: usize| (frame.row(self.dofs[i])).dot(&self.free.fixed_view::<3, 1>(0, k));
-        let z = DMatrix::from_fn(m, m, seen);
-        Some(&self.free * z.try_inverse()?)
+        let seen = DMatrix::from_fn(m, m, seen);
+        let inverse = seen.clone().try_inverse()?;
+        Some(PinMotions { seen, inverse })
     }
 
     /// Rigid part of a correction: Z_p^-1 dU_p
@@ -379,7 +440,8 @@ impl PinnedBody {
         du: &[f64],
     ) -> Option<Vector3<f64>> {
         let moved = DVector::from_fn(self.dofs.len(), |i, _| du[self.dofs[i]]);
-        let motion = self.motions_of_pins(&self.frame(pole, at))? * moved;
+        let motions = self.motions_of_pins(&self.frame(pole, at))?;
+        let motion = &self.free * (motions.inverse * moved);
         Some(Vector3::new(motion[0], motion[1], motion[2]))
     }
 
@@ -390,9 +452,6 @@ impl PinnedBody {
         acting: &[(&Constraint, &ClosedPair)],
     ) -> Normals {
         let frame = self.frame(pole(self.hold, &self.nodes, at), at);
-        let Some(motions) = self.motions_of_pins(&frame) else {
-            return Normals(Vec::new());
-        };
         let is_own = |dof: usize| self.nodes.binary_search(&(dof / 2)).is_ok();
         let mut normals = Vec::new();
         for (constraint, pair) in acting {
@@ -400,16 +459,18 @@ impl PinnedBody {
             if own == 0 || own == constraint.dofs.len() {
                 continue;
             }
-            let seen = |row: &[f64]| {
+            let rigid = |row: &[f64]| -> Vector3<f64> {
                 let both = constraint.dofs.iter().zip(row);
                 let own = both.filter(|(dof, _)| is_own(**dof));
-                let rigid: Vector3<f64> = own.map(|(&dof, g)| *g * frame.row(dof)).sum();
-                motions.tr_mul(&rigid)
+                own.map(|(&dof, g)| *g * frame.row(dof)).sum()
             };
+            let normal = rigid(&constraint.derivative_rows().normal);
+            let tangent = rigid(&constraint.force_rows.tangential);
             let kinks = constraint.nodes().map(|node| vertices.kink(node, at));
             normals.push(Normal {
-                row: seen(&constraint.derivative_rows().normal),
-                tangent: seen(&constraint.force_rows.tangential),
+                row: self.free.tr_mul(&normal),
+                tangent: self.free.tr_mul(&tangent),
+                size: normal.norm_squared(),
                 kink: kinks.fold(0.0, larger),
                 force: pair.force[0],
                 scale: constraint.scale,
@@ -488,6 +549,21 @@ fn tightening(
         }
     }
     found
+}
+
+/// Those of the nodes of a body that elements connect, group by group, where they are several; `components` are the first
+/// nodes of the groups of all nodes.
+fn components_of(nodes: &[usize], components: &[usize], has_elements: &[bool]) -> Vec<Vec<usize>> {
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for &node in nodes.iter().filter(|&&node| has_elements[node]) {
+        if let Some(&first) = components.get(node) {
+            groups.entry(first).or_default().push(node);
+        }
+    }
+    match groups.len() {
+        0 | 1 => Vec::new(),
+        _ => groups.into_values().collect(),
+    }
 }
 
 /// What a body turns about: the node that it is pinned at, or the mean of its nodes.
@@ -595,12 +671,11 @@ pub(crate) fn soften(
     let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
     let m = unknowns.len();
     let g = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
-    // A' = a' + (a - a') D D^T, eq. (12.10)
-    let all = DMatrix::from_fn(m, m, |i, k| {
-        let diagonal = if i == k { soft[i] } else { 0.0 };
-        diagonal + (a[i] - soft[i]) * held[(i, k)]
-    });
-    let b = &all - DMatrix::from_diagonal(&DVector::from_column_slice(a));
+    let diagonal = |of: &[f64]| DMatrix::from_diagonal(&DVector::from_column_slice(of));
+    let moves = DMatrix::identity(m, m) - &held;
+    // A' = (1 - P)^T a' (1 - P) + P^T a P, eq. (12.10)
+    let all = moves.tr_mul(&diagonal(&soft)) * &moves + held.tr_mul(&diagonal(a)) * &held;
+    let b = &all - diagonal(a);
     let c = (DMatrix::identity(m, m) + &b * g).lu().solve(&b);
     let c = c.unwrap_or_else(|| DMatrix::zeros(m, m));
     let c = (&c + c.transpose()) / 2.0;
