@@ -31,7 +31,7 @@ pub struct Compliance {
     /// Group of every unknown in the matrix of the elements alone: its body.
     bodies: Vec<usize>,
     /// What has been computed, for all constraints or those of some bodies.
-    inverses: BTreeMap<ConstraintGroup, Vec<Block>>,
+    inverses: BTreeMap<ConstraintGroup, Vec<InverseBlock>>,
 }
 
 /// Constraints whose compliance is computed together.
@@ -47,7 +47,7 @@ pub enum ConstraintGroup {
 
 /// The inverse at some unknowns of a group.
 #[derive(Debug, Clone)]
-struct Block {
+struct InverseBlock {
     group: usize,
     /// Unknowns of the rows, increasing.
     unknowns: Vec<usize>,
@@ -55,9 +55,9 @@ struct Block {
     inverse: Vec<f64>,
 }
 
-impl Block {
+impl InverseBlock {
     /// The block of a group, among blocks with increasing groups, with its place.
-    fn of(blocks: &[Block], group: usize) -> Option<(usize, &Block)> {
+    fn of(blocks: &[InverseBlock], group: usize) -> Option<(usize, &InverseBlock)> {
         let at = blocks.binary_search_by_key(&group, |block| block.group);
         at.ok().map(|at| (at, &blocks[at]))
     }
@@ -104,8 +104,8 @@ impl Compliance {
         self.map.carry(archive)?;
         archive.carry(&mut self.rotation)?;
         archive.carry_values(&mut self.groups)?;
-        let lists = |blocks: &Vec<Block>| {
-            let list = |block: &Block| (block.group, block.unknowns.clone());
+        let lists = |blocks: &Vec<InverseBlock>| {
+            let list = |block: &InverseBlock| (block.group, block.unknowns.clone());
             blocks.iter().map(list).collect::<Vec<_>>()
         };
         let scopes = self.inverses.iter();
@@ -131,7 +131,7 @@ impl Compliance {
                 true => solver.unchecked_inverse_at(&unknowns),
                 false => vec![Vec::new(); blocks.len()],
             };
-            let block = |((group, unknowns), inverse)| Block {
+            let block = |((group, unknowns), inverse)| InverseBlock {
                 group,
                 unknowns,
                 inverse,
@@ -195,7 +195,8 @@ impl Compliance {
         for &dof in constraints.iter().flat_map(|constraint| &constraint.dofs) {
             for &(unknown, _) in self.map.row(dof) {
                 let group = self.groups[unknown];
-                let found = Block::of(blocks, group).and_then(|(_, b)| b.place(unknown, place + 1));
+                let found =
+                    InverseBlock::of(blocks, group).and_then(|(_, b)| b.place(unknown, place + 1));
                 match found {
                     Some(found) => place = found,
                     None => missing.push((group, unknown)),
@@ -260,7 +261,7 @@ impl Compliance {
                 }
                 let terms = self.map.row(dof).iter().zip(self.map.derivative_row(dof));
                 for (&(unknown, c), (_, of_derivative)) in terms {
-                    if let Some((at, block)) = Block::of(blocks, self.groups[unknown])
+                    if let Some((at, block)) = InverseBlock::of(blocks, self.groups[unknown])
                         && let Some(found) = block.place(unknown, place + 1)
                     {
                         place = found;
@@ -287,7 +288,7 @@ impl Compliance {
     }
 
     /// The blocks of a scope.
-    fn blocks(&self, scope: &ConstraintGroup) -> &[Block] {
+    fn blocks(&self, scope: &ConstraintGroup) -> &[InverseBlock] {
         self.inverses.get(scope).map_or(&[], Vec::as_slice)
     }
 
@@ -304,7 +305,7 @@ impl Compliance {
 }
 
 /// Adds unknowns that are missing, with their groups, increasing, to blocks, and says which blocks change.
-fn add_unknowns(blocks: &mut Vec<Block>, missing: &[(usize, usize)]) -> Vec<usize> {
+fn add_unknowns(blocks: &mut Vec<InverseBlock>, missing: &[(usize, usize)]) -> Vec<usize> {
     let mut groups: Vec<usize> = Vec::new();
     for of_group in missing.chunk_by(|a, b| a.0 == b.0) {
         let group = of_group[0].0;
@@ -315,7 +316,7 @@ fn add_unknowns(blocks: &mut Vec<Block>, missing: &[(usize, usize)]) -> Vec<usiz
                 blocks[at].unknowns.sort_unstable();
             }
             Err(at) => {
-                let block = Block {
+                let block = InverseBlock {
                     group,
                     unknowns: unknowns.collect(),
                     inverse: Vec::new(),
@@ -325,7 +326,9 @@ fn add_unknowns(blocks: &mut Vec<Block>, missing: &[(usize, usize)]) -> Vec<usiz
         }
         groups.push(group);
     }
-    let places = groups.into_iter().filter_map(|g| Block::of(blocks, g));
+    let places = groups
+        .into_iter()
+        .filter_map(|g| InverseBlock::of(blocks, g));
     places.map(|(at, _)| at).collect()
 }
 

@@ -20,7 +20,7 @@ use crate::materials::{Committed, PlaneLaw};
 use crate::model::{Element, ElementType, Model, Shape, Thickness};
 
 /// What the elements of one section and type have in common.
-struct Kind {
+struct ElementGroup {
     law: PlaneLaw,
     shape: Shape,
     density: f64,
@@ -29,7 +29,7 @@ struct Kind {
 
 /// An element that is swept on its own: in another formulation than that of the displacements, or with
 /// internal variables.
-pub(super) struct Part {
+pub(super) struct SingleElement {
     pub(super) index: usize,
     pub(super) element: AnyElement,
     law: PlaneLaw,
@@ -39,11 +39,11 @@ pub(super) struct Part {
 
 /// Where the data of an element are.
 #[derive(Clone, Copy)]
-enum Place {
+enum ElementPlace {
     /// In a chunk (index), at a place of it.
     Chunk(u32, u32),
     /// Among the parts (index).
-    Part(u32),
+    SingleElement(u32),
     /// Among the elements of rigid bodies that turn (index), which no sweep visits.
     Rigid(u32),
 }
@@ -57,11 +57,11 @@ pub struct Elements {
     nodes: Vec<usize>,
     /// Start of every element in `nodes`, and their end.
     starts: Vec<usize>,
-    kinds: Vec<Kind>,
+    kinds: Vec<ElementGroup>,
     /// Kind (index) and place of every element.
-    places: Vec<(u32, Place)>,
+    places: Vec<(u32, ElementPlace)>,
     pub(super) chunks: Vec<AnyChunk>,
-    pub(super) parts: Vec<Part>,
+    pub(super) parts: Vec<SingleElement>,
     /// Elements of rigid bodies that turn.
     rigid: Vec<AnyElement>,
     /// Elements with damping, increasing.
@@ -73,18 +73,18 @@ pub struct Elements {
     /// Reference positions of all nodes (length).
     coordinates: Vec<[f64; 2]>,
     pub(super) dofs: usize,
-    pub(super) space: Mutex<Space>,
+    pub(super) space: Mutex<SweepSpace>,
 }
 
 /// Memory of the sweeps, kept between them and locked while one needs it.
 #[derive(Default)]
-pub(super) struct Space {
+pub(super) struct SweepSpace {
     pub(super) forces: Vec<(ElementVector, f64)>,
     pub(super) tangents: Vec<ElementMatrix>,
     pub(super) block_tangents: Vec<f64>,
 }
 
-impl Part {
+impl SingleElement {
     /// The material with its committed variables among those of all elements.
     pub(super) fn material<'a>(&'a self, committed: &'a [f64]) -> Committed<'a> {
         Committed::new(&self.law, &committed[self.variables.clone()])
@@ -108,7 +108,7 @@ impl Elements {
             nodes: Vec::with_capacity(4 * elements.len()),
             starts: vec![0],
             kinds: Vec::new(),
-            places: vec![(0, Place::Part(0)); elements.len()],
+            places: vec![(0, ElementPlace::SingleElement(0)); elements.len()],
             chunks: Vec::new(),
             parts: Vec::new(),
             rigid: Vec::new(),
@@ -135,7 +135,7 @@ impl Elements {
         for ((section, element_type), mut of_kind) in by_kind(elements) {
             let section = &model.sections[section];
             let material = &model.materials[section.material];
-            let kind = Kind {
+            let kind = ElementGroup {
                 law: material.law.in_plane(element_type.plane),
                 shape: element_type.shape,
                 density: material.density,
@@ -165,7 +165,12 @@ impl Elements {
             let damping = ElementDamping::new(|rho| all.geometry(index).mass(rho), material, plane);
             all.damped.extend(damping.map(|damping| (index, damping)));
         }
-        let is_part = |&at: &usize| matches!(all.places[all.damped[at].0].1, Place::Part(_));
+        let is_part = |&at: &usize| {
+            matches!(
+                all.places[all.damped[at].0].1,
+                ElementPlace::SingleElement(_)
+            )
+        };
         all.damped_parts = (0..all.damped.len()).filter(is_part).collect();
         let placed = |connector| PlacedConnector::new(connector, model);
         all.connectors = model.connectors.iter().map(placed).collect();
@@ -173,23 +178,23 @@ impl Elements {
     }
 
     /// Takes in elements of the next kind and of one body, so that a body that rests costs nothing.
-    fn enter_chunk(&mut self, model: &Model, kind: &Kind, elements: &[usize]) {
+    fn enter_chunk(&mut self, model: &Model, kind: &ElementGroup, elements: &[usize]) {
         let (number, chunk) = (self.kinds.len() as u32, self.chunks.len() as u32);
         for (place, &element) in elements.iter().enumerate() {
-            self.places[element] = (number, Place::Chunk(chunk, place as u32));
+            self.places[element] = (number, ElementPlace::Chunk(chunk, place as u32));
         }
         let chunk = AnyChunk::new(model, elements, kind.law.clone());
         self.chunks.push(chunk);
     }
 
     /// Takes in an element of the next kind that is swept on its own.
-    fn enter_part(&mut self, model: &Model, kind: &Kind, index: usize) {
+    fn enter_part(&mut self, model: &Model, kind: &ElementGroup, index: usize) {
         let (number, part) = (self.kinds.len() as u32, self.parts.len() as u32);
-        self.places[index] = (number, Place::Part(part));
+        self.places[index] = (number, ElementPlace::SingleElement(part));
         let element = AnyElement::new(model, index);
         let first = self.variable_count();
         let variables = first..first + element.variables(&kind.law);
-        self.parts.push(Part {
+        self.parts.push(SingleElement {
             index,
             element,
             law: kind.law.clone(),
@@ -200,14 +205,14 @@ impl Elements {
     /// Takes in an element of the next kind that has no strain.
     fn enter_rigid(&mut self, model: &Model, index: usize) {
         let (number, place) = (self.kinds.len() as u32, self.rigid.len() as u32);
-        self.places[index] = (number, Place::Rigid(place));
+        self.places[index] = (number, ElementPlace::Rigid(place));
         let element = AnyElement::new(model, index);
         self.rigid.push(element);
     }
 
     /// Whether an element belongs to a rigid body that turns.
     pub fn is_rigid(&self, element: usize) -> bool {
-        matches!(self.places[element].1, Place::Rigid(_))
+        matches!(self.places[element].1, ElementPlace::Rigid(_))
     }
 
     /// Number of internal variables of all points.
@@ -215,26 +220,28 @@ impl Elements {
         self.parts.last().map_or(0, |part| part.variables.end)
     }
 
-    fn kind(&self, element: usize) -> &Kind {
+    fn kind(&self, element: usize) -> &ElementGroup {
         &self.kinds[self.places[element].0 as usize]
     }
 
     /// One element, which in a chunk is made anew.
     pub(super) fn element(&self, element: usize) -> AnyElement {
         match self.places[element].1 {
-            Place::Chunk(chunk, place) => {
+            ElementPlace::Chunk(chunk, place) => {
                 self.chunks[chunk as usize].element(place as usize, self.nodes(element))
             }
-            Place::Part(part) => self.parts[part as usize].element.clone(),
-            Place::Rigid(place) => self.rigid[place as usize].clone(),
+            ElementPlace::SingleElement(part) => self.parts[part as usize].element.clone(),
+            ElementPlace::Rigid(place) => self.rigid[place as usize].clone(),
         }
     }
 
     /// The material of one element with its internal variables among those of all elements.
     pub(super) fn material<'a>(&'a self, element: usize, variables: &'a [f64]) -> Committed<'a> {
         match self.places[element].1 {
-            Place::Chunk(..) | Place::Rigid(_) => Committed::new(&self.kind(element).law, &[]),
-            Place::Part(part) => self.parts[part as usize].material(variables),
+            ElementPlace::Chunk(..) | ElementPlace::Rigid(_) => {
+                Committed::new(&self.kind(element).law, &[])
+            }
+            ElementPlace::SingleElement(part) => self.parts[part as usize].material(variables),
         }
     }
 
@@ -415,7 +422,7 @@ impl Elements {
     /// # Errors
     /// The first element that is turned inside out.
     pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
-        let Space { forces, .. } = &mut *self.space();
+        let SweepSpace { forces, .. } = &mut *self.space();
         if !self.sum_chunks(|chunk| chunk.sum_forces(motion)) {
             self.chunks.iter().for_each(AnyChunk::clear_sums);
             return Err(self.inverted(motion));
@@ -482,7 +489,7 @@ impl Elements {
     }
 
     /// Memory of the sweeps, of which there is one at a time.
-    fn space(&self) -> MutexGuard<'_, Space> {
+    fn space(&self) -> MutexGuard<'_, SweepSpace> {
         self.space.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -496,7 +503,7 @@ impl Elements {
         wanted: impl Fn(usize) -> bool + Sync,
         mut add: impl FnMut(usize, &[f64]),
     ) {
-        let Space {
+        let SweepSpace {
             tangents,
             block_tangents,
             ..
@@ -631,7 +638,7 @@ impl Elements {
         part: TangentPart,
         mut add: impl FnMut(usize, &[f64]),
     ) {
-        let Space { block_tangents, .. } = &mut *self.space();
+        let SweepSpace { block_tangents, .. } = &mut *self.space();
         let mut add_half = |element: usize, c: &[f64]| {
             let mut half = [0.0; MAX_DOFS * MAX_DOFS];
             half.iter_mut().zip(c).for_each(|(half, c)| *half = c / 2.0);

@@ -19,7 +19,7 @@ pub type TensorLanes = [[Lanes; 2]; 2];
 pub type NodalLanes<const N: usize> = [[Lanes; N]; 2];
 
 /// Elements of one shape side by side.
-pub struct Block<const N: usize, const P: usize> {
+pub struct ElementBlock<const N: usize, const P: usize> {
     /// Nodes, numbered within the chunk.
     pub nodes: [[u16; LANES]; N],
     /// (dX/dr)^-1 at the integration points (1/length).
@@ -98,13 +98,13 @@ impl Deformation {
     }
 }
 
-impl<const N: usize, const P: usize> Block<N, P> {
+impl<const N: usize, const P: usize> ElementBlock<N, P> {
     /// A block of elements with the given nodes and maps.
     pub fn new(nodes: [[u16; N]; LANES], maps: &[[Jacobian; P]; LANES]) -> Self {
         let of = |p: usize, value: &dyn Fn(&Jacobian) -> f64| {
             Lanes(from_fn(|lane| value(&maps[lane][p])))
         };
-        Block {
+        ElementBlock {
             nodes: from_fn(|a| from_fn(|lane| nodes[lane][a])),
             inverse: from_fn(|p| from_fn(|i| from_fn(|j| of(p, &|at| at.inverse[(i, j)])))),
             volume: from_fn(|p| of(p, &|at| at.volume)),
@@ -322,14 +322,14 @@ impl Deformation {
 pub trait BlockFormulation {
     /// Internal force, eq. (2.5) (force), and whether det F is positive at all points.
     fn force<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive);
 
     /// Adds the symmetric tangent (force/length): entries [a][b] with a <= b.
     fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
@@ -337,7 +337,7 @@ pub trait BlockFormulation {
 
     /// Results of the elements at displacements.
     fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES];
@@ -347,7 +347,7 @@ impl BlockFormulation for Displacement {
     /// F = int B_L^T S dOmega
     #[inline(always)]
     fn force<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
@@ -368,7 +368,7 @@ impl BlockFormulation for Displacement {
     /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.
     #[inline(always)]
     fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
@@ -390,7 +390,7 @@ impl BlockFormulation for Displacement {
 
     #[inline(always)]
     fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES] {
@@ -411,7 +411,7 @@ impl BlockFormulation for Displacement {
     }
 }
 
-impl<const N: usize, const P: usize> Block<N, P> {
+impl<const N: usize, const P: usize> ElementBlock<N, P> {
     /// Gradients dh_a/dX = dh_a/dr J^-1 of the nodes at a point.
     #[inline(always)]
     pub fn gradients<S: Shape<N, P>>(&self, p: usize) -> [[Lanes; 2]; N] {

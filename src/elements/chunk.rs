@@ -12,7 +12,7 @@ use nalgebra::SMatrix;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::block::{Block, BlockFormulation, BlockMotion, MatrixLanes, NodalLanes, Shape};
+use super::block::{BlockFormulation, BlockMotion, ElementBlock, MatrixLanes, NodalLanes, Shape};
 use super::formulation::{ElementResult, Reference};
 use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::lanes::{LANES, Lanes, Positive};
@@ -41,7 +41,7 @@ pub struct Chunk<const N: usize, const P: usize, S, F> {
     /// Node indices, increasing; blocks have places in this list.
     nodes: Vec<usize>,
     /// Blocks; places of the last that no element fills have the last element with no volume.
-    blocks: Vec<Block<N, P>>,
+    blocks: Vec<ElementBlock<N, P>>,
     law: PlaneLaw,
     viscosity: Option<Viscosity>,
     /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
@@ -75,7 +75,7 @@ where
                 let t = if first + lane < of.len() { t } else { 0.0 };
                 S::map(&x, t)
             });
-            Block::new(places, &maps)
+            ElementBlock::new(places, &maps)
         };
         Chunk {
             blocks: (0..of.len()).step_by(LANES).map(block).collect(),
@@ -244,7 +244,7 @@ where
         &self,
         sums: &mut [[f64; 2]],
         law: &impl LawInLanes,
-        motion: impl Fn(&Block<N, P>) -> BlockMotion<N>,
+        motion: impl Fn(&ElementBlock<N, P>) -> BlockMotion<N>,
     ) -> Positive {
         let mut positive = Positive::default();
         for block in &self.blocks {
@@ -261,18 +261,18 @@ where
     }
 
     #[inline(always)]
-    fn at(&self, block: &Block<N, P>, u: &[f64]) -> BlockMotion<N> {
+    fn at(&self, block: &ElementBlock<N, P>, u: &[f64]) -> BlockMotion<N> {
         BlockMotion::At(self.gather(block, u))
     }
 
     #[inline(always)]
-    fn between(&self, block: &Block<N, P>, u: [&[f64]; 2]) -> BlockMotion<N> {
+    fn between(&self, block: &ElementBlock<N, P>, u: [&[f64]; 2]) -> BlockMotion<N> {
         BlockMotion::between(&self.gather(block, u[0]), &self.gather(block, u[1]))
     }
 
     /// Entries of a vector over all dofs at the nodes of a block.
     #[inline(always)]
-    fn gather(&self, block: &Block<N, P>, u: &[f64]) -> NodalLanes<N> {
+    fn gather(&self, block: &ElementBlock<N, P>, u: &[f64]) -> NodalLanes<N> {
         let u = u.as_chunks::<2>().0;
         let mut values = [[Lanes::ZERO; N]; 2];
         for (a, places) in block.nodes.iter().enumerate() {
@@ -344,7 +344,7 @@ where
 struct Tangents<'a, const N: usize, const P: usize, S, F, L> {
     chunk: &'a Chunk<N, P, S, F>,
     law: &'a L,
-    block: &'a Block<N, P>,
+    block: &'a ElementBlock<N, P>,
     motion: Motion<'a>,
     /// Those of its elements, D x D column by column each.
     tangents: &'a mut [f64],

@@ -119,7 +119,7 @@ pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
 
 /// B_L: delta E (xx, yy, 2 xy) per nodal displacement (1/length).
 pub(super) fn strain_displacement<const N: usize, const D: usize>(
-    point: &Point<N>,
+    point: &IntegrationPoint<N>,
     f: &nalgebra::Matrix2<f64>,
 ) -> SMatrix<f64, 3, D> {
     SMatrix::<f64, 3, D>::from_columns(&std::array::from_fn::<_, D, _>(|j| {
@@ -136,7 +136,7 @@ pub(super) fn strain_displacement<const N: usize, const D: usize>(
 /// Adds int B_NL^T S B_NL dOmega of a point: dh_a/dX . S dh_b/dX in both directions.
 pub(super) fn add_geometric<const N: usize, const D: usize>(
     k: &mut SMatrix<f64, D, D>,
-    point: &Point<N>,
+    point: &IntegrationPoint<N>,
     s: &nalgebra::Matrix2<f64>,
 ) {
     let geometric = point.gradient * s * point.gradient.transpose() * point.volume;
@@ -150,7 +150,7 @@ pub(super) fn add_geometric<const N: usize, const D: usize>(
 
 /// One integration point in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point<const N: usize> {
+pub struct IntegrationPoint<const N: usize> {
     /// Shape functions h_a.
     pub shape: SVector<f64, N>,
     /// Gradients dh_a/dX_i, row a (1/length).
@@ -193,8 +193,8 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
     }
 
     /// The integration points with these jacobians, dh/dX = dh/dr (dX/dr)^-1.
-    pub fn points(&self, jacobians: &[Jacobian; P]) -> [Point<N>; P] {
-        let point = |p: usize| Point {
+    pub fn points(&self, jacobians: &[Jacobian; P]) -> [IntegrationPoint<N>; P] {
+        let point = |p: usize| IntegrationPoint {
             shape: SVector::from(self.values[p]),
             gradient: gradients(&self.natural[p], &jacobians[p].inverse),
             volume: jacobians[p].volume,
@@ -225,7 +225,7 @@ fn gradients<const N: usize>(
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference<const N: usize, const P: usize> {
     /// Integration points of stress and internal force.
-    pub points: [Point<N>; P],
+    pub points: [IntegrationPoint<N>; P],
 }
 
 impl<const N: usize, const P: usize> Reference<N, P> {
@@ -278,7 +278,7 @@ pub(super) fn smaller(a: f64, b: f64) -> f64 {
 /// Displacement gradient H = du/dX, eq. (2.1).
 #[inline]
 pub fn displacement_gradient<const N: usize>(
-    point: &Point<N>,
+    point: &IntegrationPoint<N>,
     u: &SMatrix<f64, 2, N>,
 ) -> Matrix2<f64> {
     u * point.gradient

@@ -12,8 +12,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
 use super::formulation::{
-    Configuration, Formulation, Point, PointState, Reference, add_geometric, determinant,
-    displacement_gradient, green_lagrange, smaller, strain_displacement,
+    Configuration, Formulation, IntegrationPoint, PointState, Reference, add_geometric,
+    determinant, displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use crate::materials::{Strains, StressAtPoints};
 
@@ -57,7 +57,7 @@ struct PointStress {
 
 impl PointMotion {
     #[inline(always)]
-    fn new<const N: usize>(point: &Point<N>, u: [&SMatrix<f64, 2, N>; 2]) -> Self {
+    fn new<const N: usize>(point: &IntegrationPoint<N>, u: [&SMatrix<f64, 2, N>; 2]) -> Self {
         let h = u.map(|u| displacement_gradient(point, u));
         PointMotion {
             h,
@@ -226,7 +226,7 @@ fn work_conjugate(s: &Matrix2<f64>) -> Vector3<f64> {
 /// Adds p D2J dOmega of a point: J = det F is bilinear in the displacements x and y.
 fn add_second_of_volume<const N: usize, const D: usize>(
     k: &mut SMatrix<f64, D, D>,
-    point: &Point<N>,
+    point: &IntegrationPoint<N>,
     pressure: f64,
 ) {
     let g = &point.gradient;

@@ -7,9 +7,9 @@
 use std::array::from_fn;
 
 use super::block::{
-    Block, BlockFormulation, BlockMotion, Derivatives, MatrixLanes, NodalLanes, ResultPoint, Shape,
-    Sums, TensorLanes, add_products, deformation_gradient, determinant, elasticity, green_lagrange,
-    plus, scaled,
+    BlockFormulation, BlockMotion, Derivatives, ElementBlock, MatrixLanes, NodalLanes, ResultPoint,
+    Shape, Sums, TensorLanes, add_products, deformation_gradient, determinant, elasticity,
+    green_lagrange, plus, scaled,
 };
 use super::formulation::ElementResult;
 use super::mean_dilatation::MeanDilatation;
@@ -20,7 +20,7 @@ use crate::materials::{LawInLanes, TangentLanes};
 
 /// An integration point with mean quantities of the motion. Start and end are the same at one configuration.
 #[derive(Clone, Copy, Default)]
-struct Point {
+struct PointLanes {
     /// Displacement gradient of the mid configuration.
     h: TensorLanes,
     /// Green-Lagrange strains of the displacements at start and end, and then those that the material has.
@@ -43,7 +43,7 @@ struct Point {
     pressure: Lanes,
 }
 
-impl Point {
+impl PointLanes {
     /// The motion of a point with H of the mid configuration and half its change.
     #[inline(always)]
     fn new(h: TensorLanes, half: &TensorLanes) -> Self {
@@ -55,7 +55,7 @@ impl Point {
         let [[xx, xy], [yx, yy]] = deformation_gradient(&h);
         let over_j = Lanes::all(1.0) / determinant(&h);
         let mean = combined(&strains[0], &strains[1], |e0, e1| (e0 + e1) * 0.5);
-        Point {
+        PointLanes {
             h,
             strains,
             dilatation: ends.map(|[[xx, xy], [yx, yy]]| xx + yy + (xx * yy - xy * yx)),
@@ -65,7 +65,7 @@ impl Point {
                 (xx * xx + yx * yx) * over_j,
                 (xx * xy + yx * yy) * over_j * -1.0,
             ],
-            ..Point::default()
+            ..PointLanes::default()
         }
     }
 
@@ -106,12 +106,12 @@ impl Point {
 /// Motion and stresses of all points, and their weights over the volume of the element; `positive` takes in det F.
 #[inline(always)]
 fn stresses<S: Shape<N, P>, const N: usize, const P: usize>(
-    block: &Block<N, P>,
+    block: &ElementBlock<N, P>,
     law: &impl LawInLanes,
     motion: &BlockMotion<N>,
     positive: &mut Positive,
-) -> ([Point; P], [Lanes; P]) {
-    let mut points = [Point::default(); P];
+) -> ([PointLanes; P], [Lanes; P]) {
+    let mut points = [PointLanes::default(); P];
     let mut weights = block.volume;
     let volume = weights.iter().fold(Lanes::ZERO, |sum, v| sum + *v);
     let over_volume = volume.inverse();
@@ -119,9 +119,9 @@ fn stresses<S: Shape<N, P>, const N: usize, const P: usize>(
     let u = motion.derivatives::<S, P>();
     for p in 0..P {
         points[p] = match &u {
-            Derivatives::At(u) => Point::new(block.gradient(p, u), &Default::default()),
+            Derivatives::At(u) => PointLanes::new(block.gradient(p, u), &Default::default()),
             Derivatives::Between(mid, half) => {
-                Point::new(block.gradient(p, mid), &block.gradient(p, half))
+                PointLanes::new(block.gradient(p, mid), &block.gradient(p, half))
             }
         };
         let dilatation = points[p].dilatation;
@@ -154,7 +154,7 @@ fn stresses<S: Shape<N, P>, const N: usize, const P: usize>(
 impl BlockFormulation for MeanDilatation {
     #[inline(always)]
     fn force<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
@@ -177,7 +177,7 @@ impl BlockFormulation for MeanDilatation {
     /// ```
     #[inline(always)]
     fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
@@ -234,7 +234,7 @@ impl BlockFormulation for MeanDilatation {
 
     #[inline(always)]
     fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
-        block: &Block<N, P>,
+        block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES] {

@@ -17,8 +17,8 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
 
 use super::enhanced_strain::Modes;
 use super::formulation::{
-    Configuration, Formulation, Point, PointState, Reference, add_geometric, determinant,
-    green_lagrange, smaller, strain_displacement,
+    Configuration, Formulation, IntegrationPoint, PointState, Reference, add_geometric,
+    determinant, green_lagrange, smaller, strain_displacement,
 };
 use super::hourglass::{Amplitudes, HourglassPotential};
 use crate::materials::{Committed, Strains, StressAtPoints};
@@ -121,8 +121,8 @@ fn stiffness<const N: usize, const P: usize>(
 fn center<const N: usize, const P: usize>(
     element: &Reference<N, P>,
     modes: &Modes<N, P>,
-) -> Point<N> {
-    Point {
+) -> IntegrationPoint<N> {
+    IntegrationPoint {
         shape: element.points[0].shape,
         gradient: modes.mean,
         volume: element.volume(),

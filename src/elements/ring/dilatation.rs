@@ -14,8 +14,8 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::points::{OfPoints, Point, as_strain};
-use super::stresses::{Compatible, Rows, Stresses, add_products, energy_change, size};
+use super::points::{OfPoints, RingPoint, as_strain};
+use super::stresses::{Compatible, StrainRows, Stresses, add_products, energy_change, size};
 use crate::elements::formulation::smaller;
 use crate::elements::solid::MAX_DOFS;
 use crate::materials::symmetric::{IDENTITY, cofactor, dyad, product};
@@ -26,7 +26,7 @@ const FUNCTIONS: usize = 3;
 
 /// The functions 1, or 1, x and y, of the volume ratio of an element.
 #[derive(Debug, Clone)]
-pub(super) struct Dilatation {
+pub(super) struct RingDilatation {
     /// psi_k at every point, orthonormal: int psi_k psi_l dOmega = delta_kl; zero beyond their number (length^-3/2).
     functions: OfPoints<[f64; FUNCTIONS]>,
 }
@@ -45,13 +45,13 @@ struct Dilated {
     strain: Symmetric,
 }
 
-impl Dilatation {
+impl RingDilatation {
     /// The first `count` functions, by the method of Gram and Schmidt from 1, x and y about the centre.
-    pub fn new(points: &[Point], count: usize) -> Self {
+    pub fn new(points: &[RingPoint], count: usize) -> Self {
         let volume: f64 = points.iter().map(|p| p.volume).sum();
         let sums = points.iter().map(|p| p.place * p.volume);
         let centre = sums.fold(nalgebra::Vector2::zeros(), |sum, x| sum + x) / volume;
-        let of_point = |point: &Point| {
+        let of_point = |point: &RingPoint| {
             let arm = point.place - centre;
             [1.0, arm.x, arm.y]
         };
@@ -70,11 +70,11 @@ impl Dilatation {
             let factor = if k < count { 1.0 / length } else { 0.0 };
             functions.iter_mut().for_each(|psi| psi[k] *= factor);
         }
-        Dilatation { functions }
+        RingDilatation { functions }
     }
 
     /// sum psi_k int psi_k f dOmega of values f at the points, at every point.
-    fn project(&self, points: &[Point], values: impl Iterator<Item = f64>) -> OfPoints<f64> {
+    fn project(&self, points: &[RingPoint], values: impl Iterator<Item = f64>) -> OfPoints<f64> {
         let mut sums = [0.0; FUNCTIONS];
         for ((point, psi), value) in points.iter().zip(&self.functions).zip(values) {
             for (sum, psi) in sums.iter_mut().zip(psi) {
@@ -86,7 +86,7 @@ impl Dilatation {
     }
 
     /// All points at strains of the displacements, eq. (2.45). Small strains keep their digits: J - 1 = s/(J + 1) with s = J² - 1.
-    fn dilated(&self, points: &[Point], strains: &[Symmetric]) -> OfPoints<Dilated> {
+    fn dilated(&self, points: &[RingPoint], strains: &[Symmetric]) -> OfPoints<Dilated> {
         let grown = |e: &Symmetric| {
             let g = e * 2.0;
             let minor = g.x * g.y - g.w * g.w;
@@ -121,7 +121,7 @@ impl Dilatation {
     /// ```
     fn changes(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         [start, end]: [&[Dilated]; 2],
         changes: &[Symmetric],
     ) -> OfPoints<Symmetric> {
@@ -143,7 +143,12 @@ impl Dilatation {
     }
 
     /// p - a/J at every point, from stresses Sbar of the material (force/length^2).
-    fn pressures(&self, points: &[Point], dilated: &[Dilated], s: &[Symmetric]) -> OfPoints<f64> {
+    fn pressures(
+        &self,
+        points: &[RingPoint],
+        dilated: &[Dilated],
+        s: &[Symmetric],
+    ) -> OfPoints<f64> {
         let a = |(at, s): (&Dilated, &Symmetric)| at.ratio * contract(s, &at.c) / 3.0;
         let a: OfPoints<f64> = dilated.iter().zip(s).map(a).collect();
         let ratios = a.iter().zip(dilated).map(|(a, at)| a / at.theta);
@@ -155,7 +160,7 @@ impl Dilatation {
     /// r Sbar + (p - a/J) J P at E_m, eq. (2.46), with the part that keeps the energy, eq. (2.29).
     pub fn stresses(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         material: &impl RingStressAtPoints,
         compatible: &Compatible,
     ) -> Stresses {
@@ -213,10 +218,10 @@ impl Dilatation {
     /// ```
     pub fn add_tangent(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         material: &impl RingStressAtPoints,
         (compatible, stresses): (&Compatible, &Stresses),
-        rows: &[Rows],
+        rows: &[StrainRows],
         k: &mut [f64],
     ) {
         let d = size(k);
@@ -227,7 +232,8 @@ impl Dilatation {
         let own = stresses.tangent_at.iter().enumerate();
         let own: OfPoints<Symmetric> = own.map(|(p, e)| material.ring_stress(p, e)).collect();
         let pressures = self.pressures(points, &at, &own);
-        let of_row = |(at, rows): (&Dilated, &Rows)| rows.map(|row| at.j * at.inverse.dot(&row));
+        let of_row =
+            |(at, rows): (&Dilated, &StrainRows)| rows.map(|row| at.j * at.inverse.dot(&row));
         let dj: OfPoints<[f64; MAX_DOFS]> = at.iter().zip(rows).map(of_row).collect();
         let mut sums = [[0.0; MAX_DOFS]; FUNCTIONS];
         for ((point, psi), dj) in points.iter().zip(&self.functions).zip(&dj) {
@@ -245,7 +251,7 @@ impl Dilatation {
             });
             let dl: [f64; MAX_DOFS] = std::array::from_fn(|i| dtheta[i] / at.theta - dj[i] / at.j);
             let half_c: Vector4<f64> = as_strain(&at.c) / 2.0;
-            let bar: Rows = std::array::from_fn(|i| {
+            let bar: StrainRows = std::array::from_fn(|i| {
                 rows[p][i] * at.ratio + half_c * (2.0 / 3.0 * at.ratio * dl[i])
             });
             let c: Matrix4<f64> = material.ring_tangent(p, &stresses.tangent_at[p]);

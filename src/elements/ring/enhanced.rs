@@ -3,8 +3,8 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
 
-use super::points::{OfPoints, Point, as_strain, section};
-use super::stresses::{Compatible, Rows, Stresses, energy_change, size};
+use super::points::{OfPoints, RingPoint, as_strain, section};
+use super::stresses::{Compatible, StrainRows, Stresses, energy_change, size};
 use crate::elements::enhanced_strain::{alternating, finite_or, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
@@ -13,7 +13,7 @@ use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contra
 /// Number of strains of the element.
 pub(super) const STRAINS: usize = 5;
 type Alpha = SVector<f64, STRAINS>;
-type Stiffness = SMatrix<f64, STRAINS, STRAINS>;
+type StrainStiffness = SMatrix<f64, STRAINS, STRAINS>;
 
 /// Hourglass pattern and strains of an element, in the reference configuration.
 #[derive(Debug, Clone)]
@@ -35,11 +35,11 @@ impl Enhanced {
     /// ```text
     /// g = b + gamma grad h,   M = j0 R0/(j R) T0 M_xi,   M_xi: r in 11; s in 22; r, s in 12; r s in 33
     /// ```
-    pub fn new(points: &[Point]) -> Self {
+    pub fn new(points: &[RingPoint]) -> Self {
         let area: f64 = points.iter().map(|p| p.area).sum();
         let volume: f64 = points.iter().map(|p| p.volume).sum();
         let mut centre = [Vector2::zeros(); MAX_NODES];
-        let slope = |point: &Point| {
+        let slope = |point: &RingPoint| {
             let nodes = (0..NODES).map(|a| point.gradient[a] * alternating(a));
             nodes.fold(Vector2::zeros(), |sum, g| sum + g)
         };
@@ -56,7 +56,7 @@ impl Enhanced {
             // dxi/dX = sum n_a b_a, n_a = (r_a, s_a)/4 times 4
             inverse += Vector2::from(signs(a)) * centre[a].transpose();
         }
-        let of_point = |(p, point): (usize, &Point)| {
+        let of_point = |(p, point): (usize, &RingPoint)| {
             let ([r, s], shrunk) = (signs(p), volume / point.volume);
             let shapes = [(r, 0.0, 0.0), (0.0, s, 0.0), (0.0, 0.0, r), (0.0, 0.0, s)];
             let mut strains = [Symmetric::zeros(); STRAINS];
@@ -102,7 +102,7 @@ impl Enhanced {
     }
 
     /// Takes grad h x grad h gamma_a q from the rows of dE.
-    pub fn correct_rows(&self, q: Vector2<f64>, rows: &mut [Rows]) {
+    pub fn correct_rows(&self, q: Vector2<f64>, rows: &mut [StrainRows]) {
         for (rows, s) in rows.iter_mut().zip(&self.slope) {
             let square = Vector4::new(s.x * s.x, s.y * s.y, 0.0, 2.0 * s.x * s.y);
             for a in 0..NODES {
@@ -115,7 +115,7 @@ impl Enhanced {
     /// Takes the work of the stress on that part from the force.
     pub fn add_force(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         q: Vector2<f64>,
         s: &[Symmetric],
         force: &mut [f64; MAX_DOFS],
@@ -128,7 +128,7 @@ impl Enhanced {
     }
 
     /// The second derivative of that part.
-    pub fn add_geometric(&self, points: &[Point], s: &[Symmetric], k: &mut [f64]) {
+    pub fn add_geometric(&self, points: &[RingPoint], s: &[Symmetric], k: &mut [f64]) {
         let (d, along) = (size(k), self.stress_along(points, s));
         for (a, b) in (0..NODES).flat_map(|a| (0..NODES).map(move |b| (a, b))) {
             for i in 0..2 {
@@ -138,7 +138,7 @@ impl Enhanced {
     }
 
     /// sum v grad h . S grad h
-    fn stress_along(&self, points: &[Point], s: &[Symmetric]) -> f64 {
+    fn stress_along(&self, points: &[RingPoint], s: &[Symmetric]) -> f64 {
         let all = points.iter().zip(s).zip(&self.slope);
         all.map(|((point, s), slope)| point.volume * slope.dot(&(section(s) * slope)))
             .sum()
@@ -160,11 +160,11 @@ impl Enhanced {
     /// sum v M:S and K_aa = sum v M C M at strains of the material.
     fn derivatives(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         material: &impl RingStressAtPoints,
         (strains, factor): (impl Fn(usize) -> Strains<Symmetric>, f64),
-    ) -> (Alpha, Stiffness) {
-        let (mut slope, mut stiffness) = (Alpha::zeros(), Stiffness::zeros());
+    ) -> (Alpha, StrainStiffness) {
+        let (mut slope, mut stiffness) = (Alpha::zeros(), StrainStiffness::zeros());
         for (p, point) in points.iter().enumerate() {
             let (m, strains) = (self.columns(p), strains(p));
             slope += m.tr_mul(&material.ring_stress(p, &strains)) * point.volume;
@@ -186,7 +186,7 @@ impl Enhanced {
     /// where the local solution does not converge.
     fn least(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         material: &impl RingStressAtPoints,
         (compatible, first): (&[Symmetric], Alpha),
     ) -> Alpha {
@@ -207,7 +207,7 @@ impl Enhanced {
     /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own.
     fn of_rates(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         viscosity: &impl RingStressAtPoints,
         Compatible { start, end, .. }: &Compatible,
     ) -> OfPoints<Symmetric> {
@@ -226,7 +226,7 @@ impl Enhanced {
     /// Strains and stresses of all points, eq. (2.29) between two configurations.
     pub fn stresses(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         material: &impl RingStressAtPoints,
         compatible: &Compatible,
     ) -> Stresses {
@@ -274,13 +274,13 @@ impl Enhanced {
     /// Takes K_ua K_aa^-1 K_au from the tangent, eq. (2.30).
     pub fn condense(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         c: impl Fn(usize) -> nalgebra::Matrix4<f64>,
-        rows: &[Rows],
+        rows: &[StrainRows],
         k: &mut [f64],
     ) {
         let d = size(k);
-        let mut stiffness = Stiffness::zeros();
+        let mut stiffness = StrainStiffness::zeros();
         let mut mixed = [Alpha::zeros(); MAX_DOFS];
         for (p, (point, rows)) in points.iter().zip(rows).enumerate() {
             let m = self.columns(p);
@@ -305,7 +305,7 @@ impl Enhanced {
     /// behind them.
     pub fn update(
         &self,
-        points: &[Point],
+        points: &[RingPoint],
         (material, updated): (&Committed, &mut [f64]),
         compatible: &Compatible,
         stresses: &Stresses,

@@ -18,7 +18,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 use super::enhanced::{Enhanced, STRAINS};
-use super::points::{Gradient, OfPoints, Path, Point};
+use super::points::{Gradient, OfPoints, RingPoint, StrainPath};
 use super::stresses::size;
 use crate::elements::formulation::smaller;
 use crate::elements::hourglass::{Amplitudes, HourglassPotential};
@@ -29,43 +29,43 @@ use crate::materials::{Committed, RingStressAtPoints, Symmetric};
 const POINTS: usize = 4;
 /// Number of deformations: two hourglass modes and E_33 at the points.
 pub(super) const MODES: usize = 2 + POINTS;
-type Deformation = SVector<f64, MODES>;
-type Stiffness = SMatrix<f64, MODES, MODES>;
+type ModeAmplitudes = SVector<f64, MODES>;
+type ModeStiffness = SMatrix<f64, MODES, MODES>;
 
 /// Hourglass modes of an element in the reference configuration.
 #[derive(Debug, Clone)]
-pub(super) struct Hourglass {
+pub(super) struct RingHourglass {
     /// The element as one point: mean gradients and the volume.
-    mean: Point,
-    points: OfPoints<Point>,
+    mean: RingPoint,
+    points: OfPoints<RingPoint>,
     enhanced: Enhanced,
     /// grad h - m at every point (1/length).
     slope: OfPoints<Vector2<f64>>,
 }
 
 /// The hourglass modes in a motion.
-pub(super) struct Modes<'a> {
-    of: &'a Hourglass,
+pub(super) struct RingModes<'a> {
+    of: &'a RingHourglass,
     potential: HourglassPotential<MODES>,
     /// y, at one configuration or at the start and at the end.
     amplitudes: Amplitudes<MODES>,
     /// Volume (length^3) and modulus E' of the section (force/length^2).
     sizes: [f64; 2],
     /// Stress that does work on y (force, or force length for E_33).
-    stress: Deformation,
+    stress: ModeAmplitudes,
     energy: f64,
     /// F0 and q halfway.
     f: Matrix2<f64>,
     q: Vector2<f64>,
-    paths: OfPoints<Path>,
+    paths: OfPoints<StrainPath>,
 }
 
-impl Hourglass {
+impl RingHourglass {
     /// Those of an element with these four points.
-    pub fn new(points: &[Point]) -> Self {
+    pub fn new(points: &[RingPoint]) -> Self {
         let enhanced = Enhanced::new(points);
         let volume: f64 = points.iter().map(|p| p.volume).sum();
-        let mut mean = Point {
+        let mut mean = RingPoint {
             shape: [0.0; MAX_NODES],
             place: Vector2::zeros(),
             gradient: [Vector2::zeros(); MAX_NODES],
@@ -84,7 +84,7 @@ impl Hourglass {
                 mean.around[a] += point.around[a] * weight;
             }
         }
-        Hourglass {
+        RingHourglass {
             mean,
             points: points.iter().cloned().collect(),
             slope: enhanced.slope.iter().map(|s| s - mean_slope).collect(),
@@ -93,7 +93,7 @@ impl Hourglass {
     }
 
     /// The element as one point.
-    pub fn mean(&self) -> &Point {
+    pub fn mean(&self) -> &RingPoint {
         &self.mean
     }
 
@@ -109,7 +109,7 @@ impl Hourglass {
         material: &impl RingStressAtPoints,
         ends: [[Vector2<f64>; MAX_NODES]; 2],
         is_increment: bool,
-    ) -> Modes<'_> {
+    ) -> RingModes<'_> {
         let is_viscous = material.ring_is_viscous();
         let c = match is_viscous && !is_increment {
             // a viscosity has no stress at one configuration
@@ -119,19 +119,19 @@ impl Hourglass {
         let sizes = [self.mean.volume, c.m11 - c.m12 * c.m12 / c.m22];
         let yielding = material.ring_yielding(1);
         let potential = HourglassPotential::new(self.stiffness(&c), sizes, yielding);
-        let of_point = |point: &Point| {
+        let of_point = |point: &RingPoint| {
             let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
-            Path::new(start, end)
+            StrainPath::new(start, end)
         };
-        let paths: OfPoints<Path> = self.points.iter().map(of_point).collect();
+        let paths: OfPoints<StrainPath> = self.points.iter().map(of_point).collect();
         let [(f0, q0), (f1, q1)] = ends.each_ref().map(|u| {
             let f = self.mean.displacement_gradient(u).f();
             (f, self.enhanced.q(u))
         });
-        let y = |h: Vector2<f64>, gradient: fn(&Path) -> Gradient| {
+        let y = |h: Vector2<f64>, gradient: fn(&StrainPath) -> Gradient| {
             let around = |p: usize| gradient(&paths[p]).strain().z;
             let mean = self.mean_of(around);
-            Deformation::from_fn(|k, _| match k {
+            ModeAmplitudes::from_fn(|k, _| match k {
                 0 | 1 => h[k],
                 _ => around(k - 2) - mean,
             })
@@ -145,7 +145,7 @@ impl Hourglass {
             (true, false) => Amplitudes::Between(y0, y1),
         };
         let (stress, energy) = potential.stress(&amplitudes);
-        Modes {
+        RingModes {
             of: self,
             potential,
             amplitudes,
@@ -159,8 +159,11 @@ impl Hourglass {
     }
 
     /// Kh of the tangent C at small strains (force/length; force and force length with E_33).
-    fn stiffness(&self, c: &nalgebra::Matrix4<f64>) -> Stiffness {
-        let (mut k, mut mixed) = (Stiffness::zeros(), SMatrix::<f64, MODES, STRAINS>::zeros());
+    fn stiffness(&self, c: &nalgebra::Matrix4<f64>) -> ModeStiffness {
+        let (mut k, mut mixed) = (
+            ModeStiffness::zeros(),
+            SMatrix::<f64, MODES, STRAINS>::zeros(),
+        );
         let mut local = SMatrix::<f64, STRAINS, STRAINS>::zeros();
         for (p, point) in self.points.iter().enumerate() {
             let (s, m) = (self.slope[p], self.enhanced.columns(p));
@@ -180,7 +183,7 @@ impl Hourglass {
     }
 }
 
-impl Modes<'_> {
+impl RingModes<'_> {
     /// Stored energy, or work of an increment (force length).
     pub fn energy(&self) -> f64 {
         self.energy
@@ -198,13 +201,13 @@ impl Modes<'_> {
 
     /// Smallest determinant at the four points.
     pub fn determinant(&self) -> f64 {
-        let all = self.paths.iter().map(Path::determinant);
+        let all = self.paths.iter().map(StrainPath::determinant);
         all.fold(f64::INFINITY, smaller)
     }
 
     /// Rows of dy by the displacements: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R less its mean.
-    fn rows(&self) -> [Deformation; 2 * POINTS] {
-        let Hourglass {
+    fn rows(&self) -> [ModeAmplitudes; 2 * POINTS] {
+        let RingHourglass {
             mean,
             points,
             enhanced,
@@ -217,7 +220,7 @@ impl Modes<'_> {
                 _ => 0.0,
             };
             let mean_around = self.of.mean_of(around);
-            Deformation::from_fn(|k, _| match k {
+            ModeAmplitudes::from_fn(|k, _| match k {
                 0 | 1 => mean.gradient[a][k] * self.q[i] + self.f[(i, k)] * enhanced.gamma[a],
                 _ => around(k - 2) - mean_around,
             })
@@ -236,7 +239,7 @@ impl Modes<'_> {
     pub fn add_tangent(&self, k: &mut [f64]) {
         let (d, rows) = (size(k), self.rows());
         let stiffness = self.potential.tangent(&self.amplitudes);
-        let Hourglass {
+        let RingHourglass {
             mean,
             points,
             enhanced,

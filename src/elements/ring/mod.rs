@@ -11,11 +11,11 @@ mod stresses;
 
 use nalgebra::{Matrix4, Vector2, Vector4};
 
-use self::dilatation::Dilatation;
+use self::dilatation::RingDilatation;
 use self::enhanced::Enhanced;
-use self::hourglass::{Hourglass, MODES};
-use self::points::{Gradient, OfPoints, Path, Point, Points, section};
-use self::stresses::{Compatible, Rows, Stresses, add_products, size};
+use self::hourglass::{MODES, RingHourglass};
+use self::points::{Gradient, OfPoints, Points, RingPoint, StrainPath, section};
+use self::stresses::{Compatible, StrainRows, Stresses, add_products, size};
 use super::formulation::{ElementResult, PointResult, PointResults, smaller};
 use super::hourglass::variables;
 use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
@@ -26,7 +26,7 @@ use crate::model::{self, Formulation, Nodes, Thickness};
 #[derive(Debug, Clone)]
 pub(super) struct Ring {
     nodes: Nodes,
-    points: OfPoints<Point>,
+    points: OfPoints<RingPoint>,
     formulation: RingFormulation,
 }
 
@@ -36,11 +36,11 @@ enum RingFormulation {
     /// Nothing.
     Displacement,
     /// Volume ratios of the element in place of those of the points.
-    Dilatation(Box<Dilatation>),
+    RingDilatation(Box<RingDilatation>),
     /// Strains of the element.
     Enhanced(Box<Enhanced>),
     /// Hourglass modes beside the one point.
-    Reduced(Box<Hourglass>),
+    Reduced(Box<RingHourglass>),
 }
 
 impl Ring {
@@ -52,16 +52,16 @@ impl Ring {
         let mut points = Points::of_stress(element_type).map(&own, thickness);
         let formulation = match (element_type.formulation, element_type.shape) {
             (Formulation::MeanDilatation, _) => {
-                RingFormulation::Dilatation(Box::new(Dilatation::new(&points, 1)))
+                RingFormulation::RingDilatation(Box::new(RingDilatation::new(&points, 1)))
             }
             (Formulation::LinearPressure | Formulation::ReducedLinearPressure, _) => {
-                RingFormulation::Dilatation(Box::new(Dilatation::new(&points, 3)))
+                RingFormulation::RingDilatation(Box::new(RingDilatation::new(&points, 3)))
             }
             (Formulation::Enhanced, _) => {
                 RingFormulation::Enhanced(Box::new(Enhanced::new(&points)))
             }
             (Formulation::Reduced, model::Shape::Quad4) => {
-                let hourglass = Hourglass::new(&points);
+                let hourglass = RingHourglass::new(&points);
                 points = OfPoints::from_elem(hourglass.mean().clone(), 1);
                 RingFormulation::Reduced(Box::new(hourglass))
             }
@@ -105,7 +105,7 @@ impl Ring {
                 force[2 * a + 1] += of_node.y;
             }
         }
-        let determinants = paths.iter().map(Path::determinant);
+        let determinants = paths.iter().map(StrainPath::determinant);
         let mut determinant = determinants.fold(stresses.determinant, smaller);
         match &self.formulation {
             RingFormulation::Enhanced(enhanced) => {
@@ -117,7 +117,7 @@ impl Ring {
                 modes.add_force(&mut force);
                 determinant = smaller(determinant, modes.determinant());
             }
-            RingFormulation::Displacement | RingFormulation::Dilatation(_) => {}
+            RingFormulation::Displacement | RingFormulation::RingDilatation(_) => {}
         }
         (force, determinant)
     }
@@ -133,7 +133,7 @@ impl Ring {
         let mut rows = self.rows(&paths);
         let c = |p: usize| material.ring_tangent(p, &stresses.tangent_at[p]);
         match &self.formulation {
-            RingFormulation::Dilatation(dilatation) => {
+            RingFormulation::RingDilatation(dilatation) => {
                 dilatation.add_tangent(&self.points, material, (&compatible, &stresses), &rows, k);
             }
             RingFormulation::Enhanced(enhanced) => {
@@ -204,7 +204,7 @@ impl Ring {
         let motion = Motion::at(u, &[]);
         let paths = self.paths(motion);
         let stresses = self.stresses(material, &self.compatible(&paths, motion));
-        let of_point = |(p, point): (usize, &Point)| {
+        let of_point = |(p, point): (usize, &RingPoint)| {
             let (s, at) = (&stresses.s[p], &paths[p].end);
             let (e, f, stretch) = (at.strain(), at.f(), at.stretch_around());
             let determinant = f.determinant();
@@ -253,7 +253,7 @@ impl Ring {
             RingFormulation::Enhanced(_) => enhanced::STRAINS,
             RingFormulation::Reduced(_)
             | RingFormulation::Displacement
-            | RingFormulation::Dilatation(_) => 0,
+            | RingFormulation::RingDilatation(_) => 0,
         }
     }
 
@@ -270,17 +270,17 @@ impl Ring {
     }
 
     /// Displacement gradients of all points.
-    fn paths(&self, motion: Motion) -> OfPoints<Path> {
+    fn paths(&self, motion: Motion) -> OfPoints<StrainPath> {
         let ends = self.ends(motion);
-        let of_point = |point: &Point| {
+        let of_point = |point: &RingPoint| {
             let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
-            Path::new(start, end)
+            StrainPath::new(start, end)
         };
         self.points.iter().map(of_point).collect()
     }
 
-    fn compatible(&self, paths: &[Path], motion: Motion) -> Compatible {
-        let of = |gradient: &dyn Fn(&Path) -> Gradient| -> OfPoints<Symmetric> {
+    fn compatible(&self, paths: &[StrainPath], motion: Motion) -> Compatible {
+        let of = |gradient: &dyn Fn(&StrainPath) -> Gradient| -> OfPoints<Symmetric> {
             paths.iter().map(|path| gradient(path).strain()).collect()
         };
         let mut compatible = Compatible {
@@ -298,7 +298,7 @@ impl Ring {
 
     fn stresses(&self, material: &impl RingStressAtPoints, compatible: &Compatible) -> Stresses {
         match &self.formulation {
-            RingFormulation::Dilatation(dilatation) => {
+            RingFormulation::RingDilatation(dilatation) => {
                 dilatation.stresses(&self.points, material, compatible)
             }
             RingFormulation::Enhanced(enhanced) => {
@@ -311,8 +311,8 @@ impl Ring {
     }
 
     /// Rows of dE at all points, halfway.
-    fn rows(&self, paths: &[Path]) -> OfPoints<Rows> {
-        let of_point = |(point, path): (&Point, &Path)| {
+    fn rows(&self, paths: &[StrainPath]) -> OfPoints<StrainRows> {
+        let of_point = |(point, path): (&RingPoint, &StrainPath)| {
             let (f, around) = (path.halfway.f(), path.halfway.stretch_around());
             let mut rows = [Vector4::zeros(); MAX_DOFS];
             for a in 0..self.nodes.len() {
@@ -328,7 +328,7 @@ impl Ring {
     }
 
     /// Adds sum v B^T C B.
-    fn add_material(&self, c: impl Fn(usize) -> Matrix4<f64>, rows: &[Rows], k: &mut [f64]) {
+    fn add_material(&self, c: impl Fn(usize) -> Matrix4<f64>, rows: &[StrainRows], k: &mut [f64]) {
         for (p, (point, rows)) in self.points.iter().zip(rows).enumerate() {
             add_products(rows, &(c(p) * point.volume), k);
         }
@@ -336,7 +336,7 @@ impl Ring {
 }
 
 /// Adds v S : D²E of a point, the part of the stress in eq. (2.34).
-fn add_geometric(point: &Point, s: &Symmetric, k: &mut [f64]) {
+fn add_geometric(point: &RingPoint, s: &Symmetric, k: &mut [f64]) {
     let d = size(k);
     let stressed = section(s) * point.volume;
     for a in 0..d / 2 {

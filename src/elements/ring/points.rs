@@ -72,7 +72,7 @@ impl Points {
     }
 
     /// The points of an element with nodes at `x`.
-    pub fn map(&self, x: &[[f64; 2]], thickness: Thickness) -> OfPoints<Point> {
+    pub fn map(&self, x: &[[f64; 2]], thickness: Thickness) -> OfPoints<RingPoint> {
         let point = |p: usize| {
             let natural = &self.natural[p][..self.nodes];
             let mut j = Matrix2::zeros();
@@ -94,7 +94,7 @@ impl Points {
                 }
             }
             let area = det * self.weights[p];
-            Point {
+            RingPoint {
                 shape,
                 place,
                 gradient,
@@ -109,7 +109,7 @@ impl Points {
 
 /// One integration point in the reference configuration; the first entries belong to the nodes of the element.
 #[derive(Debug, Clone)]
-pub(super) struct Point {
+pub(super) struct RingPoint {
     /// Shape functions h_a.
     pub shape: [f64; MAX_NODES],
     /// Its place (length).
@@ -124,7 +124,7 @@ pub(super) struct Point {
     pub volume: f64,
 }
 
-impl Point {
+impl RingPoint {
     /// H and h of displacements of the nodes.
     pub fn displacement_gradient(&self, u: &[Vector2<f64>; MAX_NODES]) -> Gradient {
         let (mut h, mut around) = (Matrix2::zeros(), 0.0);
@@ -181,15 +181,15 @@ impl Gradient {
 /// Displacement gradients of a point at the start, halfway and at the end of a motion: three times the same at one
 /// configuration.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Path {
+pub(super) struct StrainPath {
     pub start: Gradient,
     pub halfway: Gradient,
     pub end: Gradient,
 }
 
-impl Path {
+impl StrainPath {
     pub fn new(start: Gradient, end: Gradient) -> Self {
-        Path {
+        StrainPath {
             start,
             halfway: start.halfway(&end),
             end,

@@ -3,7 +3,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::points::{OfPoints, Point};
+use super::points::{OfPoints, RingPoint};
 use crate::elements::solid::MAX_DOFS;
 use crate::materials::{RingStressAtPoints, Strains, Symmetric, contract};
 
@@ -42,7 +42,7 @@ impl Compatible {
     }
 
     /// S_g = S_g + f/(sum v dE:dE) dE_g, f = work - sum v S:dE, eq. (2.29): stresses that do a work in an increment.
-    pub fn do_work(&self, work: f64, points: &[Point], s: &mut [Symmetric]) {
+    pub fn do_work(&self, work: f64, points: &[RingPoint], s: &mut [Symmetric]) {
         let changes = self.changes();
         let (mut f, mut squares, mut volume) = (work, 0.0, 0.0);
         for ((point, change), s) in points.iter().zip(&changes).zip(s.iter()) {
@@ -87,7 +87,7 @@ impl Stresses {
 /// sum v (W(E1) - W(E0)), with a round-off that is relative to the changes of the strains. They are given beside the
 /// strains, whose difference has the round-off of the strains.
 pub(super) fn energy_change(
-    points: &[Point],
+    points: &[RingPoint],
     material: &impl RingStressAtPoints,
     strains: impl Iterator<Item = Strains<Symmetric>>,
     changes: &[Symmetric],
@@ -100,7 +100,7 @@ pub(super) fn energy_change(
 }
 
 /// Rows of dE (11, 22, 33, 2*12) by the displacements of an element, one vector for each.
-pub(super) type Rows = [Vector4<f64>; MAX_DOFS];
+pub(super) type StrainRows = [Vector4<f64>; MAX_DOFS];
 
 /// Number of rows of a square matrix of an element.
 pub(super) fn size(k: &[f64]) -> usize {
@@ -108,7 +108,7 @@ pub(super) fn size(k: &[f64]) -> usize {
 }
 
 /// Adds B^T C B.
-pub(super) fn add_products(rows: &Rows, c: &Matrix4<f64>, k: &mut [f64]) {
+pub(super) fn add_products(rows: &StrainRows, c: &Matrix4<f64>, k: &mut [f64]) {
     let d = size(k);
     for col in 0..d {
         let stress = c * rows[col];
