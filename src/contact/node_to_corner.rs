@@ -1,7 +1,7 @@
 //! Constraint of a slave node at a convex corner, from those of the two segments that meet there.
 //! Section 10 of docs/theory.md, Corner against corner.
 
-use super::constraint::{Configurations, Constraint, RowPair};
+use super::constraint::{Configurations, Constraint, RowForm, RowPair};
 use super::node_to_segment::segment_rows;
 use super::targets::Corner;
 use super::targets::PairTarget;
@@ -16,7 +16,8 @@ use super::targets::PairTarget;
 /// ```
 ///
 /// whose normal has the length 1. The weights are constant in a pass, so that rows and gap stay
-/// exact differences.
+/// exact differences. With other weights than those of the increment before, a closed corner may begin with a small
+/// overlap; it keeps it, since work would be done on its way out.
 pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations) -> Constraint {
     let [s, a, b, c] = source.nodes;
     // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
@@ -37,7 +38,12 @@ pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations
         both(before.derivative, behind.derivative),
     ];
     let gap = corner.blend(p.gap, q.gap) / m;
-    Constraint::of_nodes(source, rows, (gap, p.length), at)
+    let mut constraint = Constraint::of_nodes(source, rows, (gap, p.length), at);
+    if at.form == RowForm::DiscreteGradient && constraint.start_gap < 0.0 {
+        constraint.gap -= constraint.start_gap;
+        constraint.start_gap = 0.0;
+    }
+    constraint
 }
 
 /// A row at s, a, b as one at s, a, b, c.
@@ -60,6 +66,10 @@ mod tests {
     const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
 
     fn at_corner(form: RowForm, u: &[f64]) -> Constraint {
+        at(&ROOF, form, u)
+    }
+
+    fn at(x: &[[f64; 2]], form: RowForm, u: &[f64]) -> Constraint {
         let corner = Corner {
             next: 1,
             weight: 0.3,
@@ -69,7 +79,7 @@ mod tests {
             ..ContactTarget::face(0)
         };
         let source = testing::pair(target, [0, 1, 2, 3]);
-        let (x, u0) = (&ROOF, &[0.0; 8]);
+        let u0 = &[0.0; 8];
         Constraint::new(source, &Configurations { form, x, u0, u })
     }
 
@@ -87,6 +97,23 @@ mod tests {
             let quotient = (moved(1e-6) - moved(-1e-6)) / 2e-6;
             let row = &constraint.derivative_rows().normal;
             assert!((row[k] - quotient).abs() < 1e-9, "{k}");
+        }
+    }
+
+    #[test]
+    fn a_small_overlap_at_the_start_stays_without_work() {
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            // the slave node starts on the corner and moves along the bisector of both normals
+            let starts_at = |depth: f64| {
+                let mut x = ROOF;
+                x[0][1] -= depth;
+                let u = [0.0, 0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                at(&x, form, &u)
+            };
+            let [touching, overlapping] = [0.0, 1e-10].map(starts_at);
+            let is_kept = form == RowForm::DiscreteGradient;
+            assert_eq!(overlapping.start_gap >= 0.0, is_kept);
+            assert_eq!((overlapping.gap - touching.gap).abs() < 1e-14, is_kept);
         }
     }
 

@@ -4,8 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench_dense import wall
 from conftest import Job
 from decks import oblique_impact, spinning_bar
+from stickslip.deck import Deck
 from stickslip.result import Result
 
 TOLERANCE = 1e-10
@@ -46,3 +48,12 @@ def test_oblique_impact_keeps_both_momenta(friction: float, job: Job, tmp_path: 
         assert contact.closed[-1] == 0, "and part again"
         assert max(momentum_errors(results)) < TOLERANCE
         assert (results.history.energy["friction_dissipation"][-1] > 0.0) == (friction > 0.0)
+
+
+def test_nodes_on_corners_of_bricks_below_get_no_energy(job: Job) -> None:
+    # the nodes in the middle of the bricks at the end of every other course stand on the last corner below
+    deck = Deck.parse(wall(5, 5, 1, increments=6, shaking=8.0))
+    with Result(job(deck)) as results:
+        assert results.file["run"].attrs["cutbacks"] == 0
+        work = results.history.energy["normal_contact_work"]
+        assert work[-1] < 0.0 and np.diff(work).max() < TOLERANCE * results.history.energy.largest
