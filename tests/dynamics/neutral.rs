@@ -258,11 +258,16 @@ fn a_disc_without_friction_stays_between_the_plates_that_press_it() {
             assert_eq!(failure, None, "{angle} {from_surface}");
             let last = keep.reports.last().expect("reports");
             let [below, above] = [0, 1].map(|k| last.contacts[k].force[1].abs());
+            // what holds the disc along tilted plates has a vertical part, a held rotation has none
+            let vertical = last.held.as_ref().map_or(0.0, |held| held.force[1].abs());
+            let difference = (below - above).abs();
+            assert!(below > 1.0 && difference < 1e-4 * below, "{below} {above}");
             assert!(
-                below > 1.0 && (below - above).abs() < 1e-9 * below,
-                "{below} {above}"
+                (difference - vertical).abs() < 1e-9 * below,
+                "{below} {above} {vertical}"
             );
-            assert!(last.solver.held < 1e-3, "{}", last.solver.held);
+            // the force of a plate is at most half a side off the middle
+            assert!(last.solver.held < 0.12, "{}", last.solver.held);
         }
     }
 }
@@ -319,11 +324,7 @@ fn what_equations_join_to_held_parts_is_held_where_they_leave_it_free() {
     assert_eq!(failure, None);
     let last = keep.reports.last().expect("reports");
     assert!(last.solver.passes <= 6, "{}", last.solver.passes);
-    assert!(
-        last.solver.held > 1e-8 && last.solver.held < 3e-3,
-        "{}",
-        last.solver.held
-    );
+    assert!(last.solver.held < 3e-3, "{}", last.solver.held);
     let sum = |i: usize| last.nodal.reaction.iter().skip(i).step_by(2).sum::<f64>();
     let weight = 9.81 * 2.0;
     assert!(sum(0).abs() < 1e-9 * weight, "{}", sum(0));

@@ -271,6 +271,10 @@ impl<'m> Attempt<'_, 'm> {
                     .pins()
                     .iterate(&mut contact.forces, weight, &mut pins, v)?,
             };
+            // the last equilibrium shows facets as they are
+            if number == 0 && self.guess.is_none() {
+                self.pins().check_held(&contact.forces, &pins, v)?;
+            }
             self.take_hinge_forces(hinge_forces, v);
 
             // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales

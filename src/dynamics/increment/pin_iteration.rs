@@ -36,8 +36,6 @@ const SETTLED_PIN: f64 = 1e-3;
 const HARDLY_FALLS: f64 = 0.9;
 /// Passes with the same closed pairs in which forces of pins stay after which there is no equilibrium.
 const FREE_PASSES: usize = 3;
-/// Error of the resultant of forces beside round-off of one of them.
-const RESULTANT: f64 = 10.0;
 /// Constraints of a body that the stiffness of its pins is taken from.
 const NEAR: usize = 12;
 
@@ -269,7 +267,7 @@ impl PinIteration<'_, '_> {
         let (problem, pins) = (self.problem, &self.workspace.pins);
         let at = |node: usize| problem.position(&v.u, node);
         let acting: Vec<_> = contact.acting().collect();
-        let noise = RESULTANT * pins.round_off(&self.workspace.stiffness.pins);
+        let noise = pins.round_off(&self.workspace.stiffness.pins);
         let errors = [problem.settings.tolerance, noise];
         if held.beside_facets(pins, &at, &acting, errors) <= 1.0 {
             return Ok(());

@@ -22,6 +22,8 @@ const LARGEST_ANGLE: f64 = 0.2;
 const FREE: f64 = 1e-10;
 /// Part of the size of its terms up to which an equation agrees with a rigid motion.
 const AGREES: f64 = 1e-9;
+/// Round-off of the resultant of the forces of many nodes beside that of one of them.
+const RESULTANT: f64 = 10.0;
 /// Compliance of pins in the complementarity problems beside that of the pairs of their body: much softer ones leave
 /// problems with friction several solutions.
 const SOFT: f64 = 1e2;
@@ -226,11 +228,11 @@ impl Pins {
         }
     }
 
-    /// Largest round-off of the forces at the pins, `a` being the stiffness of each in K*: 4 eps a |x|, x being the size of a
-    /// body.
+    /// Largest round-off of the forces at the pins, `a` being the stiffness of each in K*: ten times that of the force of one
+    /// node, 4 eps a |x|, x being the size of a body.
     pub fn round_off(&self, a: &[f64]) -> f64 {
         let all = self.bodies.iter().zip(self.of_bodies());
-        all.map(|(body, pins)| 4.0 * f64::EPSILON * a[pins.start] * body.size)
+        all.map(|(body, pins)| RESULTANT * 4.0 * f64::EPSILON * a[pins.start] * body.size)
             .fold(0.0, larger)
     }
 
