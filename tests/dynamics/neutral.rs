@@ -245,7 +245,7 @@ fn disc_between_plates(angle: f64, from_surface: bool) -> String {
          *SOLID SECTION, ELSET=LOW, MATERIAL=M\n*SOLID SECTION, ELSET=UP, MATERIAL=M\n\
          *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.0\n*CONTACT PAIR, INTERACTION=DRY{form}\nSKIN, LOW_TOP\n\
          *CONTACT PAIR, INTERACTION=DRY{form}\nSKIN, UP_FOOT\n*BOUNDARY\nHELD, 1, 2\nHEAD, 1, 1\n\
-         *STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\nHEAD, 2, 2, -0.02\n*END STEP\n"
+         *STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\nHEAD, 2, 2, -0.06\n*END STEP\n"
     );
     text
 }
@@ -258,10 +258,10 @@ fn a_disc_without_friction_stays_between_the_plates_that_press_it() {
             assert_eq!(failure, None, "{angle} {from_surface}");
             let last = keep.reports.last().expect("reports");
             let [below, above] = [0, 1].map(|k| last.contacts[k].force[1].abs());
-            // what holds the disc along tilted plates has a vertical part, a held rotation has none
+            // what holds the disc has a vertical part where plates tilt, or touch it off its middle
             let vertical = last.held.as_ref().map_or(0.0, |held| held.force[1].abs());
             let difference = (below - above).abs();
-            assert!(below > 1.0 && difference < 1e-4 * below, "{below} {above}");
+            assert!(below > 0.1 && difference < 1e-3 * below, "{below} {above}");
             assert!(
                 (difference - vertical).abs() < 1e-9 * below,
                 "{below} {above} {vertical}"

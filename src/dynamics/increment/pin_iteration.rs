@@ -313,8 +313,8 @@ impl PinIteration<'_, '_> {
             let mut strides = vec![0.0; of_bodies.len()];
             let (mut left, mut small) = (f64::INFINITY, None);
             let a = &self.workspace.stiffness.pins;
-            // the forces of the pass, of which round-off is no force of pins
-            let mut others = self.workspace.pins.round_off(a) / SMALL_PIN_FORCE;
+            // round-off is no force of pins
+            let least = self.workspace.pins.round_off(a) / SMALL_PIN_FORCE;
             let mut holding = Vec::new();
             for step in 0..PIN_STEPS {
                 self.solve_with_pins(contact, weight, (&stiffness, &p), v)?;
@@ -324,7 +324,7 @@ impl PinIteration<'_, '_> {
                 let Equilibrium { load, internal, .. } = &v.equilibrium;
                 let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
                 let all = [largest(load), largest(internal)].into_iter();
-                others = all.chain(of_pairs).fold(others, f64::max);
+                let others = all.chain(of_pairs).fold(least, f64::max);
                 // f where bodies are to move, the motion times a' where they are held
                 holding = product(&held_part.transpose(), &force);
                 let gone = product(&held_part, &moved);

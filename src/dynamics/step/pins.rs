@@ -228,11 +228,12 @@ impl Pins {
         }
     }
 
-    /// Largest round-off of the forces at the pins, `a` being the stiffness of each in K*: ten times that of the force of one
-    /// node, 4 eps a |x|, x being the size of a body.
+    /// Largest round-off of the forces at the pins of bodies that deform, `a` being the stiffness of each in K*: ten times that
+    /// of the force of one node, 4 eps a |x|, x being the size of a body.
     pub fn round_off(&self, a: &[f64]) -> f64 {
         let all = self.bodies.iter().zip(self.of_bodies());
-        all.map(|(body, pins)| RESULTANT * 4.0 * f64::EPSILON * a[pins.start] * body.size)
+        all.filter(|(body, _)| !body.is_rigid)
+            .map(|(body, pins)| RESULTANT * 4.0 * f64::EPSILON * a[pins.start] * body.size)
             .fold(0.0, larger)
     }
 
