@@ -348,6 +348,9 @@ fn by_kind(elements: &[Element]) -> Vec<((usize, ElementType), Vec<usize>)> {
     kinds
 }
 
+/// What stands for the tangent of an element that is not wanted.
+const NO_TANGENT: ElementMatrix = [0.0; MAX_DOFS * MAX_DOFS];
+
 /// Elements below which a sweep over them is not worth a second thread.
 pub(super) const PARALLEL_CHUNK: usize = 1024;
 
@@ -519,9 +522,13 @@ impl Elements {
         }
         for parts in self.parts.chunks(2 * PARALLEL_CHUNK) {
             let sweep = parts.par_iter().with_min_len(PARALLEL_CHUNK);
-            let sweep = sweep.map(|element| element.tangent(motion, part));
+            let sweep = sweep.map(|element| match wanted(element.index) {
+                true => element.tangent(motion, part),
+                false => NO_TANGENT,
+            });
             sweep.collect_into_vec(tangents);
-            for (part, k) in parts.iter().zip(tangents.iter()) {
+            let all = parts.iter().zip(tangents.iter());
+            for (part, k) in all.filter(|(part, _)| wanted(part.index)) {
                 let d = 2 * part.element.nodes().len();
                 add(part.index, &k[..d * d]);
             }

@@ -4,7 +4,7 @@
 use super::element::AnyElement;
 use super::solid::{ElementMatrix, ElementVector, Increment, MAX_DOFS, Motion, TangentPart};
 use crate::materials::{Plane, Viscosity};
-use crate::model::Material;
+use crate::model::{Damping, Material};
 
 /// Damping of an element whose material has it.
 pub(super) struct ElementDamping {
@@ -16,8 +16,8 @@ pub(super) struct ElementDamping {
 impl ElementDamping {
     /// Damping of an element of a material, if it has any; `mass` gives its mass with a density.
     pub fn new(mass: impl Fn(f64) -> Vec<f64>, material: &Material, plane: Plane) -> Option<Self> {
-        let alpha = material.damping.alpha;
-        let viscosity = viscosity(material, plane);
+        let Damping { alpha, beta } = material.damping;
+        let viscosity = Viscosity::of(beta, material.law.small_strain(), plane);
         let mass = (alpha > 0.0).then(|| mass(alpha * material.density));
         (viscosity.is_some() || mass.is_some()).then_some(ElementDamping { viscosity, mass })
     }
@@ -82,12 +82,6 @@ impl ElementDamping {
     }
 }
 
-/// Viscosity of a material, if it has any.
-pub(super) fn viscosity(material: &Material, plane: Plane) -> Option<Viscosity> {
-    let beta = material.damping.beta;
-    (beta > 0.0).then(|| Viscosity::new(beta, material.law.small_strain(), plane))
-}
-
 /// The motion in which viscosity acts: that of the increment, in either scheme.
 pub(super) fn between([u0, u1]: Increment) -> Motion {
     Motion {
@@ -102,7 +96,7 @@ mod tests {
     use crate::elements::Elements;
     use crate::materials::yielding::Yielding;
     use crate::materials::{Law, NeoHooke};
-    use crate::model::{Damping, Element, ElementType, Formulation, Model, Section};
+    use crate::model::{Element, ElementType, Formulation, Model, Section};
 
     const DAMPING: Damping = Damping {
         alpha: 0.7,

@@ -5,7 +5,6 @@ use nalgebra::SMatrix;
 use smallvec::SmallVec;
 
 use super::chunk::{Chunk, TangentSweep};
-use super::damping::viscosity;
 use super::displacement::Displacement;
 use super::formulation::{ElementResult, PointResults};
 use super::hourglass::variables;
@@ -221,7 +220,9 @@ impl AnyChunk {
     pub fn new(model: &Model, elements: &[usize], law: PlaneLaw) -> Self {
         let first = &model.mesh.elements[elements[0]];
         let (element_type, section) = (first.element_type, &model.sections[first.section]);
-        let viscosity = viscosity(&model.materials[section.material], element_type.plane);
+        let material = &model.materials[section.material];
+        let (beta, moduli) = (material.damping.beta, material.law.small_strain());
+        let viscosity = Viscosity::of(beta, moduli, element_type.plane);
         let (t, law) = (section.thickness, (law, viscosity));
         match (element_type.shape, element_type.formulation) {
             (Shape::Tri3, _) => Self::Tri3(chunk(model, elements, t, law)),

@@ -29,6 +29,11 @@ pub struct Viscosity {
 }
 
 impl Viscosity {
+    /// Viscosity as of [`Self::new`] where `beta` is positive.
+    pub fn of(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Option<Self> {
+        (beta > 0.0).then(|| Self::new(beta, moduli, plane))
+    }
+
     /// Viscosity of `beta` (time) of a material with these moduli at small strains.
     pub fn new(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Self {
         let SmallStrainModuli { young, poisson } = moduli;
