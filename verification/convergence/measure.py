@@ -45,13 +45,12 @@ def first_cutback(results: Result) -> str:
 def check(study: runner.Study, case: runner.Run, results: Result) -> list[object]:
     """Checks one case; its row of the table."""
     name = case.name
-    place = ", walls" if case.group == "wall" else ""
+    place = ", walls" if case.group == "wall" else ", bodies on bodies" if case.group in MASONRY else ""
     study.check_run(name, element_size(results), accuracy(case), place)
     passes = results.history.solver["passes"][1:]
     factorizations = int(results.history.solver["factorizations"].sum())
     cutbacks = int(results.run["cutbacks"])
-    on_bodies = ", bodies on bodies" if case.group in MASONRY else ""
-    study.check(f"cutbacks{on_bodies}", name, cutbacks)
+    study.check("cutbacks", name, cutbacks)
     sheared = ", sheared blocks" if case.group == "blocks" else ""
     study.check(f"mean passes{sheared}", name, float(passes.mean()))
     study.check("largest number of passes", name, int(passes.max()))
