@@ -82,7 +82,7 @@ pub enum Progress {
 
 /// How the difference of motion and expected motion falls.
 #[derive(Debug, Clone, Copy, Default)]
-struct Course {
+struct Fall {
     first: f64,
     least: f64,
     iterations: usize,
@@ -90,7 +90,7 @@ struct Course {
     since_least: usize,
 }
 
-impl Course {
+impl Fall {
     /// Takes in the difference of an iteration.
     fn take_in(&mut self, difference: f64) -> Self {
         if self.iterations == 0 {
@@ -129,7 +129,7 @@ pub struct BlockIteration {
     /// Largest sum of the sizes of the terms of Q P within the blocks.
     terms: f64,
     acceleration: Acceleration,
-    course: Course,
+    course: Fall,
     residual: f64,
     counters: Counters,
 }
@@ -149,7 +149,7 @@ impl BlockIteration {
             at: [start.forces, start.motion].map(|values| values.as_flattened().to_vec()),
             terms: 0.0,
             acceleration: Acceleration::default(),
-            course: Course::default(),
+            course: Fall::default(),
             residual: f64::INFINITY,
             counters: Counters::default(),
         }
@@ -208,7 +208,7 @@ impl BlockIteration {
     fn go_on(&mut self, motion: &[f64]) {
         let [forces, _] = &self.answer;
         let residual = forces.iter().zip(&self.at[0]).map(|(f, x)| f - x);
-        let step = Step {
+        let step = FixedPoint {
             residual: residual.collect(),
             forces: forces.clone(),
             motion: motion.to_vec(),
@@ -288,7 +288,7 @@ const DEPENDENT: f64 = 1e-8;
 
 /// A point of the iteration x <- f(x), whose motion depends linearly on the forces f.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Step {
+pub(super) struct FixedPoint {
     /// f(x) - x
     pub residual: Vec<f64>,
     /// f(x)
@@ -297,9 +297,9 @@ pub(super) struct Step {
     pub motion: Vec<f64>,
 }
 
-impl Step {
+impl FixedPoint {
     /// Adds a times another.
-    fn add(&mut self, a: f64, other: &Step) {
+    fn add(&mut self, a: f64, other: &FixedPoint) {
         axpy(a, &other.residual, &mut self.residual);
         axpy(a, &other.forces, &mut self.forces);
         axpy(a, &other.motion, &mut self.motion);
@@ -309,9 +309,9 @@ impl Step {
 /// What the last steps say about the answer.
 #[derive(Debug, Default)]
 pub(super) struct Acceleration {
-    last: Option<Step>,
+    last: Option<FixedPoint>,
     /// Differences of steps, their residuals orthonormal.
-    directions: Vec<Step>,
+    directions: Vec<FixedPoint>,
 }
 
 impl Acceleration {
@@ -326,7 +326,7 @@ impl Acceleration {
     /// ```text
     /// f - sum (e_j.r) f_j,   e_j = r_j the orthonormal changes of the residual, f_j those of f
     /// ```
-    pub fn next(&mut self, step: Step) -> Step {
+    pub fn next(&mut self, step: FixedPoint) -> FixedPoint {
         if let Some(mut change) = self.last.replace(step.clone()) {
             change.add(-1.0, &step);
             self.take_in(change);
@@ -340,7 +340,7 @@ impl Acceleration {
     }
 
     /// Makes a change orthonormal to those before and remembers it.
-    fn take_in(&mut self, mut change: Step) {
+    fn take_in(&mut self, mut change: FixedPoint) {
         if self.directions.len() == MEMORY {
             self.directions.remove(0);
         }
@@ -383,7 +383,7 @@ mod tests {
             let forces = image(&x);
             let residual = forces.iter().zip(&x).map(|(f, x)| f - x).collect();
             let motion = forces.iter().map(|f| 2.0 * f).collect();
-            let next = acceleration.next(Step {
+            let next = acceleration.next(FixedPoint {
                 residual,
                 forces,
                 motion,

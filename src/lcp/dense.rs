@@ -48,7 +48,7 @@ pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 
 /// y += M p, with the columns of M one after the other; those with p = 0 are left out.
 pub(crate) fn add_product(columns: &[f64], p: &[f64], y: &mut [f64]) {
-    Arch::new().dispatch(Product {
+    Arch::new().dispatch(MatrixProduct {
         columns,
         p,
         y,
@@ -59,7 +59,7 @@ pub(crate) fn add_product(columns: &[f64], p: &[f64], y: &mut [f64]) {
 /// y += M p and sizes += |M| |p|, with the columns of M one after the other.
 pub(crate) fn add_product_and_sizes(columns: &[f64], p: &[f64], y: &mut [f64], sizes: &mut [f64]) {
     let sizes = Some(sizes);
-    Arch::new().dispatch(Product {
+    Arch::new().dispatch(MatrixProduct {
         columns,
         p,
         y,
@@ -68,14 +68,14 @@ pub(crate) fn add_product_and_sizes(columns: &[f64], p: &[f64], y: &mut [f64], s
 }
 
 /// The operation of [`add_product`] and [`add_product_and_sizes`].
-struct Product<'a> {
+struct MatrixProduct<'a> {
     columns: &'a [f64],
     p: &'a [f64],
     y: &'a mut [f64],
     sizes: Option<&'a mut [f64]>,
 }
 
-impl WithSimd for Product<'_> {
+impl WithSimd for MatrixProduct<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -189,11 +189,11 @@ const TOGETHER: usize = 4;
 pub(crate) struct Factors {
     values: Vec<f64>,
     size: usize,
-    kind: Kind,
+    kind: FactorKind,
 }
 
 #[derive(serde::Serialize, serde::Deserialize)]
-enum Kind {
+enum FactorKind {
     /// L L^T, the lower triangle holds L.
     Cholesky,
     /// P A = L U with the permutation.
@@ -221,7 +221,7 @@ impl Factors {
         regular((0..size).map(|i| values[i + i * size].powi(2))).then_some(Self {
             values,
             size,
-            kind: Kind::Cholesky,
+            kind: FactorKind::Cholesky,
         })
     }
 
@@ -245,17 +245,17 @@ impl Factors {
         regular((0..size).map(|i| values[i + i * size].abs())).then_some(Self {
             values,
             size,
-            kind: Kind::Lu(forward),
+            kind: FactorKind::Lu(forward),
         })
     }
 
     /// Overwrites b with the solution of A x = b.
     pub fn solve(&self, b: &mut [f64]) {
-        if let Kind::Lu(forward) = &self.kind {
+        if let FactorKind::Lu(forward) = &self.kind {
             let permuted: SmallVec<[f64; 256]> = forward.iter().map(|&row| b[row]).collect();
             b.copy_from_slice(&permuted);
         }
-        Arch::new().dispatch(Substitution { factors: self, b });
+        Arch::new().dispatch(DenseSubstitution { factors: self, b });
     }
 
     /// Part of column k from row `from` on.
@@ -266,23 +266,23 @@ impl Factors {
 }
 
 /// A forward and a backward substitution.
-struct Substitution<'a> {
+struct DenseSubstitution<'a> {
     factors: &'a Factors,
     b: &'a mut [f64],
 }
 
-impl WithSimd for Substitution<'_> {
+impl WithSimd for DenseSubstitution<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { factors, b } = self;
         match factors.kind {
-            Kind::Cholesky => {
+            FactorKind::Cholesky => {
                 factors.forward(simd, b, false);
                 factors.backward_transposed(b);
             }
-            Kind::Lu(_) => {
+            FactorKind::Lu(_) => {
                 factors.forward(simd, b, true);
                 factors.backward(simd, b);
             }

@@ -18,7 +18,7 @@ use super::problems::{FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolut
 /// A number, or the text of one that JSON cannot hold.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
-enum Number {
+enum PivotNumber {
     Finite(f64),
     Text(String),
 }
@@ -27,16 +27,16 @@ enum Number {
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Coefficients {
-    List(Vec<Number>),
-    Same(Number),
+    List(Vec<PivotNumber>),
+    Same(PivotNumber),
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Problem {
     #[serde(rename = "M")]
-    m: Vec<Vec<Number>>,
-    q: Vec<Number>,
+    m: Vec<Vec<PivotNumber>>,
+    q: Vec<PivotNumber>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     mu: Option<Coefficients>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -152,20 +152,20 @@ fn read(text: &str) -> Result<(Lcp, Option<FrictionalLcp>), String> {
     Ok((lcp, Some(frictional)))
 }
 
-fn value(number: &Number) -> Result<f64, String> {
+fn value(number: &PivotNumber) -> Result<f64, String> {
     match number {
-        Number::Finite(value) => Ok(*value),
-        Number::Text(text) => text
+        PivotNumber::Finite(value) => Ok(*value),
+        PivotNumber::Text(text) => text
             .parse()
             .map_err(|_| format!("\"{text}\" is not a number")),
     }
 }
 
-fn number(value: f64) -> Number {
+fn number(value: f64) -> PivotNumber {
     if value.is_finite() {
-        Number::Finite(value)
+        PivotNumber::Finite(value)
     } else {
-        Number::Text(value.to_string().to_lowercase())
+        PivotNumber::Text(value.to_string().to_lowercase())
     }
 }
 

@@ -97,7 +97,7 @@ const DRIFT: f64 = 1e-9;
 const PIVOT_TOLERANCE: f64 = 1e-9;
 
 /// The end of a path: a complementary basis.
-pub(crate) struct Vertex {
+pub(crate) struct LemkeVertex {
     /// Solution z.
     pub z: Vec<f64>,
     /// Whether z_i is basic.
@@ -113,11 +113,11 @@ pub(crate) fn follow_path<M: PivotMatrix>(
     q: &[f64],
     d: &[f64],
     settings: &LemkeSettings,
-) -> Result<Vertex, LcpError> {
+) -> Result<LemkeVertex, LcpError> {
     let size = q.len();
     let p = perturbation(size);
     let Some(first) = first_row(q, d, &p, settings.tie_tolerance) else {
-        return Ok(Vertex {
+        return Ok(LemkeVertex {
             z: vec![0.0; size],
             basic: vec![false; size],
             pivots: 0,
@@ -156,7 +156,7 @@ pub(crate) fn follow_path<M: PivotMatrix>(
     }
     let z = recompute(&mut basis, q).z;
     let basic = (0..size).map(|i| basis.contains(Variable::Z(i))).collect();
-    Ok(Vertex {
+    Ok(LemkeVertex {
         z: z[..size].to_vec(),
         basic,
         pivots,
