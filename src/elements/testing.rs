@@ -93,7 +93,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// The force is the derivative of the strain energy, and the tangent that of the force.
-    fn check_derivatives<F: Formulation, const D: usize>(&self, law: &PlaneLaw) {
+    pub fn check_derivatives<F: Formulation, const D: usize>(&self, law: &PlaneLaw) {
         let found = self.force::<F>(law, &Configuration::At(displacements(5)));
         let k = self.tangent::<F, D>(law, displacements(5));
         for j in 0..D {
@@ -109,7 +109,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// The force between two configurations does the work of the strain energy, and has neither resultant nor moment.
-    fn check_work<F: Formulation>(&self, law: &PlaneLaw) {
+    pub fn check_work<F: Formulation>(&self, law: &PlaneLaw) {
         for size in [1.0, 1e-3, 1e-6] {
             let u0 = displacements(5) * 0.3;
             let u1 = u0 + displacements(11) * (0.3 * size);
@@ -125,7 +125,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// A rigid rotation gives no force and no change of volume.
-    fn check_rotation<F: Formulation>(&self, law: &PlaneLaw) {
+    pub fn check_rotation<F: Formulation>(&self, law: &PlaneLaw) {
         for degrees in (0..=360).step_by(15) {
             let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
             let u = Matrix2::new(cos, -sin, sin, cos) * self.x - self.x;
