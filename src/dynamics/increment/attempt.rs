@@ -288,10 +288,6 @@ impl<'m> Attempt<'_, 'm> {
             if !ends {
                 equal_forces.take_in(correction, settled);
                 factors.take_in(correction, equal_forces.moves_more())?;
-                // half a step leads out of a cycle of two iterates
-                if factors.cycle() && problem.integration.has_rates {
-                    v.du.iter_mut().for_each(|du| *du *= 0.5);
-                }
                 if number >= SLOW_PASSES {
                     let progress = [correction, factors.rate(), problem.settings.tolerance];
                     let same_pairs = contact.forces.are_of_same_pairs();

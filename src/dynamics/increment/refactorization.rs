@@ -17,9 +17,6 @@ const POOR_RATE: f64 = 0.3;
 const STAGNANT: f64 = 0.5;
 /// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
 pub(super) const SEARCHING_PASSES: usize = 4;
-/// Passes in a row with the corrections of two passes before, to a part of them: the passes go to and fro.
-const CYCLING: usize = 2;
-const SAME: f64 = 0.01;
 /// Passes in a row that then grow the correction before an attempt is given up.
 const GROWING: usize = 3;
 
@@ -68,8 +65,6 @@ pub(super) struct Refactorization {
     /// Rate of fresh factors.
     fresh_rate: f64,
     growing: usize,
-    /// Passes in a row whose corrections were those of two passes before.
-    cycling: usize,
 }
 
 impl Refactorization {
@@ -85,7 +80,6 @@ impl Refactorization {
             rate: 0.0,
             fresh_rate: FRESH_RATE,
             growing: 0,
-            cycling: 0,
         }
     }
 
@@ -119,11 +113,6 @@ impl Refactorization {
         self.rate > STAGNANT
     }
 
-    /// Whether the passes go to and fro between two iterates.
-    pub fn cycle(&self) -> bool {
-        self.cycling >= CYCLING
-    }
-
     /// Takes in the relative correction of a pass. That it grows is no divergence where it `may_grow`.
     ///
     /// n(theta) = ln(correction/tolerance)/-ln(theta) passes are left at the rate theta; the factors are
@@ -136,9 +125,6 @@ impl Refactorization {
         let is_first = self.correction == f64::INFINITY;
         self.passes += 1;
         self.age += 1;
-        // the product of two rates is what a correction is of that two passes before
-        let is_same = (rate * self.rate - 1.0).abs() < SAME && correction > NEAR;
-        self.cycling = if is_same { self.cycling + 1 } else { 0 };
         (self.correction, self.rate) = (correction, rate);
         if is_first {
             self.worn = self.rule.is_every_pass();
@@ -171,21 +157,6 @@ impl Refactorization {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn passes_to_and_fro_are_a_cycle() {
-        let cycles = |corrections: &[f64]| {
-            let mut factors = Refactorization::new(FactorRule::EveryPass, 1e-11);
-            let ends = corrections.iter().map(|c| factors.take_in(*c, true));
-            assert!(ends.into_iter().all(|end| end.is_ok()));
-            factors.cycle()
-        };
-        assert!(cycles(&[1.0, 0.3, 0.2, 0.3, 0.2]));
-        // once may be by chance, and small corrections stall by round-off
-        assert!(!cycles(&[1.0, 0.3, 0.2, 0.3]));
-        assert!(!cycles(&[1.0, 3e-5, 2e-5, 3e-5, 2e-5]));
-        assert!(!cycles(&[1.0, 0.3, 0.2, 0.15, 0.1]));
-    }
 
     #[test]
     fn growth_in_a_row_is_divergence_unless_it_may_be() {
