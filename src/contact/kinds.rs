@@ -23,10 +23,17 @@ impl Constraint {
 
     /// Contact stiffness Kc of the contact force, eq. (4.12), over the dofs of the constraint (force/length).
     pub fn stiffness(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
+        let change = self.change(force, at);
+        (&change + change.transpose()) / 2.0
+    }
+
+    /// Change of its contact force with the iterate, d(Bn^T Pn + Bt^T Pt)/dU at constant Pn and Pt, over its dofs
+    /// (force/length): not symmetric under friction.
+    pub fn change(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
         match (&self.source.points[..], &self.source.round) {
-            ([], None) => self.stiffness_of_node(force, at),
-            ([], Some(round)) => disc::stiffness(&self.source, round, force, at),
-            (points, _) => surface_to_surface::stiffness(self, points, force, at),
+            ([], None) => self.change_of_node(force, at),
+            ([], Some(round)) => disc::change(&self.source, round, force, at),
+            (points, _) => surface_to_surface::change(self, points, force, at),
         }
     }
 

@@ -269,6 +269,7 @@ impl<'m> Subincrements<'_, 'm> {
             a: self.start.a.clone(),
             closed: ClosedPairs::default(),
             held: HeldMotions::default(),
+            holds_pairs: false,
         };
         loop {
             let entries = self.entries(active, &path, rest, None);

@@ -161,6 +161,7 @@ pub(super) fn factorize_anew(
         acting: solved.contact.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),
         are_held: false,
+        followers: &[],
         out_of_balance: &[],
         held: &HeldMotions::default(),
     };

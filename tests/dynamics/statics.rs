@@ -85,6 +85,48 @@ fn a_weak_spring_takes_over_from_friction() {
 }
 
 #[test]
+fn friction_and_loads_that_follow_leave_passes_quadratic() {
+    // pressed by a pressure and sheared, on two supports; 9 and 10 passes without their part of the tangent
+    for deck in ["path_1", "supports"] {
+        let path = format!(
+            "{}/verification/static/{deck}.inp",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let (keep, failure) = run_deck(&std::fs::read_to_string(path).expect("a deck"));
+        assert_eq!(failure, None);
+        for report in &keep.reports {
+            assert!(
+                report.solver.passes <= 5,
+                "{deck}: {}",
+                report.solver.passes
+            );
+        }
+    }
+}
+
+#[test]
+fn centrifugal_forces_leave_passes_quadratic() {
+    // 10 passes without the change of the forces
+    let nodes: String = (0..=10)
+        .map(|i| format!("{}, 0.{i}, 0.\n{}, 0.{i}, 0.1\n", i + 1, i + 21))
+        .collect();
+    let elements: String = (1..=10)
+        .map(|i| format!("{i}, {i}, {}, {}, {}\n", i + 1, i + 21, i + 20))
+        .collect();
+    let deck = format!(
+        "*NODE\n{}*ELEMENT, TYPE=CPS4, ELSET=BAR\n{elements}\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*DENSITY\n1.\n*SOLID SECTION, ELSET=BAR, MATERIAL=M\n\
+         *NSET, NSET=AXIS\n1, 21\n*NSET, NSET=LOW, GENERATE\n1, 11\n*BOUNDARY\nAXIS, 1\nLOW, 2\n\
+         *STEP, NLGEOM\n*STATIC, DIRECT\n1., 1.\n*DLOAD\nBAR, CENTRIF, 250., 0., 0., 0., 0., 0., 1.\n*END STEP\n",
+        nodes.replace("0.10,", "1.0,")
+    );
+    let (keep, failure) = run_deck(&deck);
+    assert_eq!(failure, None);
+    let last = keep.reports.last().expect("reports");
+    assert!(last.solver.passes <= 5, "{}", last.solver.passes);
+}
+
+#[test]
 fn a_block_falls_to_the_floor_that_is_near() {
     let (keep, failure) = run_deck(&on_floor(0.3, 0.3, WEIGHT));
     assert_eq!(failure, None);

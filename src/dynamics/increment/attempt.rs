@@ -7,23 +7,26 @@ use super::contact_states::ContactStates;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
 use super::impulses::EarlierPass;
-use super::linear_pass::{Vectors, close_hinges, k_star};
+use super::linear_pass::{SkewPart, Vectors, close_hinges, k_star};
 use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
-use crate::contact::{ClosedPairs, ConstraintSet};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintSet};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, EffectiveStiffness, Equilibrium, HeldMotions, Interval, StartVelocity,
-    StepProblem, Workspace, sum, write_difference, write_sum,
+    ClosedConstraints, EffectiveStiffness, Equilibrium, ForceChange, HeldMotions, Interval,
+    StartVelocity, StepProblem, StiffnessForm, Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
+use crate::linear::largest;
 
 /// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
 const PATIENCE: usize = 25;
+/// The same in a static step, whose passes converge quadratically, once corrections are small.
+const STATIC_PATIENCE: usize = 8;
 /// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
 const SLOW_PASSES: usize = 10;
 /// Most halvings of a correction that turns an element inside out.
@@ -77,6 +80,8 @@ pub(crate) struct Solved {
     pub returned: Returned,
     /// Motions that are held in it.
     pub held: HeldMotions,
+    /// Whether K* held the closed pairs.
+    pub holds_pairs: bool,
 }
 
 /// The motion of a converged increment between its ends, which another attempt from the same start may begin
@@ -91,6 +96,8 @@ pub(crate) struct Path {
     pub closed: ClosedPairs,
     /// Motions that are held.
     pub held: HeldMotions,
+    /// Whether K* held the closed pairs.
+    pub holds_pairs: bool,
 }
 
 impl Path {
@@ -109,6 +116,7 @@ impl Solved {
             a: vec![0.0; self.d.len()],
             closed: self.end.contact.clone(),
             held: self.held.clone(),
+            holds_pairs: self.holds_pairs,
         }
     }
 
@@ -121,6 +129,7 @@ impl Solved {
             v: self.v0p.clone(),
             closed: self.end.contact.clone(),
             held: self.held.clone(),
+            holds_pairs: false,
         }
     }
 }
@@ -168,7 +177,10 @@ impl<'m> Attempt<'_, 'm> {
         let mut failed = Cause::NotConverged;
         (self.workspace.stiffness).start(self.problem, &self.start.u);
         for &rule in self.factor_rules() {
-            let may_be_digits = matches!(failed, Cause::NotConverged | Cause::Diverged);
+            let may_be_digits = matches!(
+                failed,
+                Cause::NotConverged | Cause::Diverged | Cause::Lcp(_)
+            );
             if rule == FactorRule::Held && !may_be_digits {
                 break;
             }
@@ -187,6 +199,7 @@ impl<'m> Attempt<'_, 'm> {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
+                        holds_pairs: rule == FactorRule::Held,
                         ..solved
                     });
                 }
@@ -203,6 +216,7 @@ impl<'m> Attempt<'_, 'm> {
     fn factor_rules(&self) -> &'static [FactorRule] {
         match (self.problem.integration.has_rates, self.guess) {
             (true, _) => FactorRule::order(self.problem.settings.factorization),
+            (false, Some(path)) if path.holds_pairs => &[FactorRule::Held, FactorRule::EveryPass],
             (false, Some(_)) => &[
                 FactorRule::EveryPass,
                 FactorRule::EveryPass,
@@ -238,7 +252,11 @@ impl<'m> Attempt<'_, 'm> {
             None => rigid_predictor(problem, start, self.interval),
         };
         for number in 0..problem.settings.max_passes {
-            if number >= PATIENCE && !trace.will_end(&problem.settings) {
+            let is_late = match problem.integration.has_rates {
+                false if factors.are_near() => number >= STATIC_PATIENCE,
+                _ => number >= PATIENCE,
+            };
+            if is_late && !trace.will_end(&problem.settings) {
                 break;
             }
             // g, Dt and their rows, V0+ and r in the iterate U = U0 + d
@@ -259,7 +277,7 @@ impl<'m> Attempt<'_, 'm> {
             }
 
             // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
-            self.refresh(factors, v, &contact.forces)?;
+            self.refresh(factors, v, &contact.forces, trace.correction())?;
             self.supports(number, v);
 
             // Pn, Pt of the complementarity problem, eq. (5.2);
@@ -397,13 +415,22 @@ impl<'m> Attempt<'_, 'm> {
         v: &mut Vectors,
     ) -> Result<Vec<f64>, Cause> {
         let closing = close_hinges(self.problem, self.workspace, v)?;
-        contact.solve(
-            [&v.closing, &v.load],
-            weight,
-            &mut k_star(self.problem, self.workspace),
-            &mut v.du,
-        )?;
-        Ok(closing)
+        let mut k_star = k_star(self.problem, self.workspace);
+        if self.problem.integration.has_rates {
+            contact.solve([&v.closing, &v.load], weight, &mut k_star, &mut v.du)?;
+            return Ok(closing);
+        }
+        let Equilibrium { load, internal, .. } = &v.equilibrium;
+        let others = largest(load).max(largest(internal));
+        loop {
+            let mut load = v.load.clone();
+            v.skew.add_to(&mut load);
+            contact.solve([&v.closing, &load], weight, &mut k_star, &mut v.du)?;
+            // forces of which several are answers would be others each time
+            if contact.pivots > 0 || v.skew.take_in(&v.du, others) {
+                return Ok(closing);
+            }
+        }
     }
 
     /// Writes what the predictor leaves of the prescribed motion, d_p, which the first pass makes, and its
@@ -465,8 +492,14 @@ impl<'m> Attempt<'_, 'm> {
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
-        Vectors { u, equilibrium, .. }: &Vectors,
+        Vectors {
+            u,
+            equilibrium,
+            skew,
+            ..
+        }: &mut Vectors,
         contact: &ContactForces,
+        correction: f64,
     ) -> Result<(), Cause> {
         let (problem, dt) = (self.problem, self.interval.dt);
         let fits = (self.workspace.stiffness).fits(dt, length_tolerance(self.set));
@@ -476,15 +509,33 @@ impl<'m> Attempt<'_, 'm> {
             return Ok(());
         }
         factors.renew();
+        let at = problem.configurations(&self.start.u, u);
+        let mut followers = match problem.integration.has_rates {
+            true => Vec::new(),
+            false => (problem.loads).changes(problem.elements, self.interval.end, u),
+        };
         let closed = ClosedConstraints {
             acting: contact.acting().collect(),
-            at: problem.configurations(&self.start.u, u),
+            at,
             are_held: factors.hold_pairs(),
+            followers: &followers,
             out_of_balance: &equilibrium.out_of_balance,
             held: &HeldMotions::default(),
         };
         let factorized = (self.workspace).factorize(problem, dt, motion, &closed);
-        factorized.map_err(|error| problem.unsolvable(error))
+        factorized.map_err(|error| problem.unsolvable(error))?;
+        if !problem.integration.has_rates {
+            let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| ForceChange {
+                dofs: constraint.dofs.to_vec(),
+                matrix: constraint.change(pair.force, &at),
+            };
+            followers.extend(contact.acting().map(of_pair));
+            *skew = match self.workspace.stiffness.form {
+                StiffnessForm::Positive => SkewPart::default(),
+                _ => SkewPart::new(&followers, correction),
+            };
+        }
+        Ok(())
     }
 
     /// Whether the forces at hand balance the iterate and its gaps and slips are those of the contact
@@ -586,6 +637,7 @@ impl<'m> Attempt<'_, 'm> {
             passes: Vec::new(),
             returned: Returned::default(),
             held,
+            holds_pairs: false,
         })
     }
 }

@@ -644,6 +644,7 @@ mod tests {
             acting: vec![],
             at: problem.configurations(&still, &still),
             are_held: false,
+            followers: &[],
             out_of_balance: &[],
             held: &HeldMotions::default(),
         };

@@ -1,9 +1,21 @@
 //! The linear problem of a pass: its vectors, K* with its contact problems, and hinges.
 
+use nalgebra::DMatrix;
+
 use super::contact_system::ContactSystem;
 use super::convergence::Residual;
 use crate::dynamics::results::Cause;
-use crate::dynamics::step::{Equilibrium, StepProblem, Workspace, sum};
+use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
+use crate::linear::largest;
+
+/// Change of N dU beside the other forces that is none.
+const NO_CHANGE: f64 = 1e-13;
+/// Part of the first change that is left to the next pass at most.
+const MOST_LEFT: f64 = 1e-3;
+/// Changes in a pass at most.
+const MOST_CHANGES: usize = 3;
+/// Part of the last change to which the next one falls, unless it is round-off.
+const FALLS: f64 = 0.5;
 
 /// Vectors of the passes of an increment.
 #[derive(Default)]
@@ -25,6 +37,59 @@ pub(super) struct Vectors {
     /// Displacement increment after the first pass.
     pub tangent: Vec<f64>,
     pub residual: Residual,
+    pub skew: SkewPart,
+}
+
+/// What K* leaves out of the change of the forces in a static step: N dU, N being the skew parts of the changes of contact
+/// forces and of loads that follow the iterate. Section 12 of docs/theory.md.
+#[derive(Default)]
+pub(super) struct SkewPart {
+    /// Dofs, with N over them.
+    parts: Vec<(Vec<usize>, DMatrix<f64>)>,
+    /// N dU (all dofs).
+    force: Vec<f64>,
+    /// Part of the first change of N dU that is left to the next pass.
+    left: f64,
+    /// Changes of N dU so far, and the first and the last one (force).
+    changes: (usize, [f64; 2]),
+}
+
+impl SkewPart {
+    /// That of the forces of an iterate, before dU is known, `correction` being that of the last pass beside the increment.
+    pub fn new(all: &[ForceChange], correction: f64) -> Self {
+        let skew = |change: &ForceChange| (change.dofs.clone(), change.skew());
+        SkewPart {
+            parts: all.iter().map(skew).collect(),
+            left: correction.powi(2).clamp(NO_CHANGE, MOST_LEFT),
+            ..SkewPart::default()
+        }
+    }
+
+    /// Adds N dU to a load.
+    pub fn add_to(&self, load: &mut [f64]) {
+        load.iter_mut().zip(&self.force).for_each(|(r, f)| *r += f);
+    }
+
+    /// Takes in another dU; whether N dU has become as good as it was, beside the other forces, or as round-off lets it.
+    pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
+        let mut force = vec![0.0; du.len()];
+        for (dofs, skew) in &self.parts {
+            for (i, &row) in dofs.iter().enumerate() {
+                let products = dofs.iter().enumerate().map(|(j, &d)| skew[(i, j)] * du[d]);
+                force[row] += products.sum::<f64>();
+            }
+        }
+        self.force.resize(du.len(), 0.0);
+        let change = largest(&difference(&force, &self.force));
+        self.force = force;
+        let (count, [first, last]) = match self.changes {
+            (0, _) => (1, [change, f64::INFINITY]),
+            (count, changes) => (count + 1, changes),
+        };
+        self.changes = (count, [first, change]);
+        let is_small = change <= NO_CHANGE * others || change <= self.left * first;
+        is_small || change > FALLS * last || count >= MOST_CHANGES
+    }
 }
 
 /// K* of a step with its contact problems.

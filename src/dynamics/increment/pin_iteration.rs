@@ -283,7 +283,7 @@ impl PinIteration<'_, '_> {
     /// would without them, or stay where it is along what is held.
     ///
     /// ```text
-    /// dU = y + W (B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
+    /// dU = y + W (N dU + B^T P + S a' p),  f = a' (S^T dU - p),  p <- S^T dU  until f vanishes    eq. (12.5)
     /// ```
     ///
     /// Gives the forces by which hinges close their gaps as well.
@@ -337,7 +337,8 @@ impl PinIteration<'_, '_> {
                     bodies: (self.workspace.pins)
                         .normal_forces(&contact.acting().collect::<Vec<_>>()),
                 });
-                if left <= PIN_FORCE {
+                let is_settled = v.skew.take_in(&v.du, others);
+                if left <= PIN_FORCE && is_settled {
                     self.take_held(held, &holding, v);
                     return Ok((closing, Pinned::Balanced(std::mem::take(pushed))));
                 }
@@ -445,6 +446,7 @@ impl PinIteration<'_, '_> {
         v: &mut Vectors,
     ) -> Result<(), Cause> {
         let mut load = v.load.clone();
+        v.skew.add_to(&mut load);
         add_pin_forces(&self.workspace.pins, &stiffness.forces(p), &mut load);
         contact.solve(
             [&v.closing, &load],

@@ -21,7 +21,7 @@ use crate::dynamics::results::{
     Timings, Unbalanced,
 };
 use crate::dynamics::step::{
-    ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, Workspace,
+    ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, TimePoint, Workspace,
 };
 use crate::elements::{Motion, most_strained};
 use crate::linear::{LinearError, larger};
@@ -576,7 +576,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let fail = |failed| Box::new((interval, failed));
         let solved = attempt.solve().map_err(fail)?;
         let checked = self
-            .check_stability(problem, workspace, &solved)
+            .check_stability(problem, workspace, (&solved, interval.end))
             .and_then(|()| self.check_way(workspace, &solved, interval.dt));
         match checked {
             Ok(()) => Ok(Subincrement {
@@ -598,13 +598,15 @@ impl<'m, 'o> Runner<'m, 'o> {
         &self,
         problem: &StepProblem,
         workspace: &mut Workspace,
-        solved: &Solved,
+        (solved, now): (&Solved, TimePoint),
     ) -> Result<(), Cause> {
         let end = &solved.end;
+        let followers = (problem.loads).changes(problem.elements, now, &end.u);
         let contact = ClosedConstraints {
             acting: solved.contact.forces.acting().collect(),
             at: problem.configurations(&self.state.u, &end.u),
             are_held: false,
+            followers: &followers,
             out_of_balance: &solved.equilibrium.out_of_balance,
             held: &solved.held,
         };

@@ -268,6 +268,7 @@ mod tests {
             acting: vec![],
             at: problem.configurations(&u0, &u1),
             are_held: false,
+            followers: &[],
             out_of_balance: &[],
             held: &HeldMotions::default(),
         };

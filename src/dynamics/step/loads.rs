@@ -3,6 +3,8 @@
 //!
 //! Place of a step among the times of the analysis.
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::elements::Elements;
 use crate::model::{Load, Model, Pressure, Step, Thickness, TimeBase, Variation};
 use crate::prepare::Redistribution;
@@ -72,6 +74,25 @@ pub(crate) struct Interval {
     pub dt: f64,
 }
 
+/// Change of the forces at some dofs with their displacements, rows: force, columns: displacement (force/length).
+#[derive(Debug, Clone)]
+pub(crate) struct ForceChange {
+    pub dofs: Vec<usize>,
+    pub matrix: DMatrix<f64>,
+}
+
+impl ForceChange {
+    /// Its symmetric part.
+    pub fn symmetric(&self) -> DMatrix<f64> {
+        (&self.matrix + self.matrix.transpose()) / 2.0
+    }
+
+    /// Its skew part.
+    pub fn skew(&self) -> DMatrix<f64> {
+        (&self.matrix - self.matrix.transpose()) / 2.0
+    }
+}
+
 /// Loads of one step.
 pub(crate) struct Loads<'m> {
     model: &'m Model,
@@ -134,6 +155,31 @@ impl<'m> Loads<'m> {
         let mut r = vec![0.0; u.len()];
         self.add(elements, 1.0, now, u, &mut r);
         r
+    }
+
+    /// Changes of the loads at a time that follow the displacements `u`: those of pressures and centrifugal forces.
+    pub fn changes(&self, elements: &Elements, now: TimePoint, u: &[f64]) -> Vec<ForceChange> {
+        let of_pressure = |load: &Load<Pressure>| {
+            let p = now.magnitude(self.model, load);
+            self.change_of_pressure(elements, load, p, u)
+        };
+        let of_pressures = self.step.pressures.iter().map(of_pressure);
+        let of_centrifugal = self.step.centrifugal_forces.iter().map(|load| {
+            let (element, factor) = (load.at.element, now.magnitude(self.model, load));
+            let is_ring = elements.thickness(element) == Thickness::Around;
+            let nodes = elements.nodes(element);
+            let mass = DMatrix::from_vec(nodes.len(), nodes.len(), elements.mass(element));
+            let directions = if is_ring { [1.0, 0.0] } else { [1.0; 2] };
+            let both = DMatrix::from_diagonal(&DVector::from_column_slice(&directions));
+            ForceChange {
+                dofs: nodes
+                    .iter()
+                    .flat_map(|node| [2 * node, 2 * node + 1])
+                    .collect(),
+                matrix: mass.kronecker(&both) * factor,
+            }
+        });
+        of_pressures.chain(of_centrifugal).collect()
     }
 
     /// The part of the concentrated loads in this, `dofs` entries (force).
@@ -253,6 +299,48 @@ impl<'m> Loads<'m> {
             r[2 * node] -= p * thrust[0];
             r[2 * node + 1] -= p * thrust[1];
         }
+    }
+
+    /// Position of a node at displacements `u`.
+    fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
+        [0, 1].map(|i| self.model.mesh.coordinates[node][i] + u[2 * node + i])
+    }
+
+    /// Change of the pressure p on a face. Its forces are polynomials of at most degree 2 of the positions, whose
+    /// derivatives are central differences of any step; it is the length of the face.
+    fn change_of_pressure(
+        &self,
+        elements: &Elements,
+        load: &Load<Pressure>,
+        p: f64,
+        u: &[f64],
+    ) -> ForceChange {
+        let side = load.at.face.of(&self.model.mesh);
+        let thickness = elements.thickness(load.at.face.element);
+        let [a, b] = side.ends().map(|node| self.position(u, node));
+        let step = difference(a, b)
+            .map(f64::abs)
+            .into_iter()
+            .fold(0.0, f64::max);
+        let dofs: Vec<usize> = (side.nodes().iter())
+            .flat_map(|n| [2 * n, 2 * n + 1])
+            .collect();
+        let forces = |moved: usize, by: f64| {
+            let at = |node: usize| {
+                let mut x = self.position(u, node);
+                if moved / 2 == node {
+                    x[moved % 2] += by;
+                }
+                x
+            };
+            let first = at(dofs[0] / 2);
+            let thrusts = side.thrusts(|node| difference(first, at(node)), (thickness, first[0]));
+            DVector::from_iterator(dofs.len(), thrusts.flat_map(|(_, n)| n.map(|n| -p * n)))
+        };
+        let column = |&dof: &usize| (forces(dof, step) - forces(dof, -step)) / (2.0 * step);
+        let columns: Vec<DVector<f64>> = dofs.iter().map(column).collect();
+        let matrix = DMatrix::from_columns(&columns);
+        ForceChange { dofs, matrix }
     }
 }
 

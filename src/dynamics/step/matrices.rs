@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 use super::bodies::BodyAngles;
 use super::held_motions::HeldMotions;
 use super::hinges::Hinges;
+use super::loads::ForceChange;
 use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
 use super::pins::{Pins, SoftPins, pin_columns, soften};
@@ -187,6 +188,8 @@ pub(crate) struct ClosedConstraints<'a> {
     pub at: Configurations<'a>,
     /// Whether K* holds them though it is definite without.
     pub are_held: bool,
+    /// Changes of the loads that follow the iterate, in a static step.
+    pub followers: &'a [ForceChange],
     /// Load less internal force, over all dofs, in a static step.
     pub out_of_balance: &'a [f64],
     /// Motions that are held where the stability of an equilibrium is asked.
@@ -422,6 +425,12 @@ impl EffectiveStiffness {
                 if form != StiffnessForm::Positive || k > 0.0 {
                     blocks.add(map, &[spin], &DMatrix::from_element(1, 1, k));
                 }
+            }
+        }
+        // K* <- K* - (C + C^T)/2, section 12, of loads
+        if form != StiffnessForm::Positive {
+            for follower in contact.followers {
+                blocks.add(map, &follower.dofs, &-follower.symmetric());
             }
         }
         // K* <- K* + S a S^T, a the mean K*_ii, eq. (12.2)

@@ -24,10 +24,10 @@ mod workspace;
 pub(crate) use bodies::{Hold, holds};
 pub(crate) use held_motions::HeldMotions;
 pub(crate) use hinges::Hinges;
-pub(crate) use loads::{Interval, StepPlace, TimePoint};
+pub(crate) use loads::{ForceChange, Interval, StepPlace, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use matrices::{
-    ClosedConstraints, EffectiveStiffness, FactoredMatrix, ResponseVectors, System,
+    ClosedConstraints, EffectiveStiffness, FactoredMatrix, ResponseVectors, StiffnessForm, System,
 };
 #[cfg(test)]
 pub(crate) use meter::Meter;
