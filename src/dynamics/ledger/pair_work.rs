@@ -136,11 +136,12 @@ impl EndForces {
         force
     }
 
-    /// Sum of the normal forces of every slave node.
-    fn normal_forces(&self) -> BTreeMap<SlaveKey, f64> {
-        let mut sums = BTreeMap::new();
-        for (constraint, [pn, _]) in &self.pairs {
-            *sums.entry(constraint.key.slave()).or_insert(0.0) += pn;
+    /// Sums of the forces of every slave node.
+    fn of_slaves(&self) -> BTreeMap<SlaveKey, [f64; 2]> {
+        let mut sums: BTreeMap<SlaveKey, [f64; 2]> = BTreeMap::new();
+        for (constraint, [pn, pt]) in &self.pairs {
+            let sum = sums.entry(constraint.key.slave()).or_default();
+            *sum = [sum[0] + pn, sum[1] + pt];
         }
         sums
     }
@@ -150,20 +151,27 @@ impl EndForces {
     ///
     /// ```text
     /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2
-    /// -(1 + Pn0/Pn1)/2 Pt1.(Bt1 d),   max(0, -Pt0.(Bt0 d)/2) where Pn1 = 0              eq. (12.8)
+    /// -(1 + Pn*/Pn1)/2 Pt1.(Bt1 d),   max(0, -Pt0.(Bt0 d)/2) where Pn1 = 0              eq. (12.8)
     /// ```
     ///
-    /// A pair that slides has |Pt| = mu Pn all the way, and Pn is linear: it slides with the mean force. One that opens has
-    /// only the force of its start.
+    /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force as the pair begins to slide, tau = (1 -+ Pt0/(mu Pn0))/2. From there on
+    /// |Pt| = mu Pn, and Pn is linear: it slides with the mean force. One that opens has only the force of its start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
-        let (before, after) = (self.normal_forces(), end.normal_forces());
-        // the mean of Pn as a part of the force at the start or at the end
-        let mean = |slave: SlaveKey, is_end: bool| {
-            let of = |sums: &BTreeMap<SlaveKey, f64>| sums.get(&slave).copied().unwrap_or(0.0);
+        let (before, after) = (self.of_slaves(), end.of_slaves());
+        // the mean of Pn while the node slides, as a part of the force at the start or at the end
+        let mean = |slave: SlaveKey, mu: f64, is_end: bool| {
+            let of =
+                |sums: &BTreeMap<SlaveKey, [f64; 2]>| sums.get(&slave).copied().unwrap_or_default();
             match (of(&before), of(&after)) {
-                (p0, p1) if p1 > 0.0 && is_end => (1.0 + p0 / p1) / 2.0,
-                (_, p1) if p1 > 0.0 || is_end => 0.0,
+                ([p0, t0], [p1, t1]) if p1 > 0.0 && is_end => {
+                    let tau = match mu * p0 {
+                        0.0 => 0.0,
+                        limit => (1.0 - (t0 * t1.signum() / limit).clamp(-1.0, 1.0)) / 2.0,
+                    };
+                    (1.0 + (p0 + (p1 - p0) * tau) / p1) / 2.0
+                }
+                (_, [p1, _]) if p1 > 0.0 || is_end => 0.0,
                 _ => 0.5,
             }
         };
@@ -177,7 +185,10 @@ impl EndForces {
         for (forces, is_end) in [(self, false), (end, true)] {
             for (constraint, [pn, pt]) in &forces.pairs {
                 let slave = constraint.key.slave();
-                let (slip, mean) = (constraint.tangential_motion(d), mean(slave, is_end));
+                let (slip, mean) = (
+                    constraint.tangential_motion(d),
+                    mean(slave, constraint.mu, is_end),
+                );
                 let work = pt * slip;
                 let parts = shrinkage.get(&slave).unwrap_or(&0.0);
                 tangential += work / 2.0;
