@@ -57,7 +57,15 @@ def blocks(result: Result) -> dict[str, float]:
     return {"pressing force": across} | friction
 
 
-MEASURES = {"brake": brake, "snap": snap, "cam": cam, "blocks": blocks, "blocks_smooth": blocks}
+def tyre(result: Result) -> dict[str, float]:
+    """At rest on the road."""
+    nodes = result.node_set("TYRE")
+    u = result.frames[-1]["U"][nodes]
+    width, height = np.ptp(result.coordinates[nodes, :2] + u[:, :2], axis=0)
+    return {"way of the middle": u[:, 1].mean(), "height": height, "width": width}
+
+
+MEASURES = {"tyre": tyre, "brake": brake, "snap": snap, "cam": cam, "blocks": blocks, "blocks_smooth": blocks}
 
 
 def measure(study: runner.Study) -> None:
@@ -75,7 +83,8 @@ def measure(study: runner.Study) -> None:
             continue
         energy = result.history.energy
         passes = result.history.solver["passes"][1:]
-        study.check("passes per increment", run.name, passes.max())
+        of_tyre = " of the tyre" if run.name == "tyre" else ""
+        study.check(f"passes per increment{of_tyre}", run.name, passes.max())
         if run.name in ("brake", "cam", "pad"):
             other = np.abs(energy.numerical_dissipation).max() / energy.friction_dissipation[-1]
             study.check("numerical dissipation / friction dissipation", run.name, other)
