@@ -27,6 +27,8 @@ use crate::linear::largest;
 const PATIENCE: usize = 25;
 /// The same in a static step, whose passes converge quadratically, once corrections are small.
 const STATIC_PATIENCE: usize = 8;
+/// Passes after which slave nodes keep their targets in a static step.
+const STATIC_SEARCHING_PASSES: usize = 3;
 /// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
 const SLOW_PASSES: usize = 10;
 /// Most halvings of a correction that turns an element inside out.
@@ -37,8 +39,13 @@ const SAME_LENGTH: f64 = 1e-3;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even
 /// if others hold them now.
-fn kept_beyond_ends(pass: usize) -> Option<f64> {
-    if pass < SEARCHING_PASSES {
+fn kept_beyond_ends(pass: usize, has_rates: bool) -> Option<f64> {
+    let searching = if has_rates {
+        SEARCHING_PASSES
+    } else {
+        STATIC_SEARCHING_PASSES
+    };
+    if pass < searching {
         None
     } else if pass < SLOW_PASSES {
         Some(KEPT_WHEN_SETTLED)
@@ -367,7 +374,10 @@ impl<'m> Attempt<'_, 'm> {
         turning.turn([&start.u, d], &mut v.u);
         (self.workspace.stiffness).write_rows(problem, [&start.u, d]);
         problem.check_segments(&v.u)?;
-        let of_set = (self.set, kept_beyond_ends(pass));
+        let of_set = (
+            self.set,
+            kept_beyond_ends(pass, problem.integration.has_rates),
+        );
         contact.find(
             problem,
             self.workspace,
