@@ -13,8 +13,8 @@ use std::time::Duration;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use scenes::{DISC, lattice};
 use stickslip::contact::{
-    ClosedPairs, Positions, RowForm, Search, SlaveNode, all_segments, find_penetration,
-    find_targets,
+    ClosedPairs, Positions, RowForm, Search, SlaveChoice, SlaveNode, all_segments,
+    find_penetration, find_targets,
 };
 
 /// Segments searched in one go: in many small scenes, or few large ones. Only so do caches and
@@ -72,7 +72,7 @@ fn main() {
                     [&u, &u],
                     &[],
                     (&ClosedPairs::default(), None),
-                    RowForm::DiscreteGradient,
+                    (RowForm::DiscreteGradient, SlaveChoice::All),
                     &mut pairs,
                 );
                 pairs.len()

@@ -62,6 +62,16 @@ impl Constraint {
         Constraint::new(self.source.clone().untilted(), at)
     }
 
+    /// Its gap between other configurations, and the length that it is relative to there.
+    pub fn gap_and_scale(&self, at: &Configurations) -> (f64, f64) {
+        let source = &self.source;
+        if source.points.is_empty() && source.round.is_none() && source.target.corner.is_none() {
+            return node_to_segment::gap_and_scale(source, at);
+        }
+        let other = self.relinearized(at);
+        (other.gap, other.scale)
+    }
+
     /// The same constraint between other configurations.
     pub fn relinearized(&self, at: &Configurations) -> Self {
         Constraint {

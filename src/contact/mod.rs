@@ -41,7 +41,7 @@ pub use geometry::{
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use lists::PerDof;
-pub use pairing::{find_means, find_targets};
+pub use pairing::{SlaveChoice, find_means, find_targets};
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal};
 pub use tunnelling::{crossed_edges, find_penetration};

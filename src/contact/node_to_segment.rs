@@ -42,6 +42,14 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     Constraint::of_nodes(source, [force, derivative], gap_and_scale, at)
 }
 
+/// Gap of the constraint, and the length that it is relative to.
+pub(super) fn gap_and_scale(source: &PairTarget, at: &Configurations) -> (f64, f64) {
+    let [s, a, b, _] = source.nodes;
+    let [s, a, b] = at.iterate([s, a, b]);
+    let projection = project(s, a, b);
+    (projection.gap + source.allowed[1], projection.length)
+}
+
 /// Tilt of the force on a node that has slid on from another segment, eq. (7.6), zero on all others:
 ///
 /// ```text

@@ -14,7 +14,31 @@ use super::surface_to_surface::find_points;
 use super::targets::{ContactTarget, ContactTargets, PairTarget, SlaveNode};
 use super::tolerances::KEPT_BEYOND_ENDS;
 
-/// Writes the pairs of all contacts between the displacements `u0` of the start of an increment and `u`
+/// The slave nodes whose pairs are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SlaveChoice {
+    /// All of them.
+    #[default]
+    All,
+    /// Those that may touch a segment after the next correction, and all whose pairs are means or discs.
+    Near,
+    /// The others.
+    Far,
+}
+
+impl SlaveChoice {
+    /// Whether a slave node is among them in the given positions; one that is `held` by a pair is near.
+    fn takes(self, listed: &ListedSlave, now: Positions, is_held: bool) -> bool {
+        let is_far = || !is_held && listed.is_far(now);
+        match self {
+            SlaveChoice::All => true,
+            SlaveChoice::Near => !is_far(),
+            SlaveChoice::Far => is_far(),
+        }
+    }
+}
+
+/// Writes the pairs of the chosen slave nodes of all contacts between the displacements `u0` of the start of an increment and `u`
 /// of an iterate, which the search covers, with increasing keys, as the constraints `before`,
 /// of the last pass. `held` are the pairs closed at the start.
 /// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
@@ -29,7 +53,7 @@ pub fn find_targets(
     [u0, u]: [&[f64]; 2],
     before: &[Constraint],
     (held, kept): (&ClosedPairs, Option<f64>),
-    form: RowForm,
+    (form, choice): (RowForm, SlaveChoice),
     pairs: &mut Vec<PairTarget>,
 ) {
     let [start, now] = [u0, u].map(|u| Positions::new(search.coordinates(), u));
@@ -39,27 +63,25 @@ pub fn find_targets(
         .peekable();
     pairs.clear();
     for listed in search.slaves() {
+        let held_by = held.of_slave(listed.key);
+        let is_chosen = choice.takes(&listed, now, !held_by.is_empty());
         if listed.surfaces.slave_segments.is_some() {
-            if listed.number == 0 {
+            if listed.number == 0 && is_chosen {
                 find_points(listed.territory(), [start, now], form, pairs);
             }
-            while before
-                .next_if(|pair| pair.key.slave <= listed.key)
-                .is_some()
-            {}
+            continue;
+        }
+        if !is_chosen {
             continue;
         }
         if listed.surfaces.disc.is_some() {
             disc::find_targets(&listed, [start, now], pairs);
-            while before
-                .next_if(|pair| pair.key.slave <= listed.key)
-                .is_some()
-            {}
             continue;
         }
-        let held_by = held.of_slave(listed.key).iter();
-        let held_by: SmallVec<[usize; 4]> =
-            held_by.map(|pair| pair.source.target.segment).collect();
+        let held_by: SmallVec<[usize; 4]> = held_by
+            .iter()
+            .map(|pair| pair.source.target.segment)
+            .collect();
         let node = SlaveNode {
             surfaces: listed.surfaces,
             start,
@@ -70,7 +92,8 @@ pub fn find_targets(
         };
         let found = node.targets(listed.candidates());
         let mut own = ContactTargets::new();
-        while let Some(pair) = before.next_if(|pair| pair.key.slave <= listed.key) {
+        while (before.next_if(|pair| pair.key.slave < listed.key)).is_some() {}
+        while let Some(pair) = before.next_if(|pair| pair.key.slave == listed.key) {
             own.push(pair.target);
         }
         let keeps = !own.is_empty() && (kept.is_some() || found.is_empty());

@@ -5,12 +5,12 @@ use std::sync::{Mutex, PoisonError};
 
 use smallvec::SmallVec;
 
-use super::geometry::{ContactSurfaces, Corners, Edge, position};
+use super::geometry::{ContactSurfaces, Corners, Edge, Positions, position};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
 use super::lists::{Recycled, entries};
 use super::tolerances::{
-    PAIRING_REACH, PAIRING_REACH_WITHOUT_VELOCITIES, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN,
+    NEAR_PER_MOTION, NEAR_REACH, PAIRING_REACH, PAIRING_REACH_WITHOUT_VELOCITIES, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN,
     SEARCH_MARGIN_PER_MOTION,
 };
 use crate::archive::{Archive, ArchiveError};
@@ -262,6 +262,33 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         self.territory.is_fitted
     }
 
+    /// Whether it is a node that no correction brings to a segment: it is farther from all of them than a part of the
+    /// distance within which it pairs, and than twice what it is expected to move.
+    pub(super) fn is_far(&self, now: Positions) -> bool {
+        let Territory {
+            contact,
+            slaves,
+            segments,
+            reach,
+            ..
+        } = self.territory;
+        if contact.disc.is_some() || !self.meets_segments() || self.allowed() != [0.0; 2] {
+            return false;
+        }
+        let s = now.of(self.node());
+        self.territory.listed(self.number).iter().all(|&i| {
+            let travel = slaves.travel[self.number] + segments.travel[i as usize];
+            let near = NEAR_REACH * reach + NEAR_PER_MOTION * travel;
+            let [a, b] = contact.segments[i as usize];
+            let (a, b) = (now.of(a), now.of(b));
+            let (r, e) = (difference(a, s), difference(a, b));
+            let (along, whole) = (dot(r, e), dot(e, e));
+            // |r - xi e|^2 e.e, xi = r.e/e.e within [0, 1]
+            let on = along.max(0.0).min(whole);
+            dot(r, r) * whole - on * (2.0 * along - on) > near * near * whole
+        })
+    }
+
     /// Its candidates, with increasing segments.
     pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
         self.territory.candidates(self.number)
@@ -414,11 +441,15 @@ impl<'m> Territory<'m> {
 
     /// Candidates of the slave node number `k` of the contact, with increasing segments.
     pub fn candidates(&self, k: usize) -> impl Iterator<Item = Candidate> + Clone + use<'_> {
-        let list = &self.candidates[self.starts[k]..self.starts[k + 1]];
-        list.iter().map(move |&i| Candidate {
+        self.listed(k).iter().map(move |&i| Candidate {
             segment: i as usize,
             reach: self.reach(k, i as usize),
         })
+    }
+
+    /// Segments that are listed for the slave node number `k`.
+    fn listed(&self, k: usize) -> &[u32] {
+        &self.candidates[self.starts[k]..self.starts[k + 1]]
     }
 
     /// Positions or velocities of nodes less their mean over the ends of all slaves and segments.

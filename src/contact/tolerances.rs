@@ -36,6 +36,10 @@ pub(crate) const PROJECTION_BEYOND_ENDS: f64 = 1e-6;
 pub(crate) const PAIRING_REACH: f64 = 0.5;
 /// The same in steps without velocities.
 pub(crate) const PAIRING_REACH_WITHOUT_VELOCITIES: f64 = 2.0;
+/// Part of that distance within which a node may meet a segment after the next correction.
+pub(crate) const NEAR_REACH: f64 = 0.25;
+/// The same in displacements per increment of both, which the distance above is besides.
+pub(crate) const NEAR_PER_MOTION: f64 = 2.0;
 /// Growth of the circle of an entity at rest, in mean segment lengths of the contact: it may move
 /// this far before its candidates are searched anew.
 pub(crate) const SEARCH_MARGIN: f64 = 0.5;

@@ -10,7 +10,7 @@ use super::increment::{ContactForces, ContactSystem, Release, Solved};
 use super::results::State;
 use super::step::{FactoredMatrix, Interval, StepProblem, System, Workspace, difference, dot, sum};
 use crate::contact::tolerances::TIED_ROW;
-use crate::contact::{ClosedPair, Constraint};
+use crate::contact::{ClosedPair, Constraint, SlaveChoice};
 use crate::elements::Motion;
 use crate::linear::{Assembled, Transformation, larger, largest, linear_solver};
 
@@ -131,6 +131,7 @@ impl Releasing<'_, '_> {
             way,
             &[],
             (&self.end.contact, None),
+            SlaveChoice::All,
             &mut found,
         );
         let opens = |constraint: &Constraint| self.free.open(constraint);

@@ -242,7 +242,7 @@ impl<'m> Attempt<'_, 'm> {
     ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let closed = self.guess.map_or(&start.contact, |path| &path.closed);
-        let mut contact = ContactStates::new(closed, self.set);
+        let mut contact = ContactStates::new(problem, closed, self.set);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
         let mut pins = PinState::new(
@@ -278,7 +278,11 @@ impl<'m> Attempt<'_, 'm> {
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let state = [settled, factors.stagnate()];
             let may_end = contact.impulses.are_at_rest() && factors.are_near();
-            if may_end && self.is_solved(&iterate, state, &mut v.residual, trace)? {
+            if may_end
+                && let Some(residual) = self.residual(&iterate, state, &mut v.residual)?
+                && self.complete(&mut contact, &v.u, None)
+            {
+                trace.solved(residual);
                 self.pins().check_held(&contact.forces, &pins, v)?;
                 return self.finish(&d, contact, pins.held, v, true);
             }
@@ -307,7 +311,9 @@ impl<'m> Attempt<'_, 'm> {
             let pass = iterate.pass(&v.support_force, &v.du);
             let has_converged = self.measure(&pass, &mut v.residual, trace)?;
 
-            let ends = contact.rest(problem) && has_converged;
+            let ends = contact.rest(problem)
+                && has_converged
+                && self.complete(&mut contact, &v.u, Some(&v.du));
             self.pins().move_finitely(v);
             let correction = trace.correction();
             if !ends {
@@ -548,22 +554,26 @@ impl<'m> Attempt<'_, 'm> {
         Ok(())
     }
 
-    /// Whether the forces at hand balance the iterate and its gaps and slips are those of the contact
+    /// The relative residual, where the forces at hand balance the iterate and its gaps and slips are those of the contact
     /// law.
-    fn is_solved(
+    fn residual(
         &mut self,
         iterate: &Iterate,
         state: [bool; 2],
         residual: &mut Residual,
-        trace: &mut Trace,
-    ) -> Result<bool, Cause> {
+    ) -> Result<Option<f64>, Cause> {
         let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
         let solved = iterate.residual(problem, stiffness, state, residual)?;
         if let Some(residual) = solved {
-            trace.solved(residual);
             self.workspace.meter.counts.residual = residual;
         }
-        Ok(solved.is_some())
+        Ok(solved)
+    }
+
+    /// Takes in the constraints of the iterate U that were left out; whether they stay open, with a correction dU.
+    fn complete(&mut self, contact: &mut ContactStates, u: &[f64], du: Option<&[f64]>) -> bool {
+        let of_increment = (self.start, self.interval);
+        contact.complete(self.problem, self.workspace, of_increment, u, du)
     }
 
     /// Compares residual and correction of a pass with their scales; whether it has converged, with a solve

@@ -4,7 +4,7 @@
 use super::contact_forces::ContactForces;
 use super::impulses::Impulses;
 use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
-use crate::contact::{ClosedPairs, Constraint, ConstraintSet};
+use crate::contact::{ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Interval, StepProblem, Workspace};
 
@@ -19,12 +19,21 @@ pub(crate) struct ContactStates {
     pub found: Vec<Constraint>,
     /// Its constraints that do not count.
     pub left_out: Vec<Constraint>,
+    /// The slave nodes whose constraints the passes find.
+    choice: SlaveChoice,
 }
 
 impl ContactStates {
-    /// The pairs before the passes, some of them closed and some that touch.
-    pub fn new(closed: &ClosedPairs, set: ConstraintSet) -> Self {
+    /// The pairs before the passes of a step, some of them closed and some that touch. Where velocities tell how far nodes
+    /// go, passes leave out those that are far from all segments.
+    pub fn new(problem: &StepProblem, closed: &ClosedPairs, set: ConstraintSet) -> Self {
+        let leaves_out =
+            problem.integration.velocities_tell() && matches!(set, ConstraintSet::All);
         ContactStates {
+            choice: match leaves_out {
+                true => SlaveChoice::Near,
+                false => SlaveChoice::All,
+            },
             forces: ContactForces::without_constraints(closed),
             impulses: Impulses::new(closed, set.touching()),
             ..ContactStates::default()
@@ -43,7 +52,8 @@ impl ContactStates {
         (set, kept): (ConstraintSet, Option<f64>),
     ) {
         let (last, held) = (&self.forces.constraints, (&start.contact, kept));
-        workspace.constraints(problem, [&start.u, u], last, held, &mut self.found);
+        let (way, choice) = ([&start.u[..], u], self.choice);
+        workspace.constraints(problem, way, last, held, choice, &mut self.found);
         let iterate = (&start.u[..], interval, &self.forces.closed);
         (problem.frictions).give(problem.coordinates, iterate, &mut self.found);
         set.split(
@@ -51,6 +61,35 @@ impl ContactStates {
             &mut self.found,
             &mut self.left_out,
         );
+    }
+
+    /// Takes in the constraints of the iterate U whose slave nodes were far, before an increment ends; whether they stay
+    /// open, with the correction dU if there is one. Else the passes go on with all of them.
+    pub fn complete(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &mut Workspace,
+        (start, interval): (&State, Interval),
+        u: &[f64],
+        du: Option<&[f64]>,
+    ) -> bool {
+        if self.choice == SlaveChoice::All {
+            return true;
+        }
+        let (way, held) = ([&start.u[..], u], (&start.contact, None));
+        let far = &mut self.found;
+        workspace.constraints(problem, way, &[], held, SlaveChoice::Far, far);
+        let iterate = (&start.u[..], interval, &self.forces.closed);
+        (problem.frictions).give(problem.coordinates, iterate, far);
+        let change = |constraint: &Constraint| du.map_or(0.0, |du| constraint.gap_change(du));
+        let stay_open = (far.iter()).all(|constraint| constraint.gap + change(constraint) >= 0.0);
+        let constraints = &mut self.forces.constraints;
+        constraints.append(far);
+        if !stay_open {
+            constraints.sort_by_key(|constraint| constraint.key);
+            self.choice = SlaveChoice::All;
+        }
+        stay_open
     }
 
     /// Takes over the constraints of the iterate, with the forces at hand.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::nodal_results::MasterMeans;
 use super::pair_work::PairWork;
 use crate::archive::{Archive, ArchiveError};
-use crate::contact::{Constraint, ConstraintKey, Search, crossed_edges};
+use crate::contact::{ClosedPair, Constraint, ConstraintKey, Search, crossed_edges};
 use crate::dynamics::increment::{PairReturn, Solved};
 use crate::dynamics::results::{
     ContactImpulse, ContactOnBody, ContactResultant, ContactViolation, ReturnedImpulse, State,
@@ -292,11 +292,13 @@ pub(crate) fn contact_violation(
     solved: &Solved,
 ) -> ContactViolation {
     let at = problem.configurations(&start.u, &solved.end.u);
-    let of_pair =
-        |constraint: &Constraint, state| violation_of_pair(&constraint.relinearized(&at), state);
+    let of_pair = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| match pair {
+        None => violation_of_open_pair(constraint.gap_and_scale(&at)),
+        Some(pair) => violation_of_closed_pair(&constraint.relinearized(&at), pair.state),
+    };
     let pairs = solved.contact.forces.iter();
     let largest = pairs
-        .map(|(constraint, pair)| of_pair(constraint, pair.map(|pair| pair.state)))
+        .map(of_pair)
         .fold(ContactViolation::default(), ContactViolation::larger);
     ContactViolation {
         penetration: larger(largest.overlap, crossed_edges(search, &solved.end.u)),
@@ -304,15 +306,17 @@ pub(crate) fn contact_violation(
     }
 }
 
-/// An open pair must not overlap (`state` none), a closed one has no gap, one that sticks no slip.
-fn violation_of_pair(constraint: &Constraint, state: Option<ContactState>) -> ContactViolation {
+/// An open pair must not overlap.
+fn violation_of_open_pair((gap, scale): (f64, f64)) -> ContactViolation {
+    ContactViolation {
+        overlap: (-gap).max(0.0) / scale,
+        ..ContactViolation::default()
+    }
+}
+
+/// A closed pair has no gap, one that sticks no slip.
+fn violation_of_closed_pair(constraint: &Constraint, state: ContactState) -> ContactViolation {
     let part = |length: f64| length / constraint.scale;
-    let Some(state) = state else {
-        return ContactViolation {
-            overlap: part((-constraint.gap).max(0.0)),
-            ..ContactViolation::default()
-        };
-    };
     let sticks = state == ContactState::Stick && constraint.mu > 0.0;
     ContactViolation {
         overlap: 0.0,
@@ -344,7 +348,10 @@ mod tests {
         };
         let mut constraint = Constraint::new(source, &at);
         constraint.mu = mu;
-        violation_of_pair(&constraint, state)
+        match state {
+            None => violation_of_open_pair(constraint.gap_and_scale(&at)),
+            Some(state) => violation_of_closed_pair(&constraint, state),
+        }
     }
 
     #[test]

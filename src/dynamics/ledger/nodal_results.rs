@@ -201,7 +201,7 @@ pub(crate) fn node_masses(problem: &StepProblem) -> Vec<NodeMass> {
 /// Gap of a constraint at the end of the increment.
 fn end_gap(problem: &StepProblem, solved: &Solved, constraint: &Constraint) -> f64 {
     let at = end_rows_at(problem, &solved.end.u);
-    constraint.relinearized(&at).gap
+    constraint.gap_and_scale(&at).0
 }
 
 /// One configuration, with the gradients of gap and slip as rows.

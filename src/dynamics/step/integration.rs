@@ -65,6 +65,11 @@ impl Integration {
         }
     }
 
+    /// Whether velocities tell how far nodes go in an increment.
+    pub fn velocities_tell(&self) -> bool {
+        self.has_rates && !self.backward_euler
+    }
+
     /// Rows of the impulses: at the start in the energy-momentum form, else those of the end.
     pub fn impulses_at_start(&self) -> bool {
         self.energy_momentum

@@ -9,8 +9,8 @@ use super::pins::{Pins, SoftPins};
 use super::step_problem::{StepProblem, difference, sum};
 use crate::archive::{Archive, ArchiveError};
 use crate::contact::{
-    ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, find_means, find_penetration,
-    find_targets,
+    ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, SlaveChoice, find_means,
+    find_penetration, find_targets,
 };
 use crate::dynamics::results::State;
 use crate::elements::Motion;
@@ -31,8 +31,7 @@ impl<'m> Workspace<'m> {
     /// The workspace of a step, without factors and without lists of candidates.
     pub fn new(problem: &StepProblem<'m>) -> Self {
         let x = &problem.model.mesh.coordinates;
-        let velocities_tell = problem.integration.has_rates && !problem.integration.backward_euler;
-        let mut search = match velocities_tell {
+        let mut search = match problem.integration.velocities_tell() {
             true => Search::new(problem.contacts, x),
             false => Search::without_velocities(problem.contacts, x),
         };
@@ -181,7 +180,7 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Writes the constraints between the displacements `u0` and `u` of an increment, `before` being those of
+    /// Writes the constraints of the chosen slave nodes between the displacements `u0` and `u` of an increment, `before` being those of
     /// the last pass and `held` the pairs closed at the start. With `kept`, slave
     /// nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn constraints(
@@ -190,6 +189,7 @@ impl<'m> Workspace<'m> {
         increment: [&[f64]; 2],
         before: &[Constraint],
         (held, kept): (&ClosedPairs, Option<f64>),
+        choice: SlaveChoice,
         constraints: &mut Vec<Constraint>,
     ) {
         let Workspace {
@@ -200,7 +200,7 @@ impl<'m> Workspace<'m> {
         } = self;
         meter.time(|t| &mut t.search, || search.cover(increment[1]));
         let write = || {
-            let form = problem.integration.row_form();
+            let form = (problem.integration.row_form(), choice);
             find_targets(search, increment, before, (held, kept), form, pairs);
             problem.constraints(pairs, increment, constraints);
         };
