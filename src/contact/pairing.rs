@@ -27,9 +27,10 @@ pub enum SlaveChoice {
 }
 
 impl SlaveChoice {
-    /// Whether a slave node is among them in the given positions; one that is `held` by a pair is near.
-    fn takes(self, listed: &ListedSlave, now: Positions, is_held: bool) -> bool {
-        let is_far = || !is_held && listed.is_far(now);
+    /// Whether a slave node is among them in the given positions; one that has a pair, which may have brought it deep into a
+    /// body, is near.
+    fn takes(self, listed: &ListedSlave, now: Positions, has_pair: bool) -> bool {
+        let is_far = || !has_pair && listed.is_far(now);
         match self {
             SlaveChoice::All => true,
             SlaveChoice::Near => !is_far(),
@@ -64,7 +65,9 @@ pub fn find_targets(
     pairs.clear();
     for listed in search.slaves() {
         let held_by = held.of_slave(listed.key);
-        let is_chosen = choice.takes(&listed, now, !held_by.is_empty());
+        while (before.next_if(|pair| pair.key.slave < listed.key)).is_some() {}
+        let has_pair = (before.peek()).is_some_and(|pair| pair.key.slave == listed.key);
+        let is_chosen = choice.takes(&listed, now, has_pair || !held_by.is_empty());
         if listed.surfaces.slave_segments.is_some() {
             if listed.number == 0 && is_chosen {
                 find_points(listed.territory(), [start, now], form, pairs);
@@ -92,7 +95,6 @@ pub fn find_targets(
         };
         let found = node.targets(listed.candidates());
         let mut own = ContactTargets::new();
-        while (before.next_if(|pair| pair.key.slave < listed.key)).is_some() {}
         while let Some(pair) = before.next_if(|pair| pair.key.slave == listed.key) {
             own.push(pair.target);
         }

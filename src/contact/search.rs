@@ -10,8 +10,8 @@ use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
 use super::lists::{Recycled, entries};
 use super::tolerances::{
-    NEAR_PER_MOTION, NEAR_REACH, PAIRING_REACH, PAIRING_REACH_WITHOUT_VELOCITIES, PROJECTION_BEYOND_ENDS, SEARCH_MARGIN,
-    SEARCH_MARGIN_PER_MOTION,
+    NEAR_PER_MOTION, NEAR_REACH, PAIRING_REACH, PAIRING_REACH_WITHOUT_VELOCITIES,
+    PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,
 };
 use crate::archive::{Archive, ArchiveError};
 use crate::vectors::{Circle, CircleTree, difference, dot, length};

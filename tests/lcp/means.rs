@@ -4,7 +4,8 @@ use crate::random::Random;
 use crate::rectangles as blocks;
 use nalgebra::DMatrix;
 use stickslip::contact::{
-    ClosedPairs, Configurations, Constraint, RowForm, Rows, Search, SlaveChoice, contact_surfaces, find_targets,
+    ClosedPairs, Configurations, Constraint, RowForm, Rows, Search, SlaveChoice, contact_surfaces,
+    find_targets,
 };
 use stickslip::lcp::{FrictionalLcp, LcpMethod, solve_frictional};
 use stickslip::model::{ContactFormulation, Model};
@@ -46,7 +47,14 @@ fn constraints(
     search.cover_path(&u0, &u);
     let (form, mut pairs) = (RowForm::DiscreteGradient, Vec::new());
     let none = (&ClosedPairs::default(), None);
-    find_targets(&search, [&u0, &u], &[], none, (form, SlaveChoice::All), &mut pairs);
+    find_targets(
+        &search,
+        [&u0, &u],
+        &[],
+        none,
+        (form, SlaveChoice::All),
+        &mut pairs,
+    );
     let at = Configurations {
         form,
         x,

@@ -14,7 +14,7 @@ use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
 use super::trace::{Failed, Trace};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
-use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintSet};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
     ClosedConstraints, EffectiveStiffness, Equilibrium, ForceChange, HeldMotions, Interval,
@@ -182,6 +182,10 @@ impl<'m> Attempt<'_, 'm> {
         let mut trace = Trace::new(self.problem.settings.max_passes);
         let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
+        let mut choice = match self.set {
+            ConstraintSet::All if self.problem.integration.velocities_tell() => SlaveChoice::Near,
+            _ => SlaveChoice::All,
+        };
         (self.workspace.stiffness).start(self.problem, &self.start.u);
         for &rule in self.factor_rules() {
             let may_be_digits = matches!(
@@ -202,7 +206,7 @@ impl<'m> Attempt<'_, 'm> {
                 self.workspace.search.allow(allowed);
             }
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
-            match self.passes(&mut factors, &mut trace, &mut vectors) {
+            match self.passes(choice, &mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
@@ -213,6 +217,7 @@ impl<'m> Attempt<'_, 'm> {
                 Err(cause) => failed = cause,
             }
             self.guess = None;
+            choice = SlaveChoice::All;
         }
         Err(trace.failed(failed, self.problem.settings.tolerance))
     }
@@ -233,16 +238,18 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49).
+    /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49), with the constraints of the chosen
+    /// slave nodes; all of them take part before they end.
     fn passes(
         &mut self,
+        choice: SlaveChoice,
         factors: &mut Refactorization,
         trace: &mut Trace,
         v: &mut Vectors,
     ) -> Result<Solved, Cause> {
         let (problem, start, dt) = (self.problem, self.start, self.interval.dt);
         let closed = self.guess.map_or(&start.contact, |path| &path.closed);
-        let mut contact = ContactStates::new(problem, closed, self.set);
+        let mut contact = ContactStates::new(closed, self.set, choice);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
         let mut acceleration = Acceleration::default();
         let mut pins = PinState::new(

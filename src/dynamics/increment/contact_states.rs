@@ -24,16 +24,11 @@ pub(crate) struct ContactStates {
 }
 
 impl ContactStates {
-    /// The pairs before the passes of a step, some of them closed and some that touch. Where velocities tell how far nodes
-    /// go, passes leave out those that are far from all segments.
-    pub fn new(problem: &StepProblem, closed: &ClosedPairs, set: ConstraintSet) -> Self {
-        let leaves_out =
-            problem.integration.velocities_tell() && matches!(set, ConstraintSet::All);
+    /// The pairs before the passes, some of them closed and some that touch. The passes begin with the constraints of the
+    /// chosen slave nodes.
+    pub fn new(closed: &ClosedPairs, set: ConstraintSet, choice: SlaveChoice) -> Self {
         ContactStates {
-            choice: match leaves_out {
-                true => SlaveChoice::Near,
-                false => SlaveChoice::All,
-            },
+            choice,
             forces: ContactForces::without_constraints(closed),
             impulses: Impulses::new(closed, set.touching()),
             ..ContactStates::default()
@@ -76,9 +71,9 @@ impl ContactStates {
         if self.choice == SlaveChoice::All {
             return true;
         }
-        let (way, held) = ([&start.u[..], u], (&start.contact, None));
-        let far = &mut self.found;
-        workspace.constraints(problem, way, &[], held, SlaveChoice::Far, far);
+        let (near, held) = (&self.forces.constraints, (&start.contact, None));
+        let (way, far) = ([&start.u[..], u], &mut self.found);
+        workspace.constraints(problem, way, near, held, SlaveChoice::Far, far);
         let iterate = (&start.u[..], interval, &self.forces.closed);
         (problem.frictions).give(problem.coordinates, iterate, far);
         let change = |constraint: &Constraint| du.map_or(0.0, |du| constraint.gap_change(du));
