@@ -171,7 +171,50 @@ fn remove_twins(pairs: &mut Vec<PairTarget>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Rows, targets::Corner, testing};
+    use crate::contact::{Configurations, ContactSurfaces, Rows, targets::Corner, testing};
+
+    #[test]
+    fn slave_nodes_are_near_by_distance_by_motion_or_by_their_pair() {
+        // a segment with its body below, and four nodes above it; those at 1/8 at most are near
+        let heights = [0.0, 0.1, 0.2, 0.4];
+        let mut x = vec![[1.0, 0.0], [0.0, 0.0]];
+        x.extend(heights.map(|height| [0.5, height]));
+        let contacts = [ContactSurfaces::new(vec![2, 3, 4, 5], &[], vec![[0, 1]])];
+        let (u, form) = ([0.0; 12], RowForm::DiscreteGradient);
+        let mut search = Search::new(&contacts, &x);
+        search.cover(&u);
+        let held = (&ClosedPairs::default(), None);
+        let pairs_of = |search: &Search, before: &[Constraint], choice: SlaveChoice| {
+            let mut pairs = Vec::new();
+            find_targets(search, [&u, &u], before, held, (form, choice), &mut pairs);
+            pairs
+        };
+        let slaves = |search: &Search, before: &[Constraint], choice: SlaveChoice| {
+            let pairs = pairs_of(search, before, choice).into_iter();
+            pairs.map(|pair| pair.nodes[0]).collect::<Vec<_>>()
+        };
+        assert_eq!(slaves(&search, &[], SlaveChoice::All), [2, 3, 4, 5]);
+        assert_eq!(slaves(&search, &[], SlaveChoice::Near), [2, 3]);
+        assert_eq!(slaves(&search, &[], SlaveChoice::Far), [4, 5]);
+
+        let at = Configurations {
+            form,
+            x: &x,
+            u0: &u,
+            u: &u,
+        };
+        let last = pairs_of(&search, &[], SlaveChoice::Far).pop();
+        let before = [Constraint::new(last.expect("a pair"), &at)];
+        assert_eq!(slaves(&search, &before, SlaveChoice::Near), [2, 3, 5]);
+        assert_eq!(slaves(&search, &before, SlaveChoice::Far), [4]);
+
+        let mut v = [0.0; 12];
+        v[9] = -0.12;
+        search.start(&v, 1.0);
+        search.cover(&u);
+        assert_eq!(slaves(&search, &[], SlaveChoice::Near), [2, 3, 4]);
+        assert_eq!(slaves(&search, &[], SlaveChoice::Far), [5]);
+    }
 
     #[test]
     fn the_nearer_segment_at_a_corner_is_that_of_the_larger_weight() {

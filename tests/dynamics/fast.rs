@@ -140,3 +140,20 @@ fn a_body_that_gathers_speed_in_an_increment_does_not_go_through_a_thin_plate() 
         }
     }
 }
+
+#[test]
+fn a_body_whose_nodes_are_far_in_the_passes_lands_in_its_first_increment() {
+    let dt = 0.01;
+    for scheme in [PAPER, Scheme::EnergyMomentum] {
+        // at rest 0.3 elements above the plate, it would go 0.4 elements in the first increment
+        let mut bodies = Bodies::new(0.25, 0.3 * SIZE, 0.0);
+        bodies.step(scheme, dt, 1);
+        let first = bodies.block.first_element;
+        let pull = |element| gravity(element, 2.0 * 0.4 * SIZE / (dt * dt));
+        bodies.model.steps[0].body_forces = (first..first + 4).map(pull).collect();
+        let (keep, summary) = run_to_end(&bodies.model);
+        let depth = bodies.depth(&keep);
+        assert!(touch(&keep) && depth < 1e-9 * SIZE, "{scheme:?} {depth:e}");
+        assert_eq!(summary.cutbacks, 0, "{scheme:?}");
+    }
+}
