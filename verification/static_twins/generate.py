@@ -14,6 +14,10 @@ GRAVITY = 1e-3
 """Of bodies that nothing holds before they touch."""
 
 
+FILL = "*AMPLITUDE, NAME=FILL"
+"""Of the pressure in the tyre, which grows over all of a static step, as its weight does."""
+
+
 def write(folder: Path, of: str, increments: int, holds: str = "", **parameters: float) -> None:
     """A deck of input/, or a generated one, with static steps of so many increments at most, or with its own step for none.
 
@@ -27,6 +31,9 @@ def write(folder: Path, of: str, increments: int, holds: str = "", **parameters:
         (step,) = deck.find("DYNAMIC")
         duration = float(step.rows[0][1])
         step.keyword, step.head = "STATIC", "*STATIC"
+        for ramp in deck.find("AMPLITUDE"):
+            if ramp.head == FILL:
+                ramp.rows[0][2] = repr(duration)
         step.rows = [[repr(duration / increments), repr(duration), "", repr(duration / increments)]]
         if holds:
             place = next(i for i, card in enumerate(deck.cards) if card is step) + 1
