@@ -182,10 +182,6 @@ impl<'m> Attempt<'_, 'm> {
         let mut trace = Trace::new(self.problem.settings.max_passes);
         let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
-        let mut choice = match self.set {
-            ConstraintSet::All if self.problem.integration.velocities_tell() => SlaveChoice::Near,
-            _ => SlaveChoice::All,
-        };
         (self.workspace.stiffness).start(self.problem, &self.start.u);
         for &rule in self.factor_rules() {
             let may_be_digits = matches!(
@@ -206,7 +202,7 @@ impl<'m> Attempt<'_, 'm> {
                 self.workspace.search.allow(allowed);
             }
             let mut factors = Refactorization::new(rule, self.problem.settings.tolerance);
-            match self.passes(choice, &mut factors, &mut trace, &mut vectors) {
+            match self.passes(self.choice(rule), &mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
@@ -217,7 +213,6 @@ impl<'m> Attempt<'_, 'm> {
                 Err(cause) => failed = cause,
             }
             self.guess = None;
-            choice = SlaveChoice::All;
         }
         Err(trace.failed(failed, self.problem.settings.tolerance))
     }
@@ -235,6 +230,19 @@ impl<'m> Attempt<'_, 'm> {
                 FactorRule::Held,
             ],
             (false, None) => &[FactorRule::EveryPass, FactorRule::Held],
+        }
+    }
+
+    /// Slave nodes whose constraints the passes begin with: where velocities tell how far nodes go, those that are near, but for
+    /// the last rule.
+    fn choice(&self, rule: FactorRule) -> SlaveChoice {
+        match (self.set, rule) {
+            (ConstraintSet::All, FactorRule::Kept | FactorRule::Fresh)
+                if self.problem.integration.velocities_tell() =>
+            {
+                SlaveChoice::Near
+            }
+            _ => SlaveChoice::All,
         }
     }
 
