@@ -141,11 +141,7 @@ impl MeanCoefficient {
 
     /// NaN where no force was added.
     fn value(&self) -> f64 {
-        match self.sums[0] == 0.0 {
-            // 0/0 has a sign that depends on the processor
-            true => f64::NAN,
-            false => self.first + self.sums[1] / self.sums[0],
-        }
+        self.first + self.sums[1] / self.sums[0]
     }
 }
 
