@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::constraint::{Configurations, Constraint};
+use super::geometry::project;
 use super::targets::PairTarget;
 use super::{disc, node_to_corner, node_to_segment, surface_to_surface};
 
@@ -35,6 +36,13 @@ impl Constraint {
             ([], Some(round)) => disc::change(&self.source, round, force, at),
             (points, _) => surface_to_surface::change(self, points, force, at),
         }
+    }
+
+    /// Whether the slave node of a pair is beyond the ends of its segment in the iterate.
+    pub fn is_beyond_ends(&self, at: &Configurations) -> bool {
+        let PairTarget { nodes, target, .. } = &self.source;
+        let [s, a, b] = at.iterate([nodes[0], nodes[1], nodes[2]]);
+        target.corner.is_none() && !(0.0..=1.0).contains(&project(s, a, b).xi)
     }
 
     /// The same constraint at the start, with the segment that holds the node there.

@@ -59,7 +59,8 @@ impl ContactStates {
     }
 
     /// Takes in the constraints of the iterate U whose slave nodes were far, before an increment ends; whether they stay
-    /// open, with the correction dU if there is one. Else the passes go on with all of them.
+    /// open, with the correction dU if there is one. Else the passes go on with all of them. A far node that is behind the line
+    /// of a segment beyond its ends has gone past its corner, and has no constraint there.
     pub fn complete(
         &mut self,
         problem: &StepProblem,
@@ -77,7 +78,10 @@ impl ContactStates {
         let iterate = (&start.u[..], interval, &self.forces.closed);
         (problem.frictions).give(problem.coordinates, iterate, far);
         let change = |constraint: &Constraint| du.map_or(0.0, |du| constraint.gap_change(du));
-        let stay_open = (far.iter()).all(|constraint| constraint.gap + change(constraint) >= 0.0);
+        let is_open = |constraint: &Constraint| constraint.gap + change(constraint) >= 0.0;
+        let at = problem.configurations(&start.u, u);
+        far.retain(|constraint| is_open(constraint) || !constraint.is_beyond_ends(&at));
+        let stay_open = far.iter().all(is_open);
         let constraints = &mut self.forces.constraints;
         constraints.append(far);
         if !stay_open {
