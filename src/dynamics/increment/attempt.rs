@@ -233,8 +233,8 @@ impl<'m> Attempt<'_, 'm> {
         }
     }
 
-    /// Slave nodes whose constraints the passes begin with: where velocities tell how far nodes go, those that are near, but for
-    /// the last rule.
+    /// Slave nodes whose constraints the passes begin with. They are the near ones where velocities tell how far nodes go, and
+    /// all of them with the last rule.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.set, rule) {
             (ConstraintSet::All, FactorRule::Kept | FactorRule::Fresh)

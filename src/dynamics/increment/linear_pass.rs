@@ -55,7 +55,7 @@ pub(super) struct SkewPart {
 }
 
 impl SkewPart {
-    /// That of the forces of an iterate, before dU is known, `correction` being that of the last pass beside the increment.
+    /// The skew part of changes of an iterate, dU being zero. `correction` is that of the last pass beside the increment.
     pub fn new(all: &[ForceChange], correction: f64) -> Self {
         let skew = |change: &ForceChange| (change.dofs.clone(), change.skew());
         SkewPart {
