@@ -11,7 +11,7 @@ use crate::dynamics::results::Cause;
 /// Constraints with the forces (or impulses) of those that are closed.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
-    /// With increasing keys; at the end of an increment those that took no part in its passes follow.
+    /// Their keys increase. At the end of an increment those of far nodes follow, which are open.
     pub constraints: Vec<Constraint>,
     /// The closed ones among them.
     pub closed: ClosedPairs,

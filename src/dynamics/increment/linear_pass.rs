@@ -55,7 +55,7 @@ pub(super) struct SkewPart {
 }
 
 impl SkewPart {
-    /// The skew part of changes of an iterate, dU being zero. `correction` is that of the last pass beside the increment.
+    /// The skew parts of the given changes, with dU = 0. `correction` is the relative correction of the last pass.
     pub fn new(all: &[ForceChange], correction: f64) -> Self {
         let skew = |change: &ForceChange| (change.dofs.clone(), change.skew());
         SkewPart {
