@@ -4,7 +4,7 @@
 
 use super::constraint::{Configurations, Constraint};
 use super::keys::{ConstraintKey, SlaveKey};
-use super::targets::PairTarget;
+use super::targets::{PairTarget, SurfacePoint};
 use crate::lcp::ContactState;
 
 /// A pair in contact.
@@ -40,6 +40,11 @@ impl ClosedPair {
             mu: self.mu,
             ..Constraint::new(self.source.clone().untilted(), at)
         }
+    }
+
+    /// The points of its mean, none of a node on a segment.
+    pub(super) fn points(&self) -> impl Iterator<Item = &SurfacePoint> {
+        self.source.points.iter()
     }
 
     /// Its nodes; one may come twice.

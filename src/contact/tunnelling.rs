@@ -4,7 +4,7 @@
 //! Edges of slave surfaces that cross segments, as they may at corners though no slave node is inside.
 //! Section 10 of docs/theory.md, Penetration check.
 
-use super::closed_pairs::ClosedPairs;
+use super::closed_pairs::{ClosedPair, ClosedPairs};
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
 use super::geometry::{Along, ContactSurfaces, Projection, position, project};
 use super::keys::NodeAtSegment;
@@ -41,6 +41,7 @@ pub fn find_penetration(
             closed,
             unsolved,
             allowed: listed.allowed(),
+            is_corner: listed.meets_segments() && !listed.is_node_to_segment(),
             depth: match listed.surfaces.slave_segments {
                 Some(_) => NODE_DEPTH,
                 None => DEPTH_ROUND_OFF,
@@ -73,20 +74,25 @@ struct NodePath<'a> {
     unsolved: &'a [f64],
     /// Overlap that a fit allows the node at the start and at the end (length).
     allowed: [f64; 2],
+    /// Whether it is a corner from surface to surface.
+    is_corner: bool,
     /// Depth that is none (segment lengths).
     depth: f64,
 }
 
 impl NodePath<'_> {
-    /// Whether the node was in contact before the increment.
+    /// Whether the node was in contact before the increment, or is a corner of a face in whose means it was.
     fn was_held(&self) -> bool {
-        !self.closed[0].of_slave(self.key).is_empty()
+        let is_in_mean =
+            |pair: &ClosedPair| pair.points().any(|q| q.nodes().any(|i| i == self.slave));
+        let of_means = self.closed[0].iter().filter(|_| self.is_corner);
+        !self.closed[0].of_slave(self.key).is_empty() || of_means.into_iter().any(is_in_mean)
     }
 
     /// Segments that hold the node at the end.
     fn held_by(&self) -> impl Iterator<Item = usize> {
         let pairs = self.closed[1].of_slave(self.key).iter();
-        let of_nodes = pairs.filter(|pair| pair.source.points.is_empty());
+        let of_nodes = pairs.filter(|pair| pair.points().next().is_none());
         of_nodes.flat_map(|pair| pair.source.target.segments())
     }
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from bench_decks import elastic_blocks
 from bodies import ELASTIC, grid, with_section
 from stickslip import Deck, program
 from stickslip.certificate.certify import certify
@@ -314,6 +315,18 @@ def test_the_legs_of_a_bent_strip_are_pressed_on_each_other(tmp_path: Path, fric
     gains_nothing(result, next(iter(result.contact)))
     assert result.run["cutbacks"] == 0
     assert max(overlap.depth for overlap in intrusion.follow(result)) < 0.02
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_pairs_in_both_orders_slide_a_segment_in_an_increment(tmp_path: Path, friction: float) -> None:
+    """The corner of the lower block ends each increment outside the upper one, whose face turns: its straight path, of the
+    length of a segment, cuts that. Means leave single nodes deeper in than where they slide less (0.01)."""
+    path = tmp_path / "deck.inp"
+    path.write_text(elastic_blocks.two_blocks(32, friction, segments=1.0, kind=""))
+    result = program.run(path, tmp_path)
+    assert list(result.contact) == ["UPPER_LOWER"]
+    assert result.run["cutbacks"] == 0
+    assert max(overlap.depth for overlap in intrusion.follow(result)) < 0.04
 
 
 def test_the_stored_formulation_is_told(tmp_path: Path) -> None:
