@@ -70,10 +70,12 @@ def example(name: str) -> Bench:
 
 
 def two_blocks(size: int, scheme: str, passes: int = 1) -> Bench:
-    """Two blocks of size x size/2 elements each, pressed and sheared, friction 0.3."""
+    """Two blocks of size x size/2 elements each, pressed and sheared, friction 0.3: nodes of one on segments of the
+    other, or pairs in both orders whose discretisation the program chooses."""
+    kind = ", TYPE=NODE TO SURFACE" if passes == 1 else ""
 
     def text() -> str:
-        return elastic_blocks.two_blocks(size, 0.3, passes=passes, scheme=scheme)
+        return elastic_blocks.two_blocks(size, 0.3, passes=passes, scheme=scheme, kind=kind)
 
     sides = "_two_sided" if passes == 2 else ""
     return Bench(f"two_blocks_{size}{sides}", text, size=size if passes == 1 else 0)

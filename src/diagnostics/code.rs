@@ -326,7 +326,7 @@ codes! {
         "Use CPE4H, CPE8H or CPE8R in plane strain, or give D1."
     BothOrders "D427" "Both orders of pairs whose faces lie on each other."
         "Every node of either face has its condition there, and those of both faces say nearly the same: their \
-         complementarity problems take long."
+         complementarity problems take long. Without TYPE one order from surface to surface stands for both."
         "Keep one order of each pair, with TYPE=SURFACE TO SURFACE, or use *CONTACT."
     BadDof "D501" "A degree of freedom that plane elements do not have."
         "Directions are 1 and 2; 3 to 6 may be given with value zero."

@@ -36,6 +36,7 @@ pub(crate) fn read(
             contacts.extend(contact.map(|contact| Contact {
                 adjust,
                 formulation,
+                lying_faces: (!card.has("TYPE") && !contact.is_self_contact()).then_some(0),
                 ..contact
             }));
         }

@@ -1,12 +1,14 @@
 //! What contacts keep out: nodes, or means over faces. General contact chooses where the deck does not say.
 //! docs/numerics.md, Faces that lie on each other.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::context::Context;
 use crate::diagnostics::Code;
-use crate::model::{Contact, ContactFormulation, Mesh, Model, Surface, SurfaceKind};
-use crate::vectors::{Circle, CircleTree, cross, difference, dot, length};
+use crate::model::{
+    Contact, ContactChanges, ContactFormulation, Mesh, Model, Surface, SurfaceKind,
+};
+use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, length};
 
 /// Faces that lie on other bodies from which on general contact is from surface to surface: with fewer, conditions of
 /// nodes on both sides, which depend on each other there, cost at most twice as much.
@@ -21,10 +23,39 @@ const LYING_SINE: f64 = 0.01;
 /// Part of the shorter of two faces that must lie on the other.
 const LYING_PART: f64 = 0.1;
 
-/// Gives general contact its formulation where the deck does not: from surface to surface where many faces lie on other
-/// bodies.
-pub(super) fn choose(model: &mut Model) {
-    let is_open = |contact: &Contact| contact.lying_faces.is_some();
+/// Length of the segments of a surface, in that of another one, below which it is the finer one.
+const FINER: f64 = 0.99;
+
+/// Gives contacts their formulation where the deck does not: from surface to surface where many faces lie on other
+/// bodies. Two pairs of the same surfaces, one in each order, become one then, as they do where both are from surface
+/// to surface.
+pub(super) fn choose(model: &mut Model, cx: &mut Context) {
+    choose_for_general(model);
+    let both = both_orders(model);
+    let of_nodes = |pair: &&BothOrders| pair.formulation == ContactFormulation::NodeToSegment;
+    let lying: usize = both.iter().filter(of_nodes).map(|pair| pair.lying).sum();
+    let pairs = (model.contacts.iter_mut()).filter(|contact| !contact.is_self_contact());
+    pairs.for_each(|contact| contact.lying_faces = None);
+    let is_dense = |pair: &BothOrders| lying >= MANY_LYING && pair.lying > 0;
+    let (of_one, of_two): (Vec<_>, Vec<_>) =
+        (both.iter()).partition(|pair| pair.becomes_one && (!of_nodes(pair) || is_dense(pair)));
+    report_both_orders(model, (&of_one, &of_two), lying, cx);
+    let mut left_out = HashSet::new();
+    for pair in of_one {
+        let [kept, other] = pair.contacts;
+        let contact = &mut model.contacts[kept];
+        contact.lying_faces = of_nodes(&pair).then_some(pair.lying);
+        contact.formulation = ContactFormulation::SurfaceToSurface;
+        left_out.insert(other);
+    }
+    let all = std::mem::take(&mut model.contacts).into_iter().enumerate();
+    let stay = all.filter(|(number, _)| !left_out.contains(number));
+    model.contacts = stay.map(|(_, contact)| contact).collect();
+}
+
+/// Takes general contact from surface to surface where many faces lie on other bodies and the deck does not say.
+fn choose_for_general(model: &mut Model) {
+    let is_open = |contact: &Contact| contact.is_self_contact() && contact.lying_faces.is_some();
     let Some(number) = model.contacts.iter().position(is_open) else {
         return;
     };
@@ -41,25 +72,109 @@ pub(super) fn choose(model: &mut Model) {
     }
 }
 
-/// Advises against both orders of pairs of nodes and segments where many faces lie on each other.
-pub(super) fn report_both_orders(model: &Model, cx: &mut Context) {
-    let of_nodes = |contact: &&Contact| contact.formulation == ContactFormulation::NodeToSegment;
-    let pairs: Vec<&Contact> = model.contacts.iter().filter(of_nodes).collect();
-    let sides: HashSet<_> = pairs.iter().map(|c| (c.slave, c.master)).collect();
-    let in_both = |c: &&&Contact| c.slave != c.master && sides.contains(&(c.master, c.slave));
-    let both: Vec<&Contact> = pairs.iter().filter(in_both).copied().collect();
-    let count = |contact: &&Contact| {
-        let of = |surface: usize| model.surfaces[surface].segments(&model.mesh);
-        lying_faces([&of(contact.slave), &of(contact.master)], &model.mesh)
+/// Two contact pairs of the same surfaces, one in each order.
+struct BothOrders {
+    /// Their numbers: that whose slave is the finer surface, or the first, and the other.
+    contacts: [usize; 2],
+    /// What both keep out.
+    formulation: ContactFormulation,
+    /// Faces of one that lie on the other, and of the other that lie on the one.
+    lying: usize,
+    /// Whether one contact from surface to surface may stand for both.
+    becomes_one: bool,
+}
+
+/// The contact pairs that stand in both orders, from surface to surface or not, in the order of the second one.
+fn both_orders(model: &Model) -> Vec<BothOrders> {
+    let mut first = HashMap::new();
+    let mut both = Vec::new();
+    let are_changed = (model.steps.iter())
+        .any(|step| step.contacts != ContactChanges::default() || !step.interferences.is_empty());
+    for (number, contact) in model.contacts.iter().enumerate() {
+        if contact.is_self_contact() {
+            continue;
+        }
+        let Some(&other) = first.get(&(contact.master, contact.slave)) else {
+            first.insert((contact.slave, contact.master), number);
+            continue;
+        };
+        let pair = [&model.contacts[other], contact];
+        if pair[0].formulation != pair[1].formulation {
+            continue;
+        }
+        let faces = pair.map(|contact| model.surfaces[contact.slave].segments(&model.mesh));
+        let [p, q] = [&faces[0][..], &faces[1][..]];
+        let mean = |faces: &[[usize; 2]]| {
+            let x = &model.mesh.coordinates;
+            let whole: f64 = faces.iter().map(|&[a, b]| distance(x[a], x[b])).sum();
+            whole / faces.len() as f64
+        };
+        let contacts = match mean(q) < FINER * mean(p) {
+            true => [number, other],
+            false => [other, number],
+        };
+        both.push(BothOrders {
+            contacts,
+            formulation: contact.formulation,
+            lying: lying_faces([p, q], &model.mesh) + lying_faces([q, p], &model.mesh),
+            becomes_one: !are_changed && may_be_one(pair, model),
+        });
+    }
+    both
+}
+
+/// Whether one contact from surface to surface can stand for two of the same surfaces: they have the same law, no node
+/// of theirs is moved or left out, and what they keep out is open or means.
+fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
+    let laws = pair.map(|contact| &contact.interaction);
+    let is_of_one_side = laws[0].wear.is_some() || laws[0].heat.is_some();
+    let may = |contact: &Contact| {
+        let is_open = contact.lying_faces.is_some()
+            || contact.formulation == ContactFormulation::SurfaceToSurface;
+        is_open
+            && contact.adjust.is_none()
+            && contact.left_out.is_empty()
+            && not_from_surface_to_surface(contact, model).is_none()
     };
-    let Some(second) = both.iter().map(|contact| contact.span).nth(1) else {
-        return;
+    laws[0] == laws[1] && !is_of_one_side && pair.into_iter().all(may)
+}
+
+/// Tells which pairs in both orders have become one contact, and advises against those that have not where many of
+/// their faces lie on each other.
+fn report_both_orders(
+    model: &Model,
+    (of_one, of_two): (&[&BothOrders], &[&BothOrders]),
+    lying: usize,
+    cx: &mut Context,
+) {
+    let second = |pair: &BothOrders| {
+        let [i, j] = pair.contacts;
+        model.contacts[i.max(j)].span
     };
-    let lying: usize = both.iter().map(count).sum();
-    if lying >= MANY_LYING {
+    if let Some(pair) = of_one.first() {
+        let message = match pair.formulation {
+            ContactFormulation::NodeToSegment => format!(
+                "pairs stand in both orders, and {lying} of their faces lie on each other: one order of each is taken, \
+                 from surface to surface"
+            ),
+            ContactFormulation::SurfaceToSurface => {
+                "pairs from surface to surface stand in both orders: one order of each is taken"
+                    .to_owned()
+            }
+        };
+        cx.d.note(Code::BothOrders, second(pair), message).help(
+            "means over the faces of one side keep out both; TYPE=NODE TO SURFACE keeps both orders, whose conditions \
+             depend on each other, which takes long",
+        );
+    }
+    let is_dense = |pair: &&&BothOrders| {
+        pair.formulation == ContactFormulation::SurfaceToSurface || lying >= MANY_LYING
+    };
+    if let Some(pair) = of_two.iter().filter(|pair| pair.lying > 0).find(is_dense) {
+        let lying = pair.lying;
         let message =
             format!("pairs stand in both orders, and {lying} of their faces lie on each other");
-        cx.d.note(Code::BothOrders, second, message).help(
+        cx.d.note(Code::BothOrders, second(pair), message).help(
             "the conditions of both sides depend on each other, which takes long: keep one order of each pair, with \
              TYPE=SURFACE TO SURFACE, or use *CONTACT",
         );

@@ -145,8 +145,7 @@ fn read(cx: &mut Context) -> Model {
         restarts: steps.restarts,
     };
     formulation::restrict(&mut model, cx);
-    formulation::choose(&mut model);
-    formulation::report_both_orders(&model, cx);
+    formulation::choose(&mut model, cx);
     contact::keep_arcs_for_discs(&mut model);
     let model = model;
     let all: [&dyn Fn(&mut Context); 10] = [

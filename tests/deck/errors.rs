@@ -218,7 +218,10 @@ fn faulty(code: Code) -> Source {
             "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSTOP, SBOT\n*END STEP",
         ),
         Coupling => model("*MPC\nLINK, 1, 3"),
-        BothOrders => Source::Text(on_each_other(26)),
+        BothOrders => {
+            let nodes = "INTERACTION=DRY, TYPE=NODE TO SURFACE";
+            Source::Text(on_each_other(26).replace("INTERACTION=DRY", nodes))
+        }
         FixedSlave => shared("SBOT, STOP", "STOP, SBOT\n*BOUNDARY\n4, 1, 2\n5, 1, 2"),
         BadDof => square("FOOT, 1, 2", "FOOT, 1, 8"),
         ValueOutsideStep => square("FOOT, 1, 2", "FOOT, 1, 2, 0.1"),
@@ -276,17 +279,21 @@ fn on_each_other(elements: usize) -> String {
     )
 }
 
-/// Few faces, one order, and means say nothing.
 #[test]
-fn both_orders_of_pairs_are_told_where_they_cost() {
-    let deck = on_each_other(26);
-    let says = |deck: &str| messages(&Source::Text(deck.to_owned())).1.contains("D427");
-    assert!(says(&deck));
-    assert!(!says(&on_each_other(20)));
-    assert!(!says(&deck.replace("TOP, FOOT\n", "")));
-    assert!(!says(
-        &deck.replace("=DRY\nFOOT", "=DRY, TYPE=SURFACE TO SURFACE\nFOOT")
-    ));
+fn both_orders_of_pairs_are_told_where_they_cost_or_become_one() {
+    let says = |deck: &str, what: &str| {
+        let text = messages(&Source::Text(deck.to_owned())).1;
+        assert_eq!(text.contains(what), text.contains("D427"), "{text}");
+        text.contains(what)
+    };
+    let (one, two) = ("one order of each is taken", "keep one order of each pair");
+    let with = |kind: &str| on_each_other(26).replace("INTERACTION=DRY", kind);
+    let nodes = "INTERACTION=DRY, TYPE=NODE TO SURFACE";
+    assert!(says(&on_each_other(26), one));
+    assert!(says(&with(nodes), two));
+    assert!(says(&with("INTERACTION=DRY, TYPE=SURFACE TO SURFACE"), one));
+    assert!(!says(&on_each_other(20), one));
+    assert!(!says(&with(nodes).replace("TOP, FOOT\n", ""), two));
 }
 
 #[test]

@@ -1190,35 +1190,37 @@ fn line_elements_that_are_no_sides_are_left_out() {
     assert_eq!(faces_of(&model, 1), [2]);
 }
 
+/// A deck with two strips of square elements, a gap apart, and some contact between them.
+fn strips(count: usize, gap: f64, contact: &str) -> String {
+    let mut text = String::from("*NODE\n");
+    for (strip, first) in [(0, 1), (1, 1001)] {
+        for row in 0..2 {
+            for i in 0..=count {
+                let label = first + row * (count + 1) + i;
+                let y = row as f64 + strip as f64 * (1.0 + gap);
+                text += &format!("{label}, {i}., {y}\n");
+            }
+        }
+    }
+    for (first, name) in [(1, "BELOW"), (1001, "ABOVE")] {
+        text += &format!("*ELEMENT, TYPE=CPE4, ELSET={name}\n");
+        for i in first..first + count {
+            let [c, d] = [i + count + 2, i + count + 1];
+            text += &format!("{i}, {i}, {}, {c}, {d}\n", i + 1);
+        }
+    }
+    text += "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*DENSITY\n1.\n\
+             *SOLID SECTION, ELSET=BELOW, MATERIAL=M\n1.\n*SOLID SECTION, ELSET=ABOVE, MATERIAL=M\n1.\n\
+             *SURFACE, NAME=TOP\nBELOW, S3\n*SURFACE, NAME=FOOT\nABOVE, S1\n\
+             *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.3\n*SURFACE INTERACTION, NAME=WET\n";
+    text + contact + "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*END STEP\n"
+}
+
 #[test]
 fn general_contact_takes_means_where_many_faces_lie_on_others() {
-    // two strips of elements, a gap apart
-    let strips = |count: usize, gap: f64, formulation: &str| {
-        let mut text = String::from("*NODE\n");
-        for (strip, first) in [(0, 1), (1, 1001)] {
-            for row in 0..2 {
-                for i in 0..=count {
-                    let label = first + row * (count + 1) + i;
-                    let y = row as f64 + strip as f64 * (1.0 + gap);
-                    text += &format!("{label}, {i}., {y}\n");
-                }
-            }
-        }
-        text += "*ELEMENT, TYPE=CPE4, ELSET=ALL\n";
-        for first in [1, 1001] {
-            for i in first..first + count {
-                let [c, d] = [i + count + 2, i + count + 1];
-                text += &format!("{i}, {i}, {}, {c}, {d}\n", i + 1);
-            }
-        }
-        text += "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*DENSITY\n1.\n\
-                 *SOLID SECTION, ELSET=ALL, MATERIAL=M\n1.\n\
-                 *CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n";
-        text += formulation;
-        text + "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*END STEP\n"
-    };
     let chosen = |count: usize, gap: f64, formulation: &str| {
-        let contact = &read(&strips(count, gap, formulation)).0.contacts[0];
+        let contact = format!("*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n{formulation}");
+        let contact = &read(&strips(count, gap, &contact)).0.contacts[0];
         (contact.formulation, contact.lying_faces)
     };
     use ContactFormulation::{NodeToSegment, SurfaceToSurface};
@@ -1227,4 +1229,47 @@ fn general_contact_takes_means_where_many_faces_lie_on_others() {
     assert_eq!(chosen(25, 0.2, ""), (NodeToSegment, Some(0)));
     let card = "*CONTACT FORMULATION, TYPE=NODE TO SURFACE\n";
     assert_eq!(chosen(25, 0.01, card), (NodeToSegment, None));
+}
+
+#[test]
+fn pairs_in_both_orders_become_one_where_many_faces_lie_on_each_other() {
+    let contacts = |count: usize, gap: f64, cards: &str| {
+        let (model, _) = read(&strips(count, gap, cards));
+        let slave = |contact: &Contact| model.surfaces[contact.slave].name.clone();
+        let shown = |c: &Contact| (slave(c), c.formulation, c.lying_faces);
+        model.contacts.iter().map(shown).collect::<Vec<_>>()
+    };
+    use ContactFormulation::{NodeToSegment, SurfaceToSurface};
+    let [top, foot] = ["TOP", "FOOT"].map(str::to_owned);
+    let two = |formulation: ContactFormulation| {
+        [&foot, &top].map(|slave| (slave.clone(), formulation, None))
+    };
+    let pairs =
+        |kind: &str| format!("*CONTACT PAIR, INTERACTION=DRY{kind}\nFOOT, TOP\nTOP, FOOT\n");
+    let open = pairs("");
+    assert_eq!(
+        contacts(25, 0.01, &open),
+        [(foot.clone(), SurfaceToSurface, Some(50))]
+    );
+    assert_eq!(contacts(24, 0.01, &open), two(NodeToSegment));
+    assert_eq!(contacts(25, 0.2, &open), two(NodeToSegment));
+    let nodes = pairs(", TYPE=NODE TO SURFACE");
+    assert_eq!(contacts(25, 0.01, &nodes), two(NodeToSegment));
+    let means = pairs(", TYPE=SURFACE TO SURFACE");
+    let one = [(foot.clone(), SurfaceToSurface, None)];
+    assert_eq!(contacts(4, 0.2, &means), one);
+    // what belongs to one of both sides needs its own pair
+    let moved = pairs(", ADJUST=0.");
+    assert_eq!(contacts(25, 0.01, &moved), two(NodeToSegment));
+    let other_law = open.replace("TOP, FOOT", "*CONTACT PAIR, INTERACTION=WET\nTOP, FOOT");
+    assert_eq!(contacts(25, 0.01, &other_law), two(NodeToSegment));
+    let changed = |card: &str| {
+        let deck = strips(25, 0.01, &open).replace("*END STEP", &format!("{card}*END STEP"));
+        read(&deck).0.contacts.len()
+    };
+    assert_eq!(changed(""), 1);
+    assert_eq!(
+        changed("*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nTOP, FOOT\n"),
+        2
+    );
 }

@@ -12,12 +12,14 @@ def two_blocks(
     segments: float | None = None,
     offset: float | None = None,
     scheme: str = "default",
+    kind: str = ", TYPE=NODE TO SURFACE",
 ) -> str:
     """Two blocks 1 x 0.5, the upper one pressed down by 0.01 and then sheared by 0.02.
 
     `passes`: contact passes, with one surface as slave or with each of them. `segments`: shear
     in each of ten increments, in segments of the surfaces. `offset`: of the facing nodes, in
-    segments; without it the upper block stands 0.1 to the right. The surfaces are whole skins.
+    segments; without it the upper block stands 0.1 to the right. `kind`: discretisation of the
+    pairs. The surfaces are whole skins.
     """
     size = 1.0 / elements
     upper, lower = facing_blocks(elements, 0.1 if offset is None else offset * size)
@@ -33,7 +35,7 @@ def two_blocks(
             outline("UPPER", "LOWER"),
             elastic(1e4, 0.3, 1.0, "UPPER", "LOWER"),
             dry(friction),
-            card("CONTACT PAIR, INTERACTION=DRY", *pairs),
+            card(f"CONTACT PAIR, INTERACTION=DRY{kind}", *pairs),
             card("BOUNDARY", ("BOTTOM", 1, 2)),
             card("AMPLITUDE, NAME=PRESS", (0.0, 0.0), (0.1, 1.0), (1.0, 1.0)),
             card("AMPLITUDE, NAME=SHEAR", (0.0, 0.0), (0.1, 0.0), (0.2, 1.0)),
