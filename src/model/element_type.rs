@@ -121,94 +121,88 @@ impl Shape {
     }
 }
 
-impl ElementType {
+/// Makes the constants, names and numbers of the types from one row for each.
+macro_rules! element_types {
+    ($($(#[$about:meta])* $name:ident = $number:literal: $shape:ident $plane:ident $formulation:ident;)*) => {
+        impl ElementType {
+            $($(#[$about])*
+            pub const $name: Self = ElementType {
+                shape: Shape::$shape,
+                formulation: Formulation::$formulation,
+                plane: Plane::$plane,
+            };)*
+
+            /// All types that a deck may name.
+            pub const NAMED: [Self; NAMES.len()] = [$(Self::$name),*];
+
+            /// Numbers and names, as result files tell them.
+            pub const NUMBERS: &str =
+                concat!($(", ", stringify!($number), " ", stringify!($name)),*).split_at(2).1;
+        }
+
+        /// Names in the deck and numbers in result files, which never change, in the order of [`ElementType::NAMED`].
+        const NAMES: &[(&str, u8)] = &[$((stringify!($name), $number)),*];
+    };
+}
+
+element_types! {
     /// Triangle in plane strain.
-    pub const CPE3: Self = Self::standard(Shape::Tri3, Plane::Strain);
-    /// Triangle in plane stress.
-    pub const CPS3: Self = Self::standard(Shape::Tri3, Plane::Stress);
+    CPE3 = 0: Tri3 Strain Displacement;
     /// Quadrilateral in plane strain.
-    pub const CPE4: Self = Self::standard(Shape::Quad4, Plane::Strain);
+    CPE4 = 1: Quad4 Strain Displacement;
+    /// Triangle in plane stress.
+    CPS3 = 2: Tri3 Stress Displacement;
     /// Quadrilateral in plane stress.
-    pub const CPS4: Self = Self::standard(Shape::Quad4, Plane::Stress);
+    CPS4 = 3: Quad4 Stress Displacement;
     /// Quadrilateral in plane strain with mean dilatation.
-    pub const CPE4H: Self = Self::CPE4.with(Formulation::MeanDilatation);
-    /// Quadrilateral in plane strain with enhanced strains.
-    pub const CPE4I: Self = Self::CPE4.enhanced();
-    /// Quadrilateral in plane stress with enhanced strains.
-    pub const CPS4I: Self = Self::CPS4.enhanced();
-    /// Quadrilateral in plane strain with one strain and hourglass stiffness.
-    pub const CPE4R: Self = Self::CPE4.reduced();
-    /// Quadrilateral in plane stress with one strain and hourglass stiffness.
-    pub const CPS4R: Self = Self::CPS4.reduced();
+    CPE4H = 4: Quad4 Strain MeanDilatation;
     /// Quadratic triangle in plane strain.
-    pub const CPE6: Self = Self::standard(Shape::Tri6, Plane::Strain);
+    CPE6 = 5: Tri6 Strain Displacement;
     /// Quadratic triangle in plane stress.
-    pub const CPS6: Self = Self::standard(Shape::Tri6, Plane::Stress);
+    CPS6 = 6: Tri6 Stress Displacement;
     /// Quadratic quadrilateral in plane strain.
-    pub const CPE8: Self = Self::standard(Shape::Quad8, Plane::Strain);
+    CPE8 = 7: Quad8 Strain Displacement;
     /// Quadratic quadrilateral in plane stress.
-    pub const CPS8: Self = Self::standard(Shape::Quad8, Plane::Stress);
+    CPS8 = 8: Quad8 Stress Displacement;
     /// Quadratic quadrilateral in plane strain, integrated with 2 x 2 points.
-    pub const CPE8R: Self = Self::CPE8.reduced();
+    CPE8R = 9: Quad8 Strain Reduced;
     /// Quadratic quadrilateral in plane stress, integrated with 2 x 2 points.
-    pub const CPS8R: Self = Self::CPS8.reduced();
-    /// Quadratic quadrilateral in plane strain with a linear pressure.
-    pub const CPE8H: Self = Self::CPE8.with(Formulation::LinearPressure);
-    /// Quadratic quadrilateral in plane strain with a linear pressure, integrated with 2 x 2 points.
-    pub const CPE8RH: Self = Self::CPE8.with(Formulation::ReducedLinearPressure);
-
+    CPS8R = 10: Quad8 Stress Reduced;
     /// Ring with the section of a triangle.
-    pub const CAX3: Self = Self::standard(Shape::Tri3, Plane::Revolution);
+    CAX3 = 11: Tri3 Revolution Displacement;
     /// Ring with the section of a quadrilateral.
-    pub const CAX4: Self = Self::standard(Shape::Quad4, Plane::Revolution);
+    CAX4 = 12: Quad4 Revolution Displacement;
     /// Ring with the section of a quadratic triangle.
-    pub const CAX6: Self = Self::standard(Shape::Tri6, Plane::Revolution);
+    CAX6 = 13: Tri6 Revolution Displacement;
     /// Ring with the section of a quadratic quadrilateral.
-    pub const CAX8: Self = Self::standard(Shape::Quad8, Plane::Revolution);
+    CAX8 = 14: Quad8 Revolution Displacement;
     /// Ring with the section of a quadratic quadrilateral, integrated with 2 x 2 points.
-    pub const CAX8R: Self = Self::CAX8.reduced();
+    CAX8R = 15: Quad8 Revolution Reduced;
+    /// Quadrilateral in plane strain with enhanced strains.
+    CPE4I = 16: Quad4 Strain Enhanced;
+    /// Quadrilateral in plane stress with enhanced strains.
+    CPS4I = 17: Quad4 Stress Enhanced;
+    /// Quadrilateral in plane strain with one strain and hourglass stiffness.
+    CPE4R = 18: Quad4 Strain Reduced;
+    /// Quadrilateral in plane stress with one strain and hourglass stiffness.
+    CPS4R = 19: Quad4 Stress Reduced;
+    /// Quadratic quadrilateral in plane strain with a linear pressure.
+    CPE8H = 20: Quad8 Strain LinearPressure;
+    /// Quadratic quadrilateral in plane strain with a linear pressure, integrated with 2 x 2 points.
+    CPE8RH = 21: Quad8 Strain ReducedLinearPressure;
     /// Ring with the section of a quadrilateral with mean dilatation.
-    pub const CAX4H: Self = Self::CAX4.with(Formulation::MeanDilatation);
+    CAX4H = 22: Quad4 Revolution MeanDilatation;
     /// Ring with the section of a quadrilateral with enhanced strains.
-    pub const CAX4I: Self = Self::CAX4.enhanced();
+    CAX4I = 23: Quad4 Revolution Enhanced;
     /// Ring with the section of a quadrilateral with one strain and hourglass stiffness.
-    pub const CAX4R: Self = Self::CAX4.reduced();
+    CAX4R = 24: Quad4 Revolution Reduced;
     /// Ring with the section of a quadratic quadrilateral and a linear pressure.
-    pub const CAX8H: Self = Self::CAX8.with(Formulation::LinearPressure);
+    CAX8H = 25: Quad8 Revolution LinearPressure;
     /// Ring with the section of a quadratic quadrilateral and a linear pressure, integrated with 2 x 2 points.
-    pub const CAX8RH: Self = Self::CAX8.with(Formulation::ReducedLinearPressure);
+    CAX8RH = 26: Quad8 Revolution ReducedLinearPressure;
+}
 
-    /// All types that a deck may name, in the order of their names.
-    pub const NAMED: [Self; 27] = [
-        Self::CAX3,
-        Self::CAX4,
-        Self::CAX4H,
-        Self::CAX4I,
-        Self::CAX4R,
-        Self::CAX6,
-        Self::CAX8,
-        Self::CAX8H,
-        Self::CAX8R,
-        Self::CAX8RH,
-        Self::CPE3,
-        Self::CPE4,
-        Self::CPE4H,
-        Self::CPE4I,
-        Self::CPE4R,
-        Self::CPE6,
-        Self::CPE8,
-        Self::CPE8H,
-        Self::CPE8R,
-        Self::CPE8RH,
-        Self::CPS3,
-        Self::CPS4,
-        Self::CPS4I,
-        Self::CPS4R,
-        Self::CPS6,
-        Self::CPS8,
-        Self::CPS8R,
-    ];
-
+impl ElementType {
     /// Most nodes of any of them.
     pub const MOST_NODES: usize = {
         let (mut most, mut k) = (0, 0);
@@ -220,68 +214,25 @@ impl ElementType {
         most
     };
 
-    const fn standard(shape: Shape, plane: Plane) -> Self {
-        ElementType {
-            shape,
-            formulation: Formulation::Displacement,
-            plane,
-        }
-    }
-
-    const fn with(self, formulation: Formulation) -> Self {
-        ElementType {
-            formulation,
-            ..self
-        }
-    }
-
-    const fn enhanced(self) -> Self {
-        self.with(Formulation::Enhanced)
-    }
-
-    const fn reduced(self) -> Self {
-        self.with(Formulation::Reduced)
-    }
-
     /// The type with this name in upper case.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::NAMED.into_iter().find(|known| known.name() == name)
+        let at = NAMES.iter().position(|(known, _)| *known == name)?;
+        Some(Self::NAMED[at])
+    }
+
+    fn entry(self) -> (&'static str, u8) {
+        let at = Self::NAMED.iter().position(|known| *known == self);
+        at.map_or(("", u8::MAX), |at| NAMES[at])
     }
 
     /// Name in the deck.
     pub fn name(self) -> &'static str {
-        use Formulation::{
-            Enhanced, LinearPressure, MeanDilatation, Reduced, ReducedLinearPressure,
-        };
-        match (self.shape, self.plane, self.formulation) {
-            (Shape::Tri3, Plane::Strain, _) => "CPE3",
-            (Shape::Quad4, Plane::Strain, MeanDilatation) => "CPE4H",
-            (Shape::Quad4, Plane::Strain, Enhanced) => "CPE4I",
-            (Shape::Quad4, Plane::Strain, Reduced) => "CPE4R",
-            (Shape::Quad4, Plane::Strain, _) => "CPE4",
-            (Shape::Tri6, Plane::Strain, _) => "CPE6",
-            (Shape::Quad8, Plane::Strain, LinearPressure) => "CPE8H",
-            (Shape::Quad8, Plane::Strain, Reduced) => "CPE8R",
-            (Shape::Quad8, Plane::Strain, ReducedLinearPressure) => "CPE8RH",
-            (Shape::Quad8, Plane::Strain, _) => "CPE8",
-            (Shape::Tri3, Plane::Stress, _) => "CPS3",
-            (Shape::Quad4, Plane::Stress, Enhanced) => "CPS4I",
-            (Shape::Quad4, Plane::Stress, Reduced) => "CPS4R",
-            (Shape::Quad4, Plane::Stress, _) => "CPS4",
-            (Shape::Tri6, Plane::Stress, _) => "CPS6",
-            (Shape::Quad8, Plane::Stress, Reduced) => "CPS8R",
-            (Shape::Quad8, Plane::Stress, _) => "CPS8",
-            (Shape::Tri3, Plane::Revolution, _) => "CAX3",
-            (Shape::Quad4, Plane::Revolution, MeanDilatation) => "CAX4H",
-            (Shape::Quad4, Plane::Revolution, Enhanced) => "CAX4I",
-            (Shape::Quad4, Plane::Revolution, Reduced) => "CAX4R",
-            (Shape::Quad4, Plane::Revolution, _) => "CAX4",
-            (Shape::Tri6, Plane::Revolution, _) => "CAX6",
-            (Shape::Quad8, Plane::Revolution, LinearPressure) => "CAX8H",
-            (Shape::Quad8, Plane::Revolution, Reduced) => "CAX8R",
-            (Shape::Quad8, Plane::Revolution, ReducedLinearPressure) => "CAX8RH",
-            (Shape::Quad8, Plane::Revolution, _) => "CAX8",
-        }
+        self.entry().0
+    }
+
+    /// Number in result files.
+    pub fn number(self) -> u8 {
+        self.entry().1
     }
 
     /// Whether it has one strain and a potential of its hourglass modes.

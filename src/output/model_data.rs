@@ -30,7 +30,7 @@ pub(super) fn write(at: &Group, model: &Model) -> hdf5::Result<()> {
 /// Type, material and thickness of every element.
 fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
     let elements = &model.mesh.elements;
-    let types: Vec<u8> = elements.iter().map(|e| type_code(e.element_type)).collect();
+    let types: Vec<u8> = elements.iter().map(|e| e.element_type.number()).collect();
     constant(at, "element_types", &[types.len()], &types, ELEMENT_TYPES)?;
     let section = |e: usize| model.sections.get(elements[e].section);
     let material = |e: usize| section(e).map_or(-1, |section| section.material as i64);
@@ -48,43 +48,6 @@ fn write_elements(at: &Group, model: &Model) -> hdf5::Result<()> {
     )?;
     let values: Vec<f64> = (0..elements.len()).map(thickness).collect();
     constant(at, "thickness", &[values.len()], &values, THICKNESS)
-}
-
-/// Element types and their numbers in the file, which never change.
-const TYPES: [(ElementType, u8); 27] = [
-    (ElementType::CPE3, 0),
-    (ElementType::CPE4, 1),
-    (ElementType::CPS3, 2),
-    (ElementType::CPS4, 3),
-    (ElementType::CPE4H, 4),
-    (ElementType::CPE6, 5),
-    (ElementType::CPS6, 6),
-    (ElementType::CPE8, 7),
-    (ElementType::CPS8, 8),
-    (ElementType::CPE8R, 9),
-    (ElementType::CPS8R, 10),
-    (ElementType::CAX3, 11),
-    (ElementType::CAX4, 12),
-    (ElementType::CAX6, 13),
-    (ElementType::CAX8, 14),
-    (ElementType::CAX8R, 15),
-    (ElementType::CPE4I, 16),
-    (ElementType::CPS4I, 17),
-    (ElementType::CPE4R, 18),
-    (ElementType::CPS4R, 19),
-    (ElementType::CPE8H, 20),
-    (ElementType::CPE8RH, 21),
-    (ElementType::CAX4H, 22),
-    (ElementType::CAX4I, 23),
-    (ElementType::CAX4R, 24),
-    (ElementType::CAX8H, 25),
-    (ElementType::CAX8RH, 26),
-];
-
-/// Number of an element type in the file: as in [`TYPES`].
-fn type_code(element_type: ElementType) -> u8 {
-    let found = TYPES.iter().find(|(known, _)| *known == element_type);
-    found.map_or(u8::MAX, |(_, number)| *number)
 }
 
 /// Laws and constants of the materials.
@@ -294,10 +257,7 @@ const LOAD_GROUPS: Meaning = (
     "1",
     "elements with the same body forces have the same number, -1 without any",
 );
-const ELEMENT_TYPES: Meaning = (
-    "1",
-    "0 CPE3, 1 CPE4, 2 CPS3, 3 CPS4, 4 CPE4H, 5 CPE6, 6 CPS6, 7 CPE8, 8 CPS8, 9 CPE8R, 10 CPS8R, 11 CAX3, 12 CAX4, 13 CAX6, 14 CAX8, 15 CAX8R, 16 CPE4I, 17 CPS4I, 18 CPE4R, 19 CPS4R, 20 CPE8H, 21 CPE8RH, 22 CAX4H, 23 CAX4I, 24 CAX4R, 25 CAX8H, 26 CAX8RH",
-);
+const ELEMENT_TYPES: Meaning = ("1", ElementType::NUMBERS);
 const MATERIAL: Meaning = (
     "1",
     "index of the material in /model/materials, -1 for none",
