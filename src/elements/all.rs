@@ -8,10 +8,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
-use super::chunk::{MAX_CHUNK, TangentSweep};
+use super::chunk::{Chunk, MAX_CHUNK, TangentSweep};
 use super::connector::{ConnectorState, PlacedConnector};
 use super::damping::{ElementDamping, between};
-use super::element::{AnyChunk, AnyElement, Geometry};
+use super::element::{AnyElement, Geometry, is_in_blocks, new_chunk};
 use super::formulation::ElementResult;
 use super::solid::{
     ElementMatrix, ElementVector, Increment, MAX_DOFS, MAX_NODES, Motion, TangentPart,
@@ -22,7 +22,7 @@ use crate::model::{Element, ElementType, Model, Shape, Thickness};
 /// What the elements of one section and type have in common.
 struct ElementGroup {
     law: PlaneLaw,
-    shape: Shape,
+    element_type: ElementType,
     density: f64,
     thickness: Thickness,
 }
@@ -40,12 +40,12 @@ pub(super) struct SingleElement {
 /// Where the data of an element are.
 #[derive(Clone, Copy)]
 enum ElementPlace {
-    /// In a chunk (index), at a place of it.
-    Chunk(u32, u32),
+    /// In a chunk.
+    Chunk,
     /// Among the parts (index).
     SingleElement(u32),
-    /// Among the elements of rigid bodies that turn (index), which no sweep visits.
-    Rigid(u32),
+    /// In a rigid body that turns, which no sweep visits.
+    Rigid,
 }
 
 /// All elements of a model, ready for integration. Displacements are vectors of 2 N entries.
@@ -60,10 +60,8 @@ pub struct Elements {
     kinds: Vec<ElementGroup>,
     /// Kind (index) and place of every element.
     places: Vec<(u32, ElementPlace)>,
-    pub(super) chunks: Vec<AnyChunk>,
+    pub(super) chunks: Vec<Box<dyn Chunk>>,
     pub(super) parts: Vec<SingleElement>,
-    /// Elements of rigid bodies that turn.
-    rigid: Vec<AnyElement>,
     /// Elements with damping, increasing.
     pub(super) damped: Vec<(usize, ElementDamping)>,
     /// Places in `damped` of the elements that are in no chunk.
@@ -111,7 +109,6 @@ impl Elements {
             places: vec![(0, ElementPlace::SingleElement(0)); elements.len()],
             chunks: Vec::new(),
             parts: Vec::new(),
-            rigid: Vec::new(),
             damped: Vec::new(),
             damped_parts: Vec::new(),
             connectors: Vec::new(),
@@ -137,25 +134,26 @@ impl Elements {
             let material = &model.materials[section.material];
             let kind = ElementGroup {
                 law: material.law.in_plane(element_type.plane),
-                shape: element_type.shape,
+                element_type,
                 density: material.density,
                 thickness: Thickness::new(element_type, section.thickness),
             };
+            let number = all.kinds.len() as u32;
             of_kind.retain(|&element| {
                 if is_rigid[element] {
-                    all.enter_rigid(model, element);
+                    all.places[element] = (number, ElementPlace::Rigid);
                 }
                 !is_rigid[element]
             });
             of_kind.sort_by_key(body);
             let bodies = of_kind.chunk_by(|a, b| body(a) == body(b));
             let chunks = bodies.flat_map(|of_body| of_body.chunks(MAX_CHUNK));
-            if AnyChunk::has(&element_type, &kind.law) {
+            if is_in_blocks(&element_type, &kind.law) {
                 chunks.for_each(|chunk| all.enter_chunk(model, &kind, chunk));
             } else {
                 of_kind
                     .iter()
-                    .for_each(|&element| all.enter_part(model, &kind, element));
+                    .for_each(|&element| all.enter_part(&kind, element));
             }
             all.kinds.push(kind);
         }
@@ -179,19 +177,18 @@ impl Elements {
 
     /// Takes in elements of the next kind and of one body, so that a body that rests costs nothing.
     fn enter_chunk(&mut self, model: &Model, kind: &ElementGroup, elements: &[usize]) {
-        let (number, chunk) = (self.kinds.len() as u32, self.chunks.len() as u32);
-        for (place, &element) in elements.iter().enumerate() {
-            self.places[element] = (number, ElementPlace::Chunk(chunk, place as u32));
+        for &element in elements {
+            self.places[element] = (self.kinds.len() as u32, ElementPlace::Chunk);
         }
-        let chunk = AnyChunk::new(model, elements, kind.law.clone());
+        let chunk = new_chunk(model, elements, kind.law.clone());
         self.chunks.push(chunk);
     }
 
     /// Takes in an element of the next kind that is swept on its own.
-    fn enter_part(&mut self, model: &Model, kind: &ElementGroup, index: usize) {
+    fn enter_part(&mut self, kind: &ElementGroup, index: usize) {
         let (number, part) = (self.kinds.len() as u32, self.parts.len() as u32);
         self.places[index] = (number, ElementPlace::SingleElement(part));
-        let element = AnyElement::new(model, index);
+        let element = self.new_element(kind, index);
         let first = self.variable_count();
         let variables = first..first + element.variables(&kind.law);
         self.parts.push(SingleElement {
@@ -202,17 +199,14 @@ impl Elements {
         });
     }
 
-    /// Takes in an element of the next kind that has no strain.
-    fn enter_rigid(&mut self, model: &Model, index: usize) {
-        let (number, place) = (self.kinds.len() as u32, self.rigid.len() as u32);
-        self.places[index] = (number, ElementPlace::Rigid(place));
-        let element = AnyElement::new(model, index);
-        self.rigid.push(element);
+    fn new_element(&self, kind: &ElementGroup, index: usize) -> AnyElement {
+        let nodes = self.nodes(index);
+        AnyElement::new(kind.element_type, nodes, &self.coordinates, kind.thickness)
     }
 
     /// Whether an element belongs to a rigid body that turns.
     pub fn is_rigid(&self, element: usize) -> bool {
-        matches!(self.places[element].1, ElementPlace::Rigid(_))
+        matches!(self.places[element].1, ElementPlace::Rigid)
     }
 
     /// Number of internal variables of all points.
@@ -224,21 +218,20 @@ impl Elements {
         &self.kinds[self.places[element].0 as usize]
     }
 
-    /// One element, which in a chunk is made anew.
+    /// One element, which is made anew where no sweep has it for itself.
     pub(super) fn element(&self, element: usize) -> AnyElement {
         match self.places[element].1 {
-            ElementPlace::Chunk(chunk, place) => {
-                self.chunks[chunk as usize].element(place as usize, self.nodes(element))
+            ElementPlace::Chunk | ElementPlace::Rigid => {
+                self.new_element(self.kind(element), element)
             }
             ElementPlace::SingleElement(part) => self.parts[part as usize].element.clone(),
-            ElementPlace::Rigid(place) => self.rigid[place as usize].clone(),
         }
     }
 
     /// The material of one element with its internal variables among those of all elements.
     pub(super) fn material<'a>(&'a self, element: usize, variables: &'a [f64]) -> Committed<'a> {
         match self.places[element].1 {
-            ElementPlace::Chunk(..) | ElementPlace::Rigid(_) => {
+            ElementPlace::Chunk | ElementPlace::Rigid => {
                 Committed::new(&self.kind(element).law, &[])
             }
             ElementPlace::SingleElement(part) => self.parts[part as usize].material(variables),
@@ -292,7 +285,7 @@ impl Elements {
 
     /// Shape of an element.
     pub(super) fn shape(&self, element: usize) -> Shape {
-        self.kind(element).shape
+        self.kind(element).element_type.shape
     }
 
     /// Density of an element (mass/length^3).
@@ -320,7 +313,7 @@ impl Elements {
     fn geometry(&self, element: usize) -> Geometry<'_> {
         let kind = self.kind(element);
         Geometry {
-            shape: kind.shape,
+            shape: kind.element_type.shape,
             nodes: self.nodes(element),
             coordinates: &self.coordinates,
             thickness: kind.thickness,
@@ -391,7 +384,7 @@ impl Elements {
     /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
     /// internal variables there.
     pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
-        let of_chunk = |chunk: &AnyChunk| chunk.evaluate(u);
+        let of_chunk = |chunk: &Box<dyn Chunk>| chunk.evaluate(u);
         let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);
         let parts = parts.map(|part| part.element.evaluate(&part.material(variables), u));
         let parts: Vec<ElementResult> = parts.collect();
@@ -427,7 +420,7 @@ impl Elements {
     pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
         let SweepSpace { forces, .. } = &mut *self.space();
         if !self.sum_chunks(|chunk| chunk.sum_forces(motion)) {
-            self.chunks.iter().for_each(AnyChunk::clear_sums);
+            self.chunks.iter().for_each(|chunk| chunk.clear_sums());
             return Err(self.inverted(motion));
         }
         let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);
@@ -456,7 +449,7 @@ impl Elements {
     }
 
     /// Sums up forces of the elements in chunks. False where one is turned inside out.
-    fn sum_chunks(&self, sum: impl Fn(&AnyChunk) -> bool + Sync + Send) -> bool {
+    fn sum_chunks(&self, sum: impl Fn(&Box<dyn Chunk>) -> bool + Sync + Send) -> bool {
         if self.is_worth_threads() {
             let sums = self.chunks.par_iter().map(sum);
             sums.reduce(|| true, |all, chunk| all && chunk)

@@ -6,7 +6,7 @@
 
 use std::array::from_fn;
 
-use nalgebra::{Matrix2, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 
 use super::displacement::Displacement;
 use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
@@ -109,15 +109,6 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
             inverse: from_fn(|p| from_fn(|i| from_fn(|j| of(p, &|at| at.inverse[(i, j)])))),
             volume: from_fn(|p| of(p, &|at| at.volume)),
         }
-    }
-
-    /// The map of one element.
-    pub fn map(&self, lane: usize) -> [Jacobian; P] {
-        let matrix = |of: &TensorLanes| Matrix2::from_fn(|i, j| of[i][j].0[lane]);
-        from_fn(|p| Jacobian {
-            inverse: matrix(&self.inverse[p]),
-            volume: self.volume[p].0[lane],
-        })
     }
 
     /// sum_p B_L^T S of stresses with their weights in displacement gradients H (force).

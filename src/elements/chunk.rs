@@ -13,7 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block::{BlockFormulation, BlockMotion, ElementBlock, MatrixLanes, NodalLanes, Shape};
-use super::formulation::{ElementResult, Reference};
+use super::formulation::ElementResult;
 use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::lanes::{LANES, Lanes, Positive};
 use crate::materials::{LawInLanes, PlaneLaw, Viscosity, in_lanes};
@@ -25,17 +25,50 @@ pub const MAX_CHUNK: usize = 1024;
 const PARALLEL_BLOCKS: usize = 64;
 
 /// A sweep over tangents.
-pub struct TangentSweep<'a, W> {
+#[derive(Clone, Copy)]
+pub struct TangentSweep<'a> {
     pub motion: Motion<'a>,
     pub part: TangentPart,
     /// Whether the stress is that of the viscosity.
     pub viscous: bool,
     /// Whether the tangent of an element is needed.
-    pub wanted: &'a W,
+    pub wanted: &'a (dyn Fn(usize) -> bool + Sync),
+}
+
+/// Elements that are swept together.
+pub trait Chunk: Send + Sync {
+    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
+    /// sums. False where an element is turned inside out.
+    fn sum_forces(&self, motion: Motion) -> bool;
+
+    /// Whether the material has viscosity.
+    fn is_viscous(&self) -> bool;
+
+    /// Adds the forces of the viscosity in a motion, over the length of the increment, to the sums, eq. (4.16).
+    fn sum_viscous(&self, motion: Motion);
+
+    /// Adds the sums to a vector over all dofs, and makes them zero.
+    fn add_sums(&self, total: &mut [f64]);
+
+    /// Makes the sums zero.
+    fn clear_sums(&self);
+
+    /// Elements (indices) with strain energy, stress and strain at displacements `u`.
+    fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)>;
+
+    /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
+    /// D column by column. The tangents are made in `space`: those of the whole chunk in parallel where there are
+    /// threads.
+    fn for_each_tangent(
+        &self,
+        sweep: TangentSweep,
+        space: &mut Vec<f64>,
+        add: &mut dyn FnMut(usize, &[f64]),
+    );
 }
 
 /// Elements of one shape, formulation and material.
-pub struct Chunk<const N: usize, const P: usize, S, F> {
+pub struct ShapeChunk<const N: usize, const P: usize, S, F> {
     /// Elements (indices), lane after lane and block after block.
     elements: Vec<usize>,
     /// Node indices, increasing; blocks have places in this list.
@@ -50,7 +83,7 @@ pub struct Chunk<const N: usize, const P: usize, S, F> {
     kind: PhantomData<(S, F)>,
 }
 
-impl<const N: usize, const P: usize, S, F> Chunk<N, P, S, F>
+impl<const N: usize, const P: usize, S, F> ShapeChunk<N, P, S, F>
 where
     S: Shape<N, P> + Sync,
     F: BlockFormulation + Sync,
@@ -77,7 +110,7 @@ where
             });
             ElementBlock::new(places, &maps)
         };
-        Chunk {
+        ShapeChunk {
             blocks: (0..of.len()).step_by(LANES).map(block).collect(),
             sums: Mutex::new(vec![[0.0; 2]; nodes.len()]),
             elements,
@@ -88,113 +121,8 @@ where
         }
     }
 
-    /// The element at a place of the chunk.
-    pub fn reference(&self, place: usize) -> Reference<N, P> {
-        let block = &self.blocks[place / LANES];
-        S::reference(&block.map(place % LANES))
-    }
-
-    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
-    /// sums. False where an element is turned inside out.
-    pub fn sum_forces(&self, motion: Motion) -> bool {
-        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        if !self.is_strained(motion) {
-            return true;
-        }
-        let positive = in_lanes!(&self.law, law => Arch::new().dispatch(ForceSweep {
-            chunk: self,
-            law,
-            motion,
-            sums: &mut sums,
-        }));
-        positive.everywhere()
-    }
-
-    /// Whether the material has viscosity.
-    pub fn is_viscous(&self) -> bool {
-        self.viscosity.is_some()
-    }
-
-    /// Adds the forces of the viscosity in a motion, over the length of the increment, to the sums, eq. (4.16).
-    pub fn sum_viscous(&self, motion: Motion) {
-        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(law) = self.viscosity.as_ref().filter(|_| self.is_strained(motion)) {
-            Arch::new().dispatch(ForceSweep {
-                chunk: self,
-                law,
-                motion,
-                sums: &mut sums,
-            });
-        }
-    }
-
-    /// Adds the sums to a vector over all dofs, and makes them zero.
-    pub fn add_sums(&self, total: &mut [f64]) {
-        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        let total = total.as_chunks_mut::<2>().0;
-        for (&node, sum) in self.nodes.iter().zip(sums.iter_mut()) {
-            let [x, y] = std::mem::take(sum);
-            total[node][0] += x;
-            total[node][1] += y;
-        }
-    }
-
-    /// Makes the sums zero.
-    pub fn clear_sums(&self) {
-        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        sums.fill([0.0; 2]);
-    }
-
-    /// Elements (indices) with strain energy, stress and strain at displacements `u`.
-    pub fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
-        in_lanes!(&self.law, law => Arch::new().dispatch(Evaluation { chunk: self, law, u }))
-    }
-
-    /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
-    /// D column by column. The tangents are made in `space`: those of the whole chunk in parallel where there are
-    /// threads.
-    pub fn for_each_tangent(
-        &self,
-        sweep: TangentSweep<impl Fn(usize) -> bool + Sync>,
-        space: &mut Vec<f64>,
-        add: &mut impl FnMut(usize, &[f64]),
-    ) {
-        let elements = |number: usize| {
-            let first = LANES * number;
-            &self.elements[first..(first + LANES).min(self.elements.len())]
-        };
-        let wanted = |number: &usize| elements(*number).iter().any(|&e| (sweep.wanted)(e));
-        let of_block = LANES * 4 * N * N;
-        let mut add_block = |number: usize, tangents: &[f64]| {
-            for (&element, k) in elements(number)
-                .iter()
-                .zip(tangents.chunks_exact(4 * N * N))
-            {
-                add(element, k);
-            }
-        };
-        let all = 0..self.blocks.len();
-        if rayon::current_num_threads() > 1 {
-            space.resize(self.blocks.len() * of_block, 0.0);
-            let blocks = space.par_chunks_exact_mut(of_block);
-            let pairs = all.clone().into_par_iter().zip(blocks);
-            let pairs = pairs.with_min_len(PARALLEL_BLOCKS);
-            pairs
-                .filter(|(number, _)| wanted(number))
-                .for_each(|(number, k)| self.write_tangents(number, &sweep, k));
-            all.filter(wanted)
-                .for_each(|number| add_block(number, &space[number * of_block..][..of_block]));
-        } else {
-            space.resize(of_block, 0.0);
-            for number in all.filter(wanted) {
-                self.write_tangents(number, &sweep, space);
-                add_block(number, space);
-            }
-        }
-    }
-
     /// Writes the tangents of the elements of a block.
-    fn write_tangents<W>(&self, number: usize, sweep: &TangentSweep<W>, tangents: &mut [f64]) {
+    fn write_tangents(&self, number: usize, sweep: &TangentSweep, tangents: &mut [f64]) {
         match &self.viscosity {
             Some(viscosity) if sweep.viscous => {
                 self.write_tangents_of(viscosity, number, sweep.motion, tangents);
@@ -284,9 +212,104 @@ where
     }
 }
 
+impl<const N: usize, const P: usize, S, F> Chunk for ShapeChunk<N, P, S, F>
+where
+    S: Shape<N, P> + Send + Sync,
+    F: BlockFormulation + Send + Sync,
+{
+    fn sum_forces(&self, motion: Motion) -> bool {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        if !self.is_strained(motion) {
+            return true;
+        }
+        let positive = in_lanes!(&self.law, law => Arch::new().dispatch(ForceSweep {
+            chunk: self,
+            law,
+            motion,
+            sums: &mut sums,
+        }));
+        positive.everywhere()
+    }
+
+    fn is_viscous(&self) -> bool {
+        self.viscosity.is_some()
+    }
+
+    fn sum_viscous(&self, motion: Motion) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(law) = self.viscosity.as_ref().filter(|_| self.is_strained(motion)) {
+            Arch::new().dispatch(ForceSweep {
+                chunk: self,
+                law,
+                motion,
+                sums: &mut sums,
+            });
+        }
+    }
+
+    fn add_sums(&self, total: &mut [f64]) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        let total = total.as_chunks_mut::<2>().0;
+        for (&node, sum) in self.nodes.iter().zip(sums.iter_mut()) {
+            let [x, y] = std::mem::take(sum);
+            total[node][0] += x;
+            total[node][1] += y;
+        }
+    }
+
+    fn clear_sums(&self) {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        sums.fill([0.0; 2]);
+    }
+
+    fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
+        in_lanes!(&self.law, law => Arch::new().dispatch(Evaluation { chunk: self, law, u }))
+    }
+
+    fn for_each_tangent(
+        &self,
+        sweep: TangentSweep,
+        space: &mut Vec<f64>,
+        add: &mut dyn FnMut(usize, &[f64]),
+    ) {
+        let elements = |number: usize| {
+            let first = LANES * number;
+            &self.elements[first..(first + LANES).min(self.elements.len())]
+        };
+        let wanted = |number: &usize| elements(*number).iter().any(|&e| (sweep.wanted)(e));
+        let of_block = LANES * 4 * N * N;
+        let mut add_block = |number: usize, tangents: &[f64]| {
+            for (&element, k) in elements(number)
+                .iter()
+                .zip(tangents.chunks_exact(4 * N * N))
+            {
+                add(element, k);
+            }
+        };
+        let all = 0..self.blocks.len();
+        if rayon::current_num_threads() > 1 {
+            space.resize(self.blocks.len() * of_block, 0.0);
+            let blocks = space.par_chunks_exact_mut(of_block);
+            let pairs = all.clone().into_par_iter().zip(blocks);
+            let pairs = pairs.with_min_len(PARALLEL_BLOCKS);
+            pairs
+                .filter(|(number, _)| wanted(number))
+                .for_each(|(number, k)| self.write_tangents(number, &sweep, k));
+            all.filter(wanted)
+                .for_each(|number| add_block(number, &space[number * of_block..][..of_block]));
+        } else {
+            space.resize(of_block, 0.0);
+            for number in all.filter(wanted) {
+                self.write_tangents(number, &sweep, space);
+                add_block(number, space);
+            }
+        }
+    }
+}
+
 /// A sweep over internal forces with the vector instructions of the processor.
 struct ForceSweep<'a, const N: usize, const P: usize, S, F, L> {
-    chunk: &'a Chunk<N, P, S, F>,
+    chunk: &'a ShapeChunk<N, P, S, F>,
     law: &'a L,
     motion: Motion<'a>,
     sums: &'a mut [[f64; 2]],
@@ -315,7 +338,7 @@ where
 
 /// Results of all elements with the vector instructions of the processor.
 struct Evaluation<'a, const N: usize, const P: usize, S, F, L> {
-    chunk: &'a Chunk<N, P, S, F>,
+    chunk: &'a ShapeChunk<N, P, S, F>,
     law: &'a L,
     u: &'a [f64],
 }
@@ -342,7 +365,7 @@ where
 
 /// Tangents of a block with the vector instructions of the processor.
 struct Tangents<'a, const N: usize, const P: usize, S, F, L> {
-    chunk: &'a Chunk<N, P, S, F>,
+    chunk: &'a ShapeChunk<N, P, S, F>,
     law: &'a L,
     block: &'a ElementBlock<N, P>,
     motion: Motion<'a>,

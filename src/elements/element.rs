@@ -1,10 +1,9 @@
-//! The element types behind one enum, chunks of elements of one type behind another, volume and mass of a single
-//! element. A shape has one file with its quadrature and mass. Section 2 of docs/theory.md.
+//! The element types behind one enum, chunks of elements of one type, volume and mass of a single element. A shape has one file with its quadrature and mass. Section 2 of docs/theory.md.
 
 use nalgebra::SMatrix;
 use smallvec::SmallVec;
 
-use super::chunk::{Chunk, TangentSweep};
+use super::chunk::{Chunk, ShapeChunk};
 use super::displacement::Displacement;
 use super::formulation::{ElementResult, PointResults};
 use super::hourglass::variables;
@@ -63,39 +62,37 @@ macro_rules! with_element {
 }
 
 impl AnyElement {
-    /// An element (index) of a model.
-    pub fn new(model: &Model, index: usize) -> Self {
-        let (element, x) = (&model.mesh.elements[index], &model.mesh.coordinates);
-        let t = model.sections[element.section].thickness;
-        if element.element_type.has_all_strains() {
-            return Self::Ring(Box::new(Ring::new(element, x, t)));
-        }
-        let nodes = &element.nodes;
-        let ElementType {
-            shape, formulation, ..
-        } = element.element_type;
-        match (shape, formulation) {
+    /// An element between nodes at the coordinates `x` of all nodes.
+    pub fn new(
+        element_type: ElementType,
+        nodes: &[usize],
+        x: &[[f64; 2]],
+        thickness: Thickness,
+    ) -> Self {
+        let t = match thickness {
+            Thickness::Of(t) if !element_type.has_all_strains() => t,
+            _ => return Self::Ring(Box::new(Ring::new(element_type, nodes, x, thickness))),
+        };
+        use Formulation::{Enhanced, MeanDilatation, Reduced};
+        match (element_type.shape, element_type.formulation) {
             (Shape::Tri3, _) => Self::Tri3(solid::<Triangle, _, _, _, _>(nodes, x, t)),
-            (Shape::Quad4, Formulation::MeanDilatation) => {
+            (Shape::Quad4, MeanDilatation) => {
                 Self::Quad4MeanDilatation(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
             }
-            (Shape::Quad4, Formulation::Enhanced) => {
+            (Shape::Quad4, Enhanced) => {
                 Self::Quad4Enhanced(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
             }
-            (Shape::Quad4, Formulation::Reduced) => {
+            (Shape::Quad4, Reduced) => {
                 Self::Quad4Reduced(solid::<Quadrilateral, _, _, _, _>(nodes, x, t))
             }
             (Shape::Quad4, _) => Self::Quad4(solid::<Quadrilateral, _, _, _, _>(nodes, x, t)),
-            (Shape::Tri6, _) => Self::Tri6(Box::new(solid::<QuadraticTriangle, _, _, _, _>(
-                nodes, x, t,
-            ))),
-            (Shape::Quad8, Formulation::Reduced) => {
-                let element = solid::<ReducedSerendipity, _, _, _, _>(nodes, x, t);
-                Self::Quad8Reduced(Box::new(element))
+            (Shape::Tri6, _) => {
+                Self::Tri6(solid::<QuadraticTriangle, _, _, _, _>(nodes, x, t).into())
             }
-            (Shape::Quad8, _) => {
-                Self::Quad8(Box::new(solid::<Serendipity, _, _, _, _>(nodes, x, t)))
+            (Shape::Quad8, Reduced) => {
+                Self::Quad8Reduced(solid::<ReducedSerendipity, _, _, _, _>(nodes, x, t).into())
             }
+            (Shape::Quad8, _) => Self::Quad8(solid::<Serendipity, _, _, _, _>(nodes, x, t).into()),
         }
     }
 
@@ -176,131 +173,33 @@ impl AnyElement {
     }
 }
 
-/// A chunk of elements of any type that is swept by blocks.
-pub(super) enum AnyChunk {
-    /// T3, displacement formulation.
-    Tri3(Chunk<3, 1, Triangle, Displacement>),
-    /// Q4, displacement formulation.
-    Quad4(Chunk<4, 4, Quadrilateral, Displacement>),
-    /// Q4, mean dilatation.
-    Quad4MeanDilatation(Chunk<4, 4, Quadrilateral, MeanDilatation>),
-    /// T6, displacement formulation.
-    Tri6(Chunk<6, 3, QuadraticTriangle, Displacement>),
-    /// Q8, displacement formulation.
-    Quad8(Chunk<8, 9, Serendipity, Displacement>),
-    /// Q8, displacement formulation with 2 x 2 points.
-    Quad8Reduced(Chunk<8, 4, ReducedSerendipity, Displacement>),
+/// Whether elements of a type and law are swept by blocks.
+pub(super) fn is_in_blocks(element_type: &ElementType, law: &PlaneLaw) -> bool {
+    law.variables() == 0
+        && element_type.formulation != Formulation::Enhanced
+        && !element_type.has_hourglass_modes()
+        && !element_type.has_all_strains()
 }
 
-/// Evaluates an expression for the chunk in an [`AnyChunk`], whatever its type.
-macro_rules! with_chunk {
-    ($any:expr, $chunk:ident => $value:expr) => {
-        match $any {
-            AnyChunk::Tri3($chunk) => $value,
-            AnyChunk::Quad4($chunk) => $value,
-            AnyChunk::Quad4MeanDilatation($chunk) => $value,
-            AnyChunk::Tri6($chunk) => $value,
-            AnyChunk::Quad8($chunk) => $value,
-            AnyChunk::Quad8Reduced($chunk) => $value,
+/// A chunk of elements (indices) of the model of one type and section, and their law.
+pub(super) fn new_chunk(model: &Model, elements: &[usize], law: PlaneLaw) -> Box<dyn Chunk> {
+    let first = &model.mesh.elements[elements[0]];
+    let (element_type, section) = (first.element_type, &model.sections[first.section]);
+    let material = &model.materials[section.material];
+    let (beta, moduli) = (material.damping.beta, material.law.small_strain());
+    let viscosity = Viscosity::of(beta, moduli, element_type.plane);
+    let (t, law) = (section.thickness, (law, viscosity));
+    match (element_type.shape, element_type.formulation) {
+        (Shape::Tri3, _) => chunk::<Triangle, Displacement, _, _>(model, elements, t, law),
+        (Shape::Quad4, Formulation::MeanDilatation) => {
+            chunk::<Quadrilateral, MeanDilatation, _, _>(model, elements, t, law)
         }
-    };
-}
-
-impl AnyChunk {
-    /// Whether elements of a type and law are swept by blocks.
-    pub fn has(element_type: &ElementType, law: &PlaneLaw) -> bool {
-        law.variables() == 0
-            && element_type.formulation != Formulation::Enhanced
-            && *element_type != ElementType::CPE4R
-            && *element_type != ElementType::CPS4R
-            && !element_type.has_all_strains()
-    }
-
-    /// Elements (indices) of the model of one type and section, and their law.
-    pub fn new(model: &Model, elements: &[usize], law: PlaneLaw) -> Self {
-        let first = &model.mesh.elements[elements[0]];
-        let (element_type, section) = (first.element_type, &model.sections[first.section]);
-        let material = &model.materials[section.material];
-        let (beta, moduli) = (material.damping.beta, material.law.small_strain());
-        let viscosity = Viscosity::of(beta, moduli, element_type.plane);
-        let (t, law) = (section.thickness, (law, viscosity));
-        match (element_type.shape, element_type.formulation) {
-            (Shape::Tri3, _) => Self::Tri3(chunk(model, elements, t, law)),
-            (Shape::Quad4, Formulation::MeanDilatation) => {
-                Self::Quad4MeanDilatation(chunk(model, elements, t, law))
-            }
-            (Shape::Quad4, _) => Self::Quad4(chunk(model, elements, t, law)),
-            (Shape::Tri6, _) => Self::Tri6(chunk(model, elements, t, law)),
-            (Shape::Quad8, Formulation::Reduced) => {
-                Self::Quad8Reduced(chunk(model, elements, t, law))
-            }
-            (Shape::Quad8, _) => Self::Quad8(chunk(model, elements, t, law)),
+        (Shape::Quad4, _) => chunk::<Quadrilateral, Displacement, _, _>(model, elements, t, law),
+        (Shape::Tri6, _) => chunk::<QuadraticTriangle, Displacement, _, _>(model, elements, t, law),
+        (Shape::Quad8, Formulation::Reduced) => {
+            chunk::<ReducedSerendipity, Displacement, _, _>(model, elements, t, law)
         }
-    }
-
-    /// The element at a place of the chunk, between its nodes.
-    pub fn element(&self, place: usize, nodes: &[usize]) -> AnyElement {
-        match self {
-            Self::Tri3(chunk) => AnyElement::Tri3(Solid::new(first(nodes), chunk.reference(place))),
-            Self::Quad4(chunk) => {
-                AnyElement::Quad4(Solid::new(first(nodes), chunk.reference(place)))
-            }
-            Self::Quad4MeanDilatation(chunk) => {
-                AnyElement::Quad4MeanDilatation(Solid::new(first(nodes), chunk.reference(place)))
-            }
-            Self::Tri6(chunk) => {
-                let element = Solid::new(first(nodes), chunk.reference(place));
-                AnyElement::Tri6(Box::new(element))
-            }
-            Self::Quad8(chunk) => {
-                let element = Solid::new(first(nodes), chunk.reference(place));
-                AnyElement::Quad8(Box::new(element))
-            }
-            Self::Quad8Reduced(chunk) => {
-                let element = Solid::new(first(nodes), chunk.reference(place));
-                AnyElement::Quad8Reduced(Box::new(element))
-            }
-        }
-    }
-
-    /// Sums up internal forces. False where an element is turned inside out.
-    pub fn sum_forces(&self, motion: Motion) -> bool {
-        with_chunk!(self, chunk => chunk.sum_forces(motion))
-    }
-
-    /// As [`Chunk::is_viscous`].
-    pub fn is_viscous(&self) -> bool {
-        with_chunk!(self, chunk => chunk.is_viscous())
-    }
-
-    /// Sums up the forces of the viscosity.
-    pub fn sum_viscous(&self, motion: Motion) {
-        with_chunk!(self, chunk => chunk.sum_viscous(motion))
-    }
-
-    /// Adds the sums of the last sweep to a vector over all dofs.
-    pub fn add_sums(&self, total: &mut [f64]) {
-        with_chunk!(self, chunk => chunk.add_sums(total))
-    }
-
-    /// As [`Chunk::clear_sums`].
-    pub fn clear_sums(&self) {
-        with_chunk!(self, chunk => chunk.clear_sums())
-    }
-
-    /// Elements (indices) with strain energy, stress and strain at displacements `u`.
-    pub fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
-        with_chunk!(self, chunk => chunk.evaluate(u))
-    }
-
-    /// Calls `add(element, k)` with the tangent of every wanted element.
-    pub fn for_each_tangent(
-        &self,
-        sweep: TangentSweep<impl Fn(usize) -> bool + Sync>,
-        space: &mut Vec<f64>,
-        add: &mut impl FnMut(usize, &[f64]),
-    ) {
-        with_chunk!(self, chunk => chunk.for_each_tangent(sweep, space, add))
+        (Shape::Quad8, _) => chunk::<Serendipity, Displacement, _, _>(model, elements, t, law),
     }
 }
 
@@ -332,15 +231,22 @@ fn chunk<S, F, const N: usize, const P: usize>(
     elements: &[usize],
     t: f64,
     law: (PlaneLaw, Option<Viscosity>),
-) -> Chunk<N, P, S, F>
+) -> Box<dyn Chunk>
 where
-    S: block::Shape<N, P> + Sync,
-    F: block::BlockFormulation + Sync,
+    S: block::Shape<N, P> + Send + Sync + 'static,
+    F: block::BlockFormulation + Send + Sync + 'static,
 {
     let mesh = &model.mesh;
     let nodes = elements.iter().map(|&e| first(&mesh.elements[e].nodes));
     let nodes: Vec<_> = nodes.collect();
-    Chunk::new(elements.to_vec(), &nodes, &mesh.coordinates, t, law)
+    let x = &mesh.coordinates;
+    Box::new(ShapeChunk::<N, P, S, F>::new(
+        elements.to_vec(),
+        &nodes,
+        x,
+        t,
+        law,
+    ))
 }
 
 /// Shape and nodes of an element in the reference configuration, from which its mass follows.

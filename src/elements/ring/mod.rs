@@ -20,7 +20,7 @@ use super::formulation::{ElementResult, PointResult, PointResults, smaller};
 use super::hourglass::variables;
 use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
 use crate::materials::{Committed, RingStressAtPoints, Symmetric, contract};
-use crate::model::{self, Formulation, Nodes, Thickness};
+use crate::model::{self, ElementType, Formulation, Nodes, Thickness};
 
 /// An element with all components of the strain.
 #[derive(Debug, Clone)]
@@ -44,11 +44,14 @@ enum RingFormulation {
 }
 
 impl Ring {
-    /// The element of a thickness in its section between nodes at the coordinates `x` of all nodes.
-    pub fn new(element: &model::Element, x: &[[f64; 2]], thickness: f64) -> Self {
-        let own: Vec<[f64; 2]> = element.nodes.iter().map(|&node| x[node]).collect();
-        let element_type = element.element_type;
-        let thickness = Thickness::new(element_type, thickness);
+    /// The element between nodes at the coordinates `x` of all nodes.
+    pub fn new(
+        element_type: ElementType,
+        nodes: &[usize],
+        x: &[[f64; 2]],
+        thickness: Thickness,
+    ) -> Self {
+        let own: Vec<[f64; 2]> = nodes.iter().map(|&node| x[node]).collect();
         let mut points = Points::of_stress(element_type).map(&own, thickness);
         let formulation = match (element_type.formulation, element_type.shape) {
             (Formulation::MeanDilatation, _) => {
@@ -68,7 +71,7 @@ impl Ring {
             (Formulation::Displacement | Formulation::Reduced, _) => RingFormulation::Displacement,
         };
         Ring {
-            nodes: element.nodes.clone(),
+            nodes: nodes.into(),
             points,
             formulation,
         }
@@ -375,7 +378,7 @@ mod tests {
     use crate::materials::{
         ConstitutiveLaw, Law, NeoHooke, Plane, Plastic, SmallStrainModuli, Viscosity,
     };
-    use crate::model::{Element, ElementType, Mesh};
+    use crate::model::{Element, Mesh};
 
     /// Rings of all types between distorted nodes off the axis, with their nodes.
     fn rings() -> Vec<(Ring, Mesh)> {
@@ -397,7 +400,8 @@ mod tests {
                 nodes: (0..x.len()).collect(),
                 section: 0,
             };
-            let ring = Ring::new(&element, &x, 1.0);
+            let thickness = Thickness::new(element_type, 1.0);
+            let ring = Ring::new(element_type, &element.nodes, &x, thickness);
             let mesh = Mesh {
                 node_labels: (1..).take(x.len()).collect(),
                 coordinates: x,
