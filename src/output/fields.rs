@@ -160,6 +160,26 @@ impl<'m> FieldGroup<'m> {
         Ok(())
     }
 
+    /// A field at nodes of elements, of W values each, which is NaN at the others.
+    fn add_at_nodes<const W: usize>(
+        &mut self,
+        name: &'static str,
+        shape: RowShape,
+        meaning: Meaning,
+        (local, nodes): (&Rc<Local>, &Rc<[usize]>),
+        of: impl Fn(&LocalResult) -> [f64; W] + 'm,
+    ) -> hdf5::Result<()> {
+        let (local, nodes, count) = (local.clone(), nodes.clone(), self.rows);
+        self.add(name, shape, Mostly::Varied, meaning, move |frame, v| {
+            let first = v.len();
+            v.resize(first + W * count, f64::NAN);
+            let own = local.of(frame.index, &frame.state);
+            for (&node, result) in nodes.iter().zip(own.iter()) {
+                v[first + W * node..][..W].copy_from_slice(&of(result));
+            }
+        })
+    }
+
     /// Creates the fields of elements at nodes; nodes without elements have NaN.
     fn create_at_nodes(&mut self, model: &Model, elements: &Arc<Elements>) -> hdf5::Result<()> {
         let asked = &model.sets.fields.at_nodes;
@@ -168,40 +188,19 @@ impl<'m> FieldGroup<'m> {
         }
         let members: Vec<usize> = (0..model.mesh.elements.len()).collect();
         let local = Rc::new(Local::at_nodes(elements, &members));
-        let (nodes, count): (Rc<[usize]>, _) = (local.nodes().into(), self.rows);
+        let nodes: Rc<[usize]> = local.nodes().into();
         let is_ring = model.mesh.is_axisymmetric();
         let is_there = |name: &str| is_ring || !["E33_AT_NODES", "LE33_AT_NODES"].contains(&name);
+        let own = (&local, &nodes);
         let tensors = AT_NODES.iter().filter(|field| asked.contains(&field.0));
         for &(_, name, meaning, of) in tensors {
-            let (local, nodes) = (local.clone(), nodes.clone());
-            self.add(
-                name,
-                PLANE_TENSOR,
-                Mostly::Varied,
-                meaning,
-                move |frame, v| {
-                    let first = v.len();
-                    v.resize(first + 3 * count, f64::NAN);
-                    let own = local.of(frame.index, &frame.state);
-                    for (&node, result) in nodes.iter().zip(own.iter()) {
-                        v[first + 3 * node..first + 3 * node + 3].copy_from_slice(&of(result));
-                    }
-                },
-            )?;
+            self.add_at_nodes(name, PLANE_TENSOR, meaning, own, of)?;
         }
         let scalars = SCALARS_AT_NODES
             .iter()
             .filter(|field| asked.contains(&field.0));
         for &(_, name, meaning, of) in scalars.filter(|field| is_there(field.1)) {
-            let (local, nodes) = (local.clone(), nodes.clone());
-            self.add(name, SCALAR, Mostly::Varied, meaning, move |frame, v| {
-                let first = v.len();
-                v.resize(first + count, f64::NAN);
-                let own = local.of(frame.index, &frame.state);
-                for (&node, result) in nodes.iter().zip(own.iter()) {
-                    v[first + node] = of(result);
-                }
-            })?;
+            self.add_at_nodes(name, SCALAR, meaning, own, move |e| [of(e)])?;
         }
         Ok(())
     }
@@ -214,79 +213,67 @@ impl<'m> FieldGroup<'m> {
         let at = &self.offsets;
         // the same in all frames
         per_frame(&mut self.columns, at, "BODY", &[], FIRST_ROW, |_| 0_i64)?;
-        let varied = Mostly::Varied;
         for (name, meaning, of) in TENSORS {
-            self.add(name, PLANE_TENSOR, varied, meaning, move |frame, v| {
+            self.add_to_elements(name, PLANE_TENSOR, meaning, move |frame, v| {
                 v.extend(frame.elements.iter().flat_map(of));
-                v.extend(repeat_n(f64::NAN, 3 * lines));
-            })?;
-        }
-        for (name, meaning, of) in SCALARS {
-            self.add(name, SCALAR, varied, meaning, move |frame, v| {
-                v.extend(frame.elements.iter().map(of));
-                v.extend(repeat_n(f64::NAN, lines));
             })?;
         }
         let asked = &model.sets.fields;
-        let principal = PRINCIPAL.iter().filter(|_| asked.principal_stress);
-        let pressure = PRESSURE.iter().filter(|_| asked.pressure);
-        let plastic = PLASTIC.iter().filter(|_| model.writes_plastic_strain());
-        let hourglass = HOURGLASS.iter().filter(|_| model.has_hourglass_modes());
-        let around = AROUND.iter().filter(|_| model.mesh.is_axisymmetric());
-        for &(name, meaning, of) in principal
-            .chain(pressure)
-            .chain(plastic)
-            .chain(hourglass)
-            .chain(around)
-        {
-            self.add(name, SCALAR, varied, meaning, move |frame, v| {
-                v.extend(frame.elements.iter().map(of));
-                v.extend(repeat_n(f64::NAN, lines));
-            })?;
+        let is_ring = model.mesh.is_axisymmetric();
+        for (is_there, fields) in [
+            (true, &SCALARS[..]),
+            (asked.principal_stress, &PRINCIPAL),
+            (asked.pressure, &PRESSURE),
+            (model.writes_plastic_strain(), &PLASTIC),
+            (model.has_hourglass_modes(), &HOURGLASS),
+            (is_ring, &AROUND),
+        ] {
+            for &(name, meaning, of) in fields.iter().filter(|_| is_there) {
+                self.add_to_elements(name, SCALAR, meaning, move |frame, v| {
+                    v.extend(frame.elements.iter().map(of));
+                })?;
+            }
         }
         let elements = &model.mesh.elements;
-        let gradients = elements.iter().map(|e| MeanGradient::new(&model.mesh, e));
         if asked.energy_density {
             let volume = |e| model.mesh.volume(e, model.sections[e.section].thickness);
             let volumes: Vec<f64> = elements.iter().map(volume).collect();
-            self.add("ENER", SCALAR, varied, ENERGY_DENSITY, move |frame, v| {
+            self.add_to_elements("ENER", SCALAR, ENERGY_DENSITY, move |frame, v| {
                 let elements = frame.elements.iter().zip(&volumes);
                 v.extend(elements.map(|(e, volume)| e.energy / *volume));
-                v.extend(repeat_n(f64::NAN, lines));
             })?;
         }
         if asked.logarithmic_strain {
+            let gradients = elements.iter().map(|e| MeanGradient::new(&model.mesh, e));
             let gradients: Vec<MeanGradient> = gradients.collect();
-            self.add(
-                "LE",
-                PLANE_TENSOR,
-                varied,
-                LOGARITHMIC_STRAIN,
-                move |frame, v| {
-                    let u = &frame.state.u;
-                    v.extend(gradients.iter().flat_map(|mean| mean.logarithmic_strain(u)));
-                    v.extend(repeat_n(f64::NAN, 3 * lines));
-                },
-            )?;
-            if model.mesh.is_axisymmetric() {
-                self.add(
-                    "LE33",
-                    SCALAR,
-                    varied,
-                    LOGARITHMIC_AROUND,
-                    move |frame, v| {
-                        v.extend(
-                            frame
-                                .elements
-                                .iter()
-                                .map(|e| logarithmic_of(e.strain_around)),
-                        );
-                        v.extend(repeat_n(f64::NAN, lines));
-                    },
-                )?;
+            self.add_to_elements("LE", PLANE_TENSOR, LOGARITHMIC_STRAIN, move |frame, v| {
+                let u = &frame.state.u;
+                v.extend(gradients.iter().flat_map(|mean| mean.logarithmic_strain(u)));
+            })?;
+            if is_ring {
+                self.add_to_elements("LE33", SCALAR, LOGARITHMIC_AROUND, |frame, v| {
+                    let around = frame.elements.iter().map(|e| e.strain_around);
+                    v.extend(around.map(logarithmic_of));
+                })?;
             }
         }
         Ok(())
+    }
+
+    /// A field of the elements, which is NaN on rigid segments.
+    fn add_to_elements(
+        &mut self,
+        name: &'static str,
+        shape: RowShape,
+        meaning: Meaning,
+        mut values: impl FnMut(&Frame, &mut Vec<f64>) + 'm,
+    ) -> hdf5::Result<()> {
+        let size = self.rows * shape.1.iter().product::<usize>();
+        self.add(name, shape, Mostly::Varied, meaning, move |frame, v| {
+            let first = v.len();
+            values(frame, v);
+            v.resize(first + size, f64::NAN);
+        })
     }
 }
 

@@ -125,6 +125,13 @@ impl<'m> History<'m> {
         Ok(history.columns)
     }
 
+    /// Writes the numbers of nodes (indices) in the deck.
+    fn labels(&self, at: &Group, nodes: &[usize], text: &'static str) -> hdf5::Result<()> {
+        let label = |&node: &usize| self.model.mesh.node_labels[node] as i64;
+        let labels: Vec<i64> = nodes.iter().map(label).collect();
+        constant(at, "labels", &[labels.len()], &labels, ("1", text))
+    }
+
     /// Creates a dataset of reals; `values` appends the row of a report.
     fn add(
         &mut self,
@@ -138,6 +145,22 @@ impl<'m> History<'m> {
         self.columns.add(at, name, layout, meaning, values)
     }
 
+    /// Creates the datasets of vectors over the dofs, of which `values` appends a row.
+    fn vectors(
+        &mut self,
+        at: &Group,
+        row: &[usize],
+        entries: &[VectorEntry],
+        values: impl Fn(&[f64], &mut Vec<f64>) + Copy + 'm,
+    ) -> hdf5::Result<()> {
+        for &(name, dimension, text, vector) in entries {
+            self.add(at, name, row, (dimension, text), move |r, v| {
+                values(vector(r), v);
+            })?;
+        }
+        Ok(())
+    }
+
     /// Creates the datasets of a table, with a row per increment; `records` is the shape of the records in a
     /// row, which `each` visits one after the other.
     fn table<Q: 'm>(
@@ -145,7 +168,7 @@ impl<'m> History<'m> {
         at: &Group,
         records: &[usize],
         entries: &[DatasetEntry<Q>],
-        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
+        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Clone + 'm,
     ) -> hdf5::Result<()> {
         self.rows_of(at, records, Mostly::Varied, entries, each)
     }
@@ -155,7 +178,7 @@ impl<'m> History<'m> {
         &mut self,
         at: &Group,
         entries: &[DatasetEntry<Q>],
-        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
+        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Clone + 'm,
     ) -> hdf5::Result<()> {
         self.rows_of(at, &[], Mostly::Late, entries, each)
     }
@@ -166,13 +189,13 @@ impl<'m> History<'m> {
         records: &[usize],
         mostly: Mostly,
         entries: &[DatasetEntry<Q>],
-        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Copy + 'm,
+        each: impl Fn(&IncrementReport, &mut dyn FnMut(&Q)) + Clone + 'm,
     ) -> hdf5::Result<()> {
         let label = |node: usize| self.model.mesh.node_labels[node] as i64;
         let number = |body: Option<usize>| body.map_or(-1, |body| body as i64);
         let all = &mut self.columns;
         for &(name, dimension, text, ref value) in entries {
-            let about = (dimension, text);
+            let (about, each) = ((dimension, text), each.clone());
             let reals = |row: &[usize]| Layout::one_by_one::<f64>(&[records, row].concat(), mostly);
             let counts =
                 |row: &[usize]| Layout::one_by_one::<i64>(&[records, row].concat(), mostly);
@@ -268,6 +291,7 @@ impl<'m> History<'m> {
             let own = all.filter(|(_, c)| (c.direction == ConnectorDirection::Angle) == is_rotary);
             let (places, labels): (Vec<usize>, Vec<i64>) =
                 own.map(|(place, c)| (place, c.label as i64)).unzip();
+            let places: Rc<[usize]> = places.into();
             if places.is_empty() {
                 continue;
             }
@@ -277,12 +301,9 @@ impl<'m> History<'m> {
                 "element numbers of the springs and dashpots in the deck",
             );
             constant(&at, "labels", &count, &labels, text)?;
-            for (name, dimension, text, of) in entries {
-                let places = places.clone();
-                self.add(&at, name, &count, (dimension, text), move |r, v| {
-                    v.extend(places.iter().map(|&place| of(&r.connectors[place])));
-                })?;
-            }
+            self.table(&at, &count, &entries, move |r, each| {
+                places.iter().for_each(|&at| each(&r.connectors[at]));
+            })?;
         }
         Ok(())
     }
@@ -295,13 +316,8 @@ impl<'m> History<'m> {
         let ties = group(at, "ties")?;
         for tie in &self.model.ties {
             let at = group(&ties, &tie.name)?;
-            let nodes = || tie.nodes.iter().map(|tied| tied.node);
-            let labels: Vec<i64> = nodes()
-                .map(|node| self.model.mesh.node_labels[node] as i64)
-                .collect();
-            let text = ("1", "node numbers of the tied nodes");
-            constant(&at, "labels", &[labels.len()], &labels, text)?;
-            let nodes: Vec<usize> = nodes().collect();
+            let nodes: Vec<usize> = tie.nodes.iter().map(|tied| tied.node).collect();
+            self.labels(&at, &nodes, "node numbers of the tied nodes")?;
             let text = ("force", "force of the tie on its slave nodes");
             let members = nodes.clone();
             self.add(&at, "force", &[2], text, move |r, v| {
@@ -382,11 +398,9 @@ impl<'m> History<'m> {
         self.add(at, "position", &[2], text, move |r, v| {
             v.extend((0..2).map(|i| x[i] + r.state.u[2 * node + i]));
         })?;
-        for (name, dimension, text, vector) in REFERENCE_NODE {
-            self.add(at, name, &[2], (dimension, text), move |r, v| {
-                v.extend_from_slice(&vector(r)[2 * node..2 * node + 2]);
-            })?;
-        }
+        self.vectors(at, &[2], &REFERENCE_NODE, move |all, v| {
+            v.extend_from_slice(&all[2 * node..2 * node + 2]);
+        })?;
         let own = move |r: &IncrementReport, each: &mut dyn FnMut(&RigidReaction)| {
             r.rigid.get(k).into_iter().for_each(each);
         };
@@ -403,33 +417,19 @@ impl<'m> History<'m> {
         nodes: &'m [usize],
         each_member: bool,
     ) -> hdf5::Result<()> {
-        let labels = nodes
-            .iter()
-            .map(|&node| self.model.mesh.node_labels[node] as i64);
-        let labels: Vec<i64> = labels.collect();
-        let text = ("1", "node numbers of the deck");
-        constant(at, "labels", &[labels.len()], &labels, text)?;
+        self.labels(at, nodes, "node numbers of the deck")?;
         if each_member {
-            for (name, dimension, text, vector) in OF_NODE {
-                let row = [nodes.len(), 2];
-                self.add(at, name, &row, (dimension, text), move |r, v| {
-                    v.extend(pick(nodes, vector(r)).flatten());
-                })?;
-            }
-        }
-        let sums = group(at, "sum")?;
-        for (name, dimension, text, vector) in SUMS_OF_NODES {
-            self.add(&sums, name, &[2], (dimension, text), move |r, v| {
-                v.extend(sum(nodes, vector(r)));
+            self.vectors(at, &[nodes.len(), 2], &OF_NODE, |all, v| {
+                v.extend(pick(nodes, all).flatten());
             })?;
         }
-        let (means, count) = (group(at, "mean")?, nodes.len() as f64);
-        for (name, dimension, text, vector) in MEANS_OF_NODES {
-            self.add(&means, name, &[2], (dimension, text), move |r, v| {
-                v.extend(sum(nodes, vector(r)).map(|sum| sum / count));
-            })?;
-        }
-        Ok(())
+        self.vectors(&group(at, "sum")?, &[2], &SUMS_OF_NODES, |all, v| {
+            v.extend(sum(nodes, all));
+        })?;
+        let count = nodes.len() as f64;
+        self.vectors(&group(at, "mean")?, &[2], &MEANS_OF_NODES, move |all, v| {
+            v.extend(sum(nodes, all).map(|sum| sum / count));
+        })
     }
 
     /// `/history/elements/<ELSET>/points`: values at the integration points of all elements, one after the other.
@@ -462,31 +462,17 @@ impl<'m> History<'m> {
         local: &Arc<Elements>,
     ) -> hdf5::Result<()> {
         let local = Local::at_nodes(local, elements);
-        let nodes = local.nodes().into_iter();
-        let labels: Vec<i64> = nodes
-            .map(|node| self.model.mesh.node_labels[node] as i64)
-            .collect();
-        let text = ("1", "node numbers of the deck");
-        constant(at, "labels", &[labels.len()], &labels, text)?;
-        self.create_local(at, labels.len(), local)
+        let nodes = local.nodes();
+        self.labels(at, &nodes, "node numbers of the deck")?;
+        self.create_local(at, nodes.len(), local)
     }
 
     /// The datasets of values at `count` places.
     fn create_local(&mut self, at: &Group, count: usize, local: Local) -> hdf5::Result<()> {
         let local = Rc::new(local);
-        for &(name, dimension, text, ref value) in &LOCAL {
-            let (local, about) = (local.clone(), (dimension, text));
-            match *value {
-                Tensor(of) => self.add(at, name, &[count, 3], about, move |r, v| {
-                    v.extend(local.of(r.increment, &r.state).iter().flat_map(of));
-                })?,
-                Real(of) => self.add(at, name, &[count], about, move |r, v| {
-                    v.extend(local.of(r.increment, &r.state).iter().map(of));
-                })?,
-                _ => {}
-            }
-        }
-        Ok(())
+        self.table(at, &[count], &LOCAL, move |r, each| {
+            local.of(r.increment, &r.state).iter().for_each(each);
+        })
     }
 
     /// `/history/elements/<ELSET>`; values of every element where these are asked for, and sums.
@@ -588,20 +574,18 @@ const INCREMENT: [DatasetEntry<IncrementReport>; 3] = [
     ("step", "1", "number of the step, from 1", Count(|r| r.step)),
 ];
 
-type OfConnector = fn(&ConnectorState) -> f64;
-
 #[rustfmt::skip]
-const CONNECTOR: [(&str, &str, &str, OfConnector); 3] = [
-    ("elongation", "length", "elongation", |c| c.elongation),
-    ("rate", "length/time", "rate of the elongation", |c| c.rate),
-    ("force", "force", "force, positive where it pulls the nodes together", |c| c.force),
+const CONNECTOR: [DatasetEntry<ConnectorState>; 3] = [
+    ("elongation", "length", "elongation", Real(|c| c.elongation)),
+    ("rate", "length/time", "rate of the elongation", Real(|c| c.rate)),
+    ("force", "force", "force, positive where it pulls the nodes together", Real(|c| c.force)),
 ];
 
 #[rustfmt::skip]
-const ROTARY_CONNECTOR: [(&str, &str, &str, OfConnector); 3] = [
-    ("angle", "1", "angle (rad), or the difference of two", |c| c.elongation),
-    ("rate", "1/time", "rate of the angle", |c| c.rate),
-    ("moment", "force*length", "moment, positive where it turns the angle back", |c| c.force),
+const ROTARY_CONNECTOR: [DatasetEntry<ConnectorState>; 3] = [
+    ("angle", "1", "angle (rad), or the difference of two", Real(|c| c.elongation)),
+    ("rate", "1/time", "rate of the angle", Real(|c| c.rate)),
+    ("moment", "force*length", "moment, positive where it turns the angle back", Real(|c| c.force)),
 ];
 
 #[rustfmt::skip]
