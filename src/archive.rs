@@ -26,6 +26,20 @@ pub enum ArchiveError {
     Factors,
 }
 
+/// Carries the fields of a structure: those in brackets by their own functions, those behind the semicolon not at all. A
+/// field that is not named is an error of the compiler.
+macro_rules! carry_fields {
+    ($archive:ident, $of:expr => $type:ident {
+        $([$($part:ident),*])? $($field:ident),* $(; $($left:ident),*)?
+    }) => {{
+        let $type { $($($part,)*)? $($field,)* $($($left: _,)*)? } = $of;
+        $($($part.carry($archive)?;)*)?
+        $($archive.carry($field)?;)*
+        Ok::<(), $crate::archive::ArchiveError>(())
+    }};
+}
+pub(crate) use carry_fields;
+
 impl Archive<'_> {
     /// An archive to write.
     pub fn new() -> Self {

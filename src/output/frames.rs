@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::dynamics::{FrictionResults, IncrementReport, NodalResults, State};
 use crate::elements::ElementResult;
 use crate::model::{Frames, Model, Step};
@@ -41,15 +41,7 @@ impl<'a> FrameSchedule<'a> {
 
     /// Carries how far it has come.
     pub(super) fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let FrameSchedule {
-            steps: _,
-            step,
-            next,
-            increments,
-        } = self;
-        archive.carry(step)?;
-        archive.carry(next)?;
-        archive.carry(increments)
+        carry_fields!(archive, self => FrameSchedule { step, next, increments; steps })
     }
 
     /// Number of the step, from 1, and its increments so far.
@@ -158,21 +150,10 @@ pub(crate) struct Frame {
 impl Frame {
     /// Carries all of it.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Frame {
-            index,
-            time,
-            state,
-            nodal,
-            elements,
-        } = self;
-        archive.carry(index)?;
-        archive.carry(time)?;
-        archive.carry(state)?;
-        archive.carry(nodal)?;
-        let mut of_elements = elements.to_vec();
+        let mut of_elements = self.elements.to_vec();
         archive.carry(&mut of_elements)?;
-        *elements = of_elements.into();
-        Ok(())
+        self.elements = of_elements.into();
+        carry_fields!(archive, self => Frame { index, time, state, nodal; elements })
     }
 
     /// Copies the results of an increment, reusing the allocated memory.

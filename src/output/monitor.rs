@@ -11,7 +11,7 @@ use super::model_group::{body_times, contact_names};
 use super::run_record::phases;
 use super::strain::StrainWatch;
 use super::warnings::{Findings, Touches, never_closed};
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::dynamics::{
     Cause, Course, Cutback, IncrementReport, Outcome, RunSummary, SolverCounts, Touch,
 };
@@ -75,31 +75,9 @@ impl Monitor {
 
     /// Carries what is known of the run, but for the kinds of cutbacks that the log has explained.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Monitor {
-            balance,
-            strain,
-            closed,
-            touches,
-            dt,
-            time,
-            failed_attempts,
-            cutbacks,
-            kinds: _,
-            landings,
-            checks,
-            held,
-        } = self;
-        archive.carry(balance)?;
-        strain.carry(archive)?;
-        archive.carry(closed)?;
-        archive.carry(touches)?;
-        archive.carry(dt)?;
-        archive.carry(time)?;
-        archive.carry(failed_attempts)?;
-        archive.carry(cutbacks)?;
-        archive.carry(landings)?;
-        archive.carry(checks)?;
-        archive.carry(held)
+        carry_fields!(archive, self => Monitor {
+            [strain] balance, closed, touches, dt, time, failed_attempts, cutbacks, landings, checks, held; kinds
+        })
     }
 
     /// Enters an accepted increment.

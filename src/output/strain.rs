@@ -1,7 +1,7 @@
 //! The largest principal strain of a run, compared with the range of the material law.
 
 use super::format::{general, scientific};
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::dynamics::IncrementReport;
 use crate::elements::Strained;
 use crate::materials::NeoHooke;
@@ -71,15 +71,7 @@ pub(crate) struct StrainWatch {
 impl StrainWatch {
     /// Carries the largest strain so far.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let StrainWatch {
-            limited: _,
-            most,
-            increment,
-            warned,
-        } = self;
-        archive.carry(most)?;
-        archive.carry(increment)?;
-        archive.carry(warned)
+        carry_fields!(archive, self => StrainWatch { most, increment, warned; limited })
     }
 
     /// Follows the elements of `model`.

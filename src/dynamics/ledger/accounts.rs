@@ -10,7 +10,7 @@ use super::nodal_results::{
 };
 use super::surface_work::SurfaceWork;
 use super::touches::Touches;
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, FrictionResults, IncrementReport, Momentum, NodalResults,
@@ -67,20 +67,9 @@ impl Accounts {
 
     /// Carries the sums over the run.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Self {
-            bodies: _,
-            rigid: _,
-            faces: _,
-            contacts,
-            touches,
-            surface_work,
-            consistent: _,
-            damped,
-        } = self;
-        contacts.carry(archive)?;
-        touches.carry(archive)?;
-        surface_work.carry(archive)?;
-        archive.carry(damped)
+        carry_fields!(archive, self => Self {
+            [contacts, touches, surface_work] damped; bodies, rigid, faces, consistent
+        })
     }
 
     /// Motion at the start with the energies of the ledger, without forces.

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::increment::{ContactStates, Solved};
@@ -75,28 +75,12 @@ impl Ledger {
 
     /// Carries all of it.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Self {
-            energy,
-            largest,
-            momentum,
-            elements,
-            contact_energy,
-            scale,
-            works,
-            end,
-            start,
-        } = self;
-        let mut of_elements = elements.to_vec();
+        let mut of_elements = self.elements.to_vec();
         archive.carry(&mut of_elements)?;
-        *elements = of_elements.into();
-        archive.carry(energy)?;
-        archive.carry(largest)?;
-        archive.carry(momentum)?;
-        archive.carry(contact_energy)?;
-        archive.carry(scale)?;
-        archive.carry(works)?;
-        archive.carry(end)?;
-        archive.carry(start)
+        self.elements = of_elements.into();
+        carry_fields!(archive, self => Self {
+            energy, largest, momentum, contact_energy, scale, works, end, start; elements
+        })
     }
 
     /// Goes on to a step of another procedure at a state, whose velocities have become those of the step: what a body

@@ -9,7 +9,7 @@ use super::time_control::{
     nominal_increments,
 };
 use super::truncation_error::{Ends, TruncationError};
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::ClosedPairs;
 use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
@@ -220,47 +220,18 @@ impl<'m, 'o> Runner<'m, 'o> {
 
     /// Carries what increments hand on, but for the workspace of their step and their time control.
     fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Runner {
-            discretization: _,
-            state,
-            ledger,
-            rejected,
-            supported,
-            procedure,
-            path,
-            accuracy,
-            accounts,
-            summary,
-            progress,
-            observer: _,
-        } = self;
-        archive.carry(progress)?;
-        let dofs = state.u.len();
-        archive.carry(state)?;
-        if [&state.u, &state.v, &state.a].map(Vec::len) != [dofs; 3] {
+        let dofs = self.state.u.len();
+        carry_fields!(archive, self => Runner {
+            [ledger, accounts] progress, state, rejected, supported, procedure, path, accuracy;
+            discretization, summary, observer
+        })?;
+        let State { u, v, a, .. } = &self.state;
+        if [u, v, a].map(Vec::len) != [dofs; 3] {
             return Err(ArchiveError::Size);
         }
-        ledger.carry(archive)?;
-        archive.carry(rejected)?;
-        archive.carry(supported)?;
-        archive.carry(procedure)?;
-        archive.carry(path)?;
-        archive.carry(accuracy)?;
-        accounts.carry(archive)?;
-        let RunSummary {
-            outcome: _,
-            increments,
-            cutbacks,
-            rejections,
-            events,
-            solver,
-            timings: _,
-        } = summary;
-        archive.carry(increments)?;
-        archive.carry(cutbacks)?;
-        archive.carry(rejections)?;
-        archive.carry(events)?;
-        archive.carry(solver)
+        carry_fields!(archive, &mut self.summary => RunSummary {
+            increments, cutbacks, rejections, events, solver; outcome, timings
+        })
     }
 
     /// Hands the observer all that the rest of the run depends on.

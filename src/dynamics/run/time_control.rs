@@ -9,7 +9,7 @@
 //! Impact events: a nominal increment in subincrements that end at impacts, or halfway where one
 //! fails. Section 6 of docs/theory.md, Impacts as events.
 
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::dynamics::step::{Interval, StepPlace};
 use crate::model::{Incrementation, Increments};
 
@@ -155,13 +155,7 @@ impl Bisection {
 
 impl TimeControl for Bisection {
     fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Bisection {
-            nominal: _,
-            part,
-            halvings,
-        } = self;
-        archive.carry(part)?;
-        archive.carry(halvings)
+        carry_fields!(archive, self => Bisection { part, halvings; nominal })
     }
 
     fn next(&self) -> Option<NextSubincrement> {
@@ -219,15 +213,7 @@ impl ImpactControl {
 
 impl TimeControl for ImpactControl {
     fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let ImpactControl {
-            nominal: _,
-            from,
-            events,
-            ends,
-        } = self;
-        archive.carry(from)?;
-        archive.carry(events)?;
-        archive.carry(ends)
+        carry_fields!(archive, self => ImpactControl { from, events, ends; nominal })
     }
 
     fn next(&self) -> Option<NextSubincrement> {
@@ -345,23 +331,9 @@ impl Automatic {
 
 impl TimeControl for Automatic {
     fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Automatic {
-            nominal: _,
-            increments: _,
-            ends_at_impacts: _,
-            from,
-            dt,
-            easy,
-            cuts,
-            rejections,
-            events,
-        } = self;
-        archive.carry(from)?;
-        archive.carry(dt)?;
-        archive.carry(easy)?;
-        archive.carry(cuts)?;
-        archive.carry(rejections)?;
-        archive.carry(events)
+        carry_fields!(archive, self => Automatic {
+            from, dt, easy, cuts, rejections, events; nominal, increments, ends_at_impacts
+        })
     }
 
     fn next(&self) -> Option<NextSubincrement> {

@@ -17,7 +17,7 @@ use super::meter::Meter;
 use super::pins::{Pins, SoftPins, pin_columns, soften};
 use super::rank_update::{RankUpdate, Updates};
 use super::step_problem::StepProblem;
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::{
     ClosedPair, Compliance, Configurations, Constraint, ConstraintGroup, DelassusSpace,
     frictional_lcp,
@@ -263,24 +263,9 @@ impl EffectiveStiffness {
 
     /// Carries both matrices and the configuration of K*.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Self {
-            k,
-            m,
-            angles,
-            form,
-            pins,
-            dt,
-            stiffness,
-            inertia,
-        } = self;
-        k.carry(archive)?;
-        m.carry(archive)?;
-        angles.carry(archive)?;
-        archive.carry(form)?;
-        archive.carry(pins)?;
-        archive.carry(dt)?;
-        archive.carry(stiffness)?;
-        archive.carry(inertia)
+        carry_fields!(archive, self => Self {
+            [k, m, angles] form, pins, dt, stiffness, inertia
+        })
     }
 
     /// Sets the rows of T of bodies that turn in K* to those of the increment `d` from `u0`.

@@ -7,7 +7,7 @@ use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, Syst
 use super::meter::Meter;
 use super::pins::{Pins, SoftPins};
 use super::step_problem::{StepProblem, difference, sum};
-use crate::archive::{Archive, ArchiveError};
+use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, SlaveChoice, find_means,
     find_penetration, find_targets,
@@ -49,15 +49,7 @@ impl<'m> Workspace<'m> {
 
     /// Carries what the increments of the step hand on.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        let Self {
-            stiffness,
-            search,
-            meter: _,
-            pins: _,
-            pairs: _,
-        } = self;
-        stiffness.carry(archive)?;
-        search.carry(archive)
+        carry_fields!(archive, self => Self { [stiffness, search]; meter, pins, pairs })
     }
 
     /// The effective stiffness K*.
