@@ -150,71 +150,41 @@ fn crushed_lines(element: usize, node: usize, part: f64, model: &Model) -> Vec<S
 
 /// The element or node that the cause names.
 fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
-    match *cause {
-        Cause::Inverted { element, .. } => Some(format!(
+    let name = |node: usize| model.node_name(node);
+    let at = |node: usize| format!("{} at {}", name(node), point(position(model, node, u)));
+    let segment = |[a, b]: [usize; 2]| format!("{}-{}", name(a), name(b));
+    let node_and_segment = |node: usize, lies: &str, ends: [usize; 2]| {
+        format!("node     {} {lies} the segment {}", at(node), segment(ends))
+    };
+    Some(match *cause {
+        Cause::Inverted { element, .. } => format!(
             "element  {} with its centre at {}",
             model.element_name(element),
             point(centre(model, element, u)),
-        )),
-        Cause::Crossed {
-            slave,
-            segment: [a, b],
-            ..
-        } => Some(format!(
-            "node     {} at {} through the segment {}-{}",
-            model.node_name(slave),
-            point(position(model, slave, u)),
-            model.node_name(a),
-            model.node_name(b),
-        )),
-        Cause::Overlaps {
-            slave,
-            segment: [a, b],
-            ..
-        } => Some(format!(
-            "node     {} at {} behind the segment {}-{}",
-            model.node_name(slave),
-            point(position(model, slave, u)),
-            model.node_name(a),
-            model.node_name(b),
-        )),
+        ),
+        Cause::Crossed { slave, segment, .. } => node_and_segment(slave, "through", segment),
+        Cause::Overlaps { slave, segment, .. } => node_and_segment(slave, "behind", segment),
         Cause::GainedEnergy {
             pair: Some([slave, a, b]),
             ..
-        } => Some(format!(
-            "node     {} at {} on the segment {}-{}",
-            model.node_name(slave),
-            point(position(model, slave, u)),
-            model.node_name(a),
-            model.node_name(b),
-        )),
-        Cause::Collapsed { segment: [a, b] } => Some(format!(
-            "segment  {}-{} at {}",
-            model.node_name(a),
-            model.node_name(b),
-            point(position(model, a, u)),
-        )),
-
-        Cause::Lcp(ref failed) => Some(pairs_line(failed, model)),
+        } => node_and_segment(slave, "on", [a, b]),
+        Cause::Collapsed { segment: [a, b] } => format!(
+            "segment  {} at {}",
+            segment([a, b]),
+            point(position(model, a, u))
+        ),
+        Cause::Lcp(ref failed) => pairs_line(failed, model),
         Cause::Indefinite { node }
         | Cause::Unstable { node }
         | Cause::Jump { node }
-        | Cause::NotFinite { node, .. } => Some(format!(
-            "node     {} at {}",
-            model.node_name(node),
-            point(position(model, node, u)),
-        )),
+        | Cause::NotFinite { node, .. } => format!("node     {}", at(node)),
         Cause::LinearSolver(LinearError::Dependent { number }) => {
             let [a, b] = model.hinges.get(number)?.nodes;
-            Some(format!(
-                "hinge    nodes {} and {} at {}",
-                model.node_name(a),
-                model.node_name(b),
-                point(position(model, a, u)),
-            ))
+            let place = point(position(model, a, u));
+            format!("hinge    nodes {} and {} at {place}", name(a), name(b))
         }
-        _ => None,
-    }
+        _ => return None,
+    })
 }
 
 /// The body that is not in balance: what is left over, and how it is about to move.
