@@ -275,13 +275,13 @@ impl Loaded {
 }
 
 /// Reads a deck; messages coloured or not.
-type Load = fn(&DeckArgs, Option<EarlierDeck>, bool) -> Loaded;
+type ReadDeck = fn(&DeckArgs, Option<EarlierDeck>, bool) -> Loaded;
 /// Solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
 /// Reader and solver, as the commands call them.
 pub(super) struct Numerics {
-    pub load: Load,
+    pub load: ReadDeck,
     pub solve: Solve,
 }
 

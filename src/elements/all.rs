@@ -384,13 +384,16 @@ impl Elements {
     /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
     /// internal variables there.
     pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
-        let of_chunk = |chunk: &Box<dyn Chunk>| chunk.evaluate(u);
         let parts = self.parts.par_iter().with_min_len(PARALLEL_CHUNK);
         let parts = parts.map(|part| part.element.evaluate(&part.material(variables), u));
         let parts: Vec<ElementResult> = parts.collect();
         let chunks: Vec<_> = match self.is_worth_threads() {
-            true => self.chunks.par_iter().map(of_chunk).collect(),
-            false => self.chunks.iter().map(of_chunk).collect(),
+            true => self
+                .chunks
+                .par_iter()
+                .map(|chunk| chunk.evaluate(u))
+                .collect(),
+            false => self.chunks.iter().map(|chunk| chunk.evaluate(u)).collect(),
         };
         let mut results = vec![ElementResult::default(); self.len()];
         for (element, result) in chunks.into_iter().flatten() {
@@ -449,12 +452,12 @@ impl Elements {
     }
 
     /// Sums up forces of the elements in chunks. False where one is turned inside out.
-    fn sum_chunks(&self, sum: impl Fn(&Box<dyn Chunk>) -> bool + Sync + Send) -> bool {
+    fn sum_chunks(&self, sum: impl Fn(&dyn Chunk) -> bool + Sync + Send) -> bool {
         if self.is_worth_threads() {
-            let sums = self.chunks.par_iter().map(sum);
+            let sums = self.chunks.par_iter().map(|chunk| sum(&**chunk));
             sums.reduce(|| true, |all, chunk| all && chunk)
         } else {
-            self.chunks.iter().all(sum)
+            self.chunks.iter().all(|chunk| sum(&**chunk))
         }
     }
 

@@ -70,7 +70,7 @@ impl<const N: usize> BlockMotion<N> {
 
     /// Natural derivatives at the points.
     #[inline(always)]
-    pub fn derivatives<S: Shape<N, P>, const P: usize>(&self) -> Derivatives<P> {
+    pub fn derivatives<S: IntegratedShape<N, P>, const P: usize>(&self) -> Derivatives<P> {
         let of = |u: &NodalLanes<N>| [S::derivatives(&u[0]), S::derivatives(&u[1])];
         match self {
             Self::At(u) => Derivatives::At(of(u)),
@@ -113,7 +113,7 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
 
     /// sum_p B_L^T S of stresses with their weights in displacement gradients H (force).
     #[inline(always)]
-    pub fn nodal_forces<S: Shape<N, P>>(
+    pub fn nodal_forces<S: IntegratedShape<N, P>>(
         &self,
         h_and_s: impl Fn(usize) -> (TensorLanes, SymmetricLanes),
     ) -> NodalLanes<N> {
@@ -236,7 +236,7 @@ pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
 
 /// Shape functions of N nodes at P integration points, and the two sums over the nodes that a sweep
 /// needs, each with as few operations as the shape allows.
-pub trait Shape<const N: usize, const P: usize> {
+pub trait IntegratedShape<const N: usize, const P: usize> {
     /// The shape functions.
     const FUNCTIONS: ShapeFunctions<N, P>;
 
@@ -312,14 +312,14 @@ impl Deformation {
 /// How force, tangent and results of elements side by side follow from their motion.
 pub trait BlockFormulation {
     /// Internal force, eq. (2.5) (force), and whether det F is positive at all points.
-    fn force<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive);
 
     /// Adds the symmetric tangent (force/length): entries [a][b] with a <= b.
-    fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -327,7 +327,7 @@ pub trait BlockFormulation {
     );
 
     /// Results of the elements at displacements.
-    fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -337,7 +337,7 @@ pub trait BlockFormulation {
 impl BlockFormulation for Displacement {
     /// F = int B_L^T S dOmega
     #[inline(always)]
-    fn force<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -358,7 +358,7 @@ impl BlockFormulation for Displacement {
     ///
     /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.
     #[inline(always)]
-    fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -380,7 +380,7 @@ impl BlockFormulation for Displacement {
     }
 
     #[inline(always)]
-    fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -405,7 +405,7 @@ impl BlockFormulation for Displacement {
 impl<const N: usize, const P: usize> ElementBlock<N, P> {
     /// Gradients dh_a/dX = dh_a/dr J^-1 of the nodes at a point.
     #[inline(always)]
-    pub fn gradients<S: Shape<N, P>>(&self, p: usize) -> [[Lanes; 2]; N] {
+    pub fn gradients<S: IntegratedShape<N, P>>(&self, p: usize) -> [[Lanes; 2]; N] {
         let [r, s] = &self.inverse[p];
         let mut gradients = [[Lanes::ZERO; 2]; N];
         for (gradient, &[hr, hs]) in gradients.iter_mut().zip(&S::FUNCTIONS.natural[p]) {

@@ -12,7 +12,9 @@ use nalgebra::SMatrix;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::block::{BlockFormulation, BlockMotion, ElementBlock, MatrixLanes, NodalLanes, Shape};
+use super::block::{
+    BlockFormulation, BlockMotion, ElementBlock, IntegratedShape, MatrixLanes, NodalLanes,
+};
 use super::formulation::ElementResult;
 use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::lanes::{LANES, Lanes, Positive};
@@ -85,7 +87,7 @@ pub struct ShapeChunk<const N: usize, const P: usize, S, F> {
 
 impl<const N: usize, const P: usize, S, F> ShapeChunk<N, P, S, F>
 where
-    S: Shape<N, P> + Sync,
+    S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
 {
     /// A chunk of elements (indices) with their nodes, between nodes at the coordinates `x`, of the
@@ -214,7 +216,7 @@ where
 
 impl<const N: usize, const P: usize, S, F> Chunk for ShapeChunk<N, P, S, F>
 where
-    S: Shape<N, P> + Send + Sync,
+    S: IntegratedShape<N, P> + Send + Sync,
     F: BlockFormulation + Send + Sync,
 {
     fn sum_forces(&self, motion: Motion) -> bool {
@@ -317,7 +319,7 @@ struct ForceSweep<'a, const N: usize, const P: usize, S, F, L> {
 
 impl<const N: usize, const P: usize, S, F, L> WithSimd for ForceSweep<'_, N, P, S, F, L>
 where
-    S: Shape<N, P> + Sync,
+    S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
     L: LawInLanes,
 {
@@ -345,7 +347,7 @@ struct Evaluation<'a, const N: usize, const P: usize, S, F, L> {
 
 impl<const N: usize, const P: usize, S, F, L> WithSimd for Evaluation<'_, N, P, S, F, L>
 where
-    S: Shape<N, P> + Sync,
+    S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
     L: LawInLanes,
 {
@@ -375,7 +377,7 @@ struct Tangents<'a, const N: usize, const P: usize, S, F, L> {
 
 impl<const N: usize, const P: usize, S, F, L> WithSimd for Tangents<'_, N, P, S, F, L>
 where
-    S: Shape<N, P> + Sync,
+    S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
     L: LawInLanes,
 {

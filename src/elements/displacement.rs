@@ -4,7 +4,7 @@
 use nalgebra::SMatrix;
 
 use super::formulation::{
-    Configuration, Formulation, PointState, Reference, add_geometric, determinant,
+    Configuration, ElementFormulation, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use crate::materials::{Strains, StressAtPoints};
@@ -13,7 +13,7 @@ use crate::materials::{Strains, StressAtPoints};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Displacement;
 
-impl Formulation for Displacement {
+impl ElementFormulation for Displacement {
     #[inline]
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,

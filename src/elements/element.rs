@@ -214,13 +214,13 @@ fn positions<const N: usize>(nodes: &[usize], x: &[[f64; 2]]) -> SMatrix<f64, 2,
 }
 
 /// An element of the shape S.
-fn solid<S: block::Shape<N, P>, F, const N: usize, const P: usize, const D: usize>(
+fn solid<S: block::IntegratedShape<N, P>, F, const N: usize, const P: usize, const D: usize>(
     nodes: &[usize],
     x: &[[f64; 2]],
     t: f64,
 ) -> Solid<N, P, D, F>
 where
-    F: formulation::Formulation,
+    F: formulation::ElementFormulation,
 {
     Solid::new(first(nodes), S::reference(&S::map(&positions(nodes, x), t)))
 }
@@ -233,7 +233,7 @@ fn chunk<S, F, const N: usize, const P: usize>(
     law: (PlaneLaw, Option<Viscosity>),
 ) -> Box<dyn Chunk>
 where
-    S: block::Shape<N, P> + Send + Sync + 'static,
+    S: block::IntegratedShape<N, P> + Send + Sync + 'static,
     F: block::BlockFormulation + Send + Sync + 'static,
 {
     let mesh = &model.mesh;
@@ -295,7 +295,7 @@ impl Geometry<'_> {
         }
     }
 
-    fn mass_of<S: block::Shape<N, P>, const N: usize, const P: usize>(
+    fn mass_of<S: block::IntegratedShape<N, P>, const N: usize, const P: usize>(
         &self,
         density: f64,
         t: f64,
@@ -304,7 +304,7 @@ impl Geometry<'_> {
         (S::mass(&x, t) * density).as_slice().to_vec()
     }
 
-    fn shares_of<S: block::Shape<N, P>, const N: usize, const P: usize>(
+    fn shares_of<S: block::IntegratedShape<N, P>, const N: usize, const P: usize>(
         &self,
         t: f64,
     ) -> [f64; MAX_NODES] {

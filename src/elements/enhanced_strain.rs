@@ -18,7 +18,7 @@
 use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 use super::formulation::{
-    Configuration, Formulation, PointState, Reference, add_geometric, determinant,
+    Configuration, ElementFormulation, PointState, Reference, add_geometric, determinant,
     displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::local_solution::{LAST_STEP, least, zero};
@@ -344,7 +344,7 @@ fn stored<const N: usize, const P: usize>(
         .sum()
 }
 
-impl Formulation for EnhancedStrain {
+impl ElementFormulation for EnhancedStrain {
     /// Between two configurations D is what Phi has more than the stored energy: that of the points alone would have an
     /// error of first order in alpha. alpha is written behind the variables of the points.
     fn update<const N: usize, const P: usize>(

@@ -11,7 +11,7 @@ use crate::materials::{Across, Committed, Strains, StressAtPoints};
 
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
-pub trait Formulation {
+pub trait ElementFormulation {
     /// Visits every integration point p with its deformation and stress: the one evaluation of the
     /// material, from which force, tangent and output follow.
     fn for_each_state<const N: usize, const P: usize>(
@@ -75,7 +75,7 @@ pub trait Formulation {
 }
 
 /// Work of the stress on the strains between two configurations, int S:(E1 - E0) dOmega (force length).
-pub fn work<F: Formulation, const N: usize, const P: usize>(
+pub fn work<F: ElementFormulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &impl StressAtPoints,
     configuration: &Configuration<N>,
@@ -91,7 +91,7 @@ pub fn work<F: Formulation, const N: usize, const P: usize>(
 }
 
 /// Results of the points of an element at displacements `u`, with their weights.
-pub(super) fn at_points<F: Formulation, const N: usize, const P: usize>(
+pub(super) fn at_points<F: ElementFormulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &Committed,
     u: &SMatrix<f64, 2, N>,
@@ -105,7 +105,7 @@ pub(super) fn at_points<F: Formulation, const N: usize, const P: usize>(
 }
 
 /// Strain energy, stress and strain of an element at displacements `u`.
-pub fn evaluate<F: Formulation, const N: usize, const P: usize>(
+pub fn evaluate<F: ElementFormulation, const N: usize, const P: usize>(
     element: &Reference<N, P>,
     material: &Committed,
     u: &SMatrix<f64, 2, N>,

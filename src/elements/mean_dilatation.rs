@@ -12,7 +12,7 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
 use super::formulation::{
-    Configuration, Formulation, IntegrationPoint, PointState, Reference, add_geometric,
+    Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
     determinant, displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use crate::materials::{Strains, StressAtPoints};
@@ -157,7 +157,7 @@ fn stresses<const N: usize, const P: usize>(
     (motions, stresses, theta)
 }
 
-impl Formulation for MeanDilatation {
+impl ElementFormulation for MeanDilatation {
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &impl StressAtPoints,

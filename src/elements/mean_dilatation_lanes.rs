@@ -7,9 +7,9 @@
 use std::array::from_fn;
 
 use super::block::{
-    BlockFormulation, BlockMotion, Derivatives, ElementBlock, MatrixLanes, NodalLanes, ResultPoint,
-    Shape, Sums, TensorLanes, add_products, deformation_gradient, determinant, elasticity,
-    green_lagrange, plus, scaled,
+    BlockFormulation, BlockMotion, Derivatives, ElementBlock, IntegratedShape, MatrixLanes,
+    NodalLanes, ResultPoint, Sums, TensorLanes, add_products, deformation_gradient, determinant,
+    elasticity, green_lagrange, plus, scaled,
 };
 use super::formulation::ElementResult;
 use super::mean_dilatation::MeanDilatation;
@@ -105,7 +105,7 @@ impl PointLanes {
 
 /// Motion and stresses of all points, and their weights over the volume of the element; `positive` takes in det F.
 #[inline(always)]
-fn stresses<S: Shape<N, P>, const N: usize, const P: usize>(
+fn stresses<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     block: &ElementBlock<N, P>,
     law: &impl LawInLanes,
     motion: &BlockMotion<N>,
@@ -153,7 +153,7 @@ fn stresses<S: Shape<N, P>, const N: usize, const P: usize>(
 
 impl BlockFormulation for MeanDilatation {
     #[inline(always)]
-    fn force<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -176,7 +176,7 @@ impl BlockFormulation for MeanDilatation {
     /// X = int alpha B_L^T (z - beta kappa K/2) + alpha² kappa/2 Dtheta dOmega
     /// ```
     #[inline(always)]
-    fn add_tangent<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,
@@ -233,7 +233,7 @@ impl BlockFormulation for MeanDilatation {
     }
 
     #[inline(always)]
-    fn evaluate<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
         law: &impl LawInLanes,
         motion: &BlockMotion<N>,

@@ -17,7 +17,7 @@ use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
 
 use super::enhanced_strain::Modes;
 use super::formulation::{
-    Configuration, Formulation, IntegrationPoint, PointState, Reference, add_geometric,
+    Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
     determinant, green_lagrange, smaller, strain_displacement,
 };
 use super::hourglass::{Amplitudes, HourglassPotential};
@@ -157,7 +157,7 @@ fn state<const N: usize, const P: usize>(
     }
 }
 
-impl Formulation for ReducedIntegration {
+impl ElementFormulation for ReducedIntegration {
     /// The one state of the element for each of its points.
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,

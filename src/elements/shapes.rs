@@ -4,7 +4,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::block::Shape;
+use super::block::IntegratedShape;
 use super::displacement::Displacement;
 use super::enhanced_strain::EnhancedStrain;
 use super::formulation::ShapeFunctions;
@@ -19,7 +19,7 @@ pub type Tri3 = Solid<3, 1, 6, Displacement>;
 /// The triangle: linear shape functions h = (1 - r - s, r, s) at its centroid.
 pub struct Triangle;
 
-impl Shape<3, 1> for Triangle {
+impl IntegratedShape<3, 1> for Triangle {
     const FUNCTIONS: ShapeFunctions<3, 1> = ShapeFunctions {
         values: [[1.0 / 3.0; 3]],
         natural: [[[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]]],
@@ -76,7 +76,7 @@ const FAR: f64 = (1.0 - GAUSS) / 4.0;
 /// The quadrilateral: bilinear shape functions h_a = (1 + r_a r)(1 + s_a s)/4 at 2 x 2 Gauss points.
 pub struct Quadrilateral;
 
-impl Shape<4, 4> for Quadrilateral {
+impl IntegratedShape<4, 4> for Quadrilateral {
     const FUNCTIONS: ShapeFunctions<4, 4> = bilinear(BY_FOUR, [1.0; 4]);
 
     /// dv/dr depends on s alone and dv/ds on r alone: both follow from the differences along the edges.
@@ -228,7 +228,7 @@ impl Quadrilateral {
     pub(super) const RING_MASS: ShapeFunctions<4, 9> = bilinear(DEGREE_5.0, DEGREE_5.1);
 }
 
-impl Shape<6, 3> for QuadraticTriangle {
+impl IntegratedShape<6, 3> for QuadraticTriangle {
     const FUNCTIONS: ShapeFunctions<6, 3> = {
         let (near, far) = (1.0 / 6.0, 2.0 / 3.0);
         quadratic_triangle([[near, near], [far, near], [near, far]], [near; 3])
@@ -311,7 +311,7 @@ pub(super) const DEGREE_5: ([[f64; 2]; 9], [f64; 9]) = {
     (points, weights)
 };
 
-impl Shape<8, 9> for Serendipity {
+impl IntegratedShape<8, 9> for Serendipity {
     const FUNCTIONS: ShapeFunctions<8, 9> = serendipity(DEGREE_5.0, DEGREE_5.1);
 
     fn mass(x: &SMatrix<f64, 2, 8>, t: f64) -> SMatrix<f64, 8, 8> {
@@ -323,7 +323,7 @@ impl Shape<8, 9> for Serendipity {
     }
 }
 
-impl Shape<8, 4> for ReducedSerendipity {
+impl IntegratedShape<8, 4> for ReducedSerendipity {
     const FUNCTIONS: ShapeFunctions<8, 4> = serendipity(BY_FOUR, [1.0; 4]);
 
     fn mass(x: &SMatrix<f64, 2, 8>, t: f64) -> SMatrix<f64, 8, 8> {
@@ -374,7 +374,7 @@ pub(super) mod tests {
     use nalgebra::Matrix2;
 
     /// Gradients, volume and mass of an element of thickness 0.25 between nodes at `x`, whose corners come first.
-    fn check<S: Shape<N, P>, const N: usize, const P: usize>(
+    fn check<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         x: SMatrix<f64, 2, N>,
         corners: usize,
     ) {
@@ -484,10 +484,10 @@ pub(super) mod tests {
     }
 
     /// Zero eigenvalues of the tangent of an undeformed element.
-    fn zero_modes<S: Shape<N, P>, const N: usize, const P: usize, const D: usize>(
+    fn zero_modes<S: IntegratedShape<N, P>, const N: usize, const P: usize, const D: usize>(
         x: SMatrix<f64, 2, N>,
     ) -> usize {
-        use crate::elements::formulation::{Configuration, Formulation};
+        use crate::elements::formulation::{Configuration, ElementFormulation};
         use crate::materials::{Committed, Law, Plane};
         let law = Law::elastic(1000.0, 0.3).in_plane(Plane::Strain);
         let element = S::reference(&S::map(&x, 1.0));

@@ -6,7 +6,8 @@ use std::marker::PhantomData;
 use nalgebra::{DMatrix, SMatrix, SymmetricEigen};
 
 use super::formulation::{
-    Configuration, ElementResult, Formulation, PointResults, Reference, at_points, evaluate, work,
+    Configuration, ElementFormulation, ElementResult, PointResults, Reference, at_points, evaluate,
+    work,
 };
 use crate::materials::{Committed, StressAtPoints};
 use crate::model::ElementType;
@@ -69,7 +70,7 @@ impl<'a> Motion<'a> {
     }
 }
 
-impl<const N: usize, const P: usize, const D: usize, F: Formulation> Solid<N, P, D, F> {
+impl<const N: usize, const P: usize, const D: usize, F: ElementFormulation> Solid<N, P, D, F> {
     /// An element between some nodes.
     pub fn new(nodes: [usize; N], reference: Reference<N, P>) -> Self {
         Solid {

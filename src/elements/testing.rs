@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector};
 
-use super::block::Shape;
+use super::block::IntegratedShape;
 use super::displacement::Displacement;
 use super::enhanced_strain::alternating;
-use super::formulation::{Configuration, Formulation, Reference, evaluate};
+use super::formulation::{Configuration, ElementFormulation, Reference, evaluate};
 use super::shapes::Quadrilateral;
 use crate::materials::{Committed, Law, NeoHooke, Plane, PlaneLaw};
 
@@ -56,13 +56,13 @@ where
 }
 
 impl<const N: usize, const P: usize> Sample<N, P> {
-    pub fn new<S: Shape<N, P>>(x: [[f64; 2]; N]) -> Self {
+    pub fn new<S: IntegratedShape<N, P>>(x: [[f64; 2]; N]) -> Self {
         let x = SMatrix::from_columns(&x.map(|p| p.into()));
         let element = S::reference(&S::map(&x, 0.5));
         Sample { x, element }
     }
 
-    pub fn force<F: Formulation>(
+    pub fn force<F: ElementFormulation>(
         &self,
         law: &PlaneLaw,
         configuration: &Configuration<N>,
@@ -70,11 +70,11 @@ impl<const N: usize, const P: usize> Sample<N, P> {
         F::internal_force::<N, P>(&self.element, &Committed::new(law, &[]), configuration).0
     }
 
-    pub fn energy<F: Formulation>(&self, law: &PlaneLaw, u: &SMatrix<f64, 2, N>) -> f64 {
+    pub fn energy<F: ElementFormulation>(&self, law: &PlaneLaw, u: &SMatrix<f64, 2, N>) -> f64 {
         evaluate::<F, N, P>(&self.element, &Committed::new(law, &[]), u).energy
     }
 
-    pub fn tangent<F: Formulation, const D: usize>(
+    pub fn tangent<F: ElementFormulation, const D: usize>(
         &self,
         law: &PlaneLaw,
         u: SMatrix<f64, 2, N>,
@@ -84,7 +84,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// All of the following.
-    pub fn check_all<F: Formulation, const D: usize>(&self, law: &PlaneLaw) {
+    pub fn check_all<F: ElementFormulation, const D: usize>(&self, law: &PlaneLaw) {
         self.check_derivatives::<F, D>(law);
         self.check_work::<F>(law);
         self.check_rotation::<F>(law);
@@ -93,7 +93,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// The force is the derivative of the strain energy, and the tangent that of the force.
-    pub fn check_derivatives<F: Formulation, const D: usize>(&self, law: &PlaneLaw) {
+    pub fn check_derivatives<F: ElementFormulation, const D: usize>(&self, law: &PlaneLaw) {
         let found = self.force::<F>(law, &Configuration::At(displacements(5)));
         let k = self.tangent::<F, D>(law, displacements(5));
         for j in 0..D {
@@ -109,7 +109,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// The force between two configurations does the work of the strain energy, and has neither resultant nor moment.
-    pub fn check_work<F: Formulation>(&self, law: &PlaneLaw) {
+    pub fn check_work<F: ElementFormulation>(&self, law: &PlaneLaw) {
         for size in [1.0, 1e-3, 1e-6] {
             let u0 = displacements(5) * 0.3;
             let u1 = u0 + displacements(11) * (0.3 * size);
@@ -125,7 +125,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// A rigid rotation gives no force and no change of volume.
-    pub fn check_rotation<F: Formulation>(&self, law: &PlaneLaw) {
+    pub fn check_rotation<F: ElementFormulation>(&self, law: &PlaneLaw) {
         for degrees in (0..=360).step_by(15) {
             let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
             let u = Matrix2::new(cos, -sin, sin, cos) * self.x - self.x;
@@ -138,7 +138,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// A homogeneous deformation has the energy, stress and force of elements without further strains (patch test).
-    fn check_homogeneous<F: Formulation>(&self, law: &PlaneLaw) {
+    fn check_homogeneous<F: ElementFormulation>(&self, law: &PlaneLaw) {
         let u = Matrix2::new(0.2, 0.3, 0.1, -0.1) * self.x;
         let material = Committed::new(law, &[]);
         let found = evaluate::<F, N, P>(&self.element, &material, &u);
@@ -154,7 +154,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
     }
 
     /// Only the three rigid motions have no stiffness.
-    fn check_rank<F: Formulation, const D: usize>(&self, law: &PlaneLaw) {
+    fn check_rank<F: ElementFormulation, const D: usize>(&self, law: &PlaneLaw) {
         let k = self.tangent::<F, D>(law, SMatrix::zeros());
         // nalgebra asks for bounds that a generic size cannot show
         let values =
@@ -166,7 +166,7 @@ impl<const N: usize, const P: usize> Sample<N, P> {
 }
 
 /// A square of rubber that is compressed to a fifth resists its hourglass modes.
-pub(super) fn check_compressed<F: Formulation>() {
+pub(super) fn check_compressed<F: ElementFormulation>() {
     let law = rubber().in_plane(Plane::Strain);
     let square = Sample::new::<Quadrilateral>([[0., 0.], [1., 0.], [1., 1.], [0., 1.]]);
     for percent in (20..=95).step_by(5) {

@@ -90,9 +90,9 @@ impl Plastic {
         COMPONENTS * (1 + usize::from(self.has_back_strain())) + 1
     }
 
-    fn state(&self, z: &[f64]) -> State {
+    fn state(&self, z: &[f64]) -> PlasticState {
         let tensor = |from: usize| Vector4::from_fn(|i, _| z[from + i]);
-        State {
+        PlasticState {
             g: tensor(0),
             back: match self.has_back_strain() {
                 true => tensor(COMPONENTS),
@@ -163,7 +163,7 @@ impl Plastic {
     }
 
     /// Trial state of a strain, eq. (2.37).
-    fn trial(&self, e: &Symmetric, state: &State) -> Trial {
+    fn trial(&self, e: &Symmetric, state: &PlasticState) -> Trial {
         let v = IDENTITY + root(&state.g);
         let y = state.g + between(&v, e) * 2.0;
         let spectrum = Spectrum::new(&y);
@@ -177,12 +177,12 @@ impl Plastic {
     }
 
     /// xi = 2 mu dev E_h - 2/3 H_k A (force/length^2).
-    fn relative_stress(&self, strain: &Symmetric, state: &State) -> Symmetric {
+    fn relative_stress(&self, strain: &Symmetric, state: &PlasticState) -> Symmetric {
         deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
     }
 
     /// Flow from a trial strain, which makes the potential of eq. (2.38) least.
-    fn flow(&self, strain: &Symmetric, state: &State) -> Flow {
+    fn flow(&self, strain: &Symmetric, state: &PlasticState) -> Flow {
         let xi = self.relative_stress(strain, state);
         let size = contract(&xi, &xi).sqrt();
         let q = 1.5_f64.sqrt() * size;
@@ -239,7 +239,7 @@ impl Plastic {
     }
 
     /// Stored energy psi(E, z) (force/length^2).
-    fn stored(&self, e: &Symmetric, state: &State) -> f64 {
+    fn stored(&self, e: &Symmetric, state: &PlasticState) -> f64 {
         let strain = self.trial(e, state).strain;
         contract(&self.elastic(&strain), &strain) / 2.0
             + self.kinematic / 3.0 * contract(&state.back, &state.back)
@@ -250,7 +250,7 @@ impl Plastic {
     /// ```text
     /// (T_h + T)/2 : dE_p - H_k/3 (2 A + dE_p):dE_p - int sigma_y da,   T_h = T without the flow
     /// ```
-    fn released(&self, e: &Symmetric, state: &State) -> f64 {
+    fn released(&self, e: &Symmetric, state: &PlasticState) -> f64 {
         let strain = self.trial(e, state).strain;
         let flow = self.flow(&strain, state);
         let stress = self.elastic(&(strain * 2.0 - flow.strain)) / 2.0;
@@ -264,7 +264,7 @@ impl Plastic {
     /// ```text
     /// K = V X^(-1/2) exp(E_e),  G = K K^T,  R = G^(-1/2) K,  A <- R (A + dE_p) R^T
     /// ```
-    fn updated(&self, e: &Symmetric, state: &State) -> State {
+    fn updated(&self, e: &Symmetric, state: &PlasticState) -> PlasticState {
         let trial = self.trial(e, state);
         let flow = self.flow(&trial.strain, state);
         if flow.slip == 0.0 {
@@ -287,7 +287,7 @@ impl Plastic {
             None => in_plane(&moved),
         };
         let whole = |a: &Matrix2<f64>, z: f64| Vector4::new(a.m11, a.m22, z, (a.m12 + a.m21) / 2.0);
-        State {
+        PlasticState {
             g: whole(&(g - Matrix2::identity()), around * around - 1.0),
             back: whole(&turned, moved.z),
             slip: state.slip + flow.slip,
@@ -297,7 +297,7 @@ impl Plastic {
 
 /// The internal variables of a point.
 #[derive(Debug, Clone, Copy, Default)]
-struct State {
+struct PlasticState {
     /// G - I.
     g: Symmetric,
     /// Back strain A.
@@ -518,7 +518,7 @@ fn artanh_ratio(w: f64) -> f64 {
 /// The potential Phi(E; z0) of an increment: stored energy and work of hardening after the flow.
 struct Potential<'a> {
     law: &'a Plastic,
-    state: State,
+    state: PlasticState,
 }
 
 impl SolidHyperelastic for Potential<'_> {
@@ -814,11 +814,11 @@ mod tests {
 
     const WAY: Symmetric = Vector4::new(0.03, -0.02, 0.008, 0.015);
 
-    fn states(law: &Plastic) -> Vec<State> {
+    fn states(law: &Plastic) -> Vec<PlasticState> {
         // some flow along one way and another
-        let first = law.updated(&(WAY * 3.0), &State::default());
+        let first = law.updated(&(WAY * 3.0), &PlasticState::default());
         let turned = Vector4::new(-0.02, 0.04, 0.01, -0.05);
-        vec![State::default(), first, law.updated(&turned, &first)]
+        vec![PlasticState::default(), first, law.updated(&turned, &first)]
     }
 
     #[test]

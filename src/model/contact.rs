@@ -275,12 +275,12 @@ pub struct RigidBody {
     /// Whether it is made of coupled nodes (`*COUPLING`, `*KINEMATIC COUPLING`, `*MPC`), whose mass it has.
     pub is_coupling: bool,
     /// Its motion, if it turns.
-    pub turning: Option<TurningBody>,
+    pub turning: Option<TurningInertia>,
 }
 
 /// A rigid body with an angle of its own, prescribed or free.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct TurningBody {
+pub struct TurningInertia {
     /// Number among the bodies that turn.
     pub number: usize,
     /// Nodes with the masses that they carry beside the elements (mass).

@@ -23,7 +23,7 @@ pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
     ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Hinge,
-    Interaction, Reach, RigidBody, RigidProfile, Surface, SurfaceKind, TurningBody, Wear,
+    Interaction, Reach, RigidBody, RigidProfile, Surface, SurfaceKind, TurningInertia, Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};
@@ -102,7 +102,7 @@ impl Model {
     }
 
     /// The rigid bodies that turn, in the order of their numbers.
-    pub fn turning_bodies(&self) -> impl Iterator<Item = (&RigidBody, &TurningBody)> {
+    pub fn turning_bodies(&self) -> impl Iterator<Item = (&RigidBody, &TurningInertia)> {
         let bodies = self.rigid_bodies.iter();
         bodies.filter_map(|body| Some((body, body.turning.as_ref()?)))
     }
@@ -113,12 +113,12 @@ impl Model {
     }
 
     /// The node that is the centre of mass of a body that turns.
-    pub fn centre_of(&self, body: &TurningBody) -> usize {
+    pub fn centre_of(&self, body: &TurningInertia) -> usize {
         self.mesh.node_count() + 2 * body.number
     }
 
     /// The dof that is the angle of a body that turns.
-    pub fn angle_of(&self, body: &TurningBody) -> usize {
+    pub fn angle_of(&self, body: &TurningInertia) -> usize {
         2 * (self.centre_of(body) + 1)
     }
 

@@ -10,7 +10,7 @@ use crate::deck::{Card, Text};
 use crate::diagnostics::{Code, Span, shown};
 use crate::model::{
     ContactMass, Equation, LandingRule, Mesh, Procedure, Rate, RigidBody, Step, Support,
-    SupportMotion, SurfaceKind, TurningBody,
+    SupportMotion, SurfaceKind, TurningInertia,
 };
 use crate::vectors::difference;
 use std::collections::{BTreeMap, BTreeSet};
@@ -411,7 +411,7 @@ pub(crate) fn complete(
         is_coupling: rigid.is_coupling,
         turning: match *motion {
             BodyMotion::Translates => None,
-            BodyMotion::Turns(number) => Some(TurningBody {
+            BodyMotion::Turns(number) => Some(TurningInertia {
                 number,
                 masses: rigid.masses.clone(),
                 rotary_inertia: rigid.rotary_inertia,

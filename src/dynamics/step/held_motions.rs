@@ -20,14 +20,14 @@ pub(crate) struct HeldMotions(Vec<HeldBody>);
 struct HeldBody {
     /// Its number among those with pins.
     body: usize,
-    directions: Vec<Direction>,
+    directions: Vec<HeldDirection>,
     /// Resultant of what holds it, along the free rigid motions of the body.
     force: DVector<f64>,
 }
 
 /// A rigid motion that is held, one of some that are orthogonal and of size 1.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-struct Direction {
+struct HeldDirection {
     /// D: parts of the free rigid motions.
     rigid: DVector<f64>,
     /// Z_p D: motion of the pins.
@@ -47,7 +47,7 @@ impl HeldBody {
     /// A body that is held along orthogonal rigid motions with what they take of a resultant.
     fn new(body: usize, pins: &PinMotions, rigid: Vec<DVector<f64>>, force: &DVector<f64>) -> Self {
         let force = along(&rigid, force);
-        let seen = |rigid: DVector<f64>| Direction {
+        let seen = |rigid: DVector<f64>| HeldDirection {
             motion: pins.motions(&rigid),
             force: pins.forces(&rigid),
             rigid,
@@ -80,7 +80,7 @@ impl HeldMotions {
             let own = of_bodies[held.body].clone();
             let size = (own.len(), own.len());
             let mut block = all.view_mut((own.start, own.start), size);
-            for Direction { motion, force, .. } in &held.directions {
+            for HeldDirection { motion, force, .. } in &held.directions {
                 block += motion * force.transpose();
             }
         }
@@ -94,7 +94,7 @@ impl HeldMotions {
         for held in &self.0 {
             let own = of_bodies[held.body].clone();
             let mut of_body = forces.rows_mut(own.start, own.len());
-            for Direction { rigid, force, .. } in &held.directions {
+            for HeldDirection { rigid, force, .. } in &held.directions {
                 of_body += force * rigid.dot(&held.force);
             }
         }
@@ -106,7 +106,7 @@ impl HeldMotions {
         let of_bodies = pins.of_bodies();
         for held in &mut self.0 {
             let own = DVector::from_column_slice(&forces[of_bodies[held.body].clone()]);
-            for Direction { rigid, motion, .. } in &held.directions {
+            for HeldDirection { rigid, motion, .. } in &held.directions {
                 held.force += rigid * motion.dot(&own);
             }
         }

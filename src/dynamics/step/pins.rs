@@ -83,14 +83,14 @@ impl PinMotions {
 type Spin = (usize, f64);
 
 /// Two translations and the rotation about a pole, in units of a size, at a configuration.
-struct Frame<'a> {
+struct PinFrame<'a> {
     pole: [f64; 2],
     size: f64,
     spins: &'a [Spin],
     x: &'a dyn Fn(usize) -> [f64; 2],
 }
 
-impl Frame<'_> {
+impl PinFrame<'_> {
     /// Motion of a dof in both translations and the rotation that moves places at the distance of the size by 1.
     fn row(&self, dof: usize) -> Vector3<f64> {
         if let Some((_, length)) = self.spins.iter().find(|spin| spin.0 == dof) {
@@ -336,7 +336,7 @@ impl PinnedBody {
             0.0 => lengths.fold(0.0, larger),
             size => size,
         };
-        let frame = Frame {
+        let frame = PinFrame {
             pole,
             size,
             spins: &spins,
@@ -416,8 +416,8 @@ impl PinnedBody {
     }
 
     /// Its motions about a pole.
-    fn frame<'a>(&'a self, pole: [f64; 2], x: &'a dyn Fn(usize) -> [f64; 2]) -> Frame<'a> {
-        Frame {
+    fn frame<'a>(&'a self, pole: [f64; 2], x: &'a dyn Fn(usize) -> [f64; 2]) -> PinFrame<'a> {
+        PinFrame {
             pole,
             size: self.size,
             spins: &self.spins,
@@ -426,7 +426,7 @@ impl PinnedBody {
     }
 
     /// Z_p, what its pins see of its free motions, unless they do not see all.
-    fn motions_of_pins(&self, frame: &Frame) -> Option<PinMotions> {
+    fn motions_of_pins(&self, frame: &PinFrame) -> Option<PinMotions> {
         let m = self.dofs.len();
         let seen =
             |i: usize, k: usize| (frame.row(self.dofs[i])).dot(&self.free.fixed_view::<3, 1>(0, k));

@@ -3,7 +3,7 @@
 
 use crate::elements::Elements;
 use crate::linear::Transformation;
-use crate::model::{Model, RigidBody, TurningBody as Body};
+use crate::model::{Model, RigidBody, TurningInertia};
 use crate::vectors::{cross, difference, distance, dot};
 
 /// A rigid body that turns. Its unknowns are the displacement of its pole and s = L c: c = 2 tan(dtheta/2) is its
@@ -53,7 +53,11 @@ fn mean_arm(r0: [f64; 2], c: f64) -> [f64; 2] {
 
 impl TurningBody {
     /// A body of a model.
-    fn new(model: &Model, elements: &Elements, (rigid, body): (&RigidBody, &Body)) -> Self {
+    fn new(
+        model: &Model,
+        elements: &Elements,
+        (rigid, body): (&RigidBody, &TurningInertia),
+    ) -> Self {
         let x = &model.mesh.coordinates;
         // mass, its moments and int rho (X - X_ref)² dOmega from the consistent mass
         let arm = |node: usize| difference(x[rigid.reference], x[node]);
@@ -480,10 +484,10 @@ mod tests {
             name: "B".into(),
             reference: 0,
             nodes: vec![1, 2],
-            turning: Some(Body {
+            turning: Some(TurningInertia {
                 masses: vec![(1, 2.0), (2, 1.0)],
                 rotary_inertia: 0.7,
-                ..Body::default()
+                ..TurningInertia::default()
             }),
             ..RigidBody::default()
         });

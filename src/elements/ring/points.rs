@@ -4,7 +4,7 @@
 use nalgebra::{Matrix2, Vector2, Vector4};
 use smallvec::SmallVec;
 
-use crate::elements::block::Shape;
+use crate::elements::block::IntegratedShape;
 use crate::elements::formulation::{ShapeFunctions, green_lagrange, smaller};
 use crate::elements::shapes::{
     QuadraticTriangle, Quadrilateral, ReducedSerendipity, Serendipity, Triangle,
