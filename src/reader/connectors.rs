@@ -116,7 +116,8 @@ fn card_of(
     let Some(set) = sets.element_names.find(name, cx) else {
         return;
     };
-    let members = sets.connectors.get(set).map_or(&[][..], |members| members);
+    let others = sets.others.get(set);
+    let members = others.map_or(&[][..], |others| &others.connectors);
     let elements = || {
         let all = members.iter().filter_map(|&k| mesh_index.connectors.get(k));
         all.filter(|element| element.kind.law == law)

@@ -22,22 +22,16 @@ pub(crate) struct Sets {
     pub element_names: Names,
     /// Element sets in the order of their names: their plane elements.
     pub elements: Vec<Set>,
-    /// Faces that the line elements of the element sets name.
-    pub lines: Vec<Vec<Face>>,
-    /// Point elements of the element sets.
-    points: Vec<Vec<usize>>,
-    /// Springs and dashpots of the element sets (indices among these).
-    pub connectors: Vec<Vec<usize>>,
+    /// Their other elements.
+    pub others: Vec<OtherElements>,
 }
 
 impl Sets {
     /// Whether an element set holds line or point elements, springs or dashpots, and no plane elements.
     pub fn holds_others_only(&self, set: usize) -> bool {
-        let lines = self.lines.get(set).is_some_and(|lines| !lines.is_empty());
-        let others = [&self.points, &self.connectors];
-        let others = others.map(|all| all.get(set).is_some_and(|all| !all.is_empty()));
-        let elements = self.elements.get(set);
-        (lines || others.contains(&true)) && elements.is_some_and(|set| set.members.is_empty())
+        let others = self.others.get(set);
+        let elements = self.elements.get(set).map(|set| &set.members);
+        others.is_some_and(|all| !all.is_empty()) && elements.is_some_and(Vec::is_empty)
     }
 
     /// The node, or the nodes of the set, that a field names.
@@ -86,14 +80,7 @@ impl Sets {
 
     /// The point elements that a field names.
     pub fn points_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
-        if cx.is_number(field) {
-            let found = mesh_index.elements.find(field, cx);
-            return split(found.into_iter().collect(), mesh_index).points;
-        }
-        let set = self.element_names.find(field, cx);
-        set.and_then(|index| self.points.get(index))
-            .cloned()
-            .unwrap_or_default()
+        self.members_of(field, mesh_index, cx).1.points.clone()
     }
 
     /// The element, or the elements of the set, that a field names, and the faces that line elements
@@ -104,23 +91,29 @@ impl Sets {
         mesh_index: &MeshIndex,
         cx: &mut Context,
     ) -> (Cow<'_, [usize]>, Vec<Face>) {
-        if cx.is_number(field) {
-            let found = mesh_index.elements.find(field, cx);
-            let members = split(found.into_iter().collect(), mesh_index);
-            if !members.connectors.is_empty() {
-                report_connectors(field, cx);
-            }
-            return (Cow::Owned(members.elements), members.lines);
-        }
-        let set = self.element_names.find(field, cx);
-        let lines = set.and_then(|index| self.lines.get(index));
-        let elements = members(&self.elements, set);
-        let connectors = set.and_then(|index| self.connectors.get(index));
-        let is_empty = elements.is_empty() && lines.is_none_or(|lines| lines.is_empty());
-        if is_empty && connectors.is_some_and(|all| !all.is_empty()) {
+        let (elements, others) = self.members_of(field, mesh_index, cx);
+        if elements.is_empty() && others.lines.is_empty() && !others.connectors.is_empty() {
             report_connectors(field, cx);
         }
-        (Cow::Borrowed(elements), lines.cloned().unwrap_or_default())
+        (elements, others.lines.clone())
+    }
+
+    /// The plane elements that a field stands for, and the other elements.
+    fn members_of(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> (Cow<'_, [usize]>, Cow<'_, OtherElements>) {
+        if cx.is_number(field) {
+            let found = mesh_index.elements.find(field, cx);
+            let (elements, others) = split(found.into_iter().collect(), mesh_index);
+            return (Cow::Owned(elements), Cow::Owned(others));
+        }
+        let set = self.element_names.find(field, cx);
+        let others = set.and_then(|index| self.others.get(index));
+        let others = others.map_or_else(|| Cow::Owned(OtherElements::default()), Cow::Borrowed);
+        (Cow::Borrowed(members(&self.elements, set)), others)
     }
 }
 
@@ -138,53 +131,43 @@ fn report_lines(field: Text, cx: &mut Context) {
         .help("they name sides of plane elements, in rows of *SURFACE without a face");
 }
 
-/// What an element set holds.
-#[derive(Default)]
-struct Members {
-    /// Plane elements.
-    elements: Vec<usize>,
+/// Elements of a set that are no plane elements.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct OtherElements {
     /// Faces that line elements name.
-    lines: Vec<Face>,
-    /// Point elements, among these.
+    pub lines: Vec<Face>,
+    /// Point elements (indices).
     points: Vec<usize>,
-    /// Springs and dashpots, among these.
-    connectors: Vec<usize>,
+    /// Springs and dashpots (indices).
+    pub connectors: Vec<usize>,
 }
 
-/// The members of each family.
-fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> Members {
-    let MeshIndex {
-        mesh,
-        lines,
-        points,
-        connectors,
-        ..
-    } = mesh_index;
-    if lines.is_empty() && points.is_empty() && connectors.is_empty() {
-        return Members {
-            elements: members,
-            ..Members::default()
-        };
+impl OtherElements {
+    fn is_empty(&self) -> bool {
+        self.lines.is_empty() && self.points.is_empty() && self.connectors.is_empty()
     }
-    let (elements, others): (Vec<_>, Vec<_>) =
-        (members.into_iter()).partition(|&m| m < mesh.elements.len());
-    let of_points = mesh.elements.len() + lines.len();
-    let of_connectors = of_points + points.len();
-    let mut split = Members {
-        elements,
-        ..Members::default()
-    };
+}
+
+/// Plane elements (indices) and others among members of a set, which are numbered one kind after the other.
+fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, OtherElements) {
+    let (count, lines) = (mesh_index.mesh.elements.len(), &mesh_index.lines);
+    let of_points = count + lines.len();
+    let of_connectors = of_points + mesh_index.points.len();
+    let mut split = OtherElements::default();
+    if of_connectors + mesh_index.connectors.len() == count {
+        return (members, split);
+    }
+    let (elements, others): (Vec<_>, Vec<_>) = (members.into_iter()).partition(|&m| m < count);
     for member in others {
         if let Some(connector) = member.checked_sub(of_connectors) {
             split.connectors.push(connector);
         } else if let Some(point) = member.checked_sub(of_points) {
             split.points.push(point);
         } else {
-            let line = lines.get(member - mesh.elements.len());
-            split.lines.extend(line.copied());
+            split.lines.extend(lines.get(member - count).copied());
         }
     }
-    split
+    (elements, split)
 }
 
 fn members(sets: &[Set], index: Option<usize>) -> &[usize] {
@@ -200,14 +183,11 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     elements.fill(cx);
     let element_names = elements.names;
     let element_sets = resolve(&element_names, elements.drafts, cx);
-    let (mut element_sets, mut lines) = (element_sets, Vec::new());
-    let (mut points, mut connectors) = (Vec::new(), Vec::new());
+    let (mut element_sets, mut others) = (element_sets, Vec::new());
     for set in &mut element_sets {
-        let members = split(std::mem::take(&mut set.members), mesh_index);
-        set.members = members.elements;
-        lines.push(members.lines);
-        points.push(members.points);
-        connectors.push(members.connectors);
+        let (elements, own) = split(std::mem::take(&mut set.members), mesh_index);
+        set.members = elements;
+        others.push(own);
     }
 
     let mut nodes = SetFamily::new("node set", &mesh_index.nodes);
@@ -220,9 +200,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
         unsorted: nodes.unsorted,
         element_names,
         elements: element_sets,
-        lines,
-        points,
-        connectors,
+        others,
     };
     let mut drafts = nodes.drafts;
     for (index, source) in nodes.from_elements {
@@ -235,13 +213,16 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
             draft
                 .members
                 .extend(cells.flat_map(|element| &element.nodes));
-            let lines = sets.lines.get(set).map_or(&[][..], |lines| lines);
-            let ends = lines.iter().flat_map(|face| face.nodes(&mesh_index.mesh));
-            draft.members.extend(ends);
-            let connectors = sets.connectors.get(set).map_or(&[][..], |all| all);
-            let connectors = connectors
+            let Some(others) = sets.others.get(set) else {
+                continue;
+            };
+            let ends = others
+                .lines
                 .iter()
-                .filter_map(|&k| mesh_index.connectors.get(k));
+                .flat_map(|face| face.nodes(&mesh_index.mesh));
+            draft.members.extend(ends);
+            let connectors = others.connectors.iter();
+            let connectors = connectors.filter_map(|&k| mesh_index.connectors.get(k));
             draft
                 .members
                 .extend(connectors.flat_map(|element| &element.nodes));

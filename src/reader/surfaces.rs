@@ -208,22 +208,21 @@ fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Con
     Vec::new()
 }
 
+/// Names of the sides of an element.
+const SIDES: [&str; 4] = ["S1", "S2", "S3", "S4"];
+
 /// Side, from 0, of a face name S1 to S4.
 fn side_number(face: Text, cx: &mut Context) -> Option<usize> {
-    match face.name_key().as_str() {
-        "S1" => Some(0),
-        "S2" => Some(1),
-        "S3" => Some(2),
-        "S4" => Some(3),
-        other => {
-            let message = format!("unknown face {}", face.text);
-            let error = Diagnostic::error(Code::NoSuchFace, face.span, message);
-            let meant = closest(other, ["S1", "S2", "S3", "S4"]);
-            let help = "the faces of plane elements are S1, S2, S3 and S4";
-            cx.d.push(error.suggest(meant).help(help));
-            None
-        }
+    let key = face.name_key();
+    let side = SIDES.iter().position(|side| *side == key);
+    if side.is_none() {
+        let message = format!("unknown face {}", face.text);
+        let error = Diagnostic::error(Code::NoSuchFace, face.span, message);
+        let meant = closest(&key, SIDES);
+        let help = "the faces of plane elements are S1, S2, S3 and S4";
+        cx.d.push(error.suggest(meant).help(help));
     }
+    side
 }
 
 /// Number of sides of an element.
