@@ -20,12 +20,7 @@ impl DeckWriter {
     }
 
     /// A keyword line with its parameters.
-    pub fn card<const N: usize>(&mut self, keyword: &str, parameters: [String; N]) {
-        self.card_of(keyword, &parameters);
-    }
-
-    /// A keyword line with its parameters, however many.
-    pub fn card_of(&mut self, keyword: &str, parameters: &[String]) {
+    pub fn card(&mut self, keyword: &str, parameters: impl IntoIterator<Item = String>) {
         let mut width = 1 + keyword.len();
         self.0.push('*');
         self.0.push_str(keyword);
@@ -34,7 +29,7 @@ impl DeckWriter {
             let breaks = width + 3 + length > WIDTH;
             self.0.push_str(if breaks { ",\n" } else { ", " });
             width = length + if breaks { 0 } else { width + 2 };
-            self.0.push_str(parameter);
+            self.0.push_str(&parameter);
         }
         self.0.push('\n');
     }

@@ -144,9 +144,8 @@ impl Interactions {
             friction(&interaction.friction, lines);
             if let Some(Wear { rate, by_friction }) = interaction.wear {
                 let dependent = set("FRIC COEF DEPENDENT", "YES");
-                let parameters: Vec<String> =
-                    by_friction.then_some(dependent).into_iter().collect();
-                lines.card_of("WEAR SURFACE PROPERTIES", &parameters);
+                let parameters = by_friction.then_some(dependent);
+                lines.card("WEAR SURFACE PROPERTIES", parameters);
                 lines.row([number(rate)]);
             }
             if let Some(heat) = interaction.heat {
@@ -195,7 +194,7 @@ pub(super) fn friction(friction: &Friction, lines: &mut DeckWriter) {
             Vec::new()
         }
     };
-    lines.card_of("FRICTION", &parameters);
+    lines.card("FRICTION", parameters);
     for row in rows {
         lines.row(row.into_iter().map(number));
     }
@@ -220,7 +219,7 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
         Adjust::Nodes(set) => Some(named("ADJUST", &model.sets.nodes[set].name)),
         Adjust::Clearance(_) => None,
     }));
-    lines.card_of("CONTACT PAIR", &parameters);
+    lines.card("CONTACT PAIR", parameters);
     pair_row(contact, model, lines);
     if let Some(Adjust::Clearance(clearance)) = contact.adjust {
         let surface = |index: usize| &model.surfaces[index].name;
@@ -252,7 +251,7 @@ fn initialization(reach: Option<Reach>, is_fit: bool, lines: &mut DeckWriter) {
     } else {
         parameters.push("INTERFERENCE FIT".to_owned());
     }
-    lines.card_of("CONTACT INITIALIZATION DATA", &parameters);
+    lines.card("CONTACT INITIALIZATION DATA", parameters);
     lines.card("CONTACT INITIALIZATION ASSIGNMENT", []);
     lines.row([String::new(), String::new(), NAME.to_owned()]);
 }
@@ -265,7 +264,7 @@ fn write_tie(tie: &Tie, model: &Model, lines: &mut DeckWriter) {
         TieReach::Within(tolerance) => Some(set("POSITION TOLERANCE", number(tolerance))),
         TieReach::Nodes(set) => Some(named("TIED NSET", &model.sets.nodes[set].name)),
     });
-    lines.card_of("TIE", &parameters);
+    lines.card("TIE", parameters);
     lines.row([tie.slave, tie.master].map(|surface| name(&model.surfaces[surface].name)));
 }
 
@@ -467,8 +466,7 @@ fn write_material(material: &Material, lines: &mut DeckWriter) {
 
 fn write_law(law: &Law, lines: &mut DeckWriter) {
     for card in law.cards() {
-        let parameters: Vec<String> = card.parameter.map(str::to_owned).into_iter().collect();
-        lines.card_of(card.keyword, &parameters);
+        lines.card(card.keyword, card.parameter.map(str::to_owned));
         for row in card.rows {
             lines.row(row.into_iter().map(number));
         }
@@ -502,14 +500,13 @@ fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Dec
 
 /// Writes a set of the elements of a section, which no set of the model holds.
 fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut DeckWriter) -> String {
-    let name = format!("SECTION-{}", index + 1);
-    lines.card("ELSET", [named("ELSET", &name)]);
-    let labels: Vec<u64> = members
-        .iter()
-        .map(|&e| model.mesh.elements[e].label)
-        .collect();
-    lines.list(&labels);
-    name
+    let set = Set {
+        name: format!("SECTION-{}", index + 1),
+        members: members.to_vec(),
+    };
+    let label = |&element: &usize| model.mesh.elements[element].label;
+    sets("ELSET", std::slice::from_ref(&set), label, lines);
+    set.name
 }
 
 /// Writes springs and dashpots, those that follow each other and are alike together.

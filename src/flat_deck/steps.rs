@@ -73,7 +73,7 @@ fn head(step: &Step, model: &Model, ramps: bool, lines: &mut DeckWriter) {
         Procedure::QuasiStatic | Procedure::Static => (!ramps).then_some("STEP"),
     };
     parameters.extend(amplitude.map(|amplitude| set("AMPLITUDE", amplitude)));
-    lines.card_of("STEP", &parameters);
+    lines.card("STEP", parameters);
     let Increments {
         dt,
         period,
@@ -86,26 +86,19 @@ fn head(step: &Step, model: &Model, ramps: bool, lines: &mut DeckWriter) {
         Procedure::QuasiStatic => ("DYNAMIC", Some(set("APPLICATION", "QUASI-STATIC"))),
         Procedure::Static => ("STATIC", None),
     };
-    let mut parameters: Vec<String> = application.into_iter().collect();
-    match incrementation {
-        Incrementation::Fixed => {
-            parameters.insert(0, "DIRECT".to_owned());
-            lines.card_of(procedure, &parameters);
-            lines.row([dt, period, dt_min].map(number));
-        }
-        Incrementation::Passes => {
-            lines.card_of(procedure, &parameters);
-            lines.row([dt, period, dt_min, dt_max].map(number));
-        }
-        Incrementation::Error { tolerance } => {
+    let direct = matches!(incrementation, Incrementation::Fixed).then(|| "DIRECT".to_owned());
+    let scale = match incrementation {
+        Incrementation::Error { tolerance } if tolerance != reader::TRUNCATION_ERROR => {
             let factor = tolerance / reader::tolerance_of_factor(!model.contacts.is_empty());
-            let is_default = tolerance == reader::TRUNCATION_ERROR;
-            let scale = (!is_default).then(|| set("HALFINC SCALE FACTOR", number(factor)));
-            parameters.extend(scale);
-            lines.card_of(procedure, &parameters);
-            lines.row([dt, period, dt_min, dt_max].map(number));
+            Some(set("HALFINC SCALE FACTOR", number(factor)))
         }
-    }
+        _ => None,
+    };
+    let count = if direct.is_some() { 3 } else { 4 };
+    let parameters = direct.into_iter().chain(application).chain(scale);
+    lines.card(procedure, parameters);
+    let times = [dt, period, dt_min, dt_max].into_iter();
+    lines.row(times.take(count).map(number));
 }
 
 /// Cards of what is different of the contacts from one step to the next.
@@ -128,16 +121,12 @@ fn contact_changes([before, now]: [&ContactChanges; 2], model: &Model, lines: &m
         let amplitude = former.and_then(|from| from.amplitude);
         let amplitude = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
         let parameter = set("INTERACTION", interactions.name(own));
-        let parameters: Vec<String> = [parameter].into_iter().chain(amplitude).collect();
-        match now == own.friction {
-            true => {
-                let reset = ["RESET".to_owned()];
-                lines.card_of("CHANGE FRICTION", &[&parameters[..], &reset].concat());
-            }
-            false => {
-                lines.card_of("CHANGE FRICTION", &parameters);
-                friction(&now, lines);
-            }
+        let is_reset = now == own.friction;
+        let reset = is_reset.then(|| "RESET".to_owned());
+        let parameters = [parameter].into_iter().chain(amplitude).chain(reset);
+        lines.card("CHANGE FRICTION", parameters);
+        if !is_reset {
+            friction(&now, lines);
         }
     }
     for (operation, [in_first, in_second]) in [
@@ -193,7 +182,7 @@ fn settings(settings: &Settings, lines: &mut DeckWriter) {
         set("TOLERANCE", number(tolerance)),
         set("MAX PASSES", max_passes),
     ]);
-    lines.card_of("STICKSLIP", &parameters);
+    lines.card("STICKSLIP", parameters);
 }
 
 /// Supports but those of the nodes of rigid surfaces, which follow their reference nodes.
@@ -247,8 +236,7 @@ fn write_interferences(step: &Step, before: Option<&Step>, model: &Model, lines:
         let is_shrink = load.at.is_shrink;
         let amplitude = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
         let shrink = is_shrink.then(|| "SHRINK".to_owned());
-        let parameters: Vec<String> = amplitude.into_iter().chain(shrink).collect();
-        lines.card_of("CONTACT INTERFERENCE", &parameters);
+        lines.card("CONTACT INTERFERENCE", amplitude.into_iter().chain(shrink));
         let contact = &model.contacts[load.at.contact];
         let surfaces = [contact.slave, contact.master].map(|s| name(&model.surfaces[s].name));
         let overlap = (!is_shrink).then(|| number(overlap));
@@ -280,7 +268,7 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
         .flat_map(|&rate| amplitudes().map(move |a| (rate, a)));
     let mut operation = (!carried.is_empty()).then(|| set("OP", "NEW"));
     if now.is_empty() {
-        lines.card_of("BOUNDARY", operation.as_slice());
+        lines.card("BOUNDARY", operation.clone());
     }
     for (rate, amplitude) in kinds {
         let is_own = |s: &&Support| kind_of(s) == (rate, amplitude);
@@ -293,13 +281,8 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
             Rate::Acceleration => set("TYPE", "ACCELERATION"),
         });
         let name = amplitude.map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
-        let parameters: Vec<String> = operation
-            .take()
-            .into_iter()
-            .chain(rate)
-            .chain(name)
-            .collect();
-        lines.card_of("BOUNDARY", &parameters);
+        let parameters = operation.take().into_iter().chain(rate).chain(name);
+        lines.card("BOUNDARY", parameters);
         let alike = |a: &&Support, b: &&Support| a.dof / 2 == b.dof / 2 && a.motion == b.motion;
         for supports in of_card.chunk_by(alike) {
             support_row(supports, model, lines);
@@ -365,7 +348,7 @@ fn requests(index: usize, step: &Step, model: &Model, lines: &mut DeckWriter) {
     for restart in model.restarts.iter().filter(|r| r.from_step == index + 1) {
         let mut parameters = vec!["WRITE".to_owned(), set("FREQUENCY", restart.every)];
         parameters.extend((!restart.keeps_all).then(|| "OVERLAY".to_owned()));
-        lines.card_of("RESTART", &parameters);
+        lines.card("RESTART", parameters);
     }
     if index == 0 {
         histories(&model.sets, lines);
@@ -654,7 +637,7 @@ fn write_cards(
         let is_dead = first.is_some_and(|entry| entry.is_traction);
         let follower = is_dead.then(|| set("FOLLOWER", "NO"));
         let parameters = operation.iter().cloned().chain(amplitude).chain(follower);
-        lines.card_of(keyword, &parameters.collect::<Vec<_>>());
+        lines.card(keyword, parameters);
     };
     if entries.is_empty() {
         card(None, lines);
