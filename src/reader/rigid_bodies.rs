@@ -16,6 +16,7 @@ use crate::vectors::difference;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A rigid surface, or a set of rigid elements, and the node that it moves with.
+#[derive(Default)]
 pub(crate) struct Rigid {
     /// Index of the surface; none of elements.
     surface: Option<usize>,
@@ -49,16 +50,13 @@ impl Rigid {
         span: Span,
     ) -> Self {
         Rigid {
-            surface: None,
             name: name.to_owned(),
             nodes,
-            elements: Vec::new(),
             reference,
             label: mesh_index.node_name(reference),
-            masses: Vec::new(),
-            rotary_inertia: 0.0,
             is_coupling: true,
             span,
+            ..Rigid::default()
         }
     }
 
@@ -243,39 +241,28 @@ fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
     let set = ["NSET", "PIN NSET", "TIE NSET"]
         .iter()
         .find_map(|name| card.value(name));
-    let (surface, name, nodes, elements) = match (card.value("ELSET"), set) {
+    let mut rigid = match (card.value("ELSET"), set) {
         (Some(field), _) => of_elements(field, card, lookup, cx)?,
-        (None, Some(field)) => {
-            let nodes = lookup.sets.nodes_of(field, lookup.mesh_index, cx);
-            (None, field.text.to_string(), nodes, Vec::new())
-        }
+        (None, Some(field)) => Rigid {
+            name: field.text.to_string(),
+            nodes: lookup.sets.nodes_of(field, lookup.mesh_index, cx),
+            ..Rigid::default()
+        },
         (None, None) => of_surface(card, lookup, cx)?,
     };
     let reference = reference?;
-    let mut nodes: Vec<usize> = nodes
-        .into_iter()
-        .filter(|&node| node != reference)
-        .collect();
-    nodes.sort_unstable();
+    rigid.nodes.retain(|&node| node != reference);
+    rigid.nodes.sort_unstable();
     Some(Rigid {
-        surface,
-        name,
-        nodes,
-        elements,
-        masses: Vec::new(),
-        rotary_inertia: 0.0,
-        is_coupling: false,
         reference,
         label: lookup.mesh_index.node_name(reference),
         span: card.span,
+        ..rigid
     })
 }
 
-/// Index of the surface, name, nodes and elements of a rigid body.
-type Members = (Option<usize>, String, Vec<usize>, Vec<usize>);
-
-/// Those of the surface that a card names.
-fn of_surface(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Members> {
+/// The body of a rigid surface, without its reference node.
+fn of_surface(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
     let field = card.required("ANALYTICAL SURFACE", cx.d)?;
     let (index, surface, span) = lookup.surfaces.find(field, cx)?;
     let SurfaceKind::Rigid(_) = surface.kind else {
@@ -284,12 +271,16 @@ fn of_surface(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Members> 
             .help("define it with *SURFACE, TYPE=SEGMENTS");
         return None;
     };
-    let nodes = surface.nodes(&lookup.mesh_index.mesh);
-    Some((Some(index), surface.name.clone(), nodes, Vec::new()))
+    Some(Rigid {
+        surface: Some(index),
+        name: surface.name.clone(),
+        nodes: surface.nodes(&lookup.mesh_index.mesh),
+        ..Rigid::default()
+    })
 }
 
 /// Those of the elements of a set, without surface.
-fn of_elements(field: Text, card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Members> {
+fn of_elements(field: Text, card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
     if card.has("ANALYTICAL SURFACE") {
         let span = card.span_of("ANALYTICAL SURFACE");
         cx.error(Code::RigidSurface, span, "a rigid body of two kinds")
@@ -303,12 +294,12 @@ fn of_elements(field: Text, card: &Card, lookup: Lookup, cx: &mut Context) -> Op
     elements.sort_unstable();
     let nodes = elements.iter().flat_map(|&e| &mesh.elements[e].nodes);
     let nodes: BTreeSet<usize> = nodes.copied().collect();
-    Some((
-        None,
-        field.text.to_string(),
-        nodes.into_iter().collect(),
+    Some(Rigid {
+        name: field.text.to_string(),
+        nodes: nodes.into_iter().collect(),
         elements,
-    ))
+        ..Rigid::default()
+    })
 }
 
 /// Dof of the angle of the rigid body with this number, among all, in a mesh.
