@@ -41,18 +41,15 @@ class Group(Mapping[str, Any]):
     @property
     def _stored(self) -> Mapping[str, Any]:
         """The group in the file; empty where the result lacks it."""
-        with self._result.reading(self._path):
-            return self._result.file.get(self._path, {})
+        return self._result.item(self._path) if self._result.has(self._path) else {}
 
     def __getitem__(self, name: str) -> Any:
         path = f"{self._path}/{name}"
-        with self._result.reading(path):
-            item = self._stored.get(name)
-        if isinstance(item, h5py.Group):
-            return self._groups.get(name, self._others or Group)(self._result, path)
-        if item is None:
+        if not self._result.has(path):
             there = ", ".join(self) or "nothing"
             raise Missing(f"{self._result.path}: {self._path} has no {name}; there is {there}")
+        if isinstance(self._result.item(path), h5py.Group):
+            return self._groups.get(name, self._others or Group)(self._result, path)
         return self._result.complete_rows(path)
 
     def __getattr__(self, name: str) -> Any:

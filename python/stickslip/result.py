@@ -49,6 +49,7 @@ class Result:
         if missing:
             self.file.close()
             raise Fault(f"{self.path} is no result of stickslip: it has no group /{missing[0]}")
+        self._found: dict[str, h5py.Dataset | h5py.Group] = {}
 
     def __enter__(self) -> "Result":
         return self
@@ -71,9 +72,21 @@ class Result:
 
     def read(self, name: str, start: int | None = None, end: int | None = None) -> NDArray[Any]:
         """A dataset by its path in the file, or rows of it."""
+        data = self.item(name)
         with self.reading(name):
-            data = self.file[name]
             return data[()] if start is None and end is None else data[start:end]
+
+    def item(self, name: str) -> Any:
+        """A dataset or a group by its path in the file; finding it takes longer than reading it, so that it is kept."""
+        with self.reading(name):
+            if name not in self._found:
+                self._found[name] = self.file[name]
+            return self._found[name]
+
+    def has(self, name: str) -> bool:
+        """Whether the file has a dataset or a group of this path."""
+        with self.reading(name):
+            return name in self._found or name in self.file
 
     @contextmanager
     def reading(self, name: str) -> Iterator[None]:
@@ -212,8 +225,8 @@ class Result:
 
     def complete_rows(self, path: str) -> NDArray[Any]:
         """The complete rows of a dataset by its path in the file, which starts with `history/`."""
-        if 0 in self.file[path].shape[1:]:
-            return np.zeros((self.rows, *self.file[path].shape[1:]))
+        if 0 in (shape := self.item(path).shape[1:]):
+            return np.zeros((self.rows, *shape))
         name = path.removeprefix("history/")
         event = name.partition("/")[0]
         if name in self.histories:
