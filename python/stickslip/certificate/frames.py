@@ -1,8 +1,10 @@
 """Checks of every frame: energies, momenta, stresses, equilibrium and the contact law, recomputed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.certificate.check import Checks
 from stickslip.certificate.contacts import (
@@ -80,6 +82,22 @@ class Increment:
     """Whether the start is that of a frame, and not what velocities and accelerations tell."""
 
 
+@dataclass(frozen=True)
+class ReadOnce(Frame):
+    """A frame whose fields are read once, though many checks ask for them; none may change them."""
+
+    kept: dict[str, NDArray[Any]] = field(default_factory=dict)
+
+    __hash__ = object.__hash__
+
+    def full(self, name: str) -> NDArray[Any]:
+        """A field as it stands in the file."""
+        if name not in self.kept:
+            self.kept[name] = super().full(name)
+            self.kept[name].flags.writeable = False
+        return self.kept[name]
+
+
 class Frames:
     """What the checks of the frames share."""
 
@@ -94,6 +112,8 @@ class Frames:
             if contact.faces is not None and not np.array_equal(contact.faces, contact.segments)
         }
         self.time = result.history["time"]
+        self.step, self.dt = result.history["step"], result.history["dt"]
+        self.largest = result.history.energy.largest or 1.0
         self.fits = Fits(result)
         self.supported = result.read("model/supported_nodes")
         self.constrained = result.read("model/constrained_nodes")
@@ -128,7 +148,8 @@ class Frames:
         mass = self.elements.mass()
         self.checks["mass"].add(np.abs(mass - stored) / stored.max(initial=0.0), ENERGY, "body {}")
         last: tuple[int, Array] | None = None
-        for frame in self.result.frames:
+        for index in range(len(self.result.frames)):
+            frame = ReadOnce(self.result, index)
             rows = np.flatnonzero(self.time == frame.time)
             if len(rows) == 0:
                 self.checks["time"].add(1.0, 0.0, f"frame {frame.index} has no increment")
@@ -154,9 +175,9 @@ class Frames:
 
     def _increment(self, frame: Frame, row: int, last: tuple[int, Array] | None) -> Increment:
         """The increment of a frame; where it starts by the last frame, or by (4.1) and (4.2)."""
-        step = int(self.result.history["step"][row]) - 1
+        step = int(self.step[row]) - 1
         scheme, theta = int(self.scheme[step]), self.theta[step]
-        dt = float(self.result.history["dt"][row])
+        dt = float(self.dt[row])
         start, exact = None, False
         if last is not None and last[0] == row - 1:
             start, exact = last[1], True
@@ -171,7 +192,7 @@ class Frames:
         """Energies and momenta of the bodies, of all of them and each."""
         history, u, v = self.result.history, frame["U"], frame["V"]
         place = f"body {{}}, t = {frame.time:g}"
-        largest = history.energy.largest or 1.0
+        largest = self.largest
         elastic = ~self.rigid
         noise = EPS * (self.stiffness * np.abs(u).max() ** 2) / largest
         strain = self.elements.strain_energy(u)
