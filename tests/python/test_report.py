@@ -8,6 +8,7 @@ import subprocess
 import sys
 import zlib
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -168,6 +169,12 @@ def test_arrays_without_much_in_them(values: np.ndarray) -> None:
 # The file.
 
 
+@cache
+def written(*paths: Path) -> str:
+    """The page of results that no test changes afterwards; it is written once for all that look at it."""
+    return page_of(paths)
+
+
 class Tags(html.parser.HTMLParser):
     """Elements of a page by their ids, and the addresses that it would load."""
 
@@ -196,7 +203,7 @@ class Tags(html.parser.HTMLParser):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_page_is_one_file_that_loads_nothing(kind: str, job: Job, tmp_path: Path) -> None:
     path = KINDS[kind](job, tmp_path)
-    tags = Tags(page_of([path]))
+    tags = Tags(written(path))
     assert all(address.startswith(("#", "data:")) for address in tags.loaded), tags.loaded
     assert len(tags.ids) == len(set(tags.ids))
     (result,) = json.loads(tags.data)["results"]
@@ -208,7 +215,7 @@ def test_a_page_is_one_file_that_loads_nothing(kind: str, job: Job, tmp_path: Pa
 
 def test_equal_results_give_equal_pages(job: Job, tmp_path: Path) -> None:
     path = rigid_surface(job, tmp_path)
-    assert page_of([path]) == page_of([path])
+    assert page_of([path]) == written(path)
 
 
 def test_fields_and_frames_are_chosen(job: Job, tmp_path: Path) -> None:
@@ -277,7 +284,7 @@ def shown(browser: Any, job: Job, tmp_path: Path) -> Iterator[Shown]:
 
     def show(*paths: Path, **settings: Any) -> Any:
         file = tmp_path / "page.html"
-        file.write_text(page_of(paths), encoding="utf-8")
+        file.write_text(written(*paths), encoding="utf-8")
         size = {"width": 800, "height": 560}
         context = browser.new_context(viewport=size, offline=True, **settings)
         contexts.append(context)
