@@ -72,7 +72,7 @@ impl ClosedPairs {
     pub fn set(&mut self, pairs: impl Iterator<Item = ClosedPair>) {
         self.0.clear();
         self.0.extend(pairs);
-        debug_assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
+        assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
     }
 
     /// Keeps the pairs for which a condition holds.

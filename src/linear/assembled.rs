@@ -111,7 +111,7 @@ impl Pattern {
         let start = self.starts[column];
         let rows = &self.rows[start..self.starts[column + 1]];
         let position = start + rows.partition_point(|r| *r < row);
-        debug_assert!(position < DISTRIBUTED as usize, "matrices fit into memory");
+        assert!(position < DISTRIBUTED as usize, "matrices fit into memory");
         position as u32
     }
 }
@@ -277,7 +277,7 @@ impl Assembled {
             }
             return;
         }
-        debug_assert_eq!(positions.len(), k.len(), "element matrix fits its dofs");
+        assert_eq!(positions.len(), k.len(), "element matrix fits its dofs");
         for (&position, &value) in positions.iter().zip(k) {
             if position != DISTRIBUTED {
                 values[position as usize] += factor * value;
