@@ -502,6 +502,17 @@ impl Elements {
         wanted: impl Fn(usize) -> bool + Sync,
         mut add: impl FnMut(usize, &[f64]),
     ) {
+        self.sweep_tangents(motion, part, &wanted, &mut add);
+    }
+
+    /// [`Self::for_each_tangent`], which is not compiled anew for every caller: there are many kinds of elements.
+    fn sweep_tangents(
+        &self,
+        motion: Motion,
+        part: TangentPart,
+        wanted: &(dyn Fn(usize) -> bool + Sync),
+        add: &mut dyn FnMut(usize, &[f64]),
+    ) {
         let SweepSpace {
             tangents,
             block_tangents,
@@ -512,9 +523,9 @@ impl Elements {
                 motion,
                 part,
                 viscous: false,
-                wanted: &wanted,
+                wanted,
             };
-            chunk.for_each_tangent(sweep, block_tangents, &mut add);
+            chunk.for_each_tangent(sweep, block_tangents, add);
         }
         for parts in self.parts.chunks(2 * PARALLEL_CHUNK) {
             let sweep = parts.par_iter().with_min_len(PARALLEL_CHUNK);
