@@ -155,6 +155,8 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=5, help="stops and kills of each (default 5)")
     parser.add_argument("--seed", type=int, default=0, help="of the random times (default 0)")
     arguments = parser.parse_args()
+    # a job in the background of a script starts with SIGINT ignored, and so would its programs
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     of_repository = {ROOT / name: end for name, end in PERIODS.items()}
     decks = dict.fromkeys(arguments.decks) or of_repository
     chance = random.Random(arguments.seed)
