@@ -10,8 +10,9 @@ use super::enhanced_strain::EnhancedStrain;
 use super::formulation::ShapeFunctions;
 use super::mean_dilatation::MeanDilatation;
 use super::reduced::ReducedIntegration;
-use super::solid::Solid;
+use super::solid::{MAX_NODES, Solid};
 use crate::materials::lanes::Lanes;
+use crate::model::{self, ElementType, Formulation};
 
 /// T3 in the displacement formulation (CPE3, CPS3).
 pub type Tri3 = Solid<3, 1, 6, Displacement>;
@@ -365,6 +366,63 @@ const fn serendipity<const P: usize>(
         values,
         natural,
         weights,
+    }
+}
+
+/// Shape functions, natural derivatives and weights at some points of a shape that is known when the program runs.
+#[derive(Debug, Clone)]
+pub(super) struct ShapeAtPoints {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Shape functions h_a.
+    pub values: Vec<[f64; MAX_NODES]>,
+    /// Natural derivatives dh_a/dr_i.
+    pub natural: Vec<[[f64; 2]; MAX_NODES]>,
+    /// Quadrature weights.
+    pub weights: Vec<f64>,
+}
+
+impl ShapeAtPoints {
+    fn new<const N: usize, const P: usize>(functions: &ShapeFunctions<N, P>) -> Self {
+        let values = functions.values.iter().map(|all| {
+            let mut padded = [0.0; MAX_NODES];
+            padded[..N].copy_from_slice(all);
+            padded
+        });
+        let natural = functions.natural.iter().map(|all| {
+            let mut padded = [[0.0; 2]; MAX_NODES];
+            padded[..N].copy_from_slice(all);
+            padded
+        });
+        ShapeAtPoints {
+            nodes: N,
+            values: values.collect(),
+            natural: natural.collect(),
+            weights: functions.weights.to_vec(),
+        }
+    }
+
+    /// Those of stress and internal force of an element type.
+    pub fn of_stress(element_type: ElementType) -> Self {
+        let is_reduced = [Formulation::Reduced, Formulation::ReducedLinearPressure]
+            .contains(&element_type.formulation);
+        match element_type.shape {
+            model::Shape::Tri3 => ShapeAtPoints::new(&Triangle::FUNCTIONS),
+            model::Shape::Quad4 => ShapeAtPoints::new(&Quadrilateral::FUNCTIONS),
+            model::Shape::Tri6 => ShapeAtPoints::new(&QuadraticTriangle::FUNCTIONS),
+            model::Shape::Quad8 if is_reduced => ShapeAtPoints::new(&ReducedSerendipity::FUNCTIONS),
+            model::Shape::Quad8 => ShapeAtPoints::new(&Serendipity::FUNCTIONS),
+        }
+    }
+
+    /// Those of mass and body force of a ring: of a degree higher by that of the radius than in the plane.
+    pub fn of_mass(shape: model::Shape) -> Self {
+        match shape {
+            model::Shape::Tri3 => ShapeAtPoints::new(&Triangle::RING_MASS),
+            model::Shape::Quad4 => ShapeAtPoints::new(&Quadrilateral::RING_MASS),
+            model::Shape::Tri6 => ShapeAtPoints::new(&QuadraticTriangle::MASS),
+            model::Shape::Quad8 => ShapeAtPoints::new(&Serendipity::FUNCTIONS),
+        }
     }
 }
 

@@ -14,10 +14,11 @@ use nalgebra::{Matrix4, Vector2, Vector4};
 use self::dilatation::RingDilatation;
 use self::enhanced::Enhanced;
 use self::hourglass::{MODES, RingHourglass};
-use self::points::{Gradient, OfPoints, Points, RingPoint, StrainPath, section};
+use self::points::{Gradient, OfPoints, RingPoint, StrainPath, ring_points, section};
 use self::stresses::{Compatible, StrainRows, Stresses, add_products, size};
 use super::formulation::{ElementResult, PointResult, PointResults, smaller};
 use super::hourglass::variables;
+use super::shapes::ShapeAtPoints;
 use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
 use crate::materials::{Committed, RingStressAtPoints, Symmetric, contract};
 use crate::model::{self, ElementType, Formulation, Nodes, Thickness};
@@ -52,7 +53,7 @@ impl Ring {
         thickness: Thickness,
     ) -> Self {
         let own: Vec<[f64; 2]> = nodes.iter().map(|&node| x[node]).collect();
-        let mut points = Points::of_stress(element_type).map(&own, thickness);
+        let mut points = ring_points(&ShapeAtPoints::of_stress(element_type), &own, thickness);
         let formulation = match (element_type.formulation, element_type.shape) {
             (Formulation::MeanDilatation, _) => {
                 RingFormulation::RingDilatation(Box::new(RingDilatation::new(&points, 1)))
@@ -355,7 +356,10 @@ fn add_geometric(point: &RingPoint, s: &Symmetric, k: &mut [f64]) {
 
 /// int rho h_a h_b dOmega of a ring, n x n column by column (mass).
 pub(super) fn mass(shape: model::Shape, x: &[[f64; 2]], density: f64) -> Vec<f64> {
-    let (n, points) = (x.len(), Points::of_mass(shape).map(x, Thickness::Around));
+    let (n, points) = (
+        x.len(),
+        ring_points(&ShapeAtPoints::of_mass(shape), x, Thickness::Around),
+    );
     let entry = |k: usize| {
         let (a, b) = (k % n, k / n);
         let terms = points.iter().map(|p| p.shape[a] * p.shape[b] * p.volume);
@@ -366,7 +370,7 @@ pub(super) fn mass(shape: model::Shape, x: &[[f64; 2]], density: f64) -> Vec<f64
 
 /// int h_a dOmega of a ring (length^3).
 pub(super) fn nodal_volumes(shape: model::Shape, x: &[[f64; 2]]) -> [f64; MAX_NODES] {
-    let points = Points::of_mass(shape).map(x, Thickness::Around);
+    let points = ring_points(&ShapeAtPoints::of_mass(shape), x, Thickness::Around);
     let of_node = |a: usize| points.iter().map(|p| p.shape[a] * p.volume).sum();
     std::array::from_fn(of_node)
 }

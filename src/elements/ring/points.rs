@@ -4,107 +4,52 @@
 use nalgebra::{Matrix2, Vector2, Vector4};
 use smallvec::SmallVec;
 
-use crate::elements::block::IntegratedShape;
-use crate::elements::formulation::{ShapeFunctions, green_lagrange, smaller};
-use crate::elements::shapes::{
-    QuadraticTriangle, Quadrilateral, ReducedSerendipity, Serendipity, Triangle,
-};
+use crate::elements::formulation::{green_lagrange, smaller};
+use crate::elements::shapes::ShapeAtPoints;
 use crate::elements::solid::MAX_NODES;
 use crate::materials::Symmetric;
-use crate::model::{self, ElementType, Formulation, Thickness};
+use crate::model::Thickness;
 
 /// One value for each integration point of an element.
 pub(super) type OfPoints<T> = SmallVec<[T; 9]>;
 
-/// Shape functions, gradients and weights of a shape at some points.
-#[derive(Debug, Clone)]
-pub(super) struct Points {
-    nodes: usize,
-    /// Shape functions h_a.
-    values: Vec<[f64; MAX_NODES]>,
-    /// Natural derivatives dh_a/dr_i.
-    natural: Vec<[[f64; 2]; MAX_NODES]>,
-    /// Quadrature weights.
-    weights: Vec<f64>,
-}
-
-impl Points {
-    fn new<const N: usize, const P: usize>(functions: &ShapeFunctions<N, P>) -> Self {
-        let values = functions.values.iter().map(|all| {
-            let mut padded = [0.0; MAX_NODES];
-            padded[..N].copy_from_slice(all);
-            padded
-        });
-        let natural = functions.natural.iter().map(|all| {
-            let mut padded = [[0.0; 2]; MAX_NODES];
-            padded[..N].copy_from_slice(all);
-            padded
-        });
-        Points {
-            nodes: N,
-            values: values.collect(),
-            natural: natural.collect(),
-            weights: functions.weights.to_vec(),
+/// The points of an element of a shape with nodes at `x`.
+pub(super) fn ring_points(
+    shape: &ShapeAtPoints,
+    x: &[[f64; 2]],
+    thickness: Thickness,
+) -> OfPoints<RingPoint> {
+    let point = |p: usize| {
+        let natural = &shape.natural[p][..shape.nodes];
+        let mut j = Matrix2::zeros();
+        for (x, h) in x.iter().zip(natural) {
+            j += Vector2::from(*x) * Vector2::from(*h).transpose();
         }
-    }
-
-    /// Those of stress and internal force of an element type.
-    pub fn of_stress(element_type: ElementType) -> Self {
-        let is_reduced = [Formulation::Reduced, Formulation::ReducedLinearPressure]
-            .contains(&element_type.formulation);
-        match element_type.shape {
-            model::Shape::Tri3 => Points::new(&Triangle::FUNCTIONS),
-            model::Shape::Quad4 => Points::new(&Quadrilateral::FUNCTIONS),
-            model::Shape::Tri6 => Points::new(&QuadraticTriangle::FUNCTIONS),
-            model::Shape::Quad8 if is_reduced => Points::new(&ReducedSerendipity::FUNCTIONS),
-            model::Shape::Quad8 => Points::new(&Serendipity::FUNCTIONS),
+        let det = j.determinant();
+        let inverse = Matrix2::new(j.m22, -j.m12, -j.m21, j.m11) / det;
+        let values = shape.values[p];
+        let place = x
+            .iter()
+            .zip(&values)
+            .fold(Vector2::zeros(), |sum, (x, h)| sum + Vector2::from(*x) * *h);
+        let (mut gradient, mut around) = ([Vector2::zeros(); MAX_NODES], [0.0; MAX_NODES]);
+        for (a, h) in natural.iter().enumerate() {
+            gradient[a] = inverse.tr_mul(&Vector2::from(*h));
+            if thickness == Thickness::Around {
+                around[a] = values[a] / place.x;
+            }
         }
-    }
-
-    /// Those of mass and body force of a ring: of a degree higher by that of the radius than in the plane.
-    pub fn of_mass(shape: model::Shape) -> Self {
-        match shape {
-            model::Shape::Tri3 => Points::new(&Triangle::RING_MASS),
-            model::Shape::Quad4 => Points::new(&Quadrilateral::RING_MASS),
-            model::Shape::Tri6 => Points::new(&QuadraticTriangle::MASS),
-            model::Shape::Quad8 => Points::new(&Serendipity::FUNCTIONS),
+        let area = det * shape.weights[p];
+        RingPoint {
+            shape: values,
+            place,
+            gradient,
+            around,
+            area,
+            volume: thickness.at(place.x) * area,
         }
-    }
-
-    /// The points of an element with nodes at `x`.
-    pub fn map(&self, x: &[[f64; 2]], thickness: Thickness) -> OfPoints<RingPoint> {
-        let point = |p: usize| {
-            let natural = &self.natural[p][..self.nodes];
-            let mut j = Matrix2::zeros();
-            for (x, h) in x.iter().zip(natural) {
-                j += Vector2::from(*x) * Vector2::from(*h).transpose();
-            }
-            let det = j.determinant();
-            let inverse = Matrix2::new(j.m22, -j.m12, -j.m21, j.m11) / det;
-            let shape = self.values[p];
-            let place = x
-                .iter()
-                .zip(&shape)
-                .fold(Vector2::zeros(), |sum, (x, h)| sum + Vector2::from(*x) * *h);
-            let (mut gradient, mut around) = ([Vector2::zeros(); MAX_NODES], [0.0; MAX_NODES]);
-            for (a, h) in natural.iter().enumerate() {
-                gradient[a] = inverse.tr_mul(&Vector2::from(*h));
-                if thickness == Thickness::Around {
-                    around[a] = shape[a] / place.x;
-                }
-            }
-            let area = det * self.weights[p];
-            RingPoint {
-                shape,
-                place,
-                gradient,
-                around,
-                area,
-                volume: thickness.at(place.x) * area,
-            }
-        };
-        (0..self.weights.len()).map(point).collect()
-    }
+    };
+    (0..shape.weights.len()).map(point).collect()
 }
 
 /// One integration point in the reference configuration; the first entries belong to the nodes of the element.
