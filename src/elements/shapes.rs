@@ -415,7 +415,8 @@ impl ShapeAtPoints {
         }
     }
 
-    /// Those of mass and body force of a ring: of a degree higher by that of the radius than in the plane.
+    /// Those of mass and body force of a ring. They are exact to one degree more than those of the plane, as the radius
+    /// is a factor.
     pub fn of_mass(shape: model::Shape) -> Self {
         match shape {
             model::Shape::Tri3 => ShapeAtPoints::new(&Triangle::RING_MASS),

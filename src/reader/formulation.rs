@@ -1,6 +1,7 @@
 //! What contacts keep out: nodes, or means over faces. General contact chooses where the deck does not say.
 //! docs/numerics.md, Faces that lie on each other.
 
+use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
 
 use super::context::Context;
@@ -64,7 +65,8 @@ fn choose_for_general(model: &mut Model) {
     let may_choose =
         !contact.is_interference_fit && not_from_surface_to_surface(contact, model).is_none();
     let faces = model.surfaces[contact.slave].segments(&model.mesh);
-    let count = may_choose.then(|| lying_faces([&faces, &faces], &model.mesh));
+    let bodies = model.mesh.bodies();
+    let count = may_choose.then(|| lying_faces([&faces, &faces], (&model.mesh, &bodies)));
     let contact = &mut model.contacts[number];
     contact.lying_faces = count;
     if count >= Some(MANY_LYING) {
@@ -88,6 +90,7 @@ struct BothOrders {
 fn both_orders(model: &Model) -> Vec<BothOrders> {
     let mut first = HashMap::new();
     let mut both = Vec::new();
+    let bodies = LazyCell::new(|| model.mesh.bodies());
     let are_changed = (model.steps.iter())
         .any(|step| step.contacts != ContactChanges::default() || !step.interferences.is_empty());
     for (number, contact) in model.contacts.iter().enumerate() {
@@ -113,10 +116,11 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
             true => [number, other],
             false => [other, number],
         };
+        let lying = |faces: [&[[usize; 2]]; 2]| lying_faces(faces, (&model.mesh, &bodies));
         both.push(BothOrders {
             contacts,
             formulation: contact.formulation,
-            lying: lying_faces([p, q], &model.mesh) + lying_faces([q, p], &model.mesh),
+            lying: lying([p, q]) + lying([q, p]),
             becomes_one: !are_changed && may_be_one(pair, model),
         });
     }
@@ -139,8 +143,8 @@ fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     laws[0] == laws[1] && !is_of_one_side && pair.into_iter().all(may)
 }
 
-/// Tells which pairs in both orders have become one contact, and advises against those that have not where many of
-/// their faces lie on each other.
+/// Tells that pairs in both orders have become one contact. Advises against those that stay two where many of their
+/// faces lie on each other.
 fn report_both_orders(
     model: &Model,
     (of_one, of_two): (&[&BothOrders], &[&BothOrders]),
@@ -151,11 +155,13 @@ fn report_both_orders(
         let [i, j] = pair.contacts;
         model.contacts[i.max(j)].span
     };
+    let count = |pairs: &[&BothOrders]| pairs.iter().map(|pair| pair.lying).sum::<usize>();
     if let Some(pair) = of_one.first() {
         let message = match pair.formulation {
             ContactFormulation::NodeToSegment => format!(
-                "pairs stand in both orders, and {lying} of their faces lie on each other: one order of each is taken, \
-                 from surface to surface"
+                "pairs stand in both orders, and {} of their faces lie on each other: one order of each is taken, \
+                 from surface to surface",
+                count(of_one)
             ),
             ContactFormulation::SurfaceToSurface => {
                 "pairs from surface to surface stand in both orders: one order of each is taken"
@@ -171,7 +177,7 @@ fn report_both_orders(
         pair.formulation == ContactFormulation::SurfaceToSurface || lying >= MANY_LYING
     };
     if let Some(pair) = of_two.iter().filter(|pair| pair.lying > 0).find(is_dense) {
-        let lying = pair.lying;
+        let lying = count(of_two);
         let message =
             format!("pairs stand in both orders, and {lying} of their faces lie on each other");
         cx.d.note(Code::BothOrders, second(pair), message).help(
@@ -181,10 +187,9 @@ fn report_both_orders(
     }
 }
 
-/// Number of the faces that lie on one of the others, of another body.
-fn lying_faces([faces, others]: [&[[usize; 2]]; 2], mesh: &Mesh) -> usize {
+/// Number of the faces that lie on one of the others, of another body; `bodies` holds the body of every node.
+fn lying_faces([faces, others]: [&[[usize; 2]]; 2], (mesh, bodies): (&Mesh, &[usize])) -> usize {
     let x = &mesh.coordinates;
-    let bodies = mesh.bodies();
     let ends = |face: [usize; 2]| face.map(|node| x[node]);
     let circle = |face: &[usize; 2]| {
         let [a, b] = ends(*face);
