@@ -17,8 +17,8 @@ use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
 use crate::dynamics::results::{Cause, PassReport, State};
 use crate::dynamics::step::{
-    ClosedConstraints, EffectiveStiffness, Equilibrium, ForceChange, HeldMotions, Interval,
-    StartVelocity, StepProblem, StiffnessForm, Workspace, sum, write_difference, write_sum,
+    ClosedConstraints, Equilibrium, ForceChange, HeldMotions, Interval, StartVelocity, StepProblem,
+    StiffnessForm, Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
 use crate::linear::largest;
@@ -144,7 +144,7 @@ impl Solved {
 impl Solved {
     /// Round-off of the forces of every part, eq. (4.10), the largest displacement increment of its body and its
     /// largest entry of K* (force; length; force/length).
-    pub fn noise(&self, problem: &StepProblem, stiffness: &EffectiveStiffness) -> Vec<[f64; 3]> {
+    pub fn noise(&self, problem: &StepProblem, workspace: &Workspace) -> Vec<[f64; 3]> {
         let none = vec![0.0; self.d.len()];
         let pass = Pass {
             equilibrium: &self.equilibrium,
@@ -154,9 +154,10 @@ impl Solved {
         };
         let scales = pass.scales(
             problem,
-            stiffness,
+            workspace,
             &self.contact.forces.resultant(none.len()),
         );
+        let stiffness = &workspace.stiffness;
         let diagonals = stiffness.stiffness.iter().zip(&stiffness.inertia);
         let parts = scales.noise_and_way().zip(diagonals);
         parts
@@ -577,8 +578,7 @@ impl<'m> Attempt<'_, 'm> {
         state: [bool; 2],
         residual: &mut Residual,
     ) -> Result<Option<f64>, Cause> {
-        let (problem, stiffness) = (self.problem, &self.workspace.stiffness);
-        let solved = iterate.residual(problem, stiffness, state, residual)?;
+        let solved = iterate.residual(self.problem, self.workspace, state, residual)?;
         if let Some(residual) = solved {
             self.workspace.meter.counts.residual = residual;
         }
@@ -600,15 +600,12 @@ impl<'m> Attempt<'_, 'm> {
         trace: &mut Trace,
     ) -> Result<bool, Cause> {
         let (problem, [u, _, du]) = (self.problem, pass.displacements);
-        let Workspace {
-            stiffness, meter, ..
-        } = &mut *self.workspace;
-        let (scales, errors) = pass.measure(problem, stiffness, residual)?;
+        let (scales, errors) = pass.measure(problem, self.workspace, residual)?;
         let report = scales.report(&errors, pass.contact);
         let (position, dof_of) = (|node| problem.position(u, node), &problem.unknowns.dof);
         trace.worst = scales.worst(&errors, &residual.values, dof_of, position);
         trace.add(report, pass.contact);
-        meter.count_pass(report.residual);
+        self.workspace.meter.count_pass(report.residual);
         let has_converged = scales.converged(&errors) && scales.closes_gaps(pass.contact, du);
         if has_converged {
             self.workspace.k().check()?;

@@ -13,7 +13,7 @@ use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
-    EffectiveStiffness, Equilibrium, Hinges, Parts, PerBody, StepProblem, check_finite,
+    Equilibrium, Hinges, Parts, PerBody, StepProblem, Workspace, check_finite,
 };
 use crate::lcp::ContactState;
 use crate::linear::larger;
@@ -46,7 +46,7 @@ pub(crate) struct Scales<'a> {
 
 /// Lengths of every body.
 pub(crate) struct Lengths {
-    /// Largest displacement U.
+    /// Largest displacement U so far.
     pub displacement: PerBody,
     /// Largest displacement increment d.
     pub increment: PerBody,
@@ -61,15 +61,15 @@ pub(crate) struct Errors {
 }
 
 impl<'a> Scales<'a> {
-    /// `force`: largest force in equilibrium of every part; `stiffness`, `inertia`: largest diagonal
-    /// entries of theta2 K and (2/dt²) M of every part.
+    /// `force`: largest force in equilibrium of every part, and largest one before; `stiffness`, `inertia`: largest
+    /// diagonal entries of theta2 K and (2/dt²) M of every part.
     ///
     /// A force from displacements U carries the round-off of K U, the inertia force that of
     /// (2/dt²) M d, and a force that closes a gap between positions x that of K* x: a residual is
     /// not measured finer than that. Displacements that close a gap carry the round-off of x.
     pub fn new(
         parts: &'a Parts,
-        force: PerBody,
+        [force, before]: [&PerBody; 2],
         (stiffness, inertia): (&[f64], &[f64]),
         lengths: Lengths,
         tolerance: f64,
@@ -79,17 +79,17 @@ impl<'a> Scales<'a> {
             increment,
             position,
         } = lengths;
-        // 4 eps (max K_ii |U| + max (2/dt²) M_ii |d|), eq. (4.10)
+        // 4 eps (max K_ii |U| + max (2/dt²) M_ii |d|), at least 4 eps |F|, eq. (4.10)
         let noise = |(part, &body): (usize, &usize)| {
-            ROUND_OFF
-                * (stiffness[part] * larger(displacement[body], position[body])
-                    + inertia[part] * larger(increment[body], position[body]))
+            let of_motion = stiffness[part] * larger(displacement[body], position[body])
+                + inertia[part] * larger(increment[body], position[body]);
+            ROUND_OFF * larger(of_motion, before[part])
         };
         // 4 eps |U|, eq. (4.11)
         let bodies = displacement.iter().zip(&position);
         Scales {
             parts,
-            force,
+            force: force.clone(),
             noise: parts.of_parts().iter().enumerate().map(noise).collect(),
             resolution: bodies.map(|(u, x)| ROUND_OFF * larger(*u, *x)).collect(),
             increment,
@@ -305,7 +305,7 @@ impl Pass<'_> {
     pub fn measure<'m>(
         &self,
         problem: &StepProblem<'m>,
-        stiffness: &EffectiveStiffness,
+        workspace: &Workspace,
         residual: &mut Residual,
     ) -> Result<(Scales<'m>, Errors), Cause> {
         let [u, _, du] = self.displacements;
@@ -315,7 +315,7 @@ impl Pass<'_> {
             ..
         } = residual;
         contact.write(self.contact, u.len());
-        let scales = self.scales(problem, stiffness, &contact.values);
+        let scales = self.scales(problem, workspace, &contact.values);
         // r - theta2 K d_p + Bn^T Pn + Bt^T Pt, eq. (4.7)
         let sum = |dofs: Range<usize>, to: &mut Vec<f64>| {
             let r = &self.equilibrium.out_of_balance[dofs.clone()];
@@ -323,7 +323,8 @@ impl Pass<'_> {
             let all = r.iter().zip(forces[0]).zip(forces[1]);
             to.extend(all.map(|((r, s), c)| r - s + c));
         };
-        stiffness.k.map().write_restricted_by(sum, values);
+        let map = workspace.stiffness.k.map();
+        map.write_restricted_by(sum, values);
         let errors = Errors {
             residual: (problem.parts).largest_of_unknowns(&problem.parts_of_unknowns, values),
             correction: problem.parts.largest_of_bodies(du),
@@ -338,7 +339,9 @@ impl Pass<'_> {
     pub fn scales<'m>(
         &self,
         problem: &StepProblem<'m>,
-        stiffness: &EffectiveStiffness,
+        Workspace {
+            stiffness, seen, ..
+        }: &Workspace,
         contact_force: &[f64],
     ) -> Scales<'m> {
         let parts = problem.parts;
@@ -351,14 +354,15 @@ impl Pass<'_> {
         let forces = [load, internal, inertia, contact_force, self.support_force];
         let [u, d, du] = self.displacements.map(|u| parts.largest_of_bodies(u));
         let lengths = Lengths {
-            displacement: u,
+            displacement: seen.displacements(u),
             increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
             position: self.contact_positions(problem),
         };
         let diagonals = (stiffness.stiffness.as_slice(), stiffness.inertia.as_slice());
         let forces = forces.map(|force| problem.unknowns.magnitudes(force));
         let force = parts.largest_of_all(forces.iter().map(|force| force.as_ref()));
-        Scales::new(parts, force, diagonals, lengths, problem.settings.tolerance)
+        let (before, tolerance) = (seen.forces(), problem.settings.tolerance);
+        Scales::new(parts, [&force, before], diagonals, lengths, tolerance)
     }
 
     /// The largest coordinate of the nodes of closed constraints and hinges with every body.
@@ -453,7 +457,7 @@ impl<'a> Iterate<'a> {
     pub fn residual(
         &self,
         problem: &StepProblem,
-        stiffness: &EffectiveStiffness,
+        workspace: &Workspace,
         [settled, stagnates]: [bool; 2],
         residual: &mut Residual,
     ) -> Result<Option<f64>, Cause> {
@@ -462,7 +466,7 @@ impl<'a> Iterate<'a> {
         }
         let mut none = std::mem::take(&mut residual.none);
         none.resize(self.displacements[0].len(), 0.0);
-        let (scales, errors) = (self.pass(&none, &none)).measure(problem, stiffness, residual)?;
+        let (scales, errors) = (self.pass(&none, &none)).measure(problem, workspace, residual)?;
         residual.none = none;
         let scales = match stagnates {
             true => scales.stagnant(),
@@ -523,7 +527,8 @@ mod tests {
             increment: smallvec![1.0],
             position: smallvec![0.0],
         };
-        let scales = Scales::new(&parts, smallvec![1.0], (&[0.0], &[0.0]), lengths, 1e-11);
+        let force = [&smallvec![1.0], &smallvec![0.0]];
+        let scales = Scales::new(&parts, force, (&[0.0], &[0.0]), lengths, 1e-11);
         scales.obeys_contact_law(&forces, false)
     }
 
@@ -601,7 +606,7 @@ mod tests {
         };
         Scales::new(
             parts,
-            smallvec![10.0],
+            [&smallvec![10.0], &smallvec![0.0]],
             (&[1e3][..], &[0.0][..]),
             lengths,
             1e-9,

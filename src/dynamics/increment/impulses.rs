@@ -639,7 +639,7 @@ mod tests {
         let prepared = PreparedModel::new(model);
         let discretization = Discretization::new(&prepared);
         let problem = StepProblem::new(&discretization, &step, [&still, &still]);
-        let mut workspace = Workspace::new(&problem);
+        let mut workspace = Workspace::new(&problem, Seen::new(problem.parts));
         let contact = ClosedConstraints {
             acting: vec![],
             at: problem.configurations(&still, &still),

@@ -12,7 +12,7 @@ use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::increment::{ContactStates, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
-use crate::dynamics::step::{EffectiveStiffness, Equilibrium, StepProblem, difference, dot, sum};
+use crate::dynamics::step::{Equilibrium, StepProblem, Workspace, difference, dot, sum};
 use crate::elements::ElementResult;
 use crate::linear::{larger, largest};
 
@@ -427,7 +427,7 @@ pub(crate) fn check_energy_gain(
 /// [`Cause::Unbalanced`].
 pub(crate) fn check_balance(
     problem: &StepProblem,
-    stiffness: &EffectiveStiffness,
+    workspace: &Workspace,
     ledger: &Ledger,
     solved: &Solved,
 ) -> Result<(), Cause> {
@@ -435,7 +435,7 @@ pub(crate) fn check_balance(
     if balance <= UNBALANCED * energy {
         return Ok(());
     }
-    let noise = solved.noise(problem, stiffness);
+    let noise = solved.noise(problem, workspace);
     // max n²/(1e-3² (K_ii + (2/dt²) M_ii)), eq. (9.13)
     let of_part = |&[noise, _, diagonal]: &[f64; 3]| match noise {
         0.0 => 0.0,

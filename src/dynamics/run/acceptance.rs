@@ -105,7 +105,7 @@ fn accept(
     if may_be_halved {
         check_energy_gain(problem, before.state, &ledger, solved)?;
     }
-    check_balance(problem, &workspace.stiffness, &ledger, solved)?;
+    check_balance(problem, workspace, &ledger, solved)?;
     Ok(ledger)
 }
 

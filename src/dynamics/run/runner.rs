@@ -21,7 +21,8 @@ use crate::dynamics::results::{
     Timings, Unbalanced,
 };
 use crate::dynamics::step::{
-    ClosedConstraints, Discretization, Interval, StepPlace, StepProblem, TimePoint, Workspace,
+    ClosedConstraints, Discretization, Equilibrium, Interval, Seen, StepPlace, StepProblem,
+    TimePoint, Workspace,
 };
 use crate::elements::{Motion, most_strained};
 use crate::linear::{LinearError, larger};
@@ -131,6 +132,8 @@ struct Runner<'m, 'o> {
     /// State and energies at the end of the last increment.
     state: State,
     ledger: Ledger,
+    /// What the steps before have seen.
+    seen: Seen,
     /// Largest displacement increment and length of a static increment that has led too far (length; time).
     rejected: Option<[f64; 2]>,
     /// Prescribed dofs of the last static step.
@@ -163,6 +166,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 contact: ClosedPairs::default(),
             },
             ledger: Ledger::default(),
+            seen: Seen::new(&discretization.parts),
             supported: Vec::new(),
             rejected: None,
             procedure: Procedure::Dynamic,
@@ -223,7 +227,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let dofs = self.state.u.len();
         carry_fields!(archive, self => Runner {
             [ledger, accounts] progress, state, rejected, supported, procedure, path, accuracy;
-            discretization, summary, observer
+            discretization, seen, summary, observer
         })?;
         let State { u, v, a, .. } = &self.state;
         if [u, v, a].map(Vec::len) != [dofs; 3] {
@@ -270,8 +274,9 @@ impl<'m, 'o> Runner<'m, 'o> {
             }
             Some(_) => problem.loads.release(self.progress.released.clone()),
         }
-        let mut workspace = Workspace::new(&problem);
+        let mut workspace = Workspace::new(&problem, std::mem::take(&mut self.seen));
         let outcome = self.increments(&problem, &mut workspace, (step, place), resumed);
+        self.seen = std::mem::take(&mut workspace.seen);
         self.summary.timings.add(&workspace.meter.timings);
         outcome
     }
@@ -646,7 +651,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     fn accept(
         &mut self,
         problem: &StepProblem,
-        workspace: &Workspace,
+        workspace: &mut Workspace,
         place: StepPlace,
         (accepted, truncation_error): (Accepted, Option<f64>),
     ) -> Result<(), RunError> {
@@ -662,6 +667,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         if let Some(accuracy) = &mut self.accuracy {
             accuracy.accept(&ends(&self.state, &solved, interval.dt));
         }
+        let Equilibrium { load, internal, .. } = &solved.equilibrium;
+        (workspace.seen).take_in(problem, &solved.end.u, [load, internal]);
         let path = (!problem.integration.has_rates).then(|| solved.static_path(interval.dt));
         let accounted = (self.accounts).enter(problem, &solved, interval, &ledger);
         let (held, part) = held_motions(problem, workspace, &solved);

@@ -263,7 +263,10 @@ mod tests {
             ..Motion::at(end, &[])
         };
         let (before, after) = (motion(&u0[..], &u1[..]), motion(&v0[..], &v1[..]));
-        let (mut kept, mut fresh) = (Workspace::new(&problem), Workspace::new(&problem));
+        let (mut kept, mut fresh) = (
+            Workspace::new(&problem, Seen::new(problem.parts)),
+            Workspace::new(&problem, Seen::new(problem.parts)),
+        );
         let contact = ClosedConstraints {
             acting: vec![],
             at: problem.configurations(&u0, &u1),

@@ -15,6 +15,7 @@ mod normals;
 mod parts;
 mod pins;
 mod rank_update;
+mod seen;
 mod slave_faces;
 mod step_problem;
 mod turning;
@@ -27,12 +28,13 @@ pub(crate) use hinges::Hinges;
 pub(crate) use loads::{ForceChange, Interval, StepPlace, TimePoint};
 pub(crate) use mass::{Mass, dot};
 pub(crate) use matrices::{
-    ClosedConstraints, EffectiveStiffness, FactoredMatrix, ResponseVectors, StiffnessForm, System,
+    ClosedConstraints, FactoredMatrix, ResponseVectors, StiffnessForm, System,
 };
 #[cfg(test)]
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
 pub(crate) use pins::{SoftPins, add_pin_forces};
+pub(crate) use seen::Seen;
 pub(crate) use slave_faces::SlaveFaces;
 pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,

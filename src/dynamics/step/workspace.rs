@@ -6,6 +6,7 @@ use super::loads::TimePoint;
 use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
 use super::pins::{Pins, SoftPins};
+use super::seen::Seen;
 use super::step_problem::{StepProblem, difference, sum};
 use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::{
@@ -23,13 +24,15 @@ pub(crate) struct Workspace<'m> {
     pub meter: Meter,
     /// What holds rigid motions in K*.
     pub pins: Pins,
+    /// What the run has seen so far.
+    pub seen: Seen,
     /// The pairs of the last pass.
     pairs: Vec<PairTarget>,
 }
 
 impl<'m> Workspace<'m> {
     /// The workspace of a step, without factors and without lists of candidates.
-    pub fn new(problem: &StepProblem<'m>) -> Self {
+    pub fn new(problem: &StepProblem<'m>, seen: Seen) -> Self {
         let x = &problem.model.mesh.coordinates;
         let mut search = match problem.integration.velocities_tell() {
             true => Search::new(problem.contacts, x),
@@ -43,13 +46,14 @@ impl<'m> Workspace<'m> {
             search,
             meter: Meter::default(),
             pins: Pins::new(problem),
+            seen,
             pairs: Vec::new(),
         }
     }
 
     /// Carries what the increments of the step hand on.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Self { [stiffness, search]; meter, pins, pairs })
+        carry_fields!(archive, self => Self { [stiffness, search, seen]; meter, pins, pairs })
     }
 
     /// The effective stiffness K*.

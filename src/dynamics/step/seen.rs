@@ -1,0 +1,69 @@
+//! What a run has seen so far: floors of the scales of its increments. Section 4 of docs/theory.md, Convergence.
+
+use super::parts::{Parts, PerBody};
+use super::step_problem::StepProblem;
+use crate::archive::{Archive, ArchiveError};
+use crate::linear::larger;
+
+/// Largest displacement of every body and largest force of every part so far. A body that has carried a load keeps the
+/// round-off of it: what is left when loads, displacements and motions go back to zero is no scale of anything.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Seen {
+    /// Displacement of every body (length).
+    displacement: PerBody,
+    /// Load and internal force of every part; inertia and contact forces, which grow without bound as increments become
+    /// shorter, are left out (force).
+    force: PerBody,
+}
+
+impl Seen {
+    /// That of a run before its first increment.
+    pub fn new(parts: &Parts) -> Self {
+        let none = |count: usize| std::iter::repeat_n(0.0, count).collect();
+        Seen {
+            displacement: none(parts.bodies()),
+            force: none(parts.of_parts().len()),
+        }
+    }
+
+    /// Carries all of it.
+    ///
+    /// # Errors
+    /// What is read is of another model.
+    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.carry_values(&mut self.displacement)?;
+        archive.carry_values(&mut self.force)
+    }
+
+    /// Takes in the displacement, load and internal force of an increment.
+    pub fn take_in(&mut self, problem: &StepProblem, u: &[f64], forces: [&[f64]; 2]) {
+        let parts = problem.parts;
+        let forces = forces.map(|force| problem.unknowns.magnitudes(force));
+        let of_increment = [
+            parts.largest_of_bodies(u),
+            parts.largest_of_all(forces.iter().map(|force| force.as_ref())),
+        ];
+        let own = [&mut self.displacement, &mut self.force];
+        for (most, values) in own.into_iter().zip(&of_increment) {
+            enlarge(most, values);
+        }
+    }
+
+    /// Largest displacements so far, given those of an iterate.
+    pub fn displacements(&self, mut of_iterate: PerBody) -> PerBody {
+        enlarge(&mut of_iterate, &self.displacement);
+        of_iterate
+    }
+
+    /// Largest forces before the increment.
+    pub fn forces(&self) -> &PerBody {
+        &self.force
+    }
+}
+
+/// Makes each of some values at least the one beside it.
+fn enlarge(most: &mut PerBody, values: &PerBody) {
+    for (most, value) in most.iter_mut().zip(values) {
+        *most = larger(*most, *value);
+    }
+}
