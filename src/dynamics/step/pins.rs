@@ -554,8 +554,8 @@ fn tightening(
     found
 }
 
-/// Those of the nodes of a body that elements connect, group by group, where they are several; `components` are the first
-/// nodes of the groups of all nodes.
+/// Those of the nodes of a body that elements connect, group by group, where they are not the whole body; `components` are
+/// the first nodes of the groups of all nodes.
 fn components_of(nodes: &[usize], components: &[usize], has_elements: &[bool]) -> Vec<Vec<usize>> {
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for &node in nodes.iter().filter(|&&node| has_elements[node]) {
@@ -563,9 +563,9 @@ fn components_of(nodes: &[usize], components: &[usize], has_elements: &[bool]) -
             groups.entry(first).or_default().push(node);
         }
     }
-    match groups.len() {
-        0 | 1 => Vec::new(),
-        _ => groups.into_values().collect(),
+    match groups.values().any(|group| group.len() == nodes.len()) {
+        true => Vec::new(),
+        false => groups.into_values().collect(),
     }
 }
 
