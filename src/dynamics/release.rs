@@ -89,7 +89,9 @@ impl Releasing<'_, '_> {
             let du = self.newton_step(&u)?;
             u = sum(&u, &du);
             let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
-            if step <= larger(NEAR * way, ROUND_OFF * largest(&u)) {
+            let of_bodies = self.problem.parts.largest_of_bodies(&u);
+            let seen = largest(&self.workspace.seen.displacements(of_bodies));
+            if step <= larger(NEAR * way, ROUND_OFF * seen) {
                 let overlaps = |c: &Constraint| c.gap < -OVERLAP * c.scale;
                 return (!self.constraints(&u).iter().any(overlaps)).then_some(u);
             }

@@ -13,13 +13,11 @@ use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
-    Equilibrium, Hinges, Parts, PerBody, StepProblem, Workspace, check_finite,
+    Equilibrium, Hinges, Parts, PerBody, ROUND_OFF, StepProblem, Workspace, check_finite,
 };
 use crate::lcp::ContactState;
 use crate::linear::larger;
 
-/// Round-off of a sum of some terms, in units of its largest term.
-const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Part of the tolerance to which an iterate must be in balance to be the solution, unless its corrections
 /// have come down to round-off: a pass whose residual and correction are below the tolerance ends with
 /// an iterate that is better by the rate of the passes.

@@ -10,6 +10,7 @@ use smallvec::{SmallVec, smallvec};
 
 use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSystem, Guess, Response};
+use crate::contact::tolerances::SOLVED_GAP;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey, Rows};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace, sum};
@@ -49,7 +50,8 @@ fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
     stuck.map(|pair| (pair.key, pair.force[0])).collect()
 }
 
-/// Speed of approach, as a part of the largest speed at a pair, up to which it neither lands nor opens.
+/// Speed of approach, as a part of the largest speed at a pair, up to which it neither lands nor opens; less than a solved
+/// gap in the increment is none.
 const RESTING: f64 = 1e-9;
 
 impl Impulses {
@@ -178,7 +180,9 @@ impl Impulses {
             let stuck = (self.sticking).binary_search_by_key(&constraint.key, |stuck| stuck.0);
             let Ok(at) = stuck else { return 0.0 };
             let speeds = constraint.dofs.iter().map(|&dof| v0[dof].abs());
-            let rests = approach(constraint, v0, dt).abs() <= RESTING * speeds.fold(0.0, larger);
+            let none = SOLVED_GAP * constraint.scale / dt;
+            let resting = larger(RESTING * speeds.fold(0.0, larger), none);
+            let rests = approach(constraint, v0, dt).abs() <= resting;
             match rests && constraint.mu > 0.0 && constraint.nodes().any(|n| turning.moves(n)) {
                 true => dt * self.sticking[at].1,
                 false => 0.0,

@@ -4,6 +4,7 @@
 //!
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
+use crate::contact::tolerances::SOLVED_GAP;
 use crate::contact::{
     ClosedPair, Configurations, Constraint, Crossing, CrossingSense, QuadraticMotion, RowForm,
     crossings, line_crossings, project,
@@ -263,7 +264,12 @@ pub(crate) fn landings(
 ) -> Vec<Landing> {
     let fastest = problem.parts.largest_of_bodies(&start.v);
     let landing_of = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| {
-        let least = STRUCK * problem.parts.most(&fastest, constraint.nodes());
+        // less than a solved gap in the increment is no approach
+        let none = SOLVED_GAP * constraint.scale / interval.dt;
+        let least = larger(
+            STRUCK * problem.parts.most(&fastest, constraint.nodes()),
+            none,
+        );
         let touched = solved.contact.impulses.touches(constraint.key);
         let is_struck = || {
             let rows = constraint.at_start(&end_rows_at(problem, &start.u));

@@ -365,16 +365,19 @@ impl<'m, 'o> Runner<'m, 'o> {
             self.ledger.change_procedure(problem, &self.state);
         }
         self.procedure = step.procedure;
-        let decides = matches!(step.increments.incrementation, Incrementation::Error { .. });
         let State { u, a, .. } = &self.state;
-        self.accuracy = decides.then(|| {
-            let whole = Interval {
-                start: place.time_point(0.0),
-                end: place.time_point(place.end()),
-                dt: place.end(),
-            };
-            TruncationError::new(u, a, problem.fits.way(whole))
-        });
+        self.accuracy = match step.increments.incrementation {
+            Incrementation::Error { tolerance } => {
+                let whole = Interval {
+                    start: place.time_point(0.0),
+                    end: place.time_point(place.end()),
+                    dt: place.end(),
+                };
+                let parted = problem.fits.way(whole);
+                Some(TruncationError::new([u, a], parted, tolerance))
+            }
+            _ => None,
+        };
         Ok(None)
     }
 
@@ -486,7 +489,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         } = &accepted.subincrement;
         let ends = ends(&self.state, solved, interval.dt);
         let e = accuracy.of(problem, &ends);
-        let error = accuracy.relative(problem, &ends, &e);
+        let error = accuracy.relative(problem, &workspace.seen, &ends, &e);
         let most = control.largest_error(interval.dt);
         let Some(tolerance) = most.filter(|&most| error > most) else {
             return Ok((accepted, Some(error)));
@@ -494,7 +497,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let mut filtered = || -> Result<f64, Cause> {
             factorize_anew(problem, workspace, (&self.state, interval.dt), solved)?;
             let e = TruncationError::filter(problem, workspace.k(), interval.dt, &e)?;
-            Ok(accuracy.relative(problem, &ends, &e))
+            Ok(accuracy.relative(problem, &workspace.seen, &ends, &e))
         };
         let cause = match filtered() {
             Ok(error) if error <= tolerance => return Ok((accepted, Some(error))),
@@ -553,7 +556,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let solved = attempt.solve().map_err(fail)?;
         let checked = self
             .check_stability(problem, workspace, (&solved, interval.end))
-            .and_then(|()| self.check_way(workspace, &solved, interval.dt));
+            .and_then(|()| self.check_way(problem, workspace, (&solved, interval.dt)));
         match checked {
             Ok(()) => Ok(Subincrement {
                 interval,
@@ -595,9 +598,14 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// A static increment must not lead to another equilibrium: much farther than at the rate of the last increment,
-    /// in the first one than by its tangent, unless the way becomes shorter with the increment. Bodies that contact
-    /// alone holds may move freely up to it, and others suddenly when it begins.
-    fn check_way(&mut self, workspace: &Workspace, solved: &Solved, dt: f64) -> Result<(), Cause> {
+    /// in the first one than by its tangent, unless the way becomes shorter with the increment, or is none beside what
+    /// the passes resolve. Bodies that contact alone holds may move freely up to it, and others suddenly when it begins.
+    fn check_way(
+        &mut self,
+        problem: &StepProblem,
+        workspace: &Workspace,
+        (solved, dt): (&Solved, f64),
+    ) -> Result<(), Cause> {
         let pins = &workspace.pins;
         let is_held: Vec<bool> = match pins.are_none() {
             true => Vec::new(),
@@ -614,7 +622,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         };
         let way = largest(&solved.d);
         let shrinks = |[before, dt_before]: [f64; 2]| way <= SHRINKS * before * dt / dt_before;
-        let counts = way > COUNTS * largest(&solved.end.u);
+        let unresolved = workspace.seen.unresolved(problem, &solved.end.u);
+        let least = unresolved.into_iter().fold(0.0, larger);
+        let counts = way > larger(COUNTS * largest(&solved.end.u), least);
         let is_far = counts && way > FAR * expected;
         if !is_far || self.rejected.is_some_and(shrinks) {
             self.rejected = None;

@@ -1,7 +1,7 @@
 //! Truncation error of an increment, from the third derivative of the motion. Section 4 of docs/theory.md, Automatic
 //! increments.
 
-use crate::dynamics::step::{StepProblem, System, dot};
+use crate::dynamics::step::{Seen, StepProblem, System, dot};
 use crate::linear::{LinearError, larger};
 use crate::vectors::distance;
 
@@ -12,6 +12,8 @@ pub(crate) struct TruncationError {
     start: Vec<f64>,
     /// The largest displacement from there so far, at least the way by which fits part surfaces in the step (length).
     way: f64,
+    /// Error that the step allows.
+    tolerance: f64,
     /// The last two increments, the later one last; at first the start, of no length.
     last: Vec<Past>,
 }
@@ -42,12 +44,13 @@ impl Ends<'_> {
 }
 
 impl TruncationError {
-    /// At the start of a step, with its displacement and acceleration and the way by which its fits part surfaces
-    /// (length).
-    pub fn new(u: &[f64], a: &[f64], parted: f64) -> Self {
+    /// At the start of a step, with its displacement and acceleration, the way by which its fits part surfaces
+    /// (length), and the error that it allows.
+    pub fn new([u, a]: [&[f64]; 2], parted: f64, tolerance: f64) -> Self {
         TruncationError {
             start: u.to_vec(),
             way: parted,
+            tolerance,
             last: vec![Past {
                 acceleration: a.to_vec(),
                 dt: 0.0,
@@ -96,12 +99,13 @@ impl TruncationError {
         Ok(e)
     }
 
-    /// The largest error of the bodies in the norm of their mass, beside the largest displacement of the step so far.
+    /// The largest error of the bodies in the norm of their mass, beside the largest displacement of the step so far. What
+    /// the passes do not resolve of the displacements of a body is within the tolerance.
     ///
     /// ```text
     /// sqrt(e.M e/m)/max |U - U_start|    eq. (4.23)
     /// ```
-    pub fn relative(&self, problem: &StepProblem, ends: &Ends, e: &[f64]) -> f64 {
+    pub fn relative(&self, problem: &StepProblem, seen: &Seen, ends: &Ends, e: &[f64]) -> f64 {
         let StepProblem { mass, parts, .. } = problem;
         let m_e = mass.times(e);
         let mut of_bodies = vec![[0.0; 2]; parts.bodies()];
@@ -110,12 +114,17 @@ impl TruncationError {
             of_bodies[body][0] += dot(&e[dofs.clone()], &m_e[dofs]);
             of_bodies[body][1] += mass.shares[node];
         }
-        let square = |[e_m_e, m]: &[f64; 2]| if *m > 0.0 { e_m_e / m } else { 0.0 };
-        let error = of_bodies.iter().map(square).fold(0.0, larger).sqrt();
-        match larger(self.way, self.way_to(ends.u1)) {
-            0.0 => 0.0,
-            way => error / way,
-        }
+        let way = larger(self.way, self.way_to(ends.u1));
+        let unresolved = seen.unresolved(problem, ends.u1);
+        let of_body = |([e_m_e, m], unresolved): (&[f64; 2], &f64)| {
+            let error = if *m > 0.0 { (e_m_e / m).sqrt() } else { 0.0 };
+            match larger(way, unresolved / self.tolerance) {
+                0.0 => 0.0,
+                way => error / way,
+            }
+        };
+        let all = of_bodies.iter().zip(&unresolved);
+        all.map(of_body).fold(0.0, larger)
     }
 
     /// Goes on from an accepted increment.

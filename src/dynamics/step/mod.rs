@@ -34,7 +34,7 @@ pub(crate) use matrices::{
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
 pub(crate) use pins::{SoftPins, add_pin_forces};
-pub(crate) use seen::Seen;
+pub(crate) use seen::{ROUND_OFF, Seen};
 pub(crate) use slave_faces::SlaveFaces;
 pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,

@@ -5,6 +5,9 @@ use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError};
 use crate::linear::larger;
 
+/// Round-off of a sum of some terms, in units of its largest term.
+pub(crate) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
 /// Largest displacement of every body and largest force of every part so far. A body that has carried a load keeps the
 /// round-off of it: what is left when loads, displacements and motions go back to zero is no scale of anything.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -53,6 +56,21 @@ impl Seen {
     pub fn displacements(&self, mut of_iterate: PerBody) -> PerBody {
         enlarge(&mut of_iterate, &self.displacement);
         of_iterate
+    }
+
+    /// What the passes do not resolve of the displacements of every body, given those of an iterate: the tolerance beside
+    /// the largest so far, or the round-off of positions (length).
+    pub fn unresolved(&self, problem: &StepProblem, u: &[f64]) -> PerBody {
+        let tolerance = problem.settings.tolerance;
+        let mut all: PerBody = (self.displacement.iter())
+            .map(|most| tolerance * most)
+            .collect();
+        for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
+            for x in problem.position(u, node) {
+                all[body] = larger(all[body], ROUND_OFF * x.abs());
+            }
+        }
+        all
     }
 
     /// Largest forces before the increment.
