@@ -100,15 +100,25 @@ class Energy(Group):
     numerical_dissipation: Array
     balance: Array
     """What is left over: the residual of the increments."""
+    scale: Array
+    """Largest energy or work so far."""
+    round_off: Array
+    """Work that the round-off of the forces may have done in static steps."""
 
     @property
     def largest(self) -> float:
-        """Largest magnitude of any account but the balance; NaN if one is NaN."""
-        accounts = [account for account in ENERGIES if account != "balance"]
-        return float(np.max([np.abs(self[name]).max() for name in accounts]))
+        """Largest magnitude of any account but the balance, and of the works that cancel in them; NaN
+        if one is NaN."""
+        names = [name for name in (*ENERGIES, "scale") if name != "balance" and name in self]
+        return float(np.max([np.abs(self[name]).max() for name in names]))
+
+    @property
+    def noise(self) -> float:
+        """Largest energy that may be round-off."""
+        return float(np.max(self["round_off"])) if "round_off" in self else 0.0
 
 
-ENERGIES = tuple(Energy.__annotations__)
+ENERGIES = tuple(name for name in Energy.__annotations__ if name not in ("scale", "round_off"))
 """Accounts of the energy ledger."""
 
 

@@ -148,6 +148,11 @@ pub struct Energy {
     pub numerical_dissipation: f64,
     /// Energy balance; for exact solutions zero, so that it measures the residual of the passes.
     pub balance: f64,
+    /// Largest kinetic or strain energy or external work so far, in static steps also the work of the loads or of the
+    /// supports alone.
+    pub scale: f64,
+    /// Work that the round-off of the forces may have done in static steps.
+    pub round_off: f64,
 }
 
 impl BodyResult {

@@ -1,7 +1,7 @@
 //! The energy balance of a run, the energy that contact puts in, and the momentum of a model without forces from outside,
 //! increment by increment. Sections 7 and 9 of docs/theory.md.
 
-use super::warnings::{Losses, hourglass_part, part};
+use super::warnings::{BALANCE, Losses, hourglass_part, part};
 use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Connector, Equation, Model};
@@ -9,7 +9,7 @@ use crate::model::{Connector, Equation, Model};
 /// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Balance {
-    /// Largest energy or external work so far.
+    /// Largest energy or work so far.
     pub largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
@@ -72,9 +72,10 @@ impl Balance {
             strain,
             external_work,
             balance,
+            scale,
             ..
         } = report.energy;
-        for energy in [kinetic, strain, external_work] {
+        for energy in [kinetic, strain, external_work, scale] {
             self.largest = larger(self.largest, energy.abs());
         }
         self.worst = larger(self.worst, balance.abs());
@@ -107,19 +108,24 @@ impl Balance {
         self.drift = larger(self.drift, (x - x0).hypot(y - y0));
     }
 
-    /// `balance` as a part of the largest energy so far.
+    /// `balance` as a part of the largest energy so far; what round-off may make of it is within its bound.
     pub fn relative(&self, balance: f64) -> f64 {
-        part(balance, self.largest)
+        part(balance, self.whole())
+    }
+
+    /// The largest energy so far, at least the one beside which the work of round-off is within the bound of the balance.
+    fn whole(&self) -> f64 {
+        larger(self.largest, self.last.round_off / BALANCE)
     }
 
     /// Largest energy of hourglass modes as a part of the largest strain energy.
     pub fn hourglass(&self) -> f64 {
-        hourglass_part([self.hourglass, self.internal], self.largest)
+        hourglass_part([self.hourglass, self.internal], self.whole())
     }
 
     /// The worst balance so far as a part of the largest energy.
     pub fn worst(&self) -> f64 {
-        part(self.worst, self.largest)
+        self.relative(self.worst)
     }
 
     /// Where the energy has gone so far.

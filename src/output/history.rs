@@ -589,7 +589,7 @@ const ROTARY_CONNECTOR: [DatasetEntry<ConnectorState>; 3] = [
 ];
 
 #[rustfmt::skip]
-const ENERGY: [DatasetEntry<Energy>; 12] = [
+const ENERGY: [DatasetEntry<Energy>; 14] = [
     ("kinetic", "energy", "kinetic energy", Real(|e| e.kinetic)),
     ("strain", "energy", "strain energy, with that of springs", Real(|e| e.strain)),
     ("external_work", "energy",
@@ -612,6 +612,11 @@ const ENERGY: [DatasetEntry<Energy>; 12] = [
      "energy dissipated by the integration scheme since the start", Real(|e| e.numerical_dissipation)),
     ("balance", "energy",
      "what is left of the energy balance: only the unconverged residual", Real(|e| e.balance)),
+    ("scale", "energy",
+     "largest kinetic or strain energy or external work so far; in static steps also of loads or supports alone",
+     Real(|e| e.scale)),
+    ("round_off", "energy",
+     "work that the round-off of the forces may have done in static steps", Real(|e| e.round_off)),
 ];
 
 #[rustfmt::skip]

@@ -12,7 +12,7 @@ use super::error::{FileError, regular_file};
 use super::format::{bytes, counted, general, label, scientific, wrap};
 use super::model_group::BodyTimes;
 use super::run_record::UNFINISHED;
-use super::warnings::{Findings, Losses, Touches, hourglass_part, never_closed, part};
+use super::warnings::{BALANCE, Findings, Losses, Touches, hourglass_part, never_closed, part};
 use crate::dynamics::{Energy, Touch};
 use crate::linear::{larger, largest};
 use crate::model::ContactFormulation;
@@ -106,8 +106,9 @@ impl ResultSummary {
         let balance: Vec<f64> = column(&history, "energy/balance")?;
         let contacts = history.group("contact")?;
         let losses = Losses::new(&energy, read_handovers(&contacts)?, largest_energy);
-        let worst = part(largest(&balance), largest_energy);
-        let findings = read_findings(&file, losses, [worst, largest_energy])?;
+        let whole = larger(largest_energy, energy.round_off / BALANCE);
+        let worst = part(largest(&balance), whole);
+        let findings = read_findings(&file, losses, [worst, largest_energy, whole])?;
         Ok(ResultSummary {
             path: path.to_owned(),
             size,
@@ -247,6 +248,12 @@ const ACCOUNTS: [Account; 11] = [
     ("numerical_dissipation", |e| &mut e.numerical_dissipation),
 ];
 
+/// What accounts are beside, which older files lack.
+const SCALES: [Account; 2] = [
+    ("scale", |e| &mut e.scale),
+    ("round_off", |e| &mut e.round_off),
+];
+
 /// Accounts that most runs have no entry in: told where they are not zero.
 const RARE_ACCOUNTS: [&str; 3] = ["landing_return", "release_loss", "damping"];
 
@@ -254,6 +261,12 @@ const RARE_ACCOUNTS: [&str; 3] = ["landing_return", "release_loss", "damping"];
 /// that counts as the balance's scale.
 fn read_energy(at: &Group) -> hdf5::Result<(Energy, Vec<&'static str>, f64)> {
     let (mut energy, mut unrecorded, mut scale) = (Energy::default(), Vec::new(), 0.0);
+    for (name, account) in SCALES {
+        if at.link_exists(name) {
+            let values: Vec<f64> = column(at, name)?;
+            *account(&mut energy) = values.last().copied().unwrap_or(0.0);
+        }
+    }
     for (k, (name, account)) in ACCOUNTS.iter().enumerate() {
         let is_recorded = k < 3 || at.link_exists(name);
         unrecorded.extend((!is_recorded).then_some(*name));
@@ -266,6 +279,7 @@ fn read_energy(at: &Group) -> hdf5::Result<(Energy, Vec<&'static str>, f64)> {
         }
         *account(&mut energy) = values.last().copied().unwrap_or(0.0);
     }
+    let scale = larger(scale, energy.scale);
     Ok((energy, unrecorded, scale))
 }
 
@@ -273,7 +287,7 @@ fn read_energy(at: &Group) -> hdf5::Result<(Energy, Vec<&'static str>, f64)> {
 fn read_findings(
     file: &Group,
     losses: Losses,
-    [balance, largest_energy]: [f64; 2],
+    [balance, largest_energy, whole]: [f64; 3],
 ) -> hdf5::Result<Findings> {
     let history = file.group("history")?;
     let times: Vec<f64> = column(&history, "time")?;
@@ -301,7 +315,7 @@ fn read_findings(
         balance,
         losses,
         strain: strain.map(|strain| largest(&strain)),
-        hourglass: hourglass_part([largest(&hourglass), largest(&internal)], largest_energy),
+        hourglass: hourglass_part([largest(&hourglass), largest(&internal)], whole),
         open: match times.last().is_some_and(|time| *time > 0.0) {
             true => read_open(&history.group("contact")?)?,
             false => Vec::new(),

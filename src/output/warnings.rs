@@ -223,9 +223,13 @@ pub(crate) struct Losses {
 }
 
 impl Losses {
-    /// The losses of a ledger beside the largest energy or external work, with the normal work of nodes that take the
-    /// place of others.
+    /// The losses of a ledger beside the largest energy or work, with the normal work of nodes that take the place of
+    /// others; none where they may be round-off.
     pub fn new(energy: &Energy, handover_work: f64, largest: f64) -> Self {
+        let part = |loss: f64, largest: f64| match loss.abs() <= energy.round_off {
+            true => 0.0,
+            false => part(loss, largest),
+        };
         Losses {
             clipping: part(-energy.normal_contact_work, largest),
             handover: part(-handover_work, largest),

@@ -324,6 +324,8 @@ const PER_INCREMENT: [&str; 83] = [
     "/history/energy/material_dissipation",
     "/history/energy/numerical_dissipation",
     "/history/energy/balance",
+    "/history/energy/scale",
+    "/history/energy/round_off",
     "/history/contact/BOTTOM_TOP/moment",
     "/history/contact/BOTTOM_TOP/normal",
     "/history/contact/BOTTOM_TOP/tangential",

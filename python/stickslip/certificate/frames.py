@@ -141,6 +141,15 @@ class Frames:
         self.stiffness = np.zeros(self.elements.bodies)
         for block in self.elements.blocks:
             np.maximum.at(self.stiffness, self.elements.body[block.elements], block.stiffness)
+        energy = result.history.energy.largest
+        self.reach = np.sqrt(2.0 * energy / np.where(self.stiffness > 0.0, self.stiffness, np.inf))
+        """Largest displacement of every body in the frames so far, at least the one that would store the
+        largest energy of the run: the round-off of a load stays when it is taken off. The mean
+        dilatation is computed beside 1, as positions are."""
+        for block in self.elements.blocks:
+            if block.mean_dilatation:
+                size = 1.0 / np.abs(block.gradient).max(axis=(1, 2, 3))
+                np.maximum.at(self.reach, self.elements.body[block.elements], size)
 
     def check(self) -> None:
         """All checks of all frames."""
@@ -281,7 +290,8 @@ class Frames:
         for block in self.elements.blocks:
             moduli[block.elements] = block.lame + 2.0 * block.shear
             gradient[block.elements] = np.abs(block.gradient).max(axis=(1, 2, 3))
-        noise = 16 * EPS * gradient * np.abs(frame["U"]).max()
+        way = max(np.abs(frame["U"]).max(), self.reach.max(initial=0.0))
+        noise = 16 * EPS * gradient * way
         elastic = ~self.rigid[self.elements.body]
         metal = self.elements.is_metal
         stress[metal] = frame["S"][metal]
@@ -322,7 +332,7 @@ class Frames:
 
     def _around(self, frame: Frame, place: str) -> None:
         """Strains around the axis."""
-        noise = 64 * EPS * np.abs(frame["U"]).max()
+        noise = 64 * EPS * max(np.abs(frame["U"]).max(), self.reach.max(initial=0.0))
         for block in self.elements.blocks:
             if isinstance(block, RingBlock):
                 found = block.mean_around(frame["U"])
@@ -407,14 +417,13 @@ class Frames:
         size = np.abs(residual).max(axis=1)
         largest = np.maximum(np.abs(internal), np.maximum(np.abs(inertia), np.abs(force)))
         scale = np.full(self.elements.bodies, self.spring_force[increment.row])
-        reach = np.zeros(self.elements.bodies)
         inside = self.elements.of_node >= 0
         bodies = self.elements.of_node[inside]
         np.maximum.at(scale, bodies, largest.max(axis=1)[inside])
         way = np.abs(u1) + dt * np.abs(v1) + dt * dt * np.abs(a)
         way += np.abs(force).any(axis=1)[:, None] * np.abs(self.result.coordinates)
-        np.maximum.at(reach, bodies, way.max(axis=1)[inside])
-        noise = 32 * EPS * self.stiffness * reach
+        np.maximum.at(self.reach, bodies, way.max(axis=1)[inside])
+        noise = 32 * EPS * self.stiffness * self.reach
         nodes = np.flatnonzero(told)
         body = self.elements.of_node[nodes]
         check.scale = max(check.scale, float(scale.max(initial=0.0)))

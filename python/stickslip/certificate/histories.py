@@ -77,7 +77,8 @@ def _own(result: Result, checks: Checks) -> None:
 def _ledger(result: Result, checks: Checks) -> None:
     """The balance from its accounts, eq. (9.6); the signs of what dissipates."""
     energy = result.history.energy
-    scale = energy.largest
+    # what round-off makes of an account is within the bound of the balance
+    scale = max(energy.largest, energy.noise / BALANCE)
     if scale == 0.0:
         checks["balance"].skip("nothing moves")
         return

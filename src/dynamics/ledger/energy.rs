@@ -12,8 +12,8 @@ use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::increment::{ContactStates, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
-use crate::dynamics::step::{Equilibrium, StepProblem, Workspace, difference, dot, sum};
-use crate::elements::ElementResult;
+use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, difference, dot, sum};
+use crate::elements::{ElementResult, Motion, TangentPart};
 use crate::linear::{larger, largest};
 
 /// Normal work of contact in an increment up to which it is round-off, as a part of the largest energy
@@ -38,14 +38,39 @@ pub(crate) struct Ledger {
     pub elements: Arc<[ElementResult]>,
     /// Energy that contact put in in the last increment, if it did.
     pub contact_energy: Option<f64>,
-    /// Largest kinetic or strain energy or external work so far.
-    pub scale: f64,
     /// Work of the pairs in the last increment.
     pub works: Vec<PairWork>,
     /// Forces at the end of the last increment, in a static step.
     pub end: Option<EndForces>,
     /// T + W at the start of the analysis.
     start: f64,
+    /// Work of the loads and of the supports in static steps.
+    sources: [f64; 2],
+    /// Largest K_ii of an element or spring in every part at the start (force/length).
+    stiffness: Vec<f64>,
+}
+
+/// Largest K_ii of an element or spring in every part.
+fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
+    let StepProblem {
+        elements, parts, ..
+    } = problem;
+    let nodes: Vec<&[usize]> = elements.connected().collect();
+    let mut most = vec![0.0; parts.of_parts().len()];
+    let motion = Motion::at(&start.u, &start.internal);
+    elements.for_each_tangent(
+        motion,
+        TangentPart::Whole,
+        |_| true,
+        |place, k| {
+            let dofs = 2 * nodes[place].len();
+            for (i, &node) in (0..dofs).zip(nodes[place].iter().flat_map(|node| [node, node])) {
+                let most = &mut most[parts.part(2 * node)];
+                *most = larger(*most, k[i * (dofs + 1)]);
+            }
+        },
+    );
+    most
 }
 
 impl Ledger {
@@ -58,13 +83,14 @@ impl Ledger {
         let energy = Energy {
             kinetic,
             strain,
+            scale: larger(kinetic, strain),
             ..Energy::default()
         };
         let mut ledger = Ledger {
             energy,
             largest: vec![0.0; problem.parts.bodies()],
             momentum,
-            scale: larger(kinetic, strain),
+            stiffness: stiffness_of_elements(problem, start),
             start: kinetic + strain,
             ..Ledger::default()
         };
@@ -79,7 +105,7 @@ impl Ledger {
         archive.carry(&mut of_elements)?;
         self.elements = of_elements.into();
         carry_fields!(archive, self => Self {
-            energy, largest, momentum, contact_energy, scale, works, end, start; elements
+            energy, largest, momentum, contact_energy, works, end, start, sources, stiffness; elements
         })
     }
 
@@ -124,7 +150,7 @@ impl Ledger {
     /// An energy that is not finite.
     pub fn with(
         mut self,
-        problem: &StepProblem,
+        (problem, workspace): (&StepProblem, &Workspace),
         start: &State,
         solved: &Solved,
         dt: f64,
@@ -167,6 +193,7 @@ impl Ledger {
         e.kinetic = dot(&end.v, &self.momentum) / 2.0;
         if !problem.integration.has_rates {
             self.enter_equilibrium(problem, start, solved, strain0)?;
+            self.energy.round_off += self.round_off_work((problem, workspace), solved);
             return Ok(Ledger {
                 contact_energy: None,
                 ..self.balanced(end, contact_work0)?
@@ -280,7 +307,8 @@ impl Ledger {
         // the work of the forces within rigid bodies on the chords of their nodes
         let turning = &problem.unknowns.turning;
         let way = turning.way(d);
-        e.external_work += EndForces::trapezoid(&way, [&before.load, &end.load]);
+        let [of_loads, mut of_supports] =
+            [EndForces::trapezoid(&way, [&before.load, &end.load]), 0.0];
         for (forces, u) in [(&before, &start.u), (&end, &solved.end.u)] {
             let mut missing = forces.missing(d.len());
             let mut left = match turning.is_empty() {
@@ -291,7 +319,7 @@ impl Ledger {
             let missing = problem.unknowns.passed_on(&missing);
             for p in problem.unknowns.prescribed() {
                 let work = way[p] * missing[p];
-                e.external_work += work / 2.0;
+                of_supports += work / 2.0;
                 left -= work;
             }
             if !turning.is_empty() {
@@ -301,10 +329,15 @@ impl Ledger {
         let (works, kept) = before.works(solved, &end);
         for work in &works {
             e.normal_contact_work += work.normal;
-            e.external_work += work.fit;
+            of_supports += work.fit;
             e.friction_dissipation += work.friction;
         }
         self.works = works;
+        e.external_work += of_loads + of_supports;
+        for (all, work) in self.sources.iter_mut().zip([of_loads, of_supports]) {
+            *all += work;
+            e.scale = larger(e.scale, all.abs());
+        }
         // d.(F0 + F1)/2 - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;
@@ -314,6 +347,26 @@ impl Ledger {
             - kept;
         self.end = Some(end);
         Ok(())
+    }
+
+    /// What the round-off of the forces of a static increment may do of work on its way: forces that no pass can balance,
+    /// of elements without unknowns too.
+    ///
+    /// ```text
+    /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)
+    /// ```
+    fn round_off_work(
+        &self,
+        (problem, workspace): (&StepProblem, &Workspace),
+        solved: &Solved,
+    ) -> f64 {
+        let parts = problem.parts;
+        let u = (workspace.seen).displacements(parts.largest_of_bodies(&solved.end.u));
+        let noise = solved.noise(problem, workspace);
+        let of_parts = parts.of_parts().iter().zip(&self.stiffness).zip(noise);
+        let work = of_parts
+            .map(|((&body, k), [noise, way, _])| larger(noise, ROUND_OFF * k * u[body]) * way);
+        work.fold(0.0, larger)
     }
 
     /// The ledger with its balance in a state, `contact_work0` being the work of the normal contact forces before the
@@ -330,10 +383,10 @@ impl Ledger {
             + e.material_dissipation
             + e.numerical_dissipation;
         for energy in [e.kinetic, e.strain, e.external_work] {
-            self.scale = larger(self.scale, energy.abs());
+            e.scale = larger(e.scale, energy.abs());
         }
         let work = e.normal_contact_work - contact_work0;
-        self.contact_energy = (work > CONTACT_WORK_ROUND_OFF * self.scale).then_some(work);
+        self.contact_energy = (work > CONTACT_WORK_ROUND_OFF * e.scale).then_some(work);
         self.check(end)?;
         Ok(self)
     }
@@ -421,7 +474,7 @@ pub(crate) fn check_energy_gain(
 /// ```
 ///
 /// E the largest energy so far, n, K_ii and M_ii those of eq. (4.10); nor is one asked in a static step of bodies on whose
-/// way n does more than a thousandth of E of work, since they move rigidly.
+/// way n has done more than a thousandth of E of work, since they move rigidly.
 ///
 /// # Errors
 /// [`Cause::Unbalanced`].
@@ -431,7 +484,12 @@ pub(crate) fn check_balance(
     ledger: &Ledger,
     solved: &Solved,
 ) -> Result<(), Cause> {
-    let (balance, energy) = (ledger.energy.balance.abs(), ledger.scale);
+    let Energy {
+        scale: energy,
+        round_off,
+        ..
+    } = ledger.energy;
+    let balance = ledger.energy.balance.abs();
     if balance <= UNBALANCED * energy {
         return Ok(());
     }
@@ -444,11 +502,11 @@ pub(crate) fn check_balance(
     if energy <= noise.iter().map(of_part).fold(0.0, larger) {
         return Ok(());
     }
-    let is_round_off = |&[noise, way, _]: &[f64; 3]| noise * way > UNBALANCED * energy;
-    let is_round_off = noise.iter().any(is_round_off);
-    if is_round_off && !problem.integration.has_rates {
+    if !problem.integration.has_rates && round_off > UNBALANCED * energy {
         return Ok(());
     }
+    let is_round_off = |&[noise, way, _]: &[f64; 3]| noise * way > UNBALANCED * energy;
+    let is_round_off = noise.iter().any(is_round_off);
     Err(Cause::Unbalanced {
         part: balance / energy,
         is_round_off,
