@@ -27,6 +27,7 @@ mod many;
 mod mean_dilatation;
 mod neo_hooke;
 mod neutral;
+mod on_and_off;
 mod patch;
 mod quasi_static;
 mod redistributed_mass;

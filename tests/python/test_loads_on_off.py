@@ -1,0 +1,13 @@
+"""Loads that are put on and taken off: a part of scripts/lab/loads_on_off."""
+
+from test_scripts import script
+
+
+def test_loads_that_go_back_to_zero_leave_nothing() -> None:
+    """Every element, procedure, load and length of increments at least once."""
+    script("lab/loads_on_off.py", "--every", 44, "--certify")
+
+
+def test_loads_that_are_small_are_taken_off_too() -> None:
+    """What they leave is measured beside them."""
+    script("lab/loads_on_off.py", "--procedure", "static", "--scale", 1e-9, "--every", 29)
