@@ -163,6 +163,26 @@ mod tests {
     use super::*;
 
     #[test]
+    fn energies_that_are_round_off_are_no_scale() {
+        let report = IncrementReport {
+            energy: Energy {
+                strain: 1e-33,
+                external_work: -1e-33,
+                numerical_dissipation: -1e-33,
+                balance: 1e-33,
+                scale: 1e-33,
+                round_off: 1e-20,
+                ..Energy::default()
+            },
+            ..IncrementReport::default()
+        };
+        let mut balance = Balance::default();
+        balance.add(&report);
+        assert!(balance.worst() < BALANCE, "{:e}", balance.worst());
+        assert!(balance.losses().lines().is_empty());
+    }
+
+    #[test]
     fn a_balance_that_is_no_number_is_the_worst() {
         let report = |balance| IncrementReport {
             energy: Energy {
