@@ -63,7 +63,8 @@ pub(super) struct DeckArgs {
     /// Leave out unknown keywords and parameters with a warning
     #[arg(long)]
     pub lenient: bool,
-    /// The job that *RESTART, READ of the deck goes on from: the path of JOB.restart, with or without .restart
+    /// The job that *RESTART, READ of the deck goes on from: the path of JOB.restart, with or without .restart, or of
+    /// JOB.restart-STEP-INC
     #[arg(long, value_name = "JOB")]
     pub oldjob: Option<PathBuf>,
     /// Give a parameter of the deck (*PARAMETER) this value; may be repeated

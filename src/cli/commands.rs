@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::args::{
     CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs, VERSION,
@@ -16,8 +16,8 @@ use crate::dynamics::{Observer, RunError, RunSummary};
 use crate::flat_deck::{flat_deck, reads_as};
 use crate::lcp::solve_json;
 use crate::output::{
-    Checkpoint, FileError, ModelEcho, ResultSummary, check_names, deck_line, not_regular, picture,
-    regular_file,
+    Checkpoint, Existing, FileError, ModelEcho, ResultSummary, check_names, deck_line,
+    is_checkpoint, not_regular, picture, regular_file, write_whole,
 };
 use crate::prepare::{PreparedModel, prepare};
 use crate::{dynamics, reader};
@@ -73,9 +73,9 @@ pub(super) fn old_job(deck: &DeckArgs) -> Result<Option<Checkpoint>, CliError> {
     let Some(job) = &deck.oldjob else {
         return Ok(None);
     };
-    let path = match job.extension() {
-        Some(extension) if extension == "restart" => job.clone(),
-        _ => {
+    let path = match is_checkpoint(job) {
+        true => job.clone(),
+        false => {
             let mut name = job.clone().into_os_string();
             name.push(".restart");
             name.into()
@@ -224,26 +224,18 @@ pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(),
             let path = path.to_owned();
             return Err(CliError::Exists { path });
         }
-        Ok(data) if !data.is_file() && !data.is_symlink() => {
+        // also a link to something else, as /dev/stdout is
+        Ok(_) if fs::metadata(path).is_ok_and(|data| !data.is_file()) => {
             return Err(failed(not_regular()).into());
         }
         Err(error) if error.kind() != ErrorKind::NotFound => return Err(failed(error).into()),
         _ => {}
     }
-    let draft = draft(path);
-    let written = fs::write(&draft, text).and_then(|()| fs::rename(&draft, path));
-    if written.is_err() {
-        // the first error is reported
-        let _ = fs::remove_file(&draft);
-    }
-    Ok(written.map_err(failed)?)
-}
-
-/// The name of a file until it is complete.
-fn draft(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".part");
-    path.with_file_name(name)
+    let existing = match overwrite {
+        true => Existing::Replaced,
+        false => Existing::Stays,
+    };
+    Ok(write_whole(path, text, existing).map_err(failed)?)
 }
 
 /// A deck as read.

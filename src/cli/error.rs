@@ -58,6 +58,9 @@ pub(super) enum CliError {
     /// There is no checkpoint to go on from.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// The files of the earlier run are not those of its checkpoint.
+    #[error("cannot go on: {0}; the files stay as they are")]
+    GoOn(io::Error),
     /// A job that goes beyond the end of its deck has no place in it where another one could go on.
     #[error(
         "{} is of a job that --extend took beyond the end of its deck: give it the longer step, and run it anew",

@@ -14,8 +14,9 @@ use crate::diagnostics::{Diagnostics, Sources};
 use crate::dynamics::{Outcome, RunError, resume};
 use crate::model::{Frames, SolverChoice, Step};
 use crate::output::{
-    Checkpoint, Checkpoints, Claim, Interrupt, JobFiles, ModelEcho, RestartOrigin, ResultWriter,
-    RunRecord, Verbosity, check_memory, check_names, frames, program_lines, scientific, solver,
+    Checkpoint, Checkpoints, Claim, Earlier, Interrupt, JobFiles, ModelEcho, RestartOrigin,
+    ResultWriter, RunRecord, Verbosity, check_memory, check_names, frames, new_run_id,
+    program_lines, scientific, solver,
 };
 use crate::prepare::{MemoryNeed, PreparedModel};
 
@@ -43,7 +44,9 @@ pub(super) fn run(
         None => old_job.as_ref().map(Checkpoint::as_earlier_deck),
     };
     let mut loaded = load(&args.deck, earlier_deck.clone(), numerics)?;
+    let run = earlier.as_ref().map(|earlier| earlier.origin.run.clone());
     let origin = RestartOrigin {
+        run: run.unwrap_or_else(new_run_id),
         deck: texts(&loaded.sources),
         options: args.options(),
         settings: args.deck.settings.clone(),
@@ -78,8 +81,14 @@ pub(super) fn run(
     }
     let need = MemoryNeed::new(&model);
     check_memory(need)?;
-    let claim = Claim::take(&files, args.overwrite || args.resume)?;
+    let results = match (args.resume, args.overwrite) {
+        (true, _) => Earlier::Continued,
+        (false, true) => Earlier::Replaced,
+        (false, false) => Earlier::Stays,
+    };
+    let claim = Claim::take(&files, results)?;
     let record = RunRecord {
+        id: origin.run.clone(),
         version: NUMBER.into(),
         commit: COMMIT.into(),
         deck: loaded.sources.full_text(),
@@ -105,7 +114,7 @@ pub(super) fn run(
     if let Some(earlier) = &earlier {
         let time = scientific(earlier.time, 6);
         writer.line(&format!("resumed  from the checkpoint at time {time}"))?;
-        writer.go_on(earlier)?;
+        writer.go_on(earlier).map_err(CliError::GoOn)?;
     }
     if let Some(old_job) = &old_job {
         let time = scientific(old_job.time, 6);

@@ -1,4 +1,5 @@
-//! Whether a deck is the one that a checkpoint is of: the first card or number that differs.
+//! Whether a deck is the one that a checkpoint is of: the first field that differs, letter by letter and row by row.
+//! What a field means is the keyword's affair: `1E1` and `10.` are one number, but two names.
 
 use super::lines::{Line, LineKind, Lines};
 use super::text::Text;
@@ -8,6 +9,14 @@ use crate::diagnostics::{Code, Diagnostic, FileId, Sources, Span};
 struct CardField<'a> {
     card: &'a str,
     field: Text<'a>,
+    /// Whether its row begins with it.
+    begins: bool,
+}
+
+impl CardField<'_> {
+    fn is_same(&self, other: &CardField) -> bool {
+        self.field.text == other.field.text && self.begins == other.begins
+    }
 }
 
 /// The fields of a text in their order, without comments and without the cards that may change.
@@ -25,7 +34,14 @@ fn entries(file: FileId, text: &str) -> impl Iterator<Item = CardField<'_>> {
         !name.eq_ignore_ascii_case("RESTART")
     };
     let fields = with_cards.filter(counts);
-    fields.flat_map(|(card, line)| line.fields().map(move |field| CardField { card, field }))
+    fields.flat_map(|(card, line)| {
+        let numbered = line.fields().enumerate();
+        numbered.map(move |(index, field)| CardField {
+            card,
+            field,
+            begins: index == 0,
+        })
+    })
 }
 
 /// The first change of a deck, file by file, against earlier texts with their names.
@@ -51,20 +67,24 @@ pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<D
         }
         let mut old = entries(id, before);
         let mut last = start;
-        for CardField { card, field } in entries(id, file.text()) {
-            last = field.span;
+        for now in entries(id, file.text()) {
+            last = now.field.span;
             let was = match old.next() {
-                Some(was) if is_same(was.field, field) => continue,
+                Some(was) if was.is_same(&now) => continue,
+                Some(was) if was.field.text == now.field.text => match now.begins {
+                    true => "stood in the row above".to_owned(),
+                    false => "began a row".to_owned(),
+                },
                 Some(was) => format!("was `{}` of {}", was.field.text, was.card),
                 None => "is new".to_owned(),
             };
-            let what = format!("`{}` of {card} {was}", field.text);
+            let what = format!("`{}` of {} {was}", now.field.text, now.card);
             return Some(changed(
-                field.span,
+                now.field.span,
                 format!("the deck has changed since the checkpoint: {what}"),
             ));
         }
-        if let Some(CardField { card, field }) = old.next() {
+        if let Some(CardField { card, field, .. }) = old.next() {
             let message = format!(
                 "the deck has changed since the checkpoint: {name} had `{}` of {card} after this",
                 field.text
@@ -85,10 +105,6 @@ pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<D
         },
         message,
     ))
-}
-
-fn is_same(one: Text, other: Text) -> bool {
-    one.text == other.text || (one.as_real().is_some() && one.as_real() == other.as_real())
 }
 
 fn changed(span: Span, message: String) -> Diagnostic {
@@ -117,7 +133,7 @@ mod tests {
         let told = |now: &str| change(deck, now);
         assert_eq!(told(deck), None);
         assert_eq!(
-            told("** comment\n*NODE\n 1,0, 2.50\n*ELASTIC\n100., .3\n"),
+            told("** comment\n*NODE\n 1,0., 2.5\n\n*ELASTIC\n100.,   0.3\n"),
             None
         );
         let number = told("*NODE\n1, 0., 2.5\n*ELASTIC\n100., 0.31\n");
@@ -140,6 +156,19 @@ mod tests {
         assert_eq!(
             less,
             Some(("deck.inp had `0.3` of *ELASTIC after this".into(), 4, 1))
+        );
+        // a name that is a number too is still a name; rows are not fields one after the other
+        let name = change("*CLOAD\n1E1, 1, 2.\n", "*CLOAD\n10.0, 1, 2.\n");
+        assert_eq!(
+            name,
+            Some(("`10.0` of *CLOAD was `1E1` of *CLOAD".into(), 2, 1))
+        );
+        let joined = change("*BOUNDARY\n22, 1\n1, 2\n", "*BOUNDARY\n22, 1, 1, 2\n");
+        assert_eq!(joined, Some(("`1` of *BOUNDARY began a row".into(), 2, 8)));
+        let parted = change("*BOUNDARY\n22, 1, 1, 2\n", "*BOUNDARY\n22, 1\n1, 2\n");
+        assert_eq!(
+            parted,
+            Some(("`1` of *BOUNDARY stood in the row above".into(), 3, 1))
         );
         let file = change("*NODE", "*NODE").or_else(|| {
             let mut sources = Sources::new();

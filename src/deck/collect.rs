@@ -505,7 +505,7 @@ impl Collector<'_> {
             return;
         };
         self.d.error(Code::EarlierJob, card.span, message).help(
-            "a checkpoint JOB-STEP-INC.restart that *RESTART, WRITE has kept is taken with --oldjob JOB-STEP-INC",
+            "a checkpoint JOB.restart-STEP-INC that *RESTART, WRITE has kept is taken with --oldjob JOB.restart-STEP-INC",
         );
     }
 

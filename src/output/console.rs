@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
 
+use super::draft::{Draft, Existing};
 use super::error::at;
 use super::failure::pass_table;
 use super::format::{scientific, signed};
@@ -339,13 +340,18 @@ impl Log {
             .map_err(at(&self.path))
     }
 
-    /// Empties the file and writes the buffered lines.
+    /// Puts a file with the buffered lines in place of the old one, and holds the job by its lock.
     pub fn begin(&mut self) -> io::Result<()> {
         let waiting = self.waiting.take().unwrap_or_default();
-        let emptied = self.file.get_mut().set_len(0);
-        emptied
-            .and_then(|()| self.file.write_all(waiting.as_bytes()))
-            .map_err(at(&self.path))
+        let begun = || {
+            let mut draft = Draft::claimed(&self.path)?;
+            draft.file().write_all(waiting.as_bytes())?;
+            // a file system without locks has none of the old file either
+            let _ = draft.file().try_lock();
+            draft.publish(&self.path, Existing::Replaced)
+        };
+        self.file = LineWriter::new(begun().map_err(at(&self.path))?);
+        Ok(())
     }
 
     /// Writes a line.

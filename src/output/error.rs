@@ -77,8 +77,15 @@ pub struct NameError {
     pub name: String,
 }
 
+/// Files that a message names.
+const LISTED: usize = 4;
+
 fn list(files: &[PathBuf]) -> String {
-    let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
+    let names = files.iter().map(|f| f.display().to_string());
+    let mut names: Vec<String> = names.take(LISTED).collect();
+    if files.len() > LISTED {
+        names.push(format!("{} more", files.len() - LISTED));
+    }
     names.join(", ")
 }
 

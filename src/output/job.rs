@@ -6,10 +6,13 @@
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::ErrorKind;
-use std::os::unix::fs::MetadataExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use rustix::fs::OFlags;
+
+use super::draft::{self, Existing};
 use super::error::{FileError, OutputError, at, not_regular};
 
 /// The files of a job.
@@ -52,33 +55,34 @@ impl JobFiles {
         self.log.with_file_name(name)
     }
 
-    /// `JOB-STEP-INC.restart`, for a checkpoint that stays beside later ones.
+    /// `JOB.restart-STEP-INC`, for a checkpoint that stays beside later ones. No other job has a file of that name:
+    /// where it ends tells what it is, and what stands before is the job.
     pub(super) fn kept_checkpoint(&self, [step, increment]: [usize; 2]) -> PathBuf {
-        let name = format!("{}-{step}-{increment}.restart", self.name);
+        let name = format!("{}.restart-{step}-{increment}", self.name);
         self.restart.with_file_name(name)
     }
 
-    /// Whether a file has the name of one of its checkpoints.
-    fn is_checkpoint(&self, path: &Path) -> bool {
-        let file = path.file_name().unwrap_or_default().to_string_lossy();
-        let Some(rest) = file
-            .strip_prefix(self.name.as_str())
-            .and_then(|rest| rest.strip_suffix(".restart"))
-        else {
-            return false;
-        };
-        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-        let numbers = rest.strip_prefix('-').and_then(|rest| rest.split_once('-'));
-        rest.is_empty() || numbers.is_some_and(|(step, inc)| is_number(step) && is_number(inc))
+    /// The checkpoints of the job that exist, in the order of their names.
+    fn checkpoints(&self) -> io::Result<Vec<PathBuf>> {
+        let folder = self.restart.parent();
+        let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
+        let mut found = Vec::new();
+        for entry in fs::read_dir(folder.unwrap_or(Path::new(".")))? {
+            let name = entry?.file_name();
+            if checkpoint_of(&name.to_string_lossy()) == Some(self.name.as_str()) {
+                found.push(self.restart.with_file_name(name));
+            }
+        }
+        found.sort();
+        Ok(found)
     }
 
     /// `JOB.vtkhdf.part`, the result until its first frame is complete.
     pub(super) fn draft(&self) -> PathBuf {
-        self.result
-            .with_file_name(format!("{}.vtkhdf.part", self.name))
+        draft::part(&self.result)
     }
 
-    /// The existing files with results of a run; the empty log of a run killed before its first
+    /// The existing files with results of a run and its checkpoints; the empty log of a run killed before its first
     /// frame does not count.
     pub(super) fn results(&self) -> Vec<PathBuf> {
         let is_empty = |path: &Path| {
@@ -86,8 +90,10 @@ impl JobFiles {
             path == self.log && data.is_ok_and(|data| data.is_file() && data.len() == 0)
         };
         let existing = self.existing().into_iter();
-        let told = existing.filter(|path| !is_empty(path));
-        told.map(Path::to_owned).collect()
+        let told = existing.filter(|path| !is_empty(path)).map(Path::to_owned);
+        // there are none in a folder that cannot be read
+        let checkpoints = self.checkpoints().unwrap_or_default();
+        told.chain(checkpoints).collect()
     }
 
     /// The result, status and log files that exist.
@@ -100,6 +106,21 @@ impl JobFiles {
     }
 }
 
+/// Whether a path has the name of a checkpoint of some job.
+pub fn is_checkpoint(path: &Path) -> bool {
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    checkpoint_of(&file).is_some()
+}
+
+/// The job of which a file is a checkpoint, `JOB.restart` or `JOB.restart-STEP-INC`.
+fn checkpoint_of(file: &str) -> Option<&str> {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let (job, rest) = file.rsplit_once(".restart")?;
+    let numbers = rest.strip_prefix('-').and_then(|rest| rest.split_once('-'));
+    let is_kept = numbers.is_some_and(|(step, inc)| is_number(step) && is_number(inc));
+    (rest.is_empty() || is_kept).then_some(job)
+}
+
 /// A deck's file name without `.inp`.
 fn without_extension(file: &str) -> &str {
     match file.split_at_checked(file.len().saturating_sub(4)) {
@@ -108,14 +129,24 @@ fn without_extension(file: &str) -> &str {
     }
 }
 
+/// What becomes of the results of an earlier run of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Earlier {
+    /// They stay, and the new run does not begin.
+    Stays,
+    /// Those of the new run take their place.
+    Replaced,
+    /// The new run goes on with them.
+    Continued,
+}
+
 /// Holds a job until it is dropped; then files that never got a frame are removed.
 #[derive(Debug)]
 pub struct Claim {
     files: JobFiles,
     /// `JOB.log`, locked.
     log: File,
-    /// Whether older results may be replaced.
-    overwrite: bool,
+    earlier: Earlier,
 }
 
 impl Claim {
@@ -124,20 +155,20 @@ impl Claim {
     /// # Errors
     /// Results exist and may not be overwritten, another run holds the job, or a name belongs to
     /// something other than a regular file.
-    pub fn take(files: &JobFiles, overwrite: bool) -> Result<Self, OutputError> {
-        if !overwrite {
+    pub fn take(files: &JobFiles, earlier: Earlier) -> Result<Self, OutputError> {
+        if earlier == Earlier::Stays {
             refuse(files.results())?;
         }
         create_folder(&files.log)?;
-        clear(files)?;
-        let log = locked_log(&files.log, overwrite)?;
+        refuse_others(files, earlier)?;
+        let log = locked_log(&files.log, earlier)?;
         let claim = Claim {
             files: files.clone(),
             log,
-            overwrite,
+            earlier,
         };
         // A run that had the job before may have finished in the meantime.
-        if !overwrite {
+        if earlier == Earlier::Stays {
             refuse(files.results())?;
         } else if is_held(&files.result) {
             let path = files.result.clone();
@@ -159,23 +190,15 @@ impl Claim {
     /// Path of the result until its first frame is complete; the draft of a killed run is removed.
     pub(crate) fn draft(&self) -> Result<PathBuf, OutputError> {
         let draft = self.files.draft();
-        match fs::remove_file(&draft) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                Err(FileError::new("create", &draft)(error).into())
-            }
-            _ => Ok(draft),
-        }
+        draft::remove(&draft).map_err(FileError::new("create", &draft))?;
+        Ok(draft)
     }
 
     /// Removes the checkpoints of an earlier run.
     pub(crate) fn forget_checkpoints(&self) -> io::Result<()> {
-        let folder = self.files.restart.parent();
-        let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
-        for entry in fs::read_dir(folder.unwrap_or(Path::new(".")))? {
-            let path = entry?.path();
-            if self.files.is_checkpoint(&path) {
-                fs::remove_file(&path).map_err(at(&path))?;
-            }
+        let half = draft::part(&self.files.restart);
+        for path in self.files.checkpoints()?.iter().chain([&half]) {
+            draft::remove(path).map_err(at(path))?;
         }
         Ok(())
     }
@@ -183,10 +206,11 @@ impl Claim {
     /// Gives the result its final name in one operation.
     pub(crate) fn publish(&self) -> io::Result<()> {
         let result = &self.files.result;
-        if !self.overwrite && exists(result) {
-            return Err(at(result)(ErrorKind::AlreadyExists.into()));
-        }
-        fs::rename(self.files.draft(), result).map_err(at(result))
+        let existing = match self.earlier {
+            Earlier::Stays => Existing::Stays,
+            Earlier::Replaced | Earlier::Continued => Existing::Replaced,
+        };
+        draft::rename(&self.files.draft(), result, existing).map_err(at(result))
     }
 }
 
@@ -194,7 +218,8 @@ impl Drop for Claim {
     fn drop(&mut self) {
         // The next run of the job removes a draft that cannot be removed here.
         let _ = fs::remove_file(self.files.draft());
-        if self.log.metadata().is_ok_and(|data| data.len() == 0) {
+        let is_empty = self.log.metadata().is_ok_and(|data| data.len() == 0);
+        if is_empty && is_at(&self.log, &self.files.log) {
             let _ = fs::remove_file(&self.files.log);
         }
     }
@@ -217,28 +242,29 @@ fn create_folder(file: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// Removes symbolic links in place of old results, so that their targets are not written; refuses
-/// fifos, devices and folders.
-fn clear(files: &JobFiles) -> Result<(), OutputError> {
+/// Refuses fifos, devices and folders in place of old results. Links to files are replaced like files, but for the
+/// log, which a run that goes on writes on.
+fn refuse_others(files: &JobFiles, earlier: Earlier) -> Result<(), OutputError> {
     for path in files.existing() {
-        match fs::symlink_metadata(path) {
-            Ok(data) if data.is_symlink() => {
-                fs::remove_file(path).map_err(FileError::new("create", path))?;
-            }
-            Ok(data) if !data.is_file() => {
-                return Err(FileError::new("write", path)(not_regular()).into());
-            }
-            _ => {}
+        let is_replaced = *path != files.log || earlier != Earlier::Continued;
+        let data = fs::symlink_metadata(path).map_err(FileError::new("read", path))?;
+        if !data.is_file() && !(data.is_symlink() && is_replaced) {
+            return Err(FileError::new("write", path)(not_regular()).into());
         }
     }
     Ok(())
 }
 
-/// The log with its lock; an old log keeps its text until the new one begins.
-fn locked_log(path: &Path, overwrite: bool) -> Result<File, OutputError> {
+/// The log with its lock; an old log keeps its text until the new one begins. A link in its place is removed.
+fn locked_log(path: &Path, earlier: Earlier) -> Result<File, OutputError> {
     loop {
+        if path.is_symlink() {
+            draft::remove(path).map_err(FileError::new("create", path))?;
+        }
         let mut how = OpenOptions::new();
-        how.read(true).write(true);
+        how.read(true)
+            .write(true)
+            .custom_flags(OFlags::NOFOLLOW.bits() as i32);
         let (log, is_new) = match how.clone().create_new(true).open(path) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => match how.open(path) {
                 // The file was removed in between: try again.
@@ -253,7 +279,9 @@ fn locked_log(path: &Path, overwrite: bool) -> Result<File, OutputError> {
                 return Err(OutputError::Held { path });
             }
             // On a file system without locks only the creation of the file decides.
-            Err(TryLockError::Error(_)) if !is_new && !overwrite => refuse(vec![path.to_owned()])?,
+            Err(TryLockError::Error(_)) if !is_new && earlier == Earlier::Stays => {
+                refuse(vec![path.to_owned()])?;
+            }
             _ => {}
         }
         if is_at(&log, path) {
@@ -277,10 +305,6 @@ fn is_held(result: &Path) -> bool {
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
 }
 
-fn exists(path: &Path) -> bool {
-    path.symlink_metadata().is_ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -302,13 +326,42 @@ mod tests {
         let files = JobFiles::new(Path::new("B.INP"), Path::new("out"));
         assert_eq!(files.log, Path::new("out/B.log"));
         assert_eq!(files.draft(), Path::new("out/B.vtkhdf.part"));
-        let is_own = |name: &str| files.is_checkpoint(Path::new(name));
-        assert!(
-            is_own("out/B.restart")
-                && is_own(&files.kept_checkpoint([1, 20]).display().to_string())
-        );
-        assert!(
-            !is_own("out/B-1.restart") && !is_own("out/BC.restart") && !is_own("out/B-a-1.restart")
-        );
+    }
+
+    #[test]
+    fn names_of_files_of_two_jobs_never_meet() {
+        let jobs = [
+            "case",
+            "case-1-2",
+            "case-1-2-3-4",
+            "case.restart",
+            "case.restart-1-2",
+        ];
+        let mut owners = std::collections::BTreeMap::new();
+        for job in jobs {
+            let files = JobFiles::new(Path::new(job), Path::new("out"));
+            let checkpoints = [[1, 2], [3, 4]].map(|place| files.kept_checkpoint(place));
+            for path in checkpoints.iter().chain([&files.restart]) {
+                let name = path.file_name().expect("name").to_string_lossy();
+                assert_eq!(checkpoint_of(&name), Some(job));
+            }
+            let others = [
+                files.failed_lcp(3),
+                files.draft(),
+                draft::part(&files.restart),
+            ];
+            let own = [files.result, files.status, files.log, files.restart];
+            for path in checkpoints.into_iter().chain(others).chain(own) {
+                assert_eq!(owners.insert(path.clone(), job), None, "{}", path.display());
+            }
+        }
+        for other in [
+            "case-1-2",
+            "case.restart-1",
+            "case.restart-a-1",
+            "case.restart-1-2.part",
+        ] {
+            assert_eq!(checkpoint_of(other), None);
+        }
     }
 }

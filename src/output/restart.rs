@@ -9,11 +9,12 @@ use std::{error, fmt, fs};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::error::{FileError, at};
+use super::draft::{Draft, Existing};
+use super::error::{FileError, at, regular_file};
 use crate::diagnostics::EarlierDeck;
 
 /// First bytes of the file.
-const MAGIC: &[u8] = b"stickslip restart 1\n";
+const MAGIC: &[u8] = b"stickslip restart 2\n";
 
 /// Bytes of the check sum behind them.
 const SUM: usize = 32;
@@ -40,6 +41,8 @@ pub struct Checkpoint {
 /// Deck and options of a run, which the run that goes on must have as well.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RestartOrigin {
+    /// The run: the attribute `id` of `/run` in its result file. A run that goes on keeps it.
+    pub run: String,
     /// The deck with its includes, file by file: name and text.
     pub deck: Vec<(String, String)>,
     /// Options that change what is computed or written.
@@ -109,7 +112,8 @@ impl Checkpoint {
     /// # Errors
     /// There is none, it is not whole, or it is of another program.
     pub fn read(path: &Path, program: &str) -> Result<Self, CheckpointError> {
-        let bytes = fs::read(path).map_err(FileError::new("read", path));
+        let bytes = regular_file(path).and_then(|_| fs::read(path));
+        let bytes = bytes.map_err(FileError::new("read", path));
         let bytes = bytes.map_err(CheckpointError::File)?;
         let content = || CheckpointError::Content(path.to_owned());
         let rest = bytes.strip_prefix(MAGIC).ok_or_else(content)?;
@@ -131,28 +135,21 @@ impl Checkpoint {
     /// # Errors
     /// Those of the file system.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(".part");
-        let draft = path.with_file_name(name);
         let body = postcard::to_stdvec(self).map_err(io::Error::other)?;
         let write = || {
-            let mut file = File::create(&draft)?;
+            let mut draft = Draft::claimed(path)?;
+            let file = draft.file();
             file.write_all(MAGIC)?;
             file.write_all(&Sha256::digest(&body))?;
             file.write_all(&body)?;
             file.sync_all()?;
-            fs::rename(&draft, path)?;
+            draft.publish(path, Existing::Replaced)?;
             let folder = path
                 .parent()
                 .filter(|folder| !folder.as_os_str().is_empty());
             File::open(folder.unwrap_or(Path::new(".")))?.sync_all()
         };
-        let written = write();
-        if written.is_err() {
-            // the first error is reported
-            let _ = fs::remove_file(&draft);
-        }
-        written.map_err(at(path))
+        write().map_err(at(path))
     }
 }
 

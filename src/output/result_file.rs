@@ -9,12 +9,12 @@ use hdf5::{File, FileBuilder};
 
 use super::checks::{self, Checks};
 use super::column::GrowingColumns;
-use super::error::{at, io_error};
+use super::error::{at, io_error, regular_file};
 use super::fields;
 use super::frames::Frame;
 use super::history::History;
 use super::local;
-use super::run_record::{RecordWriter, RunRecord};
+use super::run_record::{RecordWriter, RunRecord, run_id};
 use super::space::Space;
 use crate::archive::Archive;
 use crate::dynamics::{IncrementReport, RunSummary};
@@ -58,7 +58,7 @@ impl<'m> ResultFile<'m> {
         let builder = || {
             FileBuilder::new()
                 .with_fcpl(|properties| properties.obj_track_times(false))
-                .create(draft)
+                .create_excl(draft)
         };
         let file = builder().map_err(io_error).map_err(at(path))?;
         let parts = || {
@@ -116,8 +116,12 @@ impl<'m> ResultFile<'m> {
     }
 
     /// Carries how far the file is written, after [`Self::write_through`]; what is read is copied from the `earlier`
-    /// file.
-    pub fn carry(&mut self, archive: &mut Archive, earlier: Option<&Path>) -> io::Result<()> {
+    /// file of the same run, with its id.
+    pub fn carry(
+        &mut self,
+        archive: &mut Archive,
+        earlier: Option<(&Path, &str)>,
+    ) -> io::Result<()> {
         let mut written = [
             self.fields.written(),
             self.history.written(),
@@ -128,15 +132,21 @@ impl<'m> ResultFile<'m> {
         archive
             .carry(&mut self.frame_time)
             .map_err(io::Error::other)?;
-        let Some(earlier) = earlier else {
+        let Some((earlier, id)) = earlier else {
             return Ok(());
         };
+        regular_file(earlier).map_err(at(earlier))?;
         let [fields, history, checks] = &written;
-        let copied = File::open(earlier).and_then(|file| {
+        let file = File::open(earlier).map_err(io_error).map_err(at(earlier))?;
+        if run_id(&file).as_deref() != Some(id) {
+            let other = "it is not the result of the run that the checkpoint is of";
+            return Err(at(earlier)(io::Error::other(other)));
+        }
+        let copied = (|| {
             self.fields.copy(&file, fields)?;
             self.history.copy(&file, history)?;
             self.checks.copy(&file, checks)
-        });
+        })();
         copied.map_err(io_error).map_err(at(earlier))?;
         self.write_through()
     }

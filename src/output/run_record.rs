@@ -1,8 +1,10 @@
 //! Group `/run`: program, deck and command of the run, its times and its end.
 
+use std::hash::{BuildHasher, RandomState};
 use std::time::SystemTime;
 
-use hdf5::Group;
+use hdf5::types::VarLenUnicode;
+use hdf5::{File, Group};
 use sha2::{Digest, Sha256};
 
 use super::column::{group, set_attribute, text_attribute};
@@ -12,9 +14,21 @@ use crate::dynamics::{RunSummary, Timings};
 /// Value of `exit_status` until the run ends.
 pub const UNFINISHED: i64 = -1;
 
+/// The attribute that tells a run from all others.
+const ID: &str = "id";
+
+/// A text that no other run has for its id.
+pub fn new_run_id() -> String {
+    let run = (SystemTime::now(), std::process::id());
+    let any = || RandomState::new().hash_one(run);
+    format!("{:016x}{:016x}", any(), any())
+}
+
 /// Program, deck and command of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RunRecord {
+    /// Tells the run from all others; a run that goes on keeps it.
+    pub id: String,
     /// Version of the program.
     pub version: String,
     /// Commit it was built from.
@@ -40,6 +54,7 @@ impl RecordWriter {
         let at = group(root, "run")?;
         let text = |name, value: &str| text_attribute(&at, name, value);
         text("program", "stickslip")?;
+        text(ID, &record.id)?;
         text("version", &record.version)?;
         text("commit", &record.commit)?;
         text("deck", &record.deck)?;
@@ -81,6 +96,13 @@ impl RecordWriter {
         text_attribute(&self.at, "finished", &utc_now())?;
         set_attribute(&self.at, "exit_status", i64::from(exit_status))
     }
+}
+
+/// The id of the run that has written a result file; none where it has none.
+pub(super) fn run_id(file: &File) -> Option<String> {
+    let id = file.group("run").and_then(|at| at.attr(ID)).ok()?;
+    let text = id.read_scalar::<VarLenUnicode>().ok()?;
+    Some(text.to_string())
 }
 
 /// Phases of a run with their wall-clock seconds.

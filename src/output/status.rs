@@ -1,13 +1,15 @@
 //! `JOB.sta`: one line per increment in fixed columns.
 
 use std::fs::File;
-use std::io;
-use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use sha2::{Digest, Sha256};
+
 use super::console::{closed, sticking};
-use super::error::at;
+use super::draft::{Draft, Existing};
+use super::error::{at, regular_file};
 use super::format::{scientific, signed};
 use crate::dynamics::IncrementReport;
 use crate::model::Model;
@@ -44,10 +46,18 @@ pub(crate) fn monitored(model: &Model) -> Vec<(String, usize)> {
     dofs.map(|dof| (name(dof), *dof)).collect()
 }
 
+/// How far a status file is written: its length, and the check sum of its text.
+pub(crate) type Written = (u64, [u8; 32]);
+
 /// Writes the status file.
 pub(crate) struct StatusFile {
     file: BufWriter<File>,
     path: PathBuf,
+    /// The file until it takes the place of an earlier one; none afterwards.
+    draft: Option<Draft>,
+    /// Number of bytes of the text, and its check sum.
+    length: u64,
+    sum: Sha256,
     /// Further columns: dofs with the widths of their columns.
     monitored: Vec<(usize, usize)>,
     /// When lines were last written to the disk.
@@ -55,26 +65,41 @@ pub(crate) struct StatusFile {
 }
 
 impl StatusFile {
-    /// Creates the file, or empties it.
+    /// Begins the file, which gets its name with [`Self::publish`].
     pub fn create(path: &Path, model: &Model) -> io::Result<Self> {
-        let (mut status, names) = Self::at(path, File::create(path), model)?;
-        writeln!(status.file, "{TITLE}\n#{}", &names[1..]).map_err(at(path))?;
+        let (mut status, names) = Self::at(path, model)?;
+        status.write_all(format!("{TITLE}\n#{}\n", &names[1..]).as_bytes())?;
         status.flush()?;
         Ok(status)
     }
 
-    /// Goes on behind the first `length` bytes of the file.
-    pub fn go_on(path: &Path, model: &Model, length: u64) -> io::Result<Self> {
-        let mut file = File::options().write(true).open(path).map_err(at(path))?;
-        let cut = file
-            .set_len(length)
-            .and_then(|()| file.seek(SeekFrom::End(0)));
-        cut.map_err(at(path))?;
-        Ok(Self::at(path, Ok(file), model)?.0)
+    /// Begins the file with what an earlier one had when a checkpoint was `written`.
+    ///
+    /// # Errors
+    /// The earlier file has another text; those of the file system.
+    pub fn go_on(path: &Path, model: &Model, (length, sum): Written) -> io::Result<Self> {
+        let mut text = Vec::new();
+        let read =
+            regular_file(path).and_then(|_| File::open(path)?.take(length).read_to_end(&mut text));
+        read.map_err(at(path))?;
+        if text.len() as u64 != length || Sha256::digest(&text).as_slice() != sum {
+            let other = "it is not the status file of the run that the checkpoint is of";
+            return Err(at(path)(io::Error::other(other)));
+        }
+        let (mut status, _) = Self::at(path, model)?;
+        status.write_all(&text)?;
+        status.flush()?;
+        Ok(status)
     }
 
-    /// Writes to a file; with the names of its columns.
-    fn at(path: &Path, file: io::Result<File>, model: &Model) -> io::Result<(Self, String)> {
+    /// Puts the file in place of an earlier one.
+    pub fn publish(&mut self) -> io::Result<()> {
+        let named = |draft: Draft| draft.publish(&self.path, Existing::Replaced).map(drop);
+        (self.draft.take().map_or(Ok(()), named)).map_err(at(&self.path))
+    }
+
+    /// A file without text; with the names of its columns.
+    fn at(path: &Path, model: &Model) -> io::Result<(Self, String)> {
         let mut names: String = (COLUMNS.iter())
             .map(|(name, width)| format!("{name:>width$}"))
             .collect();
@@ -84,24 +109,30 @@ impl StatusFile {
             names.push_str(&format!("{name:>width$}"));
             columns.push((dof, width));
         }
+        let mut draft = Draft::claimed(path).map_err(at(path))?;
         let status = StatusFile {
-            file: BufWriter::new(file.map_err(at(path))?),
+            file: BufWriter::new(draft.file().try_clone().map_err(at(path))?),
             path: path.to_owned(),
+            draft: Some(draft),
+            length: 0,
+            sum: Sha256::new(),
             monitored: columns,
             written: Instant::now(),
         };
         Ok((status, names))
     }
 
-    /// Writes all lines to the disk and gives the length of the file.
-    pub fn length(&mut self) -> io::Result<u64> {
+    /// Brings all lines to the disk itself, and tells how far the file is written.
+    pub fn sync(&mut self) -> io::Result<Written> {
         self.flush()?;
-        Ok(self
-            .file
-            .get_ref()
-            .metadata()
-            .map_err(at(&self.path))?
-            .len())
+        self.file.get_ref().sync_data().map_err(at(&self.path))?;
+        Ok((self.length, self.sum.clone().finalize().into()))
+    }
+
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.length += bytes.len() as u64;
+        self.sum.update(bytes);
+        self.file.write_all(bytes).map_err(at(&self.path))
     }
 
     /// Writes the lines so far to the disk.
@@ -142,7 +173,8 @@ impl StatusFile {
             let value = scientific(report.state.u[dof], 10);
             line.push_str(&format!("{value:>width$}"));
         }
-        writeln!(self.file, "{line}").map_err(at(&self.path))?;
+        line.push('\n');
+        self.write_all(line.as_bytes())?;
         match self.written.elapsed() >= PAUSE {
             true => self.flush(),
             false => Ok(()),

@@ -1,15 +1,15 @@
 //! The observer of a run: writes each increment to the result file, status file, log and screen, and
 //! completes them at the end.
 
-use std::io::ErrorKind;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
-use std::{fs, io};
 
 use super::checks::Checks;
 use super::console::{Console, Log, Verbosity};
+use super::draft::{Existing, link, write_whole};
 use super::error::{OutputError, at};
 use super::failure::{cutback_advice, cutback_lines, failure_lines, held_lines};
 use super::format::{bytes, counted, scientific, wrap};
@@ -20,7 +20,7 @@ use super::monitor::{Monitor, Remarks, lcp_lines, timing_lines};
 use super::restart::{Checkpoint, RestartOrigin};
 use super::result_file::ResultFile;
 use super::run_record::RunRecord;
-use super::status::StatusFile;
+use super::status::{StatusFile, Written};
 use super::strain::warning_lines;
 use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
@@ -37,6 +37,8 @@ pub struct ResultWriter<'a> {
     result: ResultFile<'a>,
     /// Created with the first frame.
     status: Option<StatusFile>,
+    /// The status file of a run that goes on, until its first increment.
+    continued: Option<StatusFile>,
     console: Console,
     schedule: FrameSchedule<'a>,
     monitor: Monitor,
@@ -85,6 +87,7 @@ impl<'a> ResultWriter<'a> {
             model,
             result,
             status: None,
+            continued: None,
             console: Console::new(model, verbosity, log),
             schedule: FrameSchedule::new(model),
             monitor: Monitor::new(model),
@@ -102,17 +105,18 @@ impl<'a> ResultWriter<'a> {
         })
     }
 
-    /// Goes on from a checkpoint: with the rows and frames before it, behind the old text of the log.
+    /// Goes on from a checkpoint: with the rows and frames before it, behind the old text of the log. The old files
+    /// stay as they are until the first increment, or the end, shows that the run does go on.
     ///
     /// # Errors
-    /// The result file cannot be read, or is not that of the checkpoint.
+    /// Result or status file cannot be read, or are not those of the checkpoint.
     pub fn go_on(&mut self, checkpoint: &Checkpoint) -> io::Result<()> {
         let files = self.claim.files().clone();
         let mut archive = Archive::Reading(&checkpoint.files);
-        let length = self.carry(&mut archive, Some(&files.result), 0)?;
-        self.claim.publish()?;
-        self.status = Some(StatusFile::go_on(&files.status, self.model, length)?);
-        self.console.log.go_on()
+        let earlier = (files.result.as_path(), checkpoint.origin.run.as_str());
+        let written = self.carry(&mut archive, Some(earlier), Written::default())?;
+        self.continued = Some(StatusFile::go_on(&files.status, self.model, written)?);
+        Ok(())
     }
 
     /// Begins the files with the state of a checkpoint of another job.
@@ -142,19 +146,19 @@ impl<'a> ResultWriter<'a> {
         archive.carry(&mut self.numbers)
     }
 
-    /// Carries how far the files are written; gives the length of the status file.
+    /// Carries how far the files are written; gives it of the status file.
     fn carry(
         &mut self,
         archive: &mut Archive,
-        earlier: Option<&Path>,
-        mut length: u64,
-    ) -> io::Result<u64> {
+        earlier: Option<(&Path, &str)>,
+        mut status: Written,
+    ) -> io::Result<Written> {
         let carried = (self.carry_state(archive))
             .and_then(|()| archive.carry(&mut self.is_last_written))
-            .and_then(|()| archive.carry(&mut length));
+            .and_then(|()| archive.carry(&mut status));
         carried.map_err(io::Error::other)?;
         self.result.carry(archive, earlier)?;
-        Ok(length)
+        Ok(status)
     }
 
     /// Writes what is known to the disk, and then a checkpoint with it.
@@ -162,11 +166,11 @@ impl<'a> ResultWriter<'a> {
         let Some(status) = &mut self.status else {
             return Ok(());
         };
-        let length = status.length()?;
+        let written = status.sync()?;
         self.result.write_through()?;
         self.result.sync()?;
         let mut archive = Archive::new();
-        self.carry(&mut archive, None, length)?;
+        self.carry(&mut archive, None, written)?;
         let checkpoint = Checkpoint {
             program: self.checkpoints.program.clone(),
             origin: self.checkpoints.origin.clone(),
@@ -180,9 +184,7 @@ impl<'a> ResultWriter<'a> {
         checkpoint.write(&files.restart)?;
         if std::mem::take(&mut self.is_checkpoint_kept) {
             let kept = files.kept_checkpoint(self.schedule.place());
-            // that of the run that this one goes on from
-            let _ = fs::remove_file(&kept);
-            fs::hard_link(&files.restart, &kept).map_err(at(&kept))?;
+            link(&files.restart, &kept).map_err(at(&kept))?;
         }
         (self.checkpointed, self.is_checkpoint_due) = (Instant::now(), false);
         Ok(())
@@ -231,13 +233,23 @@ impl<'a> ResultWriter<'a> {
     /// After the first frame, puts the files of the job in place of those of an earlier run: the result
     /// first, since the others without it would stand in the way of the next run.
     fn publish(&mut self) -> io::Result<()> {
-        if self.status.is_none() {
-            self.claim.forget_checkpoints()?;
-            self.claim.publish()?;
-            self.status = Some(StatusFile::create(&self.claim.files().status, self.model)?);
-            self.console.log.begin()?;
+        if self.status.is_some() {
+            return Ok(());
         }
-        Ok(())
+        let continued = self.continued.take();
+        let goes_on = continued.is_some();
+        let path = &self.claim.files().status;
+        let mut status = continued.map_or_else(|| StatusFile::create(path, self.model), Ok)?;
+        self.claim.publish()?;
+        if !goes_on {
+            self.claim.forget_checkpoints()?;
+        }
+        status.publish()?;
+        self.status = Some(status);
+        match goes_on {
+            true => self.console.log.go_on(),
+            false => self.console.log.begin(),
+        }
     }
 
     /// Prints a line on the screen and in the log.
@@ -299,7 +311,7 @@ impl<'a> ResultWriter<'a> {
             self.result.frame(&mut self.last);
         }
         self.result.write_when_due()?;
-        match is_frame {
+        match is_frame || self.continued.is_some() {
             true => self.publish(),
             false => Ok(()),
         }
@@ -380,7 +392,8 @@ impl<'a> ResultWriter<'a> {
         self.alarm(lines)?;
         if let Cause::Lcp(failed) = &failure.cause {
             let path = self.claim.files().failed_lcp(failure.increment);
-            replace(&path, &failed.problem.to_json()).map_err(at(&path))?;
+            let problem = failed.problem.to_json();
+            write_whole(&path, &problem, Existing::Replaced).map_err(at(&path))?;
             let line = format!("lcp      {} holds the problem", path.display());
             self.console.alarm(&line)?;
         }
@@ -453,14 +466,6 @@ impl Observer for ResultWriter<'_> {
         self.write_checkpoint(solver)?;
         self.spent += start.elapsed();
         Ok(())
-    }
-}
-
-/// Writes a file in place of an existing one, which may be a link or a fifo.
-fn replace(path: &Path, text: &str) -> io::Result<()> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
-        _ => fs::write(path, text),
     }
 }
 

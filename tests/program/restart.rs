@@ -88,7 +88,7 @@ fn a_run_goes_on_from_every_checkpoint_in_the_same_bits() {
     let mut kept: Vec<_> = fs::read_dir(stopped.path())
         .expect("folder")
         .map(|entry| entry.expect("entry").path())
-        .filter(|path| path.to_string_lossy().contains("-1-"))
+        .filter(|path| path.to_string_lossy().contains(".restart-1-"))
         .collect();
     kept.sort();
     assert!(kept.len() > 3, "{kept:?}");
@@ -165,8 +165,103 @@ fn what_cannot_go_on_says_why() {
     // it has ended: nothing is left to do
     assert_done(&run(stopped.path(), &["--resume"]));
     assert_eq!(before, status(stopped.path()));
-    fs::remove_file(stopped.path().join("job.vtkhdf")).expect("removed");
-    refused(&["--resume"], 4, "job.vtkhdf");
+    // every file that is missing, cut or of another run: refused, and nothing is touched
+    let others = folder(BEAM);
+    assert_done(&run(others.path(), &["--checkpoint", "1000"]));
+    let all = || -> BTreeMap<_, _> {
+        let entries = fs::read_dir(stopped.path()).expect("folder");
+        let paths = entries.map(|entry| entry.expect("entry").path());
+        paths
+            .map(|path| (path.clone(), fs::read(&path).ok()))
+            .collect()
+    };
+    for (name, text) in [
+        ("job.vtkhdf", "not the result of the run"),
+        ("job.sta", "not the status file of the run"),
+    ] {
+        let (path, other) = (stopped.path().join(name), others.path().join(name));
+        let own = fs::read(&path).expect("own");
+        let other = match name {
+            // the same lines: of a run with one that differs
+            "job.sta" => status(others.path()).replacen("1.0", "1.1", 1).into_bytes(),
+            _ => fs::read(other).expect("other"),
+        };
+        let spoiled = [
+            (None, "No such file"),
+            (Some(&own[..own.len() / 2]), name),
+            (Some(&other[..]), text),
+        ];
+        for (bytes, text) in spoiled {
+            match bytes {
+                Some(bytes) => fs::write(&path, bytes).expect("spoiled"),
+                None => fs::remove_file(&path).expect("removed"),
+            }
+            let before = all();
+            refused(&["--resume"], 4, text);
+            assert!(all() == before, "{name}: {text}");
+        }
+        fs::write(&path, own).expect("put back");
+    }
+    assert_done(&run(stopped.path(), &["--resume"]));
+    // a new run asks before it removes checkpoints
+    for name in ["job.vtkhdf", "job.sta", "job.log"] {
+        fs::remove_file(stopped.path().join(name)).expect(name);
+    }
+    refused(&[], 4, "job.restart exists already");
+}
+
+#[test]
+fn two_jobs_leave_each_other_alone_and_links_are_not_followed() {
+    let place = TempDir::new().expect("folder");
+    let path = |name: &str| place.path().join(name);
+    let short = BEAM.replacen("0.002, 0.6", "0.002, 0.02", 1);
+    let keeps = with("*RESTART, WRITE, FREQUENCY=5").replacen("0.002, 0.6", "0.002, 0.02", 1);
+    let job =
+        |words: &[&str]| assert_done(&program(place.path(), &[&["run", "-q"], words].concat()));
+    fs::write(path("case-1-5.inp"), &short).expect("deck");
+    fs::write(path("case.inp"), keeps).expect("deck");
+    job(&["case-1-5.inp", "--checkpoint", "1000"]);
+    let other = fs::read(path("case-1-5.restart")).expect("checkpoint");
+    fs::write(path("precious"), "precious").expect("file");
+    let links = [
+        "case.restart",
+        "case.restart.part",
+        "case.restart-1-5",
+        "case.sta.part",
+    ];
+    for link in links {
+        std::os::unix::fs::symlink(path("precious"), path(link)).expect(link);
+    }
+    // a result that has a second name keeps its text there
+    fs::write(path("case.log"), "old").expect("log");
+    fs::hard_link(path("case.log"), path("log")).expect("second name");
+    job(&["case.inp", "--overwrite"]);
+    job(&["case.inp", "--overwrite"]);
+    assert_eq!(
+        fs::read(path("case-1-5.restart")).expect("checkpoint"),
+        other
+    );
+    assert_eq!(
+        fs::read_to_string(path("precious")).expect("file"),
+        "precious"
+    );
+    assert_eq!(fs::read_to_string(path("log")).expect("log"), "old");
+    assert!(path("case.restart-1-5").is_file() && !path("case.restart-1-5").is_symlink());
+    // flatten and check write to a name that nothing has
+    for part in ["flat.inp.part", "case.svg.part"] {
+        std::os::unix::fs::symlink(path("precious"), path(part)).expect(part);
+    }
+    assert_done(&program(
+        place.path(),
+        &["flatten", "case.inp", "-o", "flat.inp"],
+    ));
+    let words = ["check", "case.inp", "--picture", "case.svg"];
+    assert_done(&program(place.path(), &words));
+    assert_eq!(
+        fs::read_to_string(path("precious")).expect("file"),
+        "precious"
+    );
+    assert!(path("flat.inp").exists() && path("case.svg").exists());
 }
 
 const SECOND: &str = "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.002, 0.1\n*DLOAD, OP=NEW, AMPLITUDE=FADE\n, GRAV, 9.81, 0., -1.\n\
@@ -268,7 +363,7 @@ fn a_deck_goes_on_from_the_end_of_another_job_in_the_same_bits() {
         2,
         "which job does this deck go on from?",
     );
-    let early = ["two.inp", "--overwrite", "--oldjob", "one-1-70"];
+    let early = ["two.inp", "--overwrite", "--oldjob", "one.restart-1-70"];
     refused(
         &early,
         2,
@@ -290,7 +385,12 @@ fn a_deck_goes_on_from_the_end_of_another_job_in_the_same_bits() {
         "two.inp",
         &format!("*RESTART, READ, STEP=1, INC=70\n{FADE}{SECOND}"),
     );
-    assert_done(&job(&["two.inp", "--overwrite", "--oldjob", "one-1-70"]));
+    assert_done(&job(&[
+        "two.inp",
+        "--overwrite",
+        "--oldjob",
+        "one.restart-1-70",
+    ]));
     let rows = rows("two.vtkhdf");
     let whole = last_rows(place.path(), "whole", two + three - 1);
     let all = last_rows(place.path(), "two", rows);

@@ -591,7 +591,8 @@ fn names_with_a_slash_are_refused_before_any_file() {
     model.sets.nodes[1].name = "A/B".into();
     let record = crate::writers::record();
     let verbosity = stickslip::output::Verbosity::Quiet;
-    let claim = stickslip::output::Claim::take(&files, false).expect("claim");
+    let claim =
+        stickslip::output::Claim::take(&files, stickslip::output::Earlier::Stays).expect("claim");
     let Err(error) = stickslip::output::ResultWriter::create(&model, claim, &record, verbosity)
     else {
         panic!("accepted");

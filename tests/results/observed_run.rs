@@ -14,7 +14,9 @@ use std::path::Path;
 use crate::blocks::{add_block, add_contact, model, run, step, throw};
 use hdf5::File;
 use stickslip::model::{Frames, Model, Settings};
-use stickslip::output::{Claim, JobFiles, ResultSummary, ResultWriter, RunRecord, Verbosity};
+use stickslip::output::{
+    Claim, Earlier, JobFiles, ResultSummary, ResultWriter, RunRecord, Verbosity,
+};
 use tempfile::TempDir;
 
 fn two_blocks() -> Model {
@@ -32,7 +34,7 @@ fn two_blocks() -> Model {
 fn solve(model: &Model, folder: &Path) -> JobFiles {
     let files = JobFiles::new("blocks.inp".as_ref(), folder);
     let record = RunRecord::default();
-    let claim = Claim::take(&files, true).expect("claim");
+    let claim = Claim::take(&files, Earlier::Replaced).expect("claim");
     let mut writer = ResultWriter::create(model, claim, &record, Verbosity::Quiet).expect("writer");
     let summary = run(model, &mut writer).expect("run");
     writer.finish(&summary).expect("finish");

@@ -25,7 +25,7 @@ use stickslip::model::{
     NamedSets, NodalVariable, Procedure, RequestedFields, Section, Set, Settings, Step, Support,
     SupportMotion, Surface, SurfaceKind,
 };
-use stickslip::output::{Claim, JobFiles, ResultWriter, RunRecord, Verbosity};
+use stickslip::output::{Claim, Earlier, JobFiles, ResultWriter, RunRecord, Verbosity};
 
 /// Increments of the made-up run.
 pub const INCREMENTS: usize = 10;
@@ -295,6 +295,7 @@ fn landing() -> Landing {
 /// The run record.
 pub fn record() -> RunRecord {
     RunRecord {
+        id: "run".into(),
         version: "0.0.0".into(),
         commit: "abcdef0".into(),
         deck: deck_text(),
@@ -332,6 +333,6 @@ pub fn write_run(folder: &Path) -> JobFiles {
 
 /// A writer without screen.
 pub fn writer<'a>(model: &'a Model, files: &JobFiles) -> ResultWriter<'a> {
-    let claim = Claim::take(files, true).expect("claim");
+    let claim = Claim::take(files, Earlier::Replaced).expect("claim");
     ResultWriter::create(model, claim, &record(), Verbosity::Quiet).expect("writer")
 }
