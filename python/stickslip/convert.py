@@ -1,5 +1,6 @@
 """Results in the containers of other packages, which are imported only when they are asked for."""
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +9,7 @@ import numpy as np
 from stickslip.errors import Fault
 from stickslip.frame import Frame
 from stickslip.history import Array
-from stickslip.quantity import MEMBERS, PER_BODY
+from stickslip.quantity import Members
 
 if TYPE_CHECKING:
     import pandas
@@ -25,7 +26,7 @@ def to_dataframe(result: "Result") -> "pandas.DataFrame":
     """All histories, one row per increment with the time as index.
 
     Columns bear the names of `Result.quantity`: `energy/kinetic`, `contact/A_B/force:1`,
-    `nodes/TIP[12]/U:2`, `bodies/velocity[0]:1`.
+    `nodes/TIP[12]/U:2`, `elements/E/points[7.2]/S:1`, `connectors[9]/force`, `bodies/velocity[0]:1`.
     """
     pandas = _package("pandas")
     columns = {name: values for path in result.histories for name, values in _columns(result, path)}
@@ -36,15 +37,9 @@ def to_dataframe(result: "Result") -> "pandas.DataFrame":
 def _columns(result: "Result", path: str) -> Iterator[tuple[str, Array]]:
     """The columns of a history, each with its name."""
     data = result.history[path]
-    place, _, field = path.rpartition("/")
-    names = [path]
-    if PER_BODY.fullmatch(path):
-        names = [f"{path}[{body}]" for body in range(data.shape[1])]
-    elif MEMBERS.fullmatch(path):
-        labels = result.history[f"{place}/labels"]
-        names = [f"{place}[{label}]/{field}" for label in labels]
-    else:
-        data = data[:, None]
+    names = Members.of(result, path).paths
+    if not names:
+        names, data = [path], data[:, None]
     for at, name in enumerate(names):
         values = data[:, at]
         if values.ndim == 1:
@@ -65,15 +60,13 @@ def to_xarray(result: "Result", fields: Sequence[str]) -> "xarray.Dataset":
     for path, stored in result.histories.items():
         if path == "time":
             continue
-        data = result.history[path]
-        place = path.rpartition("/")[0]
+        each = Members.of(result, path)
         axes = ["time"]
-        if PER_BODY.fullmatch(path):
-            axes.append("body")
-        elif MEMBERS.fullmatch(path):
-            axes.append(place)
-            coordinates[place] = result.history[f"{place}/labels"]
-        variables[path] = _variable(axes, data, stored.attrs, coordinates)
+        if each.names:
+            axes.append(each.axis)
+            are_numbers = all(re.fullmatch(r"-?\d+", name) for name in each.names)
+            coordinates[each.axis] = list(map(int, each.names)) if are_numbers else each.names
+        variables[path] = _variable(axes, result.history[path], stored.attrs, coordinates)
     if fields:
         coordinates["frame"] = result.frames.times
     for name in fields:

@@ -5,33 +5,33 @@ component of a vector, from 1. After the name of a node set may stand the number
 nodes in brackets; without it displacements and velocities are means over the set, reactions sums.
 The same holds of element sets, `elements/BLOCK[7]/S:1`: means of stresses and strains, sums of energies.
 These names hold too where a result has only the sums and means of a set (`TOTALS=ONLY`).
+Values at integration points, `elements/BLOCK/points[7.2]/S:1`, have the element and the number of the point in brackets, springs
+and dashpots, `connectors[9]/force`, their element, hinges, `hinges[3-4]/force:1`, their two nodes.
 Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is that of the body.
 """
 
 import re
 from dataclasses import dataclass
 
-import numpy as np
-
 from stickslip.errors import Fault
 from stickslip.result import Array, Result
 
 NAME = re.compile(r"(?P<path>[^:]*)(?::(?P<component>\d+))?")
-SETS = re.compile(
-    r"(?P<kind>node|element)s/(?P<set>[^/]+?)(?:\[(?P<member>-?\d+)\])?/(?P<field>\w+)"
+OF_MEMBER = re.compile(r"(?P<place>.+)\[(?P<member>[-\d.]+)\]/(?P<field>\w+)")
+PLACES = re.compile(
+    r"nodes/(?P<nodes>[^/]+)|elements/(?P<elements>[^/]+?)(?:/(?P<within>points|at_nodes))?"
+    r"|(?:rotary_)?connectors|(?P<hinges>hinges)"
 )
-SUMS = ("RF", "ELSE", "ELKE")
+"""Groups whose histories have one column for each member, of which their `labels` tell."""
+SUMS = ("RF", "ELSE", "ELKE", "ELHE")
 """Histories of the members of a set that are added up."""
 BODIES = re.compile(r"(?P<path>.+)\[(?P<body>\d+)\]")
 
 PER_BODY = re.compile(r"bodies/\w+|contact/.+/body_\w+")
 """Histories with one column for each body."""
 
-MEMBERS = re.compile(r"(nodes|elements)/[^/]+/\w+")
-"""Histories with one column for each member of a set."""
-
-DIRECTIONS = ("x", "y")
-"""Names of the components of a vector in the plane."""
+DIRECTIONS = {2: ("x", "y"), 3: ("xx", "yy", "xy")}
+"""Names of the components of vectors and of tensors in the plane."""
 
 
 @dataclass(frozen=True)
@@ -60,43 +60,87 @@ def find(result: Result, name: str) -> Quantity:
     matched = NAME.fullmatch(name)
     if matched is None:
         raise Fault(f"{name} is no name of a history: such are energy/kinetic, nodes/TIP/U:2")
-    data, quantity = _selected(result, matched["path"])
-    component = matched["component"]
+    path, component = matched["path"], matched["component"]
+    data, quantity = _selected(result, path)
     if data.ndim == 1:
         if component is not None:
-            raise Fault(f"{matched['path']} has no components: leave out the :{component}")
+            raise Fault(f"{path} has no components: leave out the :{component}")
         return Quantity(quantity, {"": data})
+    each = Members.of(result, path)
     if data.ndim != 2:
-        raise Fault(f"{name}: say of which, as in {matched['path']}[0]")
-    bodies = PER_BODY.fullmatch(matched["path"]) is not None
-    names = [f"body {i}" if bodies else str(i + 1) for i in range(data.shape[1])]
-    if len(names) == len(DIRECTIONS) and not bodies:
-        names = list(DIRECTIONS)
+        raise Fault(f"{name}: say of which, as in {each.paths[0]}")
+    columns = [] if each.is_set else [f"{each.kind} {one}" for one in each.names]
+    names = columns or components(data.shape[1])
     parts = dict(zip(names, data.T))
     if component is None:
         return Quantity(quantity, parts)
     if not 1 <= int(component) <= len(parts):
-        raise Fault(f"{matched['path']} has the components 1 to {len(parts)}, not {component}")
+        raise Fault(f"{path} has the components 1 to {len(parts)}, not {component}")
     chosen = names[int(component) - 1]
     return Quantity(quantity, {chosen: parts[chosen]})
+
+
+def components(count: int) -> list[str]:
+    """Names of the components of a history."""
+    return list(DIRECTIONS.get(count, [str(i + 1) for i in range(count)]))
+
+
+@dataclass(frozen=True)
+class Members:
+    """What has a column each in a history: bodies, or the members of a group."""
+
+    kind: str
+    """Such as `body`, `node`, `element`; empty where a history has no members."""
+    axis: str
+    """`body`, or the path of the group."""
+    names: list[str]
+    """Numbers of the members as they stand in brackets."""
+    paths: list[str]
+    """Names of the histories of single members."""
+    is_set: bool = False
+    """Whether they are those of a set, so that the name without brackets is the mean or the sum."""
+
+    @classmethod
+    def of(cls, result: Result, path: str) -> "Members":
+        """The members of a history; none where it has none."""
+        if path not in result.histories:
+            return cls("", "", [], [])
+        if PER_BODY.fullmatch(path):
+            names = [str(body) for body in range(result.histories[path].shape[1])]
+            return cls("body", "body", names, [f"{path}[{name}]" for name in names])
+        place, _, field = path.rpartition("/")
+        matched = PLACES.fullmatch(place)
+        if matched is None:
+            return cls("", "", [], [])
+        labels = result.read(f"history/{place}/labels")
+        kind = "node" if matched["nodes"] or matched["within"] == "at_nodes" else "element"
+        names = [str(label) for label in labels]
+        if matched["hinges"]:
+            kind, names = "hinge", ["-".join(map(str, pair)) for pair in labels]
+        elif matched["within"] == "points":
+            numbers = result.read(f"history/{place}/numbers")
+            kind, names = "point", [f"{label}.{number}" for label, number in zip(labels, numbers)]
+        paths = [f"{place}[{name}]/{field}" for name in names]
+        return cls(kind, place, names, paths, bool(matched["nodes"] or matched["elements"]))
 
 
 def listed(result: Result) -> list[str]:
     """All names of histories, with their components."""
     names = []
     for path, data in result.histories.items():
-        each = "[BODY]" if PER_BODY.fullmatch(path) else ""
-        columns = each or path.startswith("elements/") and MEMBERS.fullmatch(path)
-        plain = data.ndim == (2 if columns else 1)
-        names.append(f"{path}{each}" if plain else f"{path}{each}:1 to :{data.shape[-1]}")
+        each = Members.of(result, path)
+        plain = data.ndim == (2 if each.names else 1)
+        if each.names and not each.is_set:
+            path = each.paths[0].replace(f"[{each.names[0]}]", f"[{each.kind.upper()}]")
+        names.append(path if plain else f"{path}:1 to :{data.shape[-1]}")
     return sorted(names)
 
 
 def _selected(result: Result, path: str) -> tuple[Array, str]:
     """Values [I] or [I, components] of a path with its brackets, and what they are."""
     if path not in result.histories:
-        plain = re.sub(r"\[-?\d+\]", "", path)
-        for pattern, select in ((SETS, _of_member), (BODIES, _of_body)):
+        plain = re.sub(r"\[[-\d.]+\]", "", path)
+        for pattern, select in ((OF_MEMBER, _of_member), (BODIES, _of_body)):
             matched = pattern.fullmatch(path)
             if matched and plain in result.histories:
                 return select(result, plain, matched)
@@ -105,32 +149,32 @@ def _selected(result: Result, path: str) -> tuple[Array, str]:
             if f"{place}/{kind}/{field}" in result.histories:
                 return _selected(result, f"{place}/{kind}/{field}")
         raise Fault(f"{result.path} has no history {path}: {_alternatives(result, plain)}")
-    matched, data = SETS.fullmatch(path), result.history[path]
-    if matched and data.ndim > 1:
-        return _of_set(data, _description(result, path), matched)
+    data = result.history[path]
+    if Members.of(result, path).is_set:
+        return _of_set(data, _description(result, path), path)
     place = path.rpartition("/")[0].partition("/")[2]
     return data, ", ".join(filter(None, (_description(result, path), place)))
 
 
-def _of_set(data: Array, what: str, matched: re.Match[str]) -> tuple[Array, str]:
+def _of_set(data: Array, what: str, path: str) -> tuple[Array, str]:
     """Mean of a set, or the sum for forces and energies."""
-    name = matched["set"]
+    place, _, field = path.rpartition("/")
+    name = place.partition("/")[2]
     if data.shape[1] == 1:
         return data[:, 0], f"{what} of {name}"
-    if matched["field"] in SUMS:
+    if field in SUMS:
         return data.sum(axis=1), f"{what}, sum over {name}"
     return data.mean(axis=1), f"{what}, mean over {name}"
 
 
 def _of_member(result: Result, path: str, matched: re.Match[str]) -> tuple[Array, str]:
-    """One node or element of a set."""
-    kind, member = matched["kind"], matched["member"]
-    labels = result.read(f"history/{kind}s/{matched['set']}/labels")
-    at = np.flatnonzero(labels == int(member))
-    if len(at) == 0:
-        raise Fault(f"{kind} {member} is not in {matched['set']}: {_few(labels)}")
-    what = _description(result, path)
-    return result.history[path][:, at[0]], f"{what} of {kind} {member}"
+    """One node, element or another member of a group."""
+    member, each = matched["member"], Members.of(result, path)
+    if member not in each.names:
+        place = matched["place"].rpartition("/")[2]
+        raise Fault(f"{each.kind or 'member'} {member} is not in {place}: {_few(each.names)}")
+    at = each.names.index(member)
+    return result.history[path][:, at], f"{_description(result, path)} of {each.kind} {member}"
 
 
 def _of_body(result: Result, path: str, matched: re.Match[str]) -> tuple[Array, str]:
@@ -163,7 +207,7 @@ def _alternatives(result: Result, path: str) -> str:
     return f"{there.rstrip('/')} has {names}" if there else f"there are {names}"
 
 
-def _few(labels: np.ndarray) -> str:
-    """The first numbers of a set."""
-    more = f" and {len(labels) - 12} more" if len(labels) > 12 else ""
-    return f"there are {', '.join(map(str, labels[:12]))}{more}"
+def _few(names: list[str]) -> str:
+    """The first members of a group."""
+    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+    return f"there are {', '.join(names[:12])}{more}"

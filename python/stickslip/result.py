@@ -200,10 +200,10 @@ class Result:
         found: dict[str, h5py.Dataset] = {}
 
         def visit(name: str, item: object) -> None:
-            top, last = name.partition("/")[0], name.rpartition("/")[2]
-            other = top in EVENTS or last in ("labels", "node", "EVOL")
-            # rows of a model without deformable bodies may be of no values
-            if isinstance(item, h5py.Dataset) and item.ndim > 0 and 0 not in item.shape[1:] and not other:
+            if not isinstance(item, h5py.Dataset) or name.partition("/")[0] in EVENTS:
+                return
+            # what grows by rows is a history; rows of a model without deformable bodies may be of no values
+            if item.ndim > 0 and item.maxshape[0] is None and 0 not in item.shape[1:]:
                 found[name] = item
 
         with self.reading("history"):

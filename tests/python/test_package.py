@@ -1,5 +1,6 @@
 """The package stickslip: results, meshes, decks made of them, runs and their errors, tutorials."""
 
+import re
 import runpy
 import sys
 from pathlib import Path
@@ -13,7 +14,14 @@ import stickslip
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
 from stickslip import Deck, DeckRejected, Fault, Progress, Result, RunFailed, RunStopped
+from stickslip.certificate.certify import certify
+from stickslip.certificate.own import write_table
 from stickslip.mesh import Mesh
+from stickslip.plot.style import save
+from stickslip.quantity import Members, find, listed
+from stickslip.report.__main__ import main as report_main
+from stickslip.sweep.table import Table
+from stickslip.whole import whole
 
 CONTACT = "UPPER_FACE_LOWER_FACE"
 SQUARES = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]
@@ -77,6 +85,120 @@ def test_a_dataframe_has_the_names_of_quantities(result: Result) -> None:
     for name in [*names, f"nodes/UPPER_TIP[{label}]/U:2", "solver/passes"]:
         assert np.array_equal(table[name], result.quantity(name)), name
     assert not any(name.startswith("impacts") for name in table)
+
+
+LOCAL = """*NODE
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+9, 1., 3.
+*ELEMENT, TYPE=CPE4R, ELSET=E
+1, 1, 2, 3, 4
+*SOLID SECTION, ELSET=E, MATERIAL=M
+1.
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*DENSITY
+1.
+*ELEMENT, TYPE=SPRINGA, ELSET=K
+9, 9, 3
+*SPRING, ELSET=K
+
+2.
+*BOUNDARY
+9, 1, 2
+1, 1, 2
+2, 1, 2
+*STEP, NLGEOM
+*DYNAMIC, DIRECT
+0.01, 0.2
+*CLOAD
+3, 2, 1.
+*EL PRINT, ELSET=E, POSITION=INTEGRATION POINTS
+S
+*EL PRINT, ELSET=E, POSITION=NODES
+S
+*END STEP
+"""
+"""One element, with values at its point and its nodes, and a spring."""
+
+SLOW = ("beam_lands_with_events", "stack_with_events")
+REJECTED = ("cycle", "faulty_include", "keyword_in_rows", "missing_include")
+
+
+@pytest.fixture(scope="module")
+def all_decks(job: Job) -> list[Result]:
+    """Results of the decks of tests/decks, and of one with what these lack."""
+    pytest.importorskip("xarray")
+    pytest.importorskip("pandas")
+    paths = sorted((ROOT / "tests" / "decks").glob("*.inp"))
+    decks = [Deck.read(path) for path in paths if path.stem not in SLOW + REJECTED]
+    return [Result(job(deck, "--frames", "1")) for deck in [*decks, Deck.parse(LOCAL)]]
+
+
+def test_every_history_of_every_deck_converts(all_decks: list[Result]) -> None:
+    """All rows are there, and every column has the name that `quantity` and plots use."""
+    places = set()
+    for result in all_decks:
+        rows = result.file["history"].attrs["rows"]
+        table, data = result.to_dataframe(), result.to_xarray()
+        assert len(table) == len(data.time) == result.rows == rows
+        assert set(data.data_vars) == set(result.histories) - {"time"}
+        for name in table:
+            assert np.array_equal(table[name], result.quantity(name), equal_nan=True), name
+        for name in listed(result):
+            path = re.sub(r":1 to :\d+$", "", name)
+            if "[" not in path:  # else the name of a member is to be chosen
+                assert len(find(result, path).parts) == (1 if path == name else int(name[-1])), name
+        places |= {Members.of(result, path).kind for path in result.histories}
+    assert places == {"", "body", "node", "element", "point", "hinge"}
+    local = all_decks[-1]
+    assert local.rows == 21
+    data = local.to_xarray()
+    assert data["connectors/force"].dims == ("time", "connectors")
+    assert data["elements/E/points/S"].dims == ("time", "elements/E/points", "tensor")
+    assert list(data["elements/E/points"].values) == ["1.1", "1.2", "1.3", "1.4"]
+    assert list(data["elements/E/at_nodes"].values) == [1, 2, 3, 4]
+    for place, third in (("points", "1.3"), ("at_nodes", "3")):
+        stress = local.file[f"history/elements/E/{place}/S"][()]
+        assert np.array_equal(local.quantity(f"elements/E/{place}[{third}]/S"), stress[:, 2])
+        assert np.array_equal(local.quantity(f"elements/E/{place}/S"), stress.mean(axis=1))
+    assert certify(local).holds
+
+
+def test_files_are_written_whole_and_through_no_link(
+    result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    precious = tmp_path / "precious"
+    precious.write_text("precious")
+    with pytest.raises(ZeroDivisionError), whole(tmp_path / "out.csv") as draft:
+        draft.write_text(str(1 / 0))
+    with whole(tmp_path / "out.csv") as draft:
+        draft.write_text("all")
+        assert not (tmp_path / "out.csv").exists()
+    assert (tmp_path / "out.csv").read_text() == "all"
+    for name in ("deck.inp", "page.html", "checks.csv", "table.csv", "picture.png"):
+        (tmp_path / name).symlink_to(precious)
+    table = Table(["mu"], [], [])
+    figure = plt.figure()
+    for write in (
+        lambda: falling(3).write(tmp_path / "deck.inp"),
+        lambda: write_table(result, tmp_path / "checks.csv"),
+        lambda: table.write(tmp_path),
+        lambda: save(figure, tmp_path / "picture.png"),
+    ):
+        with pytest.raises(Fault, match="is no regular file"):
+            write()
+    line = ["stickslip-report", str(result.path), "-o", str(tmp_path / "page.html")]
+    monkeypatch.setattr(sys, "argv", line)
+    with pytest.raises(SystemExit) as ended:
+        report_main()
+    assert ended.value.code == 2
+    plt.close(figure)
+    assert precious.read_text() == "precious"
+    assert not list(tmp_path.glob("*.part*")) and not list(tmp_path.glob(".*"))
 
 
 def test_xarray_has_axes_labels_and_dimensions(result: Result) -> None:

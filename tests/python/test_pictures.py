@@ -92,11 +92,11 @@ def test_one_column_for_each_body(contact: Result, tmp_path: Path) -> None:
     rows = contact.rows
     with h5py.File(path, "r+") as file:
         history = file["history"]
-        for name in ("bodies/kinetic", "bodies/velocity"):
+        for name, shape in (("bodies/kinetic", (2,)), ("bodies/velocity", (2, 2))):
             if name in history:
                 del history[name]
-        history["bodies/kinetic"] = np.arange(2.0 * rows).reshape(rows, 2)
-        history["bodies/velocity"] = np.arange(4.0 * rows).reshape(rows, 2, 2)
+            values = np.arange(rows * float(np.prod(shape))).reshape(rows, *shape)
+            history.create_dataset(name, data=values, maxshape=(None, *shape))
     with Result(path) as results:
         both = find(results, "bodies/kinetic").parts
         assert list(both) == ["body 0", "body 1"]

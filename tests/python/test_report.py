@@ -20,6 +20,7 @@ from decks import CANTILEVERS, COLUMN, oblique_impact, shortened, spinning_bar
 from stickslip.deck import Deck
 from stickslip.errors import Fault
 from stickslip.report import Choice, page_of
+from stickslip.report.collect import collect
 from stickslip.report.pack import FINE, Packed
 from stickslip.result import Result
 
@@ -211,6 +212,29 @@ def test_a_page_is_one_file_that_loads_nothing(kind: str, job: Job, tmp_path: Pa
     assert result["times"] == expected.frames.times.tolist()
     assert result["increments"] == expected.rows - 1
     assert result["deck"] == expected.deck
+
+
+def test_elements_are_drawn_as_their_outlines(job: Job) -> None:
+    """Quadratic elements: nodes between corners stand in their places, and the edges are those of the result."""
+    packed = Packed()
+    quadratic = job(Deck.read(ROOT / "tests" / "decks" / "quadratic.inp"), "--frames", "1")
+    page = collect(quadratic, packed, Choice())
+    with Result(quadratic) as result:
+        assert max(map(len, result.outlines)) > 4
+        mesh = {
+            name: unpacked(packed, page["mesh"][name]).astype(int)
+            for name in ("connectivity", "offsets", "outline")
+        }
+        ends = mesh["offsets"].ravel()
+        rings = np.split(mesh["connectivity"].ravel(), ends[1:-1])
+        assert all(np.array_equal(*pair) for pair in zip(rings, result.outlines, strict=True))
+        assert sorted(map(tuple, mesh["outline"])) == list(map(tuple, result.boundary))
+        slaves = np.isfinite(result.frames[0]["SLIP"])
+        both = slaves[result.boundary].all(axis=1)
+        # each surface goes along its edges, through the nodes between corners
+        assert sum(len(one["nodes"]) - 1 for one in page["surfaces"]) == both.sum()
+        bodies = {int(b) for b in result.body[result.boundary[both][:, 0]]}
+        assert len(page["surfaces"]) == len(bodies)
 
 
 def test_equal_results_give_equal_pages(job: Job, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stickslip.result import Array, Result
+from stickslip.whole import whole
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ def write_table(result: Result, path: Path) -> None:
     """Writes the checks as CSV, one row for each increment."""
     checks = own_checks(result)
     time = result.history.time
-    with path.open("w", newline="") as file:
+    with whole(path) as draft, draft.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["increment", "time", *(check.name for check in checks)])
         for row, when in enumerate(time):

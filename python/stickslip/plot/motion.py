@@ -28,6 +28,7 @@ from stickslip.plot.fields import FIELDS, Colouring, Shown
 from stickslip.plot.page import Legends, Page
 from stickslip.plot.shapes import VECTORS, Arrows, draw_overlay, draw_shape, limits, status_legend
 from stickslip.result import Array, Result
+from stickslip.whole import whole
 
 MOST = 100
 """A page with more panels is refused."""
@@ -151,7 +152,12 @@ def check_film(path: Path) -> None:
 
 def write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: int) -> None:
     """Writes pictures of one size as a .gif, or through ffmpeg."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    with whole(path) as draft:
+        _write_film(draft, pictures, frames_per_second)
+
+
+def _write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: int) -> None:
+    """Writes pictures into a file."""
     if path.suffix == ".gif":
         first, *others = pictures
         palette = first.quantize(256)
@@ -171,7 +177,7 @@ def write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: i
             process.stdin.write(picture.tobytes())
         process.stdin.close()
     if process.returncode:
-        raise Fault(f"{path}: ffmpeg ended with code {process.returncode}")
+        raise Fault(f"ffmpeg ended with code {process.returncode}: no {path.suffix} is written")
 
 
 def pictures_of(

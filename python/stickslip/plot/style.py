@@ -15,6 +15,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from PIL import Image  # noqa: E402
 
 from stickslip.errors import Fault, one_line  # noqa: E402
+from stickslip.whole import whole  # noqa: E402
 
 MOST_PIXELS = 1e8
 """Larger pictures are refused: they would need gigabytes of memory."""
@@ -61,14 +62,14 @@ def save(figure: Figure, path: Path | str, dpi: float | None = None) -> Path:
     path, dpi = Path(path), dpi or float(matplotlib.rcParams["savefig.dpi"])
     if figure.get_size_inches().prod() * dpi**2 > MOST_PIXELS:
         raise Fault(f"{path} would have more than {MOST_PIXELS:.0e} pixels: lower --dpi")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        figure.savefig(path, dpi=dpi)
-    except ValueError as error:  # a format that does not exist, a picture that is too large
-        raise Fault(f"{path} cannot be written: {one_line(error)}") from None
-    if path.suffix == ".png":
-        with Image.open(path) as picture:
-            small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, 3, dither=Image.Dither.NONE)
-        small.save(path, optimize=True)
+    with whole(path) as draft:
+        try:
+            figure.savefig(draft, dpi=dpi)
+        except ValueError as error:  # a format that does not exist, a picture that is too large
+            raise Fault(f"{path} cannot be written: {one_line(error)}") from None
+        if path.suffix == ".png":
+            with Image.open(draft) as picture:
+                small = picture.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE, 3, dither=Image.Dither.NONE)
+            small.save(draft, optimize=True)
     print(f"wrote {path}")
     return path

@@ -7,6 +7,7 @@ from stickslip.command import finish
 from stickslip.errors import Fault
 from stickslip.report.collect import Choice
 from stickslip.report.page import page_of
+from stickslip.whole import write_text
 
 LARGE = 60e6
 """Pages of more bytes are slow to open and to send: the command says how they become smaller."""
@@ -52,8 +53,7 @@ def report() -> None:
     if output.suffix.lower() not in (".html", ".htm"):
         raise Fault(f"{output}: the name of a page ends with .html")
     text = page_of(paths, Choice(arguments.fields, arguments.frames))
-    output.parent.mkdir(parents=True, exist_ok=True)
-    output.write_text(text, encoding="utf-8")
+    write_text(output, text)
     size = len(text.encode())
     print(f"wrote {output} ({size / 1e6:.2f} MB)")
     if size > LARGE:

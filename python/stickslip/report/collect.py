@@ -1,16 +1,17 @@
 """What a page shows of a result: mesh, fields of the frames, surfaces, histories, run."""
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.certificate.certify import certify
 from stickslip.certificate.own import own_checks
 from stickslip.errors import Fault
+from stickslip.quantity import Members, components
 from stickslip.report.pack import Packed
 from stickslip.result import Result
 
@@ -152,7 +153,7 @@ class Mesh:
     """Elements and what is drawn of them."""
 
     connectivity: Whole
-    """Node indices of all elements, one element after the other."""
+    """Node indices around all elements, one element after the other, nodes between corners in their places."""
     offsets: Whole
     """Where each element's nodes start [E + 1]."""
     outline: Whole
@@ -164,18 +165,14 @@ class Mesh:
 
 
 def _mesh(result: Result) -> Mesh:
-    offsets = result.read("VTKHDF/Offsets")
-    connectivity = result.read("VTKHDF/Connectivity")
-    elements = len(result.element_labels)
-    end = offsets[elements]
-    rigid = connectivity[end:].reshape(-1, 2)
-    connectivity, offsets = connectivity[:end], offsets[: elements + 1]
-    following = np.arange(1, end + 1)
+    connectivity = np.concatenate([*result.outlines, np.empty(0, np.int64)])
+    offsets = np.concatenate([[0], np.cumsum([len(one) for one in result.outlines], dtype=np.int64)])
+    following = np.arange(1, len(connectivity) + 1)
     following[offsets[1:] - 1] = offsets[:-1]
     edges = np.stack([connectivity, connectivity[following]], axis=1)
     ordered = np.sort(edges, axis=1)
     _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
-    return Mesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], rigid)
+    return Mesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], result.rigid)
 
 
 def _middle(result: Result) -> Array:
@@ -360,8 +357,7 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
         described: dict[str, Any] = {
             "name": name,
             "dimension": str(item.attrs.get("dimension", "1")),
-            "shape": list(item.shape[1:]),
-            "labels": _labels(item),
+            "columns": _columns(Members.of(result, name), item.shape[1:]),
             "zero": not values.any(),
         }
         if not described["zero"]:
@@ -373,14 +369,12 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
     return {"time": packed.bits(time[:, None]), "thinned": parts is not None, "all": found}
 
 
-def _labels(item: h5py.Dataset) -> list[int]:
-    """Numbers of the nodes or elements whose histories a dataset holds."""
-    labels = item.parent.get("labels")
-    return (
-        labels[:].tolist()
-        if labels is not None and item.ndim > 1 and item.shape[1] == len(labels)
-        else []
-    )
+def _columns(each: Members, shape: tuple[int, ...]) -> list[str]:
+    """Words for the columns of a history: `node 12, x`."""
+    of = [f"{each.kind} {name}" for name in each.names] or [""]
+    sizes = shape[1:] if each.names else shape
+    of_each = components(sizes[0]) if sizes else [""]
+    return [", ".join(filter(None, pair)) for pair in itertools.product(of, of_each)]
 
 
 def _thinned(values: Array, parts: Whole | None) -> Array:

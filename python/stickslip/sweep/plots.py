@@ -19,6 +19,7 @@ from stickslip.errors import Fault  # noqa: E402
 from stickslip.result import Result  # noqa: E402
 from stickslip.sweep.quantities import Quantity  # noqa: E402
 from stickslip.sweep.table import Table  # noqa: E402
+from stickslip.whole import whole  # noqa: E402
 
 MOST = 12
 """Instead of a legend with more entries there is a scale of colours."""
@@ -121,6 +122,6 @@ def _file_name(text: str) -> str:
 
 
 def _save(figure: Figure, path: Path) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=130)
+    with whole(path) as draft:
+        figure.savefig(draft, dpi=130)
     return path

@@ -43,17 +43,7 @@ class Histories {
 
   /** Columns of a history with words for each: "node 12, x". */
   columns(name) {
-    const { shape, labels } = this.byName.get(name);
-    const axes = shape.map((size, axis) => {
-      const last = axis === shape.length - 1;
-      if (last && size === 3) return ["xx", "yy", "xy"];
-      if (last && size === 2 && !(labels.length === 2 && axis === 0) && !/bodies\/(kinetic|strain|angular|contact_moment)/.test(name)) return ["x", "y"];
-      const word = labels.length === size ? (name.startsWith("elements") ? "element" : "node") : "body";
-      return Array.from({ length: size }, (_, i) => `${word} ${labels.length === size ? labels[i] : i}`);
-    });
-    let texts = [""];
-    for (const axis of axes) texts = texts.flatMap((text) => axis.map((each) => (text ? `${text}, ${each}` : each)));
-    return texts;
+    return this.byName.get(name).columns;
   }
 }
 
