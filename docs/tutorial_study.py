@@ -60,5 +60,5 @@ def main() -> None:
         print(f"mu {row['mu']}, speed {row['speed']}: {row[way]:.4f}, formula {expected:.4f}")
 
 
-if __name__ == "__main__":  # the workers of the study import this file
+if __name__ == "__main__":
     main()

@@ -4,7 +4,8 @@ Whatever a method does not offer is a card: `deck.add("KEYWORD, PARAMETER=VALUE"
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +14,10 @@ from typing import Literal
 from stickslip.cards import card, material
 from stickslip.errors import Fault
 from stickslip.mesh import Mesh
+from stickslip.whole import write_text
+
+Value = float | int | str
+"""Value of a parameter of a deck."""
 
 FREE_TEXT = ("HEADING", "STEP")
 """Keywords whose data lines are text."""
@@ -20,6 +25,12 @@ FREE_TEXT = ("HEADING", "STEP")
 
 PROCEDURES = ("DYNAMIC", "STATIC")
 """Keywords whose data line has the increment and the duration of a step."""
+
+PARAMETER = re.compile(r"<\s*([A-Za-z]\w*)\s*>")
+"""A parameter where its value stands."""
+
+PLAIN_TEXT = re.compile(r"\s*(?P<name>[A-Za-z]\w*)\s*=\s*(?P<quote>['\"])(?P<text>[^'\"]*)(?P=quote)\s*(?:#.*)?")
+"""A row of *PARAMETER with a text."""
 
 
 @dataclass
@@ -47,8 +58,10 @@ class Card:
 class Deck:
     """A deck's cards in order, includes in place."""
 
-    def __init__(self, cards: Iterable[Card] = ()) -> None:
+    def __init__(self, cards: Iterable[Card] = (), folder: Path | str = ".") -> None:
         self.cards = list(cards)
+        self.folder = Path(folder).absolute()
+        """Where files are looked for whose names are parameters, `INPUT=<name>` (`filled`)."""
 
     @classmethod
     def titled(cls, title: str) -> "Deck":
@@ -59,15 +72,15 @@ class Deck:
     def read(cls, path: Path | str) -> "Deck":
         """Reads a deck; data lines from files named with INPUT= are inserted."""
         path = Path(path)
-        return cls._of(_lines(_text(path), path.parent, path.parent), str(path))
+        return cls._of(_lines(_text(path), path.parent, path.parent), str(path), path.parent)
 
     @classmethod
     def parse(cls, text: str, folder: Path | str = ".") -> "Deck":
         """A deck from its text; files that it names are looked for in a folder."""
-        return cls._of(_lines(text, Path(folder), Path(folder)), "the deck")
+        return cls._of(_lines(text, Path(folder), Path(folder)), "the deck", folder)
 
     @classmethod
-    def _of(cls, lines: Iterable[str], name: str) -> "Deck":
+    def _of(cls, lines: Iterable[str], name: str, folder: Path | str) -> "Deck":
         """A deck from its logical lines."""
         cards: list[Card] = []
         for line in lines:
@@ -79,7 +92,7 @@ class Deck:
                 cards[-1].rows.append([line])
             else:
                 cards[-1].rows.append(fields(line))
-        return cls(cards)
+        return cls(cards, folder)
 
     def text(self) -> str:
         """The whole deck."""
@@ -87,10 +100,30 @@ class Deck:
 
     def write(self, path: Path | str) -> Path:
         """Writes the deck and returns its path."""
-        path = Path(path)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(self.text())
-        return path
+        write_text(path, self.text())
+        return Path(path)
+
+    def filled(self, values: Mapping[str, Value]) -> "tuple[Deck, dict[str, Value]]":
+        """The deck with the files in place whose names are parameters, and the values that it still needs.
+
+        The values of parameters without one are those of `*PARAMETER`, where these are plain texts.
+        """
+        named = {name for head in map(_input_of, self.cards) for name in PARAMETER.findall(head)}
+        if not named:
+            return self, dict(values)
+        texts = {name: str(value) for name, value in self._plain_texts().items() | values.items()}
+        lines = _lines(self.text(), self.folder, self.folder, texts)
+        whole = Deck._of(lines, "the deck", self.folder)
+        used = {name for card in whole.cards for name in PARAMETER.findall(card.text())}
+        defined = {row[0].partition("=")[0].strip() for card in whole.find("PARAMETER") for row in card.rows}
+        known = used | defined
+        return whole, {name: v for name, v in values.items() if name in known or name not in named}
+
+    def _plain_texts(self) -> dict[str, str]:
+        """Parameters of the deck whose values are plain texts."""
+        rows = (", ".join(row) for card in self.find("PARAMETER") for row in card.rows)
+        found = (PLAIN_TEXT.fullmatch(row) for row in rows)
+        return {each["name"]: each["text"] for each in found if each}
 
     def find(self, keyword: str) -> list[Card]:
         """All cards with this keyword."""
@@ -281,8 +314,13 @@ def _text(path: Path) -> str:
     return path.read_text(encoding="utf-8-sig", errors="replace")
 
 
-def _lines(text: str, folder: Path, main: Path, depth: int = 0) -> list[str]:
-    """Logical lines of a file without comments and empty lines, with those of included files."""
+def _lines(
+    text: str, folder: Path, main: Path, values: Mapping[str, str] = {}, depth: int = 0
+) -> list[str]:
+    """Logical lines of a file without comments and empty lines, with those of included files.
+
+    `values` are those of parameters in the names of files.
+    """
     if depth > 9:
         raise Fault(f"{folder}: includes are nested too deep")
     lines: list[str] = []
@@ -294,16 +332,26 @@ def _lines(text: str, folder: Path, main: Path, depth: int = 0) -> list[str]:
         if is_open and not line.startswith("*"):
             lines[-1] = f"{lines[-1]} {line}"
         else:
-            _read_input(lines, folder, main, depth)
+            _read_input(lines, folder, main, values, depth)
             lines.append(line)
         starts = line.startswith("*") or is_open
         is_open = starts and line.endswith(",")
-    _read_input(lines, folder, main, depth)
+    _read_input(lines, folder, main, values, depth)
     return lines
 
 
-def _read_input(lines: list[str], folder: Path, main: Path, depth: int) -> None:
-    """Puts the lines of a file in the place of the INPUT= of the last line, a keyword line."""
+def _input_of(card: Card) -> str:
+    """The name of a file that is still to be read; empty where there is none."""
+    return "" if card.keyword in FREE_TEXT else card.parameters.get("INPUT", "")
+
+
+def _read_input(
+    lines: list[str], folder: Path, main: Path, values: Mapping[str, str], depth: int
+) -> None:
+    """Puts the lines of a file in the place of the INPUT= of the last line, a keyword line.
+
+    A name with a parameter that has no value stays as it is.
+    """
     if not lines or not lines[-1].startswith("*"):
         return
     head = fields(lines[-1])
@@ -313,9 +361,12 @@ def _read_input(lines: list[str], folder: Path, main: Path, depth: int) -> None:
     if not inputs:
         return
     name = inputs[0].partition("=")[2].strip().strip('"')
+    name = PARAMETER.sub(lambda found: values.get(found[1], found[0]), name)
+    if PARAMETER.search(name):
+        return
     near = folder / name
     path = near if near.exists() else main / name
-    more = _lines(_text(path), path.parent, main, depth + 1)
+    more = _lines(_text(path), path.parent, main, values, depth + 1)
     kept = [part for part in head if part not in inputs]
     lines[-1:] = more if fold(head[0]) == "*INCLUDE" else [", ".join(kept), *more]
 

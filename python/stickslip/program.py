@@ -8,12 +8,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from stickslip.deck import Deck
+from stickslip.deck import Deck, Value
 from stickslip.errors import Fault, one_line
 from stickslip.result import Result
 
@@ -29,8 +30,6 @@ POLL = 0.1
 OPTIONS = ("frames", "every", "solver", "threads", "checkpoint", "extend", "oldjob")
 """Options of `stickslip run` with a value."""
 
-Value = float | int | str
-"""Value of a parameter of a deck."""
 
 FLAGS = ("strict", "lenient", "verbose", "resume")
 """Options of `stickslip run` without a value."""
@@ -149,13 +148,18 @@ def run(
     DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
+    values = dict(parameters or {})
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        path = deck.write(folder / f"{job}.inp") if isinstance(deck, Deck) else Path(deck)
+        if isinstance(deck, Deck):
+            deck, values = deck.filled(values)
+            path = deck.write(folder / f"{job}.inp")
+        else:
+            path = Path(deck)
     except OSError as error:
         raise Fault(f"{folder} cannot be written: {one_line(error)}") from None
     command = [str(binary()), "run", str(path), "-o", str(folder), "-q"]
-    command += [*settings(parameters or {}), *_words(options), *words]
+    command += [*settings(values), *_words(options), *words]
     if overwrite and not options.get("resume"):
         command.append("--overwrite")
     result = folder / f"{job_name(path)}.vtkhdf"
@@ -194,15 +198,39 @@ def check(
     deck: Deck | Path | str, parameters: Mapping[str, Value] | None = None
 ) -> list[Diagnostic]:
     """Reads a deck without solving it; returns its warnings, or raises DeckRejected."""
+    values = dict(parameters or {})
     with tempfile.TemporaryDirectory() as folder:
-        path = deck.write(Path(folder) / "job.inp") if isinstance(deck, Deck) else Path(deck)
-        command = [str(binary()), "check", str(path), *settings(parameters or {})]
+        if isinstance(deck, Deck):
+            deck, values = deck.filled(values)
+            path = deck.write(Path(folder) / "job.inp")
+        else:
+            path = Path(deck)
+        command = [str(binary()), "check", str(path), *settings(values)]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
         if done.returncode == REJECTED:
             raise DeckRejected(done.stderr.strip(), done.returncode, path)
         if done.returncode:
             raise RunFailed(done.stderr.strip(), done.returncode, path)
         return diagnostics(done.stdout + done.stderr)
+
+
+@contextmanager
+def first_frame(deck: Deck, parameters: Mapping[str, Value]) -> Iterator[Result | None]:
+    """A result up to its first frame, in which all histories have their names; none where there is no frame."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = deck.write(Path(folder) / "job.inp")
+        result = path.with_suffix(".vtkhdf")
+        command = [str(binary()), "run", str(path), "-o", folder, "-q", *settings(parameters)]
+        quiet = subprocess.DEVNULL
+        with subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet) as process:
+            while process.poll() is None and not result.exists():
+                time.sleep(0.02)
+            process.terminate()
+        if not result.exists():
+            yield None
+            return
+        with Result(result) as found:
+            yield found
 
 
 def diagnostics(text: str) -> list[Diagnostic]:

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
+from stickslip.deck import Deck
 
 COMMANDS = sorted((ROOT / "python" / "packaging" / "data" / "scripts").iterdir())
 
@@ -23,7 +24,9 @@ def test_commands_call_the_package(path: Path) -> None:
     assert lines[0] == "#!python"  # what installers put in the place of their interpreter
     module = re.fullmatch(r"from (stickslip\.[\w.]+) import main", lines[1])
     assert module and callable(importlib.import_module(module[1]).main)
-    assert lines[2:] == ["", "main()"] and os.access(path, os.X_OK)
+    # programs that a command starts with Python may import it
+    assert lines[2:] == ["", 'if __name__ == "__main__":', "    main()"]
+    assert os.access(path, os.X_OK)
 
 
 def test_versions_agree() -> None:
@@ -58,7 +61,8 @@ def test_a_wheel_runs_without_a_compiler(tmp_path: Path) -> None:
         for name, value in os.environ.items()
         if not name.startswith(("STICKSLIP", "PYTHON"))
     }
-    install = [commands / "python", "-m", "pip", "install", "--quiet", built]
+    with_pictures = f"{built}[plot]"
+    install = [commands / "python", "-m", "pip", "install", "--quiet", with_pictures]
     subprocess.run(install, check=True, stdin=subprocess.DEVNULL, env=clean)
     clean["PATH"] = str(commands)  # no compiler, no cargo, no HDF5
 
@@ -75,8 +79,23 @@ def test_a_wheel_runs_without_a_compiler(tmp_path: Path) -> None:
         return done.stdout
 
     assert re.match(r"stickslip \d", run("stickslip", "--version"))
-    run("stickslip", "run", str(ROOT / "tests" / "decks" / "rigid_floor.inp"), "-q")
-    assert "hold" in run("stickslip-certify", "-q", "rigid_floor.vtkhdf")
-    assert "wrote" in run("stickslip-report", "rigid_floor.vtkhdf")
+    deck = ROOT / "tests" / "decks" / "rigid_floor.inp"
+    run("stickslip", "run", str(deck), "-q")
+    study = Deck.read(deck)
+    study.one("DYNAMIC").rows[0][1] = "<period>"
+    study.write(tmp_path / "study.inp")
+    vary = ["--vary", "period=0.01,0.02", "-q", "energy/kinetic@max", "--workers", "2"]
+    told = {
+        "stickslip-certify": (["-q", "rigid_floor.vtkhdf"], "hold"),
+        "stickslip-penetration": (["rigid_floor.vtkhdf"], ""),
+        "stickslip-plot-along": (["rigid_floor.vtkhdf", "-o", "a.png"], "wrote a.png"),
+        "stickslip-plot-history": (["rigid_floor.vtkhdf", "-o", "h.png"], "wrote h.png"),
+        "stickslip-plot-motion": (["rigid_floor.vtkhdf", "-o", "m.png"], "wrote m.png"),
+        "stickslip-report": (["rigid_floor.vtkhdf"], "wrote"),
+        "stickslip-sweep": (["study.inp", *vary], "against_period.png"),
+    }
+    assert list(told) == [path.name for path in COMMANDS]
+    for name, (words, text) in told.items():
+        assert text in run(name, *words), name
     code = "import stickslip; print(stickslip.program.version(), stickslip.program.binary())"
     assert str(commands) in run("python", "-c", code)

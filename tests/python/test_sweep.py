@@ -21,7 +21,7 @@ from stickslip.program import binary, settings
 from stickslip.sweep import Settings, latin_hypercube, product, read_points, sweep
 from stickslip.sweep.__main__ import main, memory
 from stickslip.sweep.engine import duration
-from stickslip.sweep.points import varied
+from stickslip.sweep.points import Point, varied
 from stickslip.sweep.quantities import Quantity
 
 psutil = pytest.importorskip("psutil")  # comes with distributed
@@ -49,19 +49,14 @@ def study(arm: Deck, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def kill_a_worker(told: list[int]) -> Callable[[str], None]:
-    """Kills, when 3 points have ended, a process of this machine that is running a point."""
-    own = os.getpid()
+def kill_a_run(told: list[int]) -> Callable[[str], None]:
+    """Kills the program in the run of a point, when one point has ended."""
 
     def tell(text: str) -> None:
-        if not text.startswith("3 of"):
-            return
-        for _ in range(500):
-            for process in psutil.Process(own).children(recursive=True):
-                if process.name() == binary().name[:15] and process.ppid() != own:
-                    worker = process.parent()
-                    assert worker is not None
-                    worker.kill()
+        for _ in range(500 * (not told and text.startswith("1 of"))):
+            for process in psutil.Process().children(recursive=True):
+                if process.name() == binary().name[:15] and "run" in process.cmdline():
+                    process.kill()
                     told.append(process.pid)
                     return
             time.sleep(0.01)
@@ -69,11 +64,9 @@ def kill_a_worker(told: list[int]) -> Callable[[str], None]:
     return tell
 
 
-def check_table(table: list[dict[str, str]]) -> None:
-    """All 33 points have ended, in their order, with results that agree with their parameters."""
-    assert [(float(row["mu"]), float(row["dt"])) for row in table] == [
-        (mu, dt) for mu in MU for dt in DT
-    ]
+def check_table(table: list[dict[str, str]], points: list[Point]) -> None:
+    """All points have ended, in their order, with results that agree with their parameters."""
+    assert [{name: float(row[name]) for name in ("mu", "dt")} for row in table] == points
     for row in table:
         assert row["exit_status"] == "0" and row["message"] == "", row
         with Result(row["result"]) as result:
@@ -128,35 +121,55 @@ def here() -> Iterator[str]:
         yield cluster.scheduler_address
 
 
-def runs(process: int) -> bool:
-    """Whether a process still runs: a dead one may stay listed until its new parent asks for it."""
-    try:
-        return psutil.Process(process).status() != psutil.STATUS_ZOMBIE
-    except psutil.NoSuchProcess:
-        return False
-
-
-def test_a_study_is_whole_though_a_worker_is_killed(arm: Deck, tmp_path: Path) -> None:
-    """33 points on this machine; the killed point is run again, and once all are there none is."""
-    points = product({"mu": MU, "dt": DT})
+def test_a_study_is_whole_though_a_run_is_killed(arm: Deck, tmp_path: Path) -> None:
+    """On this machine: the killed point is run again the next time, and once all are there none is."""
+    points = product({"mu": MU[:3], "dt": DT[:2]})
     killed: list[int] = []
-    settings = Settings(workers=2, options=("--frames", "2"), tell=kill_a_worker(killed))
+    settings = Settings(workers=2, options=("--frames", "2"), tell=kill_a_run(killed))
     table = sweep(arm, points, tmp_path, [TIP, WORK], settings)
-    assert len(killed) == 1 and not runs(killed[0]), "the run ends with its worker"
+    assert len(killed) == 1 and table.failed == 1
+    assert sorted(table.column("exit_status")) == [-signal.SIGKILL] + 5 * [0]
+    texts: list[str] = []
+    settings = replace(settings, tell=texts.append)
+    table = sweep(arm, points, tmp_path, [TIP, WORK], settings)
+    assert texts == ["6 points, 5 have ended before", "1 points, 0 failed"]
     table.write(tmp_path)
     assert table.failed == 0
-    assert len(list(tmp_path.glob("points/*"))) == 33, "what the killed worker has left is gone"
-    check_table(read_table(tmp_path))
+    assert len(list(tmp_path.glob("points/*"))) == 6
+    check_table(read_table(tmp_path), points)
     first = ended(tmp_path)
-    assert len(first) == 33
-    texts: list[str] = []
-    again = sweep(arm, points, tmp_path, [TIP, WORK], replace(settings, tell=texts.append))
-    assert texts == ["33 points, 33 have ended before"]
+    assert len(first) == 6
+    again = sweep(arm, points, tmp_path, [TIP, WORK], settings)
+    assert texts[2:] == ["6 points, 6 have ended before"]
     assert ended(tmp_path) == first and again == table
     # another parameter more: only what is new is run
     more = [*points[:3], {"mu": 0.7, "dt": 0.015}]
-    sweep(arm, more, tmp_path, [TIP], replace(settings, tell=texts.append))
-    assert texts[1] == "4 points, 3 have ended before" and len(ended(tmp_path)) == 34
+    sweep(arm, more, tmp_path, [TIP], settings)
+    assert texts[3] == "4 points, 3 have ended before" and len(ended(tmp_path)) == 7
+
+
+def test_on_this_machine_nothing_listens_and_runs_end_with_the_study(
+    arm: Deck, tmp_path: Path
+) -> None:
+    arm.one("DYNAMIC").rows = [["<dt>", "1000."]]
+    seen: list[psutil.Process] = []
+
+    def interrupt(*_: object) -> None:
+        seen.extend(psutil.Process().children(recursive=True))
+        ours = psutil.Process().net_connections()
+        assert not [one for one in ours if one.status == psutil.CONN_LISTEN]
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    signal.alarm(3)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            sweep(arm, product({"mu": MU[:3], "dt": DT[:1]}), tmp_path, settings=Settings(workers=2))
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+    assert len(seen) >= 2
+    assert not psutil.wait_procs(seen, timeout=20)[1]
 
 
 @pytest.fixture
@@ -206,7 +219,7 @@ def test_a_scheduler_of_its_own_loses_a_worker(
     assert running.wait() == 0, said
     assert workers[0].wait() == -signal.SIGKILL
     assert any(re.fullmatch(r"20 of 33 points, 0 failed, .* left\n", text) for text in said)
-    check_table(read_table(study / "out"))
+    check_table(read_table(study / "out"), product({"mu": MU, "dt": DT}))
     pictures = {path.name for path in study.glob("out/plots/*.png")}
     assert {"nodes_UPPER_TIP_U_2.png", "energy_friction_dissipation@last_against_mu.png"} < pictures
     first = ended(study / "out")
@@ -253,6 +266,10 @@ def test_a_failing_point_is_a_row_with_its_message(
         ),
         (["--vary", "mu=0:1:2", "--latin-hypercube", "3"], "a Latin hypercube needs FROM:TO"),
         (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "energy/kinetic@least"], "one of last, min"),
+        (["--vary", "mu=0,,1", "--vary", "dt=0.1"], "mu: a value is missing"),
+        (["--vary", "mu=0,nan", "--vary", "dt=0.1"], "mu: nan is no number"),
+        (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "energy/heat"], "no history energy/heat"),
+        (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "nodes/UPPER_TIP/U"], "say which component"),
         (["--points", "no.csv"], "No such file"),
     ],
 )
@@ -273,6 +290,24 @@ def test_points(tmp_path: Path) -> None:
         read_points(tmp_path / "p.csv")
     (tmp_path / "p.csv").write_text("mu,name\n0.1,x\n")
     assert read_points(tmp_path / "p.csv") == [{"mu": 0.1, "name": "x"}]
+    # a column has numbers, or texts as they stand: 1E1 is no other name for 10.0
+    (tmp_path / "p.csv").write_text("mu,name\n1,1E1\n.5d0,x\n")
+    assert read_points(tmp_path / "p.csv") == [{"mu": 1.0, "name": "1E1"}, {"mu": 0.5, "name": "x"}]
+    assert varied("name=1E1,x") == ("name", ["1E1", "x"])
+    for text, fault in (
+        ('mu\n"0,3"\n0.3\n', "p.csv:2: mu: 0,3 has a comma"),
+        ("mu,mu\n0.1,0.5\n", "p.csv:1: mu is named twice"),
+        ("mu,name\n0.1,\n", "p.csv:2: name: a value is missing"),
+    ):
+        (tmp_path / "p.csv").write_text(text)
+        with pytest.raises(Fault, match=fault):
+            read_points(tmp_path / "p.csv")
+    with pytest.raises(Fault, match="mu: 0,3 has a comma"):
+        sweep("none.inp", [{"mu": "0,3"}], tmp_path)
+    with pytest.raises(Fault, match="values of e, the first one of mu"):
+        sweep("none.inp", [{"mu": 0.3}, {"e": 0.3}], tmp_path)
+    with pytest.raises(Fault, match="a column seconds of its own"):
+        sweep("none.inp", [{"seconds": 0.3}], tmp_path)
     assert memory("2GB") == 2 * memory("1000MB") == 2_000_000_000
     assert [duration(s) for s in (4.6, 61.0, 7300.0)] == ["5 s", "1 min 1 s", "2 h 1 min"]
 
@@ -304,6 +339,35 @@ def test_names_without_value_and_values_without_name_are_told_before_the_first_r
         "--set",
         "name='A'",
     ]
+
+
+def test_names_of_files_are_parameters(arm: Deck, tmp_path: Path) -> None:
+    """Values mix numbers and texts; files are looked for beside the deck, and what is in them counts."""
+    deck = tmp_path / "decks" / "arm.inp"
+    arm.one("DYNAMIC").rows = [["0.1", "0.2"]]
+    text = arm.text().replace("*FRICTION\n<mu>\n", "*INCLUDE, INPUT=<law>\n", 1)
+    deck.parent.mkdir()
+    deck.write_text(text)
+    for name, mu in (("1E1", 0.1), ("hi.inc", 0.9)):
+        (deck.parent / name).write_text(f"*FRICTION\n{mu}\n")
+    points = product({"law": varied("law=1E1,hi.inc")[1]})
+    table = sweep(deck, points, tmp_path / "out", [WORK])
+    assert table.failed == 0 and table.column("law") == ["1E1", "hi.inc"]
+    table.write(tmp_path)
+    for row, mu in zip(table.rows, (0.1, 0.9)):
+        with Result(row["result"]) as result:
+            (contact,) = result.file["model/contacts"].values()
+            assert contact["friction"][0] == mu
+    texts: list[str] = []
+    (deck.parent / "hi.inc").write_text("*FRICTION\n0.8\n")
+    sweep(deck, points, tmp_path / "out", [WORK], Settings(tell=texts.append))
+    assert texts[0] == "2 points, 1 have ended before"
+    with pytest.raises(FileNotFoundError):
+        sweep(deck, [{"law": "none.inc"}], tmp_path / "other", [WORK])
+    assert not (tmp_path / "other").exists()
+    with run(Deck.read(deck), tmp_path / "one", parameters={"law": "hi.inc"}) as result:
+        (contact,) = result.file["model/contacts"].values()
+        assert contact["friction"][0] == 0.8
 
 
 def test_what_is_taken_of_a_history(study: Path) -> None:

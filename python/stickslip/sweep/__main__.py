@@ -51,7 +51,7 @@ def arguments_of_command_line() -> argparse.Namespace:
         help="number to keep, as nodes/TIP/U:2@min (last, min, max, mean, peak); default: energies",
     )
     add("-o", "--output", type=Path, default=Path("sweep"), help="folder of the study")
-    add("--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://HOST:8786; default: here")
+    add("--scheduler", metavar="ADDRESS", help="Dask scheduler, tcp://HOST:8786; default: none, runs here")
     add("--workers", type=command.positive_integer, help="runs at a time on this machine")
     add("--threads", type=command.positive_integer, default=1, help="threads of a run (default 1)")
     add("--memory", type=memory, metavar="SIZE", help="bound on the memory of a run, as 2GB")

@@ -1,21 +1,24 @@
-"""Runs the points of a study on a cluster of Dask distributed: that of this machine, or any other."""
+"""Runs the points of a study: side by side on this machine, or on a cluster of Dask distributed."""
 
+import hashlib
 import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
-from stickslip.program import DeckRejected, binary, check
-from stickslip.sweep.point import Task, point_name, solve
-from stickslip.sweep.points import Point
+from stickslip.program import DeckRejected, binary, check, first_frame
+from stickslip.result import Result
+from stickslip.sweep.point import Task, point_name, solve, stop_runs
+from stickslip.sweep.points import Point, check_points
 from stickslip.sweep.quantities import Quantity, usual
-from stickslip.sweep.table import Table
+from stickslip.sweep.table import Table, columns
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -35,7 +38,7 @@ class Settings:
     """How the points of a study are run."""
 
     scheduler: str | None = None
-    """Address of a Dask scheduler, `tcp://host:8786`; without it workers are started here."""
+    """Address of a Dask scheduler, `tcp://host:8786`; without it the points run on this machine."""
     threads: int = 1
     """Threads of a point's run."""
     memory: int | None = None
@@ -62,34 +65,60 @@ def sweep(
     `output` is a folder that all workers see. Points that have ended there are not run again. A
     point that fails is a row with its message.
     """
-    chosen = [Quantity.parse(text) for text in quantities] or usual()
+    chosen = [Quantity.parse(text) for text in dict.fromkeys(quantities)]
+    if not points:
+        raise Fault("a study needs points")
+    check_points(points)
+    columns(list(points[0]), chosen)
     folder = Path(output).resolve()
     template = deck if isinstance(deck, Deck) else Deck.read(deck)
-    tasks = _tasks(template, points, folder, settings)
-    (folder / "points").mkdir(parents=True, exist_ok=True)
-    path = template.write(folder / DECK)
+    studies = _tasks(template, points, folder, settings)
+    tasks = [task for task, _ in studies]
     different = {task.name: task for task in tasks}
     waiting = [task for task in different.values() if settings.again or not task.has_ended]
+    if chosen:
+        _check_quantities(chosen, *studies[0])
+    (folder / "points").mkdir(parents=True, exist_ok=True)
+    template.write(folder / DECK)
+    for task, own in {task.deck: (task, own) for task, own in studies}.values():
+        own.write(task.deck)
     settings.tell(f"{len(tasks)} points, {len(tasks) - len(waiting)} have ended before")
     lost: dict[str, str] = {}
     if waiting:
-        with _client(settings, len(waiting)) as client:
-            lost = _run_all(client, waiting, path, settings)
-    return Table.of(tasks, lost, chosen)
+        with _runs(settings, len(waiting)) as runs:
+            lost = _run_all(runs, waiting, settings)
+    return Table.of(tasks, lost, chosen or usual())
 
 
-def _tasks(template: Deck, points: Sequence[Point], folder: Path, settings: Settings) -> list[Task]:
-    """The runs of a study. Names that the deck does not know are told before the first run."""
-    if not points:
-        raise Fault("a study needs points")
-    for names in {tuple(values): values for values in points}.values():
-        _check_names(template, names)
+def _tasks(
+    template: Deck, points: Sequence[Point], folder: Path, settings: Settings
+) -> list[tuple[Task, Deck]]:
+    """The runs of a study, each with its deck. Names that a deck does not know are told before the first run."""
     options = ("--threads", str(settings.threads), *settings.options)
-    tasks = []
+    studies = []
+    checked = set()
     for values in points:
-        name = point_name(template, values, settings.options)
-        tasks.append(Task(folder, name, values, options, settings.memory))
-    return tasks
+        own, given = template.filled(values)
+        path = folder / DECK
+        if own is not template:
+            path = path.with_name(f"deck-{hashlib.sha256(own.text().encode()).hexdigest()[:12]}.inp")
+        if path not in checked:
+            checked.add(path)
+            _check_names(own, given)
+        name = point_name(own, given, settings.options)
+        task = Task(folder, path, name, values, given, options, settings.memory)
+        studies.append((task, own))
+    return studies
+
+
+def _check_quantities(chosen: Sequence[Quantity], task: Task, own: Deck) -> None:
+    """A Fault where the first point has no such history. One without a result is begun for that, up to its first frame."""
+    has_result = task.has_ended and task.result.exists()
+    with Result(task.result) if has_result else first_frame(own, task.given) as result:
+        if result is None:
+            return  # the row of the point tells why
+        for quantity in chosen:
+            quantity.series(result)
 
 
 def _check_names(template: Deck, values: Point) -> None:
@@ -102,61 +131,97 @@ def _check_names(template: Deck, values: Point) -> None:
             raise Fault("; ".join(of_names)) from None
 
 
+class Runs(Protocol):
+    """Where the points run."""
+
+    def submit(self, task: Task) -> Any:
+        """Begins a run; what is returned has the `exception` with which it ended."""
+
+    def ended(self, futures: Iterable[Any]) -> Iterator[Any]:
+        """What was submitted, in the order in which it ends."""
+
+
 @contextmanager
-def _client(settings: Settings, count: int) -> "Iterator[Client]":
-    """A client of the chosen cluster."""
-    try:
-        import dask
-        from distributed import Client, LocalCluster
-    except ImportError:
-        raise Fault("a study needs the package distributed: pip install distributed") from None
-    dask.config.set({"distributed.scheduler.allowed-failures": FAILURES})
+def _runs(settings: Settings, count: int) -> Iterator[Runs]:
+    """This machine, or the chosen cluster."""
     if settings.scheduler is not None:
-        try:
-            with Client(settings.scheduler, set_as_default=False) as client:
-                yield client
-        except OSError as error:
-            text = f"the scheduler {settings.scheduler} does not answer: {one_line(error)}"
-            raise Fault(text) from None
+        with _cluster(settings.scheduler) as client:
+            yield _OnCluster(client)
         return
-    binary()  # told here once, not by every worker
+    binary()  # told here once, not by every point
     processors = (
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     )
     workers = settings.workers or max(1, (processors or 1) // settings.threads)
-    with (
-        LocalCluster(
-            n_workers=min(workers, count),
-            threads_per_worker=1,
-            memory_limit=None,
-            dashboard_address=":0",
-            silence_logs="CRITICAL",
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
-        yield client
+    pool = ThreadPoolExecutor(min(workers, count))
+    try:
+        yield _OnThreads(pool)
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        stop_runs()
+        raise
+    finally:
+        pool.shutdown()
 
 
-def _run_all(
-    client: "Client", tasks: Sequence[Task], template: Path, settings: Settings
-) -> dict[str, str]:
+@dataclass(frozen=True)
+class _OnThreads:
+    """Threads that wait for the program: nothing listens on a port."""
+
+    pool: ThreadPoolExecutor
+
+    def submit(self, task: Task) -> Any:
+        return self.pool.submit(solve, task)
+
+    def ended(self, futures: Iterable[Any]) -> Iterator[Any]:
+        return as_completed(futures)
+
+
+@dataclass(frozen=True)
+class _OnCluster:
+    """Workers of a Dask scheduler."""
+
+    client: "Client"
+
+    def submit(self, task: Task) -> Any:
+        return self.client.submit(solve, task, key=f"{task.name}-{time.time_ns()}", pure=False)
+
+    def ended(self, futures: Iterable[Any]) -> Iterator[Any]:
+        from distributed import as_completed as ended
+
+        return iter(ended(futures, loop=self.client.loop))
+
+
+@contextmanager
+def _cluster(scheduler: str) -> "Iterator[Client]":
+    """A client of a Dask scheduler."""
+    try:
+        import dask
+        from distributed import Client
+    except ImportError:
+        raise Fault("a scheduler needs the package distributed: pip install distributed") from None
+    dask.config.set({"distributed.scheduler.allowed-failures": FAILURES})
+    try:
+        with Client(scheduler, set_as_default=False) as client:
+            yield client
+    except OSError as error:
+        text = f"the scheduler {scheduler} does not answer: {one_line(error)}"
+        raise Fault(text) from None
+
+
+def _run_all(runs: Runs, tasks: Sequence[Task], settings: Settings) -> dict[str, str]:
     """Runs the tasks; returns why there is no row for some, by their names."""
-    from distributed import as_completed
-
     start = time.monotonic()
-    futures: dict[Any, Task] = {
-        client.submit(solve, task, template, key=f"{task.name}-{time.time_ns()}", pure=False): task
-        for task in tasks
-    }
+    futures: dict[Any, Task] = {runs.submit(task): task for task in tasks}
     lost = {}
     failed = 0
-    for done, future in enumerate(as_completed(futures, loop=client.loop), start=1):
+    for done, future in enumerate(runs.ended(futures), start=1):
         task = futures[future]
-        if future.status == "finished":
+        error = "it was cancelled" if future.cancelled() else future.exception()
+        if error is None:
             failed += (task.row() or {}).get("exit_status") != 0
         else:
             failed += 1
-            error = future.exception() if future.status == "error" else "it was cancelled"
             lost[task.name] = f"the point has no result: {' '.join(str(error).split())}"
         left = (time.monotonic() - start) * (len(tasks) / done - 1.0)
         text = f"{done} of {len(tasks)} points, {failed} failed, {duration(left)} left"

@@ -24,6 +24,9 @@ from stickslip.sweep.points import Point
 ROW = "row.json"
 """What is known of a point that has ended: exit status, warnings, message, seconds."""
 
+RUNNING: set[subprocess.Popen[str]] = set()
+"""Runs of this process."""
+
 ENDED = (0, STOPPED, REJECTED)
 """Exit codes that the same deck has every time: such points are not run again."""
 
@@ -34,9 +37,14 @@ class Task:
 
     folder: Path
     """Folder of the study, which all workers see."""
+    deck: Path
+    """The deck, in which files whose names are parameters of the point are in place."""
     name: str
     """Name of the point's folder."""
     values: Point
+    """What tells the point from others."""
+    given: Point
+    """The values that the deck still needs."""
     options: tuple[str, ...]
     """Options of `stickslip run`."""
     memory: int | None
@@ -72,12 +80,12 @@ def point_name(deck: Deck, values: Point, options: Sequence[str]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
-def solve(task: Task, template: Path) -> str:
+def solve(task: Task) -> str:
     """Runs a point; what goes wrong with it stands in its row. Returns the point's name."""
     own = task.place.with_name(f"{task.name}.{uuid.uuid4().hex[:8]}")
     own.mkdir(parents=True)
     try:
-        row = _run(task, template, own)
+        row = _run(task, own)
         (own / ROW).write_text(json.dumps(row))
         shutil.rmtree(task.place, ignore_errors=True)
         try:
@@ -91,18 +99,16 @@ def solve(task: Task, template: Path) -> str:
     return task.name
 
 
-def _run(task: Task, template: Path, folder: Path) -> dict[str, Any]:
+def _run(task: Task, folder: Path) -> dict[str, Any]:
     """Runs the program in a folder."""
     row: dict[str, Any] = {"values": task.values}
     try:
-        path = Path(shutil.copy(template, folder / f"{task.name}.inp"))
+        path = Path(shutil.copy(task.deck, folder / f"{task.name}.inp"))
         command = [str(binary()), "run", str(path), "-o", str(folder), "-q"]
-        command += [*settings(task.values), *task.options]
+        command += [*settings(task.given), *task.options]
     except Fault as fault:
         return {**row, "exit_status": REJECTED, "message": one_line(fault), "warnings": []}
-    done = subprocess.run(
-        _bounded(command, task.memory), stdin=subprocess.DEVNULL, capture_output=True, text=True
-    )
+    code, said = _said(_bounded(command, task.memory))
     warnings: list[str] = []
     seconds = None
     try:
@@ -110,14 +116,34 @@ def _run(task: Task, template: Path, folder: Path) -> dict[str, Any]:
             warnings, seconds = result.warnings, float(result.run.get("seconds_total", "nan"))
     except Fault:
         pass  # there is none: the exit status tells why
-    message = done.stderr.strip().replace(str(folder), str(task.place))
+    message = said.strip().replace(str(folder), str(task.place))
     return {
         **row,
-        "exit_status": done.returncode,
-        "message": message if done.returncode else "",
+        "exit_status": code,
+        "message": (message or f"the run ended with code {code}") if code else "",
         "warnings": warnings,
         "seconds": seconds,
     }
+
+
+def _said(command: list[str]) -> tuple[int, str]:
+    """Runs a command; its exit code and what it writes to its standard error."""
+    quiet = subprocess.DEVNULL
+    with subprocess.Popen(
+        command, stdin=quiet, stdout=quiet, stderr=subprocess.PIPE, text=True, errors="replace"
+    ) as process:
+        RUNNING.add(process)
+        try:
+            _, said = process.communicate()
+        finally:
+            RUNNING.discard(process)
+    return process.returncode, said
+
+
+def stop_runs() -> None:
+    """Ends the runs of this process in order: each writes its last good state."""
+    for process in list(RUNNING):
+        process.terminate()
 
 
 def _bounded(command: list[str], memory: int | None) -> list[str]:

@@ -8,10 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from stickslip.deck import Value
 from stickslip.errors import Fault
 
-Value = float | str
 Point = dict[str, Value]
+
+NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
+DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eEdD][-+]?\d+)?")
 
 VARIED = re.compile(r"(?P<name>[A-Za-z]\w*)=(?P<values>.+)")
 
@@ -39,15 +42,32 @@ def latin_hypercube(
 def read_points(path: Path | str) -> list[Point]:
     """Points of a CSV file: its first line names the parameters, every other one is a point."""
     with Path(path).open(newline="", encoding="utf-8-sig") as file:
-        rows = csv.DictReader(file, skipinitialspace=True)
-        points = []
-        for row in rows:
-            if None in row or None in row.values():
-                raise Fault(f"{path}:{rows.line_num}: as many values are needed as names")
-            points.append({name.strip(): _value(text) for name, text in row.items()})
-    if not points:
+        lines = csv.reader(file, skipinitialspace=True)
+        rows = [(lines.line_num, [text.strip() for text in row]) for row in lines if row]
+    if len(rows) < 2:
         raise Fault(f"{path} has no points: a line of names and lines of values are needed")
-    return points
+    (line, names), *rows = rows
+    if twice := {name for name in names if names.count(name) > 1}:
+        raise Fault(f"{path}:{line}: {', '.join(sorted(twice))} is named twice")
+    for line, row in rows:
+        if len(row) != len(names):
+            raise Fault(f"{path}:{line}: as many values are needed as names")
+        for name, text in zip(names, row):
+            if fault := _fault(text):
+                raise Fault(f"{path}:{line}: {name}: {fault}")
+    columns = [_values([row[at] for _, row in rows]) for at in range(len(names))]
+    return [dict(zip(names, values)) for values in zip(*columns)]
+
+
+def check_points(points: Sequence[Point]) -> None:
+    """A Fault unless all points have values of the same parameters that a deck can take."""
+    for values in points:
+        if values.keys() != points[0].keys():
+            names = ", ".join(values), ", ".join(points[0])
+            raise Fault(f"a point has values of {names[0]}, the first one of {names[1]}")
+        for name, value in values.items():
+            if fault := _fault(str(value)):
+                raise Fault(f"{name}: {fault}")
 
 
 def varied(text: str) -> tuple[str, list[Value]]:
@@ -55,7 +75,7 @@ def varied(text: str) -> tuple[str, list[Value]]:
     name, values = _split(text)
     parts = values.split(":")
     if len(parts) == 1:
-        return name, [_value(part) for part in values.split(",")]
+        return name, _values([part.strip() for part in values.split(",")])
     try:
         low, high, count = float(parts[0]), float(parts[1]), int(parts[2])
     except (IndexError, ValueError):
@@ -82,9 +102,19 @@ def _split(text: str) -> tuple[str, str]:
     return found["name"], found["values"]
 
 
-def _value(text: str) -> Value:
-    """A number, or any other text."""
-    try:
-        return float(text)
-    except ValueError:
-        return text.strip()
+def _values(texts: Sequence[str]) -> list[Value]:
+    """Numbers, or texts as they stand where one of them is no number."""
+    if all(map(NUMBER.fullmatch, texts)):
+        return [float(re.sub("[dD]", "e", text)) for text in texts]
+    return list(texts)
+
+
+def _fault(text: str) -> str:
+    """What is wrong with the text of a value; empty where a deck can take it."""
+    if not text.strip():
+        return "a value is missing"
+    if DECIMAL_COMMA.fullmatch(text.strip()):
+        return f"{text} has a comma: the decimal sign is a point"
+    if text.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        return f"{text} is no number for a deck"
+    return ""

@@ -11,6 +11,10 @@ from stickslip.errors import Fault, one_line
 from stickslip.result import Result
 from stickslip.sweep.point import Task
 from stickslip.sweep.quantities import Quantity
+from stickslip.whole import whole
+
+KNOWN = ("exit_status", "warnings", "message", "seconds")
+"""Columns of every table, behind those of the parameters."""
 
 LOST = -1
 """Exit status of a point whose run has not ended."""
@@ -36,9 +40,7 @@ class Table:
     @property
     def columns(self) -> list[str]:
         """Names of the columns."""
-        quantities = [str(quantity) for quantity in self.quantities]
-        known = ("exit_status", "warnings", "message", "seconds")
-        return [*self.parameters, *known, *quantities, "result"]
+        return columns(self.parameters, self.quantities)
 
     @property
     def failed(self) -> int:
@@ -52,7 +54,7 @@ class Table:
     def write(self, folder: Path | str) -> list[Path]:
         """Writes `table.csv`, and `table.parquet` where the package pyarrow is installed."""
         path = Path(folder) / "table.csv"
-        with path.open("w", newline="") as file:
+        with whole(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, self.columns)
             writer.writeheader()
             writer.writerows(self.rows)
@@ -61,10 +63,19 @@ class Table:
             import pyarrow.parquet
         except ImportError:
             return [path]
-        columns = {name: self.column(name) for name in self.columns}
-        whole = path.with_suffix(".parquet")
-        pyarrow.parquet.write_table(pyarrow.table(columns), whole)
-        return [path, whole]
+        data = {name: self.column(name) for name in self.columns}
+        parquet = path.with_suffix(".parquet")
+        with whole(parquet) as draft:
+            pyarrow.parquet.write_table(pyarrow.table(data), draft)
+        return [path, parquet]
+
+
+def columns(parameters: Sequence[str], quantities: Sequence[Quantity]) -> list[str]:
+    """Names of the columns of a table; a Fault where a parameter has the name of another one."""
+    own = [*KNOWN, *map(str, quantities), "result"]
+    if same := [name for name in parameters if name in own]:
+        raise Fault(f"the table has a column {same[0]} of its own: give the parameter another name")
+    return [*parameters, *own]
 
 
 def _row(task: Task, lost: Mapping[str, str], quantities: list[Quantity]) -> dict[str, Any]:
