@@ -281,6 +281,22 @@ def test_a_wrong_command_is_told_before_anything_runs(
     assert not (study / "out").exists()
 
 
+def test_deck_and_points_are_not_replaced_by_files_of_the_study(
+    study: Path, command: Command
+) -> None:
+    text = (study / "arm.inp").read_text()
+    (study / "deck.inp").write_text(f"** mine\n{text}")
+    (study / "table.csv").write_text("mu,dt\n0.1,0.1\n")
+    for line in (
+        [study / "deck.inp", "--vary", "mu=0.1", "--vary", "dt=0.1"],
+        [study / "arm.inp", "--points", study / "table.csv"],
+    ):
+        done = command(*line, "-o", study)
+        assert done.returncode == 2 and "the name of a file of the study" in done.stderr
+    assert (study / "deck.inp").read_text().startswith("** mine")
+    assert (study / "table.csv").read_text() == "mu,dt\n0.1,0.1\n"
+
+
 def test_points(tmp_path: Path) -> None:
     assert varied("mu=0:0.5:3") == ("mu", [0.0, 0.25, 0.5])
     assert varied("mesh=a.inc,b.inc") == ("mesh", ["a.inc", "b.inc"])

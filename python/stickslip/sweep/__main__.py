@@ -14,8 +14,9 @@ from pathlib import Path
 from stickslip import command
 from stickslip.deck import Deck
 from stickslip.errors import Fault
-from stickslip.sweep.engine import Settings, sweep, told_on_screen
+from stickslip.sweep.engine import DECK, Settings, sweep, told_on_screen
 from stickslip.sweep.points import Point, latin_hypercube, product, ranged, read_points, varied
+from stickslip.sweep.table import TABLE
 
 
 def arguments_of_command_line() -> argparse.Namespace:
@@ -99,6 +100,9 @@ def run() -> int:
         arguments.again,
         told_on_screen,
     )
+    for path, own in ((arguments.deck, DECK), (arguments.points, TABLE)):
+        if path is not None and path.resolve() == (arguments.output / own).resolve():
+            raise Fault(f"{path} has the name of a file of the study: choose another folder with -o")
     deck = Deck.read(arguments.deck)
     table = sweep(deck, points(arguments), arguments.output, arguments.quantity, settings)
     written = table.write(arguments.output)

@@ -13,6 +13,9 @@ from stickslip.sweep.point import Task
 from stickslip.sweep.quantities import Quantity
 from stickslip.whole import whole
 
+TABLE = "table.csv"
+"""The table in the folder of a study."""
+
 KNOWN = ("exit_status", "warnings", "message", "seconds")
 """Columns of every table, behind those of the parameters."""
 
@@ -53,7 +56,7 @@ class Table:
 
     def write(self, folder: Path | str) -> list[Path]:
         """Writes `table.csv`, and `table.parquet` where the package pyarrow is installed."""
-        path = Path(folder) / "table.csv"
+        path = Path(folder) / TABLE
         with whole(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, self.columns)
             writer.writeheader()
