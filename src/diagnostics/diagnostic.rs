@@ -37,6 +37,8 @@ pub struct Diagnostic {
     pub label: Option<String>,
     /// What to do about it.
     pub help: Option<String>,
+    /// The other card that it is about, and its place.
+    pub other: Option<(String, Span)>,
 }
 
 impl Diagnostic {
@@ -63,6 +65,7 @@ impl Diagnostic {
             message: shortened(message),
             label: None,
             help: None,
+            other: None,
         }
     }
 
@@ -104,6 +107,11 @@ impl Added<'_> {
     /// Gives advice.
     pub fn help(self, help: impl Into<String>) -> Self {
         self.with(|added| added.help = Some(shortened(help.into())))
+    }
+
+    /// Names the other card that it is about, with its place.
+    pub fn other(self, what: impl Into<String>, span: Span) -> Self {
+        self.with(|added| added.other = Some((shortened(what.into()), span)))
     }
 
     fn with(mut self, change: impl FnOnce(&mut Diagnostic)) -> Self {

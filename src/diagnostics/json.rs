@@ -35,6 +35,7 @@ fn object(item: &Diagnostic, sources: &Sources) -> Value {
         "message": item.message,
         "label": item.label,
         "help": item.help,
+        "other": item.other.as_ref().map(|(what, span)| json!({"what": what, "place": place(*span, sources)})),
         "place": item.span.map(|span| place(span, sources)),
         "included_from": chain.unwrap_or_default().into_iter().map(|span| place(span, sources)).collect::<Vec<_>>(),
         "instance": instance.map(|(name, _)| name),

@@ -66,6 +66,10 @@ fn group<'a>(item: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
             group = group.element(Level::NOTE.message(in_instance(name, place, sources)));
         }
     }
+    if let Some((what, place)) = &item.other {
+        let text = format!("{what} stands at {}", position(*place, sources));
+        group = group.element(Level::NOTE.message(text));
+    }
     match &item.help {
         Some(help) => group.element(Level::HELP.message(help.as_str())),
         None => group,

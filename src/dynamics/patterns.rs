@@ -68,10 +68,11 @@ pub(super) fn pattern(
     Ok(VelocityPattern { w, momentum })
 }
 
-/// Whether a rigid body that turns is a part of each body.
+/// Whether a rigid body that turns in this step is a part of each body: one whose rotation is held moves as bodies do.
 pub(super) fn turning_bodies(problem: &StepProblem) -> Vec<bool> {
     let mut turns = vec![false; problem.parts.bodies()];
-    for body in problem.unknowns.turning.bodies {
+    let turning = problem.unknowns.turning.bodies.iter();
+    for body in turning.filter(|body| !problem.unknowns.is_held(body.spin)) {
         turns[problem.parts.of_nodes()[body.centre]] = true;
     }
     turns
@@ -99,8 +100,8 @@ impl RigidBodies {
             add(&mut sums[body], [m, m * x, m * y]);
         }
         let arm = |(node, &body): (usize, &usize)| match (is_free[body], sums[body]) {
-            (true, [m, x, y]) => difference([x / m, y / m], problem.position(u, node)),
-            (false, _) => [0.0; 2],
+            (true, [m, x, y]) if m > 0.0 => difference([x / m, y / m], problem.position(u, node)),
+            _ => [0.0; 2],
         };
         let arms = body_of.iter().enumerate().flat_map(arm).collect();
         let mut bodies = RigidBodies {
@@ -123,17 +124,25 @@ impl RigidBodies {
         // sums of the velocities and their number, and of the momenta and masses
         let mut held = vec![[[0.0; 2]; 2]; self.is_free.len()];
         let mut moving = held.clone();
-        for dof in problem.unknowns.prescribed() {
+        let mut is_angle = vec![false; v.len() / 2];
+        for body in problem.unknowns.turning.bodies {
+            is_angle[body.spin / 2] = true;
+        }
+        for dof in (problem.unknowns.prescribed()).filter(|dof| !is_angle[dof / 2]) {
             let [sum, number] = &mut held[body_of[dof / 2]][dof % 2];
             (*sum, *number) = (*sum + v[dof], *number + 1.0);
         }
-        for (dof, v) in v.iter().enumerate() {
+        let all = v.iter().enumerate();
+        for (dof, v) in all.filter(|(dof, _)| !is_angle[dof / 2]) {
             let m = problem.mass.shares[dof / 2];
             let [sum, mass] = &mut moving[body_of[dof / 2]][dof % 2];
             (*sum, *mass) = (*sum + m * v, *mass + m);
         }
         let mean = |[sum, number]: [f64; 2]| (number > 0.0).then(|| sum / number);
         let of_dof = |dof: usize| {
+            if is_angle[dof / 2] {
+                return 0.0;
+            }
             let at = |sums: &[[[f64; 2]; 2]]| mean(sums[body_of[dof / 2]][dof % 2]);
             at(&held).or_else(|| at(&moving)).unwrap_or(0.0)
         };

@@ -6,8 +6,8 @@ use crate::materials::Law;
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorDirection, ConnectorLaw, Contact, Curve,
     Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material,
-    Mesh, Model, Reach, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach, TimeBase,
-    Wear,
+    Mesh, Model, Reach, RigidPart, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach,
+    TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -61,14 +61,17 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
             }
             continue;
         }
-        let parameter = match body.surface {
-            Some(_) => "ANALYTICAL SURFACE",
-            None if body.elements.is_empty() => "NSET",
-            None => "ELSET",
-        };
         let label = model.mesh.node_labels[body.reference];
-        let name = named(parameter, &body.name);
-        lines.card("RIGID BODY", [name, set("REF NODE", label)]);
+        for part in &body.parts {
+            let part = match part {
+                RigidPart::Surface(index) => {
+                    named("ANALYTICAL SURFACE", &model.surfaces[*index].name)
+                }
+                RigidPart::Elements(set) => named("ELSET", set),
+                RigidPart::Nodes(set) => named("NSET", set),
+            };
+            lines.card("RIGID BODY", [part, set("REF NODE", label)]);
+        }
     }
     if !model.hinges.is_empty() {
         lines.card("MPC", []);

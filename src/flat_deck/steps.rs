@@ -6,8 +6,8 @@ use super::model::{Interactions, elements_field, first_of_rigid, friction, pair_
 use crate::model::{
     ALL_EXTERIOR, Amplitude, BodyForce, CentrifugalForce, ContactChanges, Frames, HistorySet,
     Incrementation, Increments, Interference, Load, Model, NamedSets, NodalVariable, PointLoad,
-    Pressure, Procedure, Rate, RigidBody, Scheme, Settings, Step, Support, SupportMotion, TimeBase,
-    Traction, Variation,
+    Pressure, Procedure, Rate, RigidBody, RigidPart, Scheme, Settings, Step, Support,
+    SupportMotion, TimeBase, Traction, Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -288,10 +288,12 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
             support_row(supports, model, lines);
         }
     }
-    // elements that do not turn would be free to
+    // elements and nodes with mass that do not turn would be free to
     let rigid = model.rigid_bodies.iter();
+    let is_surface = |part: &RigidPart| matches!(part, RigidPart::Surface(_));
+    let is_light = |body: &RigidBody| !body.is_coupling && body.parts.iter().all(is_surface);
     let held: Vec<&RigidBody> = rigid
-        .filter(|body| body.surface.is_none() && body.turning.is_none())
+        .filter(|body| !is_light(body) && body.turning.is_none())
         .collect();
     if !held.is_empty() && !now.is_empty() {
         lines.card("BOUNDARY", []);

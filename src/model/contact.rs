@@ -262,10 +262,10 @@ impl Equation {
 /// Elements of a body that does not turn are known by the supports of their nodes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidBody {
-    /// Name of its surface or set in the deck.
+    /// Name of its first surface or set in the deck, or of the coupling.
     pub name: String,
-    /// Index of its rigid surface, if it has one.
-    pub surface: Option<usize>,
+    /// The surfaces and sets that it is made of, in the order of the deck.
+    pub parts: Vec<RigidPart>,
     /// Reference node (index).
     pub reference: usize,
     /// Nodes that move with it, increasing, without the reference node.
@@ -276,6 +276,24 @@ pub struct RigidBody {
     pub is_coupling: bool,
     /// Its motion, if it turns.
     pub turning: Option<TurningInertia>,
+}
+
+impl RigidBody {
+    /// Whether a surface (index) is a part of it.
+    pub fn has_surface(&self, surface: usize) -> bool {
+        self.parts.contains(&RigidPart::Surface(surface))
+    }
+}
+
+/// What a rigid body is made of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RigidPart {
+    /// A rigid surface (index).
+    Surface(usize),
+    /// The elements of the set with this name.
+    Elements(String),
+    /// The nodes of the set with this name.
+    Nodes(String),
 }
 
 /// A rigid body with an angle of its own, prescribed or free.

@@ -133,6 +133,14 @@ impl Mesh {
         }
     }
 
+    /// Whether each node belongs to an element.
+    pub fn has_element(&self) -> Vec<bool> {
+        let mut has_element = vec![false; self.node_count()];
+        let nodes = self.elements.iter().flat_map(|element| &element.nodes);
+        nodes.for_each(|&node| has_element[node] = true);
+        has_element
+    }
+
     /// Area of an undeformed element (length^2); on sides with a node between their corners the parabola takes two
     /// thirds of the parallelogram over the chord, of which the outline through the nodes takes half.
     pub fn area(&self, element: &Element) -> f64 {

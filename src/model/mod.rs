@@ -23,7 +23,8 @@ pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
     ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Hinge,
-    Interaction, Reach, RigidBody, RigidProfile, Surface, SurfaceKind, TurningInertia, Wear,
+    Interaction, Reach, RigidBody, RigidPart, RigidProfile, Surface, SurfaceKind, TurningInertia,
+    Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};

@@ -284,6 +284,16 @@ pub enum SupportMotion {
 }
 
 impl SupportMotion {
+    /// Whether the support stays where it is at the start of the analysis.
+    pub fn is_still(self) -> bool {
+        match self {
+            SupportMotion::Ramp { to } => to == 0.0,
+            SupportMotion::Amplitude { value, .. } | SupportMotion::Rate { value, .. } => {
+                value == 0.0
+            }
+        }
+    }
+
     /// How a support that no card changes goes on after a step of this duration: what follows an
     /// amplitude in step time keeps its last value.
     pub fn after_step(self, period: f64, amplitudes: &[Amplitude]) -> SupportMotion {

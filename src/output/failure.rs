@@ -10,7 +10,7 @@ use crate::dynamics::{
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
 use crate::linear::LinearError;
-use crate::model::{Model, Procedure, Step};
+use crate::model::{Bodies, Model, Procedure, RigidBody, Set, Step};
 
 /// Pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
@@ -219,11 +219,36 @@ pub(crate) fn held_lines(
 
 fn unbalanced_text(unbalanced: &Unbalanced, model: &Model) -> String {
     format!(
-        "of node {}: the force {} and the moment {} about its middle",
-        model.node_name(unbalanced.node),
+        "{}: the force {} and the moment {} about its middle",
+        body_name(unbalanced.node, model),
         point(unbalanced.force),
         scientific(unbalanced.moment, 2),
     )
+}
+
+/// The body of a node as the deck calls it: a rigid body by its name, another one by the smallest element set that holds
+/// all of it, or else by the node.
+fn body_name(node: usize, model: &Model) -> String {
+    let name = model.node_name(node);
+    let node = model.node_of(node);
+    let moves = |body: &&RigidBody| body.reference == node || body.nodes.contains(&node);
+    if let Some(body) = model.rigid_bodies.iter().find(moves) {
+        return format!("{} with node {name}", body.name);
+    }
+    let bodies = Bodies::new(&model.mesh);
+    let body = bodies.of_node.get(node).copied().flatten();
+    let elements = bodies.of_element.iter().enumerate();
+    let own: Vec<usize> = elements
+        .filter(|(_, of)| Some(**of) == body)
+        .map(|(element, _)| element)
+        .collect();
+    let holds =
+        |set: &&Set| !own.is_empty() && own.iter().all(|e| set.members.binary_search(e).is_ok());
+    let sets = model.sets.elements.iter().filter(holds);
+    match sets.min_by_key(|set| set.members.len()) {
+        Some(set) => format!("{} with node {name}", set.name),
+        None => format!("of node {name}"),
+    }
 }
 
 fn motion_text(unbalanced: &Unbalanced) -> String {

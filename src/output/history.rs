@@ -268,7 +268,7 @@ impl<'m> History<'m> {
         text_attribute(at, "formulation", contact.formulation.name())?;
         self.table(at, &[], &CONTACT, own)?;
         let mut rigid = self.model.rigid_bodies.iter();
-        if rigid.any(|body| body.surface == Some(contact.master)) {
+        if rigid.any(|body| body.has_surface(contact.master)) {
             self.table(at, &[], &REFERENCE_MOMENT, own)?;
         }
         if contact.is_self_contact() {

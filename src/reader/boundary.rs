@@ -5,6 +5,7 @@ use super::amplitudes::Amplitudes;
 use super::context::Context;
 use super::mesh_index::MeshIndex;
 use super::outline::Outline;
+use super::owners::{Action, Actions};
 use super::rigid_bodies::{self, Rigid};
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
@@ -25,6 +26,8 @@ pub(crate) struct Targets<'a> {
     pub masses: &'a [f64],
     /// Rigid bodies, whose nodes move with reference nodes.
     pub rigid_bodies: &'a [Rigid],
+    /// Whether each node belongs to a plane element.
+    pub has_element: &'a [bool],
 }
 
 impl Targets<'_> {
@@ -48,6 +51,10 @@ pub(crate) enum Direction {
 #[derive(Default)]
 pub(crate) struct Supports {
     held: BTreeMap<usize, Prescription>,
+    /// Those that steps have removed, with their places.
+    removed: BTreeMap<usize, Span>,
+    /// Motions of nodes without element.
+    pub actions: Actions,
 }
 
 #[derive(Clone, Copy)]
@@ -55,6 +62,8 @@ struct Prescription {
     motion: SupportMotion,
     /// Step that last prescribed it; 0 for model data.
     step: usize,
+    /// Where it stands.
+    span: Span,
 }
 
 /// What a card prescribes.
@@ -103,7 +112,15 @@ impl Supports {
 
     /// Removes all supports.
     pub fn clear(&mut self) {
-        self.held.clear();
+        let removed = std::mem::take(&mut self.held).into_iter();
+        self.removed
+            .extend(removed.map(|(dof, held)| (dof, held.span)));
+    }
+
+    /// Where a dof is prescribed in some step.
+    pub fn place(&self, dof: usize) -> Option<Span> {
+        let held = self.held.get(&dof).map(|held| held.span);
+        held.or_else(|| self.removed.get(&dof).copied())
     }
 
     /// Ends a step of this duration: what follows an amplitude in step time keeps its last value.
@@ -159,13 +176,18 @@ impl Supports {
         }
         let motion = quantity.motion(prescribed.value);
         for node in nodes.unwrap_or_default() {
-            let held = Prescription { motion, step };
+            let span = row.span();
+            let held = Prescription { motion, step, span };
             for &direction in &prescribed.directions {
-                self.hold(2 * node + direction, held, row.span(), cx);
+                let dof = 2 * node + direction;
+                self.hold(dof, held, cx);
+                if !motion.is_still() {
+                    self.actions.enter(dof, Action::Motion, span, targets);
+                }
             }
             if prescribed.turns {
                 match targets.angle_at(node) {
-                    Some(angle) => self.hold(angle, held, row.span(), cx),
+                    Some(angle) => self.hold(angle, held, cx),
                     None if prescribed.value != 0.0 => return report_no_angle(prescribed.span, cx),
                     None => {}
                 }
@@ -173,8 +195,8 @@ impl Supports {
         }
     }
 
-    fn hold(&mut self, dof: usize, now: Prescription, span: Span, cx: &mut Context) {
-        let earlier = self.held.insert(dof, now);
+    fn hold(&mut self, dof: usize, now: Prescription, cx: &mut Context) {
+        let (earlier, span) = (self.held.insert(dof, now), now.span);
         if earlier.is_some_and(|held| held.step == now.step && held.motion != now.motion) {
             let message = "another motion is prescribed here than before in this step";
             cx.warning(Code::ConflictingSupport, span, message)
@@ -308,16 +330,17 @@ pub(crate) fn row_dofs(
     dofs
 }
 
-/// Reads initial velocities, `2 N` entries; `supports` hold at the start.
+/// Reads initial velocities, `2 N` entries, and those of nodes without element with their places; `supports` hold at the
+/// start.
 pub(crate) fn initial_velocity(
     outline: &Outline,
     targets: Targets,
     supports: &[Support],
     cx: &mut Context,
-) -> Vec<f64> {
+) -> (Vec<f64>, Actions) {
     let dofs = targets.mesh_index.mesh.dof_count() + 4 * targets.rigid_bodies.len();
     let mut velocity = vec![0.0; dofs];
-    let mut places = BTreeMap::new();
+    let (mut places, mut actions) = (BTreeMap::new(), Actions::default());
     for card in outline.model_cards("INITIAL CONDITIONS") {
         card.required("TYPE", cx.d);
         let rows: Vec<(Span, Vec<(usize, f64)>)> = match card.choice("TYPE") {
@@ -335,12 +358,15 @@ pub(crate) fn initial_velocity(
                 if let Some(entry) = velocity.get_mut(dof) {
                     *entry = value;
                     places.insert(dof, span);
+                    if value != 0.0 {
+                        actions.enter(dof, Action::Velocity, span, targets);
+                    }
                 }
             }
         }
     }
     report_supported(&velocity, &places, supports, targets, cx);
-    velocity
+    (velocity, actions)
 }
 
 /// Warns about initial velocities before a static step, which is at rest.

@@ -22,10 +22,37 @@ pub(crate) enum Link {
     Hinge { nodes: [usize; 2], span: Span },
     /// Both displacements of a node are the means of those of others.
     Mean {
+        name: String,
         node: usize,
         of: Vec<usize>,
         span: Span,
     },
+}
+
+impl Link {
+    /// What it is called, as in `the coupling C`.
+    pub fn title(&self) -> String {
+        match self {
+            Link::Joined { .. } | Link::Hinge { .. } => "an *MPC".to_owned(),
+            Link::Mean { name, .. } => format!("the coupling {name}"),
+        }
+    }
+
+    /// Its place.
+    pub fn span(&self) -> Span {
+        match self {
+            Link::Joined { span, .. } | Link::Hinge { span, .. } | Link::Mean { span, .. } => *span,
+        }
+    }
+
+    /// All of its nodes.
+    pub fn nodes(&self) -> Vec<usize> {
+        match self {
+            Link::Joined { node, to, .. } => vec![*node, *to],
+            Link::Hinge { nodes, .. } => nodes.to_vec(),
+            Link::Mean { node, of, .. } => of.iter().copied().chain([*node]).collect(),
+        }
+    }
 }
 
 /// Adds the rigid bodies of all couplings and constraints to the others; the links without one.
@@ -61,7 +88,6 @@ pub(super) fn read(
             mpc(row, lookup, (bodies, &mut links), cx);
         }
     }
-    report_shared(bodies, lookup, cx);
     links
 }
 
@@ -112,6 +138,7 @@ fn coupling(
                 return;
             }
             links.push(Link::Mean {
+                name,
                 node: reference,
                 of: nodes.into_iter().collect(),
                 span: card.span,
@@ -291,9 +318,9 @@ fn is_at_one_place(
     is_near
 }
 
-/// The hinges among links.
-pub(super) fn hinges(links: &[Link], cx: &mut Context) -> Vec<Hinge> {
-    let mut all: Vec<Hinge> = Vec::new();
+/// The hinges among links, and their places.
+pub(super) fn hinges(links: &[Link], cx: &mut Context) -> (Vec<Hinge>, Vec<Span>) {
+    let (mut all, mut spans): (Vec<Hinge>, Vec<Span>) = Default::default();
     for link in links {
         let Link::Hinge { nodes, span } = *link else {
             continue;
@@ -308,28 +335,7 @@ pub(super) fn hinges(links: &[Link], cx: &mut Context) -> Vec<Hinge> {
                 .help("leave this row out");
         }
         all.push(Hinge { nodes });
+        spans.push(span);
     }
-    all
-}
-
-/// Reports a node of two rigid bodies, one of them a coupling.
-fn report_shared(bodies: &[Rigid], lookup: Lookup, cx: &mut Context) {
-    for (index, body) in bodies.iter().enumerate() {
-        let earlier = &bodies[..index];
-        let shared = body.nodes().find_map(|node| {
-            let other = earlier.iter().find(|other| other.has(node))?;
-            (body.is_coupling() || other.is_coupling()).then_some((node, other))
-        });
-        if let Some((node, other)) = shared {
-            let message = format!(
-                "node {} belongs to {} and to {}",
-                lookup.mesh_index.node_name(node),
-                other.name(),
-                body.name()
-            );
-            cx.error(Code::Coupling, body.span(), message).help(
-                "a node rides on one body: couple the second to the reference node of the first",
-            );
-        }
-    }
+    (all, spans)
 }

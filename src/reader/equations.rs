@@ -1,12 +1,12 @@
 //! `*EQUATION`: linear equations between displacements, sum a_k u_k = 0, solved for their first
 //! terms. Section 3 of docs/theory.md.
 
-use super::boundary::{Direction, Targets, direction};
+use super::boundary::{Direction, Supports, Targets, direction};
 use super::context::Context;
 use super::couplings::Link;
 use super::outline::Outline;
-use super::pretension::Cut;
-use super::ties::Ties;
+use super::owners::{Constraints, Owner};
+use super::rigid_bodies::Rigid;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{Equation, Step, Support, SupportMotion};
@@ -29,28 +29,35 @@ struct Term {
 }
 
 /// An equation of single dofs, u_dof = sum c_k u_k.
-struct SolvedEquation {
+struct SolvedEquation<'a> {
     terms: Vec<(usize, f64)>,
-    span: Span,
+    owner: Owner<'a>,
 }
 
-/// Equations by the dofs that they eliminate.
-type ByDof = BTreeMap<usize, SolvedEquation>;
+/// Equations by the dofs that they eliminate: each has one owner.
+type ByDof<'a> = BTreeMap<usize, SolvedEquation<'a>>;
 
-/// Reads all equations with their places: those between eliminated dofs are substituted into each
+/// Reads all equations with the cards that they are of: those between eliminated dofs are substituted into each
 /// other.
-pub(crate) fn read(
+pub(crate) fn read<'a>(
     outline: &Outline,
-    targets: Targets,
-    (ties, links, cuts, steps): (&Ties, &[Link], &[Cut], &[Step]),
+    targets: Targets<'a>,
+    (constraints, (supports, steps)): (Constraints<'a>, (&Supports, &[Step])),
     cx: &mut Context,
-) -> Vec<(Equation, Span)> {
-    let mut solved = of_ties(ties, targets, steps, cx);
-    of_links(links, &mut solved, targets, steps, cx);
-    for cut in cuts {
+) -> Vec<(Equation, Owner<'a>)> {
+    let mut solved = ByDof::new();
+    of_ties(constraints, &mut solved, targets, steps, cx);
+    of_links(constraints.links, &mut solved, targets, steps, cx);
+    for cut in constraints.cuts {
         for Equation { dof, terms } in cut.equations() {
-            let span = cut.span;
-            solved.insert(dof, SolvedEquation { terms, span });
+            let owner = Owner::Section(cut);
+            claim(
+                dof,
+                SolvedEquation { terms, owner },
+                &mut solved,
+                targets,
+                cx,
+            );
         }
     }
     for card in outline.model_cards("EQUATION") {
@@ -65,7 +72,7 @@ pub(crate) fn read(
             }
         }
     }
-    report_prescribed(&solved, steps, targets, cx);
+    report_prescribed(&solved, (supports, steps), targets, cx);
     substituted(solved, targets, cx)
 }
 
@@ -182,27 +189,48 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
         });
         let equation = SolvedEquation {
             terms: others.collect(),
-            span: first.span,
+            owner: Owner::Equation(first.span),
         };
         if equation.terms.iter().any(|&(other, _)| other == dof) {
             let message = format!("{} stands in it again", name(dof, targets));
             cx.error(Code::BadEquation, first.span, message)
                 .help("the first term is eliminated: it stands in the equation once");
-        } else if solved.insert(dof, equation).is_some() {
-            let message = format!(
-                "{} is eliminated by an earlier equation",
-                name(dof, targets)
-            );
-            cx.error(Code::BadEquation, first.span, message)
-                .help("put another term first");
+        } else {
+            claim(dof, equation, solved, targets, cx);
         }
     }
 }
 
-/// The equations of the tied nodes.
-fn of_ties(ties: &Ties, targets: Targets, steps: &[Step], cx: &mut Context) -> ByDof {
-    let mut solved = ByDof::new();
-    for (tie, &span) in ties.all.iter().zip(&ties.spans) {
+/// Enters an equation; reports a dof that another card makes follow already.
+fn claim<'a>(
+    dof: usize,
+    equation: SolvedEquation<'a>,
+    solved: &mut ByDof<'a>,
+    targets: Targets,
+    cx: &mut Context,
+) {
+    let own = equation.owner;
+    let Some(SolvedEquation { owner: other, .. }) = solved.insert(dof, equation) else {
+        return;
+    };
+    let (dof, first, second) = (name(dof, targets), other.title(), own.title());
+    let message = format!("{dof} follows other nodes twice: by {first} and by {second}");
+    own.contradicts(other, message, cx).help(match own {
+        Owner::Equation(_) => "put another term first",
+        _ => "a displacement follows by one card: take the node out of one of the two",
+    });
+}
+
+/// Adds the equations of the tied nodes.
+fn of_ties<'a>(
+    of: Constraints<'a>,
+    solved: &mut ByDof<'a>,
+    targets: Targets,
+    steps: &[Step],
+    cx: &mut Context,
+) {
+    for (tie, &span) in of.ties.all.iter().zip(&of.ties.spans) {
+        let owner = Owner::Tie(tie, span);
         let mut held = Vec::new();
         for equation in tie
             .nodes
@@ -211,7 +239,9 @@ fn of_ties(ties: &Ties, targets: Targets, steps: &[Step], cx: &mut Context) -> B
         {
             let Equation { dof, terms } = equation;
             match tied_and_prescribed(dof, &terms, steps) {
-                PrescribedDof::Not => drop(solved.insert(dof, SolvedEquation { terms, span })),
+                PrescribedDof::Not => {
+                    claim(dof, SolvedEquation { terms, owner }, solved, targets, cx);
+                }
                 PrescribedDof::Alike => {}
                 PrescribedDof::Otherwise => held.push(dof),
             }
@@ -232,13 +262,12 @@ fn of_ties(ties: &Ties, targets: Targets, steps: &[Step], cx: &mut Context) -> B
             ));
         }
     }
-    solved
 }
 
 /// Adds the equations of nodes that are joined, and of reference nodes that follow the mean of others.
-fn of_links(
-    links: &[Link],
-    solved: &mut ByDof,
+fn of_links<'a>(
+    links: &'a [Link],
+    solved: &mut ByDof<'a>,
     targets: Targets,
     steps: &[Step],
     cx: &mut Context,
@@ -250,15 +279,18 @@ fn of_links(
     for link in links {
         for direction in 0..2 {
             let at = |node: &usize| 2 * node + direction;
-            let (mut dof, mut terms, span) = match link {
-                Link::Joined { node, to, span } => (at(node), vec![(at(to), 1.0)], *span),
-                Link::Mean { node, of, span } => {
+            let (mut dof, mut terms) = match link {
+                Link::Joined { node, to, .. } => (at(node), vec![(at(to), 1.0)]),
+                Link::Mean { node, of, .. } => {
                     let weight = 1.0 / of.len() as f64;
                     let terms = of.iter().map(|other| (at(other), weight));
-                    (at(node), terms.collect(), *span)
+                    (at(node), terms.collect::<Vec<_>>())
                 }
                 Link::Hinge { .. } => continue,
             };
+            if let PrescribedDof::Alike = tied_and_prescribed(dof, &terms, steps) {
+                continue;
+            }
             // a support holds the term that follows: the first that can be eliminated in its place
             let is_taken = |dof: usize| is_prescribed(dof) || solved.contains_key(&dof);
             if is_taken(dof)
@@ -269,10 +301,8 @@ fn of_links(
                 terms[index] = (dof, 1.0 / weight);
                 dof = first;
             }
-            if solved.insert(dof, SolvedEquation { terms, span }).is_some() {
-                let message = format!("{} follows other nodes already", name(dof, targets));
-                cx.error(Code::Coupling, span, message);
-            }
+            let owner = Owner::Link(link);
+            claim(dof, SolvedEquation { terms, owner }, solved, targets, cx);
         }
     }
 }
@@ -314,25 +344,48 @@ fn name(dof: usize, targets: Targets) -> String {
 }
 
 /// An eliminated dof cannot be prescribed as well.
-fn report_prescribed(solved: &ByDof, steps: &[Step], targets: Targets, cx: &mut Context) {
+fn report_prescribed(
+    solved: &ByDof,
+    (places, steps): (&Supports, &[Step]),
+    targets: Targets,
+    cx: &mut Context,
+) {
     let supports = steps.iter().flat_map(|step| &step.supports);
     let prescribed: BTreeSet<usize> = supports.map(|support| support.dof).collect();
     for (dof, equation) in solved.iter().filter(|(dof, _)| prescribed.contains(dof)) {
-        let message = format!(
-            "{} is eliminated by an equation and prescribed",
-            name(*dof, targets)
-        );
-        cx.error(Code::BadEquation, equation.span, message)
-            .help("put a term first that is not prescribed");
+        let rides = |body: &&Rigid| body.has(dof / 2);
+        let other = match places.place(*dof) {
+            Some(span) => Some(Owner::Support(span)),
+            None => targets.rigid_bodies.iter().find(rides).map(Owner::Body),
+        };
+        let (dof, own) = (name(*dof, targets), equation.owner);
+        let by = match own {
+            Owner::Equation(_) => "an equation".to_owned(),
+            own => own.title(),
+        };
+        let message = format!("{dof} is eliminated by {by} and prescribed");
+        let help = match own {
+            Owner::Equation(_) => "put a term first that is not prescribed",
+            _ => "prescribe the nodes that it follows",
+        };
+        let error = match other {
+            Some(other) => own.contradicts(other, message, cx),
+            None => cx.error(own.code(), own.span(), message),
+        };
+        error.help(help);
     }
 }
 
 /// The equations with eliminated dofs replaced by their own equations, so that all remaining terms
 /// are independent; each with its place.
-fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Equation, Span)> {
+fn substituted<'a>(
+    mut solved: ByDof<'a>,
+    targets: Targets,
+    cx: &mut Context,
+) -> Vec<(Equation, Owner<'a>)> {
     let mut equations = BTreeMap::new();
     for dof in elimination_order(&solved) {
-        let Some(SolvedEquation { terms: own, span }) = solved.remove(&dof) else {
+        let Some(SolvedEquation { terms: own, owner }) = solved.remove(&dof) else {
             continue;
         };
         let mut terms = BTreeMap::new();
@@ -347,12 +400,12 @@ fn substituted(mut solved: ByDof, targets: Targets, cx: &mut Context) -> Vec<(Eq
             }
         }
         let terms: Vec<(usize, f64)> = terms.into_iter().filter(|(_, c)| *c != 0.0).collect();
-        report_ratios(dof, &terms, span, targets, cx);
-        equations.insert(dof, (Equation { dof, terms }, span));
+        report_ratios(dof, &terms, owner.span(), targets, cx);
+        equations.insert(dof, (Equation { dof, terms }, owner));
     }
     if let Some((&dof, equation)) = solved.first_key_value() {
         let message = format!("equations eliminate {} in a circle", name(dof, targets));
-        cx.error(Code::BadEquation, equation.span, message)
+        cx.error(Code::BadEquation, equation.owner.span(), message)
             .help("put a term first that no other of these equations eliminates");
     }
     equations.into_values().collect()
@@ -409,7 +462,7 @@ fn elimination_order(solved: &ByDof) -> Vec<usize> {
 /// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the one
 /// its equation implies; the velocities of `supports` are prescribed.
 pub(crate) fn check_velocities(
-    equations: &[(Equation, Span)],
+    equations: &[(Equation, Owner)],
     velocity: &[f64],
     supports: &[Support],
     targets: Targets,
@@ -417,7 +470,7 @@ pub(crate) fn check_velocities(
 ) {
     let of = |dof: usize| velocity.get(dof).copied().unwrap_or(0.0);
     let is_prescribed = |dof: usize| supports.iter().any(|support| support.dof == dof);
-    for (Equation { dof, terms }, span) in equations.iter().filter(|(e, _)| of(e.dof) != 0.0) {
+    for (Equation { dof, terms }, owner) in equations.iter().filter(|(e, _)| of(e.dof) != 0.0) {
         if terms.iter().any(|term| is_prescribed(term.0)) {
             continue;
         }
@@ -427,7 +480,7 @@ pub(crate) fn check_velocities(
         });
         if (sum - of(*dof)).abs() > Equation::ROUND_OFF * size {
             let message = format!("{} does not start with its velocity", name(*dof, targets));
-            cx.warning(Code::BadEquation, *span, message)
+            cx.warning(Code::BadEquation, owner.span(), message)
                 .help("it starts with what follows from the other terms");
         }
     }

@@ -31,6 +31,7 @@ const FINER: f64 = 0.99;
 /// bodies. Two pairs of the same surfaces, one in each order, become one then, as they do where both are from surface
 /// to surface.
 pub(super) fn choose(model: &mut Model, cx: &mut Context) {
+    warn_of_two_laws(model, cx);
     choose_for_general(model);
     let both = both_orders(model);
     let of_nodes = |pair: &&BothOrders| pair.formulation == ContactFormulation::NodeToSegment;
@@ -52,6 +53,24 @@ pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     let all = std::mem::take(&mut model.contacts).into_iter().enumerate();
     let stay = all.filter(|(number, _)| !left_out.contains(number));
     model.contacts = stay.map(|(_, contact)| contact).collect();
+}
+
+/// Warns of pairs in both orders whose friction differs: the forces of both add up, each by its own law.
+fn warn_of_two_laws(model: &Model, cx: &mut Context) {
+    for (number, contact) in model.contacts.iter().enumerate() {
+        let mut before = model.contacts[..number].iter();
+        let is_other = |other: &&Contact| {
+            [other.slave, other.master] == [contact.master, contact.slave]
+                && other.interaction.friction != contact.interaction.friction
+        };
+        if let Some(other) = before.find(is_other) {
+            let message = "both orders of this pair have different friction: the nodes of either side have that of their \
+                           own pair";
+            cx.warning(Code::BothOrders, contact.span, message)
+                .other("the other order", other.span)
+                .help("give both orders one *SURFACE INTERACTION, or keep one order");
+        }
+    }
 }
 
 /// Takes general contact from surface to surface where many faces lie on other bodies and the deck does not say.

@@ -3,6 +3,7 @@
 use super::boundary::{Targets, row_dofs};
 use super::context::Context;
 use super::mesh_index::PointKind;
+use super::owners::{Action, Actions};
 use super::surfaces::{Surfaces, side_count};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
@@ -25,6 +26,8 @@ pub(crate) struct LoadHistories {
     tractions: LoadHistory<OnFace, Traction>,
     /// By the keywords.
     operations: BTreeMap<&'static str, Operation>,
+    /// Forces on nodes without element.
+    pub actions: Actions,
 }
 
 /// A face, and the surface (index) on which `*DSLOAD` loads it; none with `*DLOAD`.
@@ -58,6 +61,7 @@ pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
         pressures: LoadHistory::of(&step.pressures, |at| (None, at.face)),
         tractions: LoadHistory::of(&step.tractions, |at| (None, at.face)),
         operations: BTreeMap::new(),
+        actions: Actions::default(),
     };
     loads.end_step(step.increments.period, 0.0, amplitudes);
     let mut carried = step.clone();
@@ -138,6 +142,10 @@ impl LoadHistories {
         let (dofs, force) = (dofs?, force?);
         for dof in dofs {
             let at = PointLoad { dof };
+            if force != 0.0 {
+                let span = row.span();
+                (self.actions).enter(dof, Action::Load, span, source.targets);
+            }
             self.points
                 .add(dof, at, force, source.amplitude, source.context);
         }

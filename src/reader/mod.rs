@@ -23,6 +23,7 @@ mod names;
 mod nodes_elements;
 mod outline;
 mod output;
+mod owners;
 mod pretension;
 mod rigid_bodies;
 mod sections;
@@ -39,11 +40,12 @@ pub(crate) use steps::{
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Code, Diagnostics, Sources};
-use crate::model::{EdgeScales, ElementsAtNodes, Instance, Model, NamedSets};
+use crate::model::{EdgeScales, ElementsAtNodes, Equation, Instance, Model, NamedSets};
 use boundary::Targets;
 use context::Context;
 use outline::Outline;
 use output::Histories;
+use owners::Constraints;
 use rigid_bodies::Lookup;
 use sets::Sets;
 use std::path::Path;
@@ -93,12 +95,20 @@ fn read(cx: &mut Context) -> Model {
     };
     let mut rigid_bodies = rigid_bodies::read(&outline, lookup, cx);
     let links = couplings::read(&outline, lookup, &mut rigid_bodies, cx);
+    rigid_bodies::find_carried(&mut rigid_bodies, &mesh_index.mesh);
     let masses = rigid_bodies::point_masses(&mut rigid_bodies, &outline, lookup, cx);
     let properties = sections::read(&outline, &mut mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
     let ties = ties::read(&outline, &mut mesh_index, &sets, &surfaces, cx);
     let mut contacts = contact::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
     ties.leave_out(&mut contacts, &surfaces.all, &mesh_index);
+    let constraints = Constraints {
+        ties: &ties,
+        links: &links,
+        cuts: &cuts,
+    };
+    owners::check_nodes(&rigid_bodies, constraints, &mesh_index, cx);
+    owners::check_names(&rigid_bodies, &ties, cx);
     let (sections, mesh) = (&properties.sections, &mesh_index.mesh);
     checks::thickness(&contacts, &surfaces.all, sections, mesh, cx);
     let edges = EdgeScales::new(mesh, sections, &properties.materials);
@@ -110,19 +120,25 @@ fn read(cx: &mut Context) -> Model {
         amplitudes: &amplitudes,
         masses: &masses,
         rigid_bodies: &rigid_bodies,
+        has_element: &mesh.has_element(),
     };
     let connectors = connectors::read(&outline, targets, cx);
     let mut steps = steps::read(&outline, targets, (&surfaces, &contacts), guide, cx);
     checks::density(&properties, mesh, &steps.all, cx);
-    let mut initial_velocity = boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    let (mut initial_velocity, velocities) =
+        boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
     let all = &mut steps.all;
     let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
-    let equations = equations::read(&outline, targets, (&ties, &links, &cuts, &steps.all), cx);
-    let around = mesh_index.mesh.is_axisymmetric();
-    rigid_bodies::check(&rigid_bodies, &bodies, around, (&steps.all, &equations), cx);
+    let of_steps = (&steps.supports, steps.all.as_slice());
+    let equations = equations::read(&outline, targets, (constraints, of_steps), cx);
+    let actions = [&steps.supports.actions, &steps.forces, &velocities];
+    owners::check_actions(actions, targets, (&connectors, &equations, &cuts), cx);
+    rigid_bodies::check(&rigid_bodies, &bodies, mesh, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
-    let hinges = couplings::hinges(&links, cx);
+    let equations = equations.into_iter().map(|(equation, _)| equation);
+    let equations: Vec<Equation> = equations.collect();
+    let (hinges, hinge_places) = couplings::hinges(&links, cx);
     let mut model = Model {
         title: title(&outline),
         mesh: mesh_index.mesh,
@@ -134,10 +150,7 @@ fn read(cx: &mut Context) -> Model {
         contacts,
         amplitudes: amplitudes.named.all,
         ties: ties.all,
-        equations: equations
-            .into_iter()
-            .map(|(equation, _)| equation)
-            .collect(),
+        equations,
         hinges,
         initial_velocity,
         steps: steps.all,
@@ -148,7 +161,8 @@ fn read(cx: &mut Context) -> Model {
     formulation::choose(&mut model, cx);
     contact::keep_arcs_for_discs(&mut model);
     let model = model;
-    let all: [&dyn Fn(&mut Context); 10] = [
+    let all: [&dyn Fn(&mut Context); 11] = [
+        &|cx| checks::hinges(&model, &hinge_places, cx),
         &|cx| contact::check_discs(&model, cx),
         &|cx| checks::axis(&model, &mesh_index.places, cx),
         &|cx| connectors::check(&model, &mesh_index.connectors, cx),

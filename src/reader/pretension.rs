@@ -7,15 +7,16 @@ use super::outline::Outline;
 use super::sets::Sets;
 use super::surfaces::named_faces_of;
 use crate::deck::{Card, Line};
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::{Code, Span, shown};
 use crate::model::{ElementsAtNodes, Equation, Face};
+use crate::vectors::{distance, dot};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A body that is cut.
 pub(crate) struct Cut {
     /// Pre-tension node.
-    node: usize,
-    /// Direction in which the side of the surface moves out of its elements; a unit vector.
+    pub node: usize,
+    /// Direction in which the side of the surface moves out of its elements; a unit vector out of them.
     normal: [f64; 2],
     /// Nodes of the surface, and those of the elements behind it at the same places.
     pairs: Vec<[usize; 2]>,
@@ -64,10 +65,7 @@ pub(super) fn read(
                 .help("take a node of its own: its displacement in direction 1 is the tightening");
             continue;
         }
-        let normal = match card.rows.first() {
-            Some(row) => given_normal(row, cx),
-            None => Some(mean_normal(&faces, mesh_index)),
-        };
+        let normal = normal(card, &faces, mesh_index, cx);
         let Some(normal) = normal else { continue };
         if let Some(pairs) = cut(&faces, mesh_index, &at_nodes, card.span, cx) {
             cuts.push(Cut {
@@ -114,6 +112,48 @@ fn faces(
     Some(found)
 }
 
+/// Cosine of the angle between the normal of the data line and that of the faces, below which the sides would slip on
+/// each other.
+const TANGENT: f64 = 0.01;
+
+/// The normal of a section, out of the elements of its faces: that of the data line, whichever way it points, or the
+/// mean one of the faces.
+fn normal(
+    card: &Card,
+    faces: &[Face],
+    mesh_index: &MeshIndex,
+    cx: &mut Context,
+) -> Option<[f64; 2]> {
+    if let Some(extra) = card.rows.get(1) {
+        let message = "*PRE-TENSION SECTION has one data line, the normal";
+        cx.error(Code::StrayData, extra.span(), message)
+            .help("give a card for each section");
+        return None;
+    }
+    let Some(mean) = mean_normal(faces, mesh_index) else {
+        let message = "the faces of the section have no common normal: they close a ring";
+        cx.error(Code::PreTension, card.span, message)
+            .help("it runs between elements from one side of the body to the other");
+        return None;
+    };
+    let Some(row) = card.rows.first() else {
+        return Some(mean);
+    };
+    let given = given_normal(row, cx)?;
+    let cosine = dot(given, mean);
+    if cosine.abs() < TANGENT {
+        let message = "the normal of the section lies along its faces: nothing is tightened";
+        cx.error(Code::PreTension, row.span(), message)
+            .help(format!(
+                "their mean normal is {}, {}; without a data line it is taken",
+                shown(mean[0]),
+                shown(mean[1])
+            ));
+        return None;
+    }
+    Some(given.map(|x| x * cosine.signum()))
+}
+
 /// `nx, ny[, nz]`
 fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     row.at_most(3, cx.d);
@@ -128,23 +168,22 @@ fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     Some([x / length, y / length])
 }
 
-/// Mean normal out of the elements of the faces.
-fn mean_normal(faces: &[Face], mesh_index: &MeshIndex) -> [f64; 2] {
+/// Mean normal out of the elements of the faces; none of faces around a hole.
+fn mean_normal(faces: &[Face], mesh_index: &MeshIndex) -> Option<[f64; 2]> {
     let mesh = &mesh_index.mesh;
-    let mut sum = [0.0; 2];
+    let (mut sum, mut whole) = ([0.0; 2], 0.0);
     for face in faces {
         let [a, b] = face.ends(mesh).map(|node| mesh.coordinates[node]);
         // the body lies on the left
         sum = [sum[0] + b[1] - a[1], sum[1] + a[0] - b[0]];
+        whole += distance(a, b);
     }
     let length = sum[0].hypot(sum[1]);
-    sum.map(|x| {
-        if x.abs() < 1e-14 * length {
-            0.0
-        } else {
-            x / length
-        }
-    })
+    let unit = |x: f64| match x.abs() < 1e-14 * length {
+        true => 0.0,
+        false => x / length,
+    };
+    (length > TANGENT * whole).then(|| sum.map(unit))
 }
 
 /// Gives the elements behind the faces nodes of their own; pairs of nodes of both sides.

@@ -4,23 +4,24 @@
 use super::context::Context;
 use super::mesh_index::{MeshIndex, PointElement, PointKind};
 use super::outline::Outline;
+use super::owners::Owner;
 use super::sets::Sets;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Text};
 use crate::diagnostics::{Code, Span, shown};
 use crate::model::{
-    ContactMass, Equation, LandingRule, Mesh, Procedure, Rate, RigidBody, Step, Support,
+    ContactMass, Equation, LandingRule, Mesh, Procedure, Rate, RigidBody, RigidPart, Step, Support,
     SupportMotion, SurfaceKind, TurningInertia,
 };
 use crate::vectors::difference;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A rigid surface, or a set of rigid elements, and the node that it moves with.
+/// Rigid surfaces, elements and nodes, and the node that they move with.
 #[derive(Default)]
 pub(crate) struct Rigid {
-    /// Index of the surface; none of elements.
-    surface: Option<usize>,
-    /// Name of the surface or set.
+    /// What the cards make it of; nothing of coupled nodes.
+    parts: Vec<RigidPart>,
+    /// Name of its first part.
     name: String,
     /// Its nodes, increasing.
     nodes: Vec<usize>,
@@ -34,8 +35,10 @@ pub(crate) struct Rigid {
     masses: Vec<(usize, f64)>,
     /// Rotary inertia at its nodes.
     rotary_inertia: f64,
-    /// Whether it is made of coupled nodes: it moves freely where nothing is prescribed, with the mass of its nodes.
+    /// Whether it is made of coupled nodes.
     is_coupling: bool,
+    /// Whether some of its nodes belong to elements that deform, whose mass it has.
+    carries_mass: bool,
     /// Place of `*RIGID BODY`, or of what couples its nodes.
     span: Span,
 }
@@ -94,9 +97,21 @@ impl Rigid {
         self.is_coupling
     }
 
-    /// Whether it moves where nothing is prescribed: it has mass, its own or that of its nodes.
-    fn moves_freely(&self) -> bool {
-        self.has_mass() || self.is_coupling
+    /// What it is, as in `the rigid body TOP`.
+    pub fn title(&self) -> String {
+        match self.is_coupling {
+            true => format!("the coupling {}", self.name),
+            false => format!("the rigid body {}", self.name),
+        }
+    }
+
+    /// Whether it moves in a step where nothing is prescribed: it has mass, its own or that of its nodes, or it is free
+    /// in a static step, which needs none.
+    fn moves_freely(&self, step: &Step) -> bool {
+        let is_free = |direction: &usize| motion_of(step, 2 * self.reference + direction).is_none();
+        self.has_mass()
+            || self.carries_mass
+            || (step.procedure == Procedure::Static && [0, 1].iter().any(is_free))
     }
 
     /// Whether it has mass.
@@ -120,30 +135,36 @@ pub(super) struct Lookup<'a> {
     pub surfaces: &'a Surfaces,
 }
 
-/// Reads all rigid surfaces with their reference nodes, by the index of the surface, and all sets of
-/// rigid elements.
+/// Reads all rigid bodies: cards with one reference node make one body. Bodies with surfaces come first, in the order of
+/// these.
 pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<Rigid> {
     let surfaces = lookup.surfaces;
-    let mut of_surfaces = BTreeMap::new();
-    let mut of_elements = Vec::new();
+    let mut all: Vec<Rigid> = Vec::new();
     let mut incomplete = cx.may_lack_cards();
     for card in outline.model_cards("RIGID BODY") {
         let Some(rigid) = rigid(card, lookup, cx) else {
             incomplete = true;
             continue;
         };
-        let Some(index) = rigid.surface else {
-            of_elements.push(rigid);
-            continue;
-        };
-        if of_surfaces.contains_key(&index) {
-            let message = format!("surface {} has a reference node already", rigid.name);
-            cx.error(Code::RigidSurface, card.span, message);
+        report_repeated(&rigid, &all, cx);
+        let same = |other: &&mut Rigid| other.reference == rigid.reference;
+        match all.iter_mut().find(same) {
+            Some(body) => body.join(rigid),
+            None => all.push(rigid),
         }
-        of_surfaces.insert(index, rigid);
     }
-    let all: Vec<Rigid> = of_surfaces.into_values().chain(of_elements).collect();
-    let has_body = |index: usize| all.iter().any(|rigid| rigid.surface == Some(index));
+    let first_surface = |rigid: &Rigid| {
+        let of_part = |part: &RigidPart| match part {
+            RigidPart::Surface(index) => Some(*index),
+            RigidPart::Elements(_) | RigidPart::Nodes(_) => None,
+        };
+        rigid.parts.iter().find_map(of_part).unwrap_or(usize::MAX)
+    };
+    all.sort_by_key(first_surface);
+    let has_body = |index: usize| {
+        let part = RigidPart::Surface(index);
+        all.iter().any(|rigid| rigid.parts.contains(&part))
+    };
     let lone = |(index, _): &&(usize, Span)| !has_body(*index);
     for &(index, span) in surfaces.rigid.iter().filter(lone) {
         if let Some(surface) = surfaces.all.get(index).filter(|_| !incomplete) {
@@ -153,6 +174,21 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
         }
     }
     all
+}
+
+/// Reports a surface or set that a card before has made a body already.
+fn report_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) {
+    let other = |part: &RigidPart| earlier.iter().find(|other| other.parts.contains(part));
+    let Some(other) = rigid.parts.iter().find_map(other) else {
+        return;
+    };
+    let message = match rigid.reference == other.reference {
+        true => format!("{} stands on two cards", rigid.title()),
+        false => format!("{} has a reference node already", rigid.name),
+    };
+    cx.error(Code::RigidSurface, rigid.span, message)
+        .other(other.title(), other.span)
+        .help("leave out one of the two");
 }
 
 /// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`; the masses by the point elements, 0 of
@@ -238,68 +274,81 @@ fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
         let other = (Code::RigidSurface, "a rigid surface moves with one node");
         lookup.sets.single_node(field, lookup.mesh_index, other, cx)
     });
-    let set = ["NSET", "PIN NSET", "TIE NSET"]
-        .iter()
-        .find_map(|name| card.value(name));
-    let mut rigid = match (card.value("ELSET"), set) {
-        (Some(field), _) => of_elements(field, card, lookup, cx)?,
-        (None, Some(field)) => Rigid {
-            name: field.text.to_string(),
-            nodes: lookup.sets.nodes_of(field, lookup.mesh_index, cx),
-            ..Rigid::default()
-        },
-        (None, None) => of_surface(card, lookup, cx)?,
+    let mut rigid = Rigid {
+        span: card.span,
+        ..Rigid::default()
     };
+    if let Some(field) = card.value("ELSET") {
+        rigid.add_elements(field, lookup, cx);
+    }
+    for field in ["NSET", "PIN NSET", "TIE NSET"].map(|name| card.value(name)) {
+        let Some(field) = field else { continue };
+        let nodes = lookup.sets.nodes_of(field, lookup.mesh_index, cx);
+        rigid.add_part(RigidPart::Nodes(field.text.to_owned()), field.text, nodes);
+    }
+    if card.has("ANALYTICAL SURFACE") || rigid.parts.is_empty() {
+        rigid.add_surface(card, lookup, cx)?;
+    }
     let reference = reference?;
     rigid.nodes.retain(|&node| node != reference);
-    rigid.nodes.sort_unstable();
     Some(Rigid {
         reference,
         label: lookup.mesh_index.node_name(reference),
-        span: card.span,
         ..rigid
     })
 }
 
-/// The body of a rigid surface, without its reference node.
-fn of_surface(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
-    let field = card.required("ANALYTICAL SURFACE", cx.d)?;
-    let (index, surface, span) = lookup.surfaces.find(field, cx)?;
-    let SurfaceKind::Rigid(_) = surface.kind else {
-        let message = format!("surface {} is no rigid surface", surface.name);
-        cx.error(Code::RigidSurface, span, message)
-            .help("define it with *SURFACE, TYPE=SEGMENTS");
-        return None;
-    };
-    Some(Rigid {
-        surface: Some(index),
-        name: surface.name.clone(),
-        nodes: surface.nodes(&lookup.mesh_index.mesh),
-        ..Rigid::default()
-    })
-}
-
-/// Those of the elements of a set, without surface.
-fn of_elements(field: Text, card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
-    if card.has("ANALYTICAL SURFACE") {
-        let span = card.span_of("ANALYTICAL SURFACE");
-        cx.error(Code::RigidSurface, span, "a rigid body of two kinds")
-            .help("give the surface and the elements a *RIGID BODY each");
-        return None;
+impl Rigid {
+    /// Adds the elements of a set, which do not deform, with their nodes.
+    fn add_elements(&mut self, field: Text, lookup: Lookup, cx: &mut Context) {
+        let elements = lookup.sets.elements_of(field, lookup.mesh_index, cx);
+        let mesh = &lookup.mesh_index.mesh;
+        let own = elements.iter().copied();
+        self.elements = own.filter(|&e| e < mesh.elements.len()).collect();
+        self.elements.sort_unstable();
+        let nodes = self.elements.iter().flat_map(|&e| &mesh.elements[e].nodes);
+        let nodes = nodes.copied().collect();
+        self.add_part(
+            RigidPart::Elements(field.text.to_owned()),
+            field.text,
+            nodes,
+        );
     }
-    let elements = lookup.sets.elements_of(field, lookup.mesh_index, cx);
-    let mesh = &lookup.mesh_index.mesh;
-    let mut elements: Vec<usize> = elements.to_vec();
-    elements.retain(|&e| e < mesh.elements.len());
-    elements.sort_unstable();
-    let nodes = elements.iter().flat_map(|&e| &mesh.elements[e].nodes);
-    let nodes: BTreeSet<usize> = nodes.copied().collect();
-    Some(Rigid {
-        name: field.text.to_string(),
-        nodes: nodes.into_iter().collect(),
-        elements,
-        ..Rigid::default()
-    })
+
+    /// Adds the rigid surface of a card.
+    fn add_surface(&mut self, card: &Card, lookup: Lookup, cx: &mut Context) -> Option<()> {
+        let field = card.required("ANALYTICAL SURFACE", cx.d)?;
+        let (index, surface, span) = lookup.surfaces.find(field, cx)?;
+        let SurfaceKind::Rigid(_) = surface.kind else {
+            let message = format!("surface {} is no rigid surface", surface.name);
+            cx.error(Code::RigidSurface, span, message)
+                .help("define it with *SURFACE, TYPE=SEGMENTS");
+            return None;
+        };
+        let nodes = surface.nodes(&lookup.mesh_index.mesh);
+        self.add_part(RigidPart::Surface(index), &surface.name, nodes);
+        Some(())
+    }
+
+    /// Adds a part with its nodes; the first one gives the body its name.
+    fn add_part(&mut self, part: RigidPart, name: &str, nodes: Vec<usize>) {
+        if self.parts.is_empty() {
+            name.clone_into(&mut self.name);
+        }
+        self.parts.push(part);
+        self.nodes.extend(nodes);
+        self.nodes.sort_unstable();
+        self.nodes.dedup();
+    }
+
+    /// Adds the parts of another card with the same reference node.
+    fn join(&mut self, other: Rigid) {
+        self.parts.extend(other.parts);
+        self.add(other.nodes.into_iter().collect());
+        self.elements.extend(other.elements);
+        self.elements.sort_unstable();
+        self.elements.dedup();
+    }
 }
 
 /// Dof of the angle of the rigid body with this number, among all, in a mesh.
@@ -325,6 +374,22 @@ pub(crate) fn dof_name(dof: usize, rigid_bodies: &[Rigid], mesh_index: &MeshInde
         .get(number / 4)
         .map_or("", |rigid| &rigid.label);
     format!("direction 6 of node {label}")
+}
+
+/// Finds the bodies whose nodes belong to elements that deform.
+pub(super) fn find_carried(all: &mut [Rigid], mesh: &Mesh) {
+    let mut is_rigid = vec![false; mesh.elements.len()];
+    for &element in all.iter().flat_map(|rigid| &rigid.elements) {
+        is_rigid[element] = true;
+    }
+    let mut deforms = vec![false; mesh.node_count()];
+    let elements = mesh.elements.iter().zip(&is_rigid);
+    for (element, _) in elements.filter(|(_, is_rigid)| !**is_rigid) {
+        element.nodes.iter().for_each(|&node| deforms[node] = true);
+    }
+    for rigid in all {
+        rigid.carries_mass = rigid.is_coupling || rigid.nodes.iter().any(|&node| deforms[node]);
+    }
 }
 
 /// How a rigid body moves in all steps.
@@ -395,7 +460,7 @@ pub(crate) fn complete(
     }
     let body = |(rigid, motion): (&Rigid, &BodyMotion)| RigidBody {
         name: rigid.name.clone(),
-        surface: rigid.surface,
+        parts: rigid.parts.clone(),
         reference: rigid.reference,
         nodes: rigid.nodes.clone(),
         elements: rigid.elements.clone(),
@@ -413,40 +478,58 @@ pub(crate) fn complete(
 }
 
 /// Reports equations at nodes of bodies that turn, and that landing return and redistributed mass leave these bodies
-/// out; bodies of revolution cannot turn at all.
+/// out; bodies of revolution move along their axis alone.
 pub(crate) fn check(
     rigid_bodies: &[Rigid],
     bodies: &[RigidBody],
-    is_axisymmetric: bool,
-    (steps, equations): (&[Step], &[(Equation, Span)]),
+    mesh: &Mesh,
+    (steps, equations): (&[Step], &[(Equation, Owner)]),
     cx: &mut Context,
 ) {
-    let turning = rigid_bodies
-        .iter()
-        .zip(bodies)
-        .filter(|(_, body)| body.turning.is_some());
-    for (rigid, body) in turning {
+    for (rigid, body) in rigid_bodies.iter().zip(bodies) {
+        let Some(turning) = &body.turning else {
+            continue;
+        };
         let has =
             |dof: usize| dof / 2 == body.reference || body.nodes.binary_search(&(dof / 2)).is_ok();
-        if let Some((_, span)) = equations.iter().find(|(e, _)| e.dofs().any(has)) {
-            let message = format!("this equation has a node of {}, which turns", rigid.name);
-            cx.error(Code::RigidSurface, *span, message)
-                .help("equations are linear: hold the rotation of the body, direction 6 of its reference node");
+        if let Some((_, owner)) = equations.iter().find(|(e, _)| e.dofs().any(has)) {
+            let own = match owner {
+                Owner::Equation(_) => "this equation".to_owned(),
+                owner => owner.title(),
+            };
+            let message = format!("{own} has a node of {}, which moves freely", rigid.title());
+            owner.contradicts(Owner::Body(rigid), message, cx).help(
+                "equations are linear: join the node to the body by TIE NSET= of *RIGID BODY or by *MPC, or prescribe \
+                 directions 1, 2 and 6 of the reference node",
+            );
         }
-        let returns = (steps.iter()).any(|step| step.settings.landing == LandingRule::Return);
+        let angle = angle_dof(turning.number, mesh);
+        let is_held = |step: &&Step| motion_of(step, angle).is_some_and(SupportMotion::is_still);
+        if mesh.is_axisymmetric() {
+            let is_driven = |step: &Step| motion_of(step, 2 * body.reference).is_some();
+            let fault = match steps.iter().all(|step| is_held(&step)) {
+                false => Some(("turns", "its rotation, direction 6")),
+                true if !steps.iter().all(is_driven) => {
+                    Some(("moves freely across the axis", "direction 1"))
+                }
+                true => None,
+            };
+            if let Some((fault, what)) = fault {
+                let message = format!("{} {fault} in a model of bodies of revolution", rigid.name);
+                cx.error(Code::Revolution, rigid.span, message)
+                    .help(format!("hold {what} of its reference node"));
+            }
+        }
+        let returns = |step: &&Step| step.settings.landing == LandingRule::Return;
+        let turns = !steps.iter().filter(returns).all(|step| is_held(&step));
         let redistributes =
             (steps.iter()).any(|step| step.settings.contact_mass == ContactMass::Redistributed);
-        if is_axisymmetric {
-            let message = format!("{} turns in a model of bodies of revolution", rigid.name);
-            cx.error(Code::Revolution, rigid.span, message)
-                .help("hold its rotation, direction 6 of its reference node");
-        }
         let options = [
-            (returns, "LANDING=RETURN"),
-            (redistributes, "CONTACT MASS=REDISTRIBUTED"),
+            (turns, "turns, and LANDING=RETURN"),
+            (redistributes, "is rigid, and CONTACT MASS=REDISTRIBUTED"),
         ];
         for (_, option) in options.into_iter().filter(|(is_asked, _)| *is_asked) {
-            let message = format!("{} turns, and {option} leaves it out", rigid.name);
+            let message = format!("{} {option} leaves it out", rigid.name);
             cx.warning(Code::RigidSurface, rigid.span, message)
                 .help("it holds for contacts between bodies that deform");
         }
@@ -464,14 +547,6 @@ fn renumbered(dof: usize, motions: &[BodyMotion], mesh: &Mesh) -> Option<usize> 
     }
 }
 
-/// Whether a motion is none.
-fn is_still(motion: SupportMotion) -> bool {
-    match motion {
-        SupportMotion::Ramp { to } => to == 0.0,
-        SupportMotion::Amplitude { value, .. } | SupportMotion::Rate { value, .. } => value == 0.0,
-    }
-}
-
 /// The motion of a dof in a step, if it is prescribed.
 fn motion_of(step: &Step, dof: usize) -> Option<SupportMotion> {
     let found = step
@@ -480,16 +555,15 @@ fn motion_of(step: &Step, dof: usize) -> Option<SupportMotion> {
     found.ok().map(|index| step.supports[index].motion)
 }
 
-/// Whether a body turns: its angle moves in some step, or a body with mass is free in some direction of some step.
+/// Whether a body turns: its angle moves in some step, or it moves freely in some direction of some step.
 fn turns(rigid: &Rigid, angle: usize, steps: &[Step], velocity: &[f64]) -> bool {
-    let moves_freely = rigid.moves_freely();
     let translations = [0, 1].map(|i| 2 * rigid.reference + i);
     velocity.get(angle).is_some_and(|omega| *omega != 0.0)
         || steps.iter().any(|step| match motion_of(step, angle) {
-            Some(motion) if !is_still(motion) => true,
+            Some(motion) if !motion.is_still() => true,
             of_angle => {
                 let is_free = |dof: &usize| motion_of(step, *dof).is_none();
-                moves_freely && (of_angle.is_none() || translations.iter().any(is_free))
+                rigid.moves_freely(step) && (of_angle.is_none() || translations.iter().any(is_free))
             }
         })
 }
@@ -549,7 +623,7 @@ fn complete_turning(
     steps: &mut [Step],
     cx: &mut Context,
 ) {
-    let has_mass = rigid.has_mass();
+    let has_mass = rigid.has_mass() && !rigid.carries_mass;
     let own: BTreeSet<usize> = rigid.nodes.iter().copied().collect();
     if rigid.is_coupling && !report_empty_coupling(rigid, &own, mesh_index, cx) {
         return;
@@ -559,7 +633,7 @@ fn complete_turning(
             return report_other_motion(rigid, &mesh_index.node_name(held.dof / 2), cx);
         }
         let turns_freely = motion_of(step, angle).is_none();
-        let needs_inertia = has_mass && !rigid.is_coupling && step.procedure != Procedure::Static;
+        let needs_inertia = has_mass && step.procedure != Procedure::Static;
         if needs_inertia && turns_freely && !rigid.has_inertia() {
             let message = format!("{} may turn and has no rotary inertia", rigid.name);
             cx.error(Code::RigidSurface, rigid.span, message).help(
@@ -567,7 +641,7 @@ fn complete_turning(
             );
             return;
         }
-        if rigid.moves_freely() {
+        if rigid.moves_freely(step) {
             continue;
         }
         for direction in 0..2 {

@@ -7,6 +7,7 @@ use super::interference::{Interferences, Pairs};
 use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests};
+use super::owners::Actions;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
@@ -29,6 +30,10 @@ pub(crate) struct Steps {
     pub restarts: Vec<RestartOutput>,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
+    /// Supports after the last step.
+    pub supports: Supports,
+    /// Forces on nodes without element.
+    pub forces: Actions,
 }
 
 /// Reads all steps; `guide` is a sensible increment, if one is known.
@@ -79,6 +84,8 @@ pub(crate) fn read(
         histories: reading.requests.histories,
         restarts: reading.requests.restarts,
         at_start: at_start.unwrap_or_default(),
+        supports: reading.supports,
+        forces: reading.loads.actions,
     }
 }
 

@@ -905,7 +905,7 @@ fn a_rigid_surface_moves_with_its_reference_node() {
     assert_eq!(model.initial_velocity.len(), 2 * nodes);
     let body = RigidBody {
         name: "FLOOR".into(),
-        surface: Some(model.contacts[0].master),
+        parts: vec![RigidPart::Surface(model.contacts[0].master)],
         reference: nodes - 4,
         nodes: vec![a, b, c],
         elements: vec![],

@@ -44,13 +44,14 @@ pub(super) fn rigid_predictor(
     let motions = motions(problem, &holds, start, interval);
     for (node, &body) in body_of.iter().enumerate() {
         let RigidMotion {
+            mass,
             pole,
             shift,
             momentum,
             inertia,
-            ..
         } = motions[body];
-        if holds[body] == Hold::Held || inertia <= 0.0 {
+        // without mass there is no motion to go on with
+        if holds[body] == Hold::Held || !(mass > 0.0 && inertia > 0.0) {
             continue;
         }
         let (sin, cos) = (2.0 * (momentum / inertia * dt / 2.0).atan()).sin_cos();
@@ -81,7 +82,8 @@ fn motions(
             motion.shift[i] += m * start.v[2 * node + i];
         }
     }
-    for (motion, &hold) in motions.iter_mut().zip(holds) {
+    let with_mass = motions.iter_mut().zip(holds);
+    for (motion, &hold) in with_mass.filter(|(motion, _)| motion.mass > 0.0) {
         let (mass, dt) = (motion.mass, interval.dt);
         motion.pole = motion.pole.map(|sum| sum / mass);
         motion.shift = motion.shift.map(|sum| dt * sum / mass);

@@ -195,28 +195,23 @@ pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum 
     momentum
 }
 
-/// The rigid bodies of a model with a rigid surface, or that turn, and the nodes of those that do not.
-pub(crate) struct RigidSurfaces(Vec<(RigidBody, Vec<usize>)>);
+/// The rigid bodies of a model.
+pub(crate) struct RigidSurfaces(Vec<RigidBody>);
 
 impl RigidSurfaces {
     /// Those of a model.
     pub fn new(model: &Model) -> Self {
-        let with_nodes = |body: &RigidBody| {
-            let surface = body.surface.filter(|_| body.turning.is_none());
-            let nodes = surface.map(|surface| model.surfaces[surface].nodes(&model.mesh));
-            (body.clone(), nodes.unwrap_or_default())
-        };
-        RigidSurfaces(model.rigid_bodies.iter().map(with_nodes).collect())
+        RigidSurfaces(model.rigid_bodies.clone())
     }
 
-    /// Number of surfaces.
+    /// Number of bodies.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
     /// Sets the motion of the bodies that turn.
     pub fn set_motion(&self, problem: &StepProblem, state: &State, rigid: &mut [RigidReaction]) {
-        for ((body, _), result) in self.0.iter().zip(rigid) {
+        for (body, result) in self.0.iter().zip(rigid) {
             let Some(turning) = &body.turning else {
                 continue;
             };
@@ -230,7 +225,7 @@ impl RigidSurfaces {
         }
     }
 
-    /// Moves the reactions from the nodes of the surfaces to the reference nodes, in the
+    /// Moves the reactions from the nodes of the bodies to the reference nodes, in the
     /// configuration of displacements `u`: the force sum R_a and the moment sum (x_a - x_ref) x
     /// R_a, eq. (9.9). Those of bodies that turn are there already, with the moment at the angle.
     pub fn collect(
@@ -239,7 +234,7 @@ impl RigidSurfaces {
         u: &[f64],
         reaction: &mut [f64],
     ) -> Vec<RigidReaction> {
-        let of_surface = |(body, nodes): &(RigidBody, Vec<usize>)| {
+        let of_body = |body: &RigidBody| {
             let center = problem.position(u, body.reference);
             let mut sum = RigidReaction::default();
             if let Some(turning) = &body.turning {
@@ -248,7 +243,7 @@ impl RigidSurfaces {
                 sum.moment = reaction[own.spin] * own.length;
                 return sum;
             }
-            for &node in nodes {
+            for &node in &body.nodes {
                 let [fx, fy] = [2 * node, 2 * node + 1].map(|p| std::mem::take(&mut reaction[p]));
                 let x = problem.position(u, node);
                 sum.force[0] += fx;
@@ -259,6 +254,6 @@ impl RigidSurfaces {
             reaction[2 * body.reference + 1] += sum.force[1];
             sum
         };
-        self.0.iter().map(of_surface).collect()
+        self.0.iter().map(of_body).collect()
     }
 }

@@ -44,7 +44,7 @@ impl ContactLedger {
     pub fn new(model: &Model, slip: Vec<f64>) -> Self {
         let reference = |master: usize| {
             let mut bodies = model.rigid_bodies.iter();
-            bodies.find(|body| body.surface == Some(master))
+            bodies.find(|body| body.has_surface(master))
         };
         ContactLedger {
             contacts: vec![Sums::default(); model.contacts.len()],

@@ -86,7 +86,10 @@ fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
             *sum += term;
         }
     }
-    let centre = |[m, x, y]: &[f64; 3]| [x / m, y / m];
+    let centre = |&[m, x, y]: &[f64; 3]| match m > 0.0 {
+        true => [x / m, y / m],
+        false => [0.0; 2],
+    };
     sums.iter().map(centre).collect()
 }
 

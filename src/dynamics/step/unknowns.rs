@@ -119,6 +119,13 @@ impl<'m> Unknowns<'m> {
             .is_ok()
     }
 
+    /// Whether a dof stays where it is.
+    pub fn is_held(&self, dof: usize) -> bool {
+        let supports = &self.supports.step.supports;
+        let found = supports.binary_search_by_key(&dof, |support| support.dof);
+        found.is_ok_and(|index| supports[index].motion.is_still())
+    }
+
     /// Supports, dofs of equations and nodes of bodies that turn, increasing: where forces of constraints act.
     pub fn constrained(&self) -> &[usize] {
         &self.constrained

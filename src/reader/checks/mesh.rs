@@ -233,8 +233,8 @@ const MOST_WHOLE: f64 = (1_u64 << 52) as f64;
 /// Cells along a square of cells.
 const SQUARE: u64 = 8;
 
-/// Warns about nodes of elements that lie at the same place although neither contact nor an
-/// equation acts between them; `shortest` is the length of the shortest side of an element.
+/// Warns about nodes of elements that lie at the same place although nothing acts between
+/// them; `shortest` is the length of the shortest side of an element.
 pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &[Span], cx: &mut Context) {
     let mut pairs = coincident(&model.mesh, shortest);
     if pairs.is_empty() {
@@ -270,7 +270,7 @@ fn floor(x: f64) -> f64 {
     if cut > x { cut - 1.0 } else { cut }
 }
 
-/// Sets of nodes that contacts, equations and hinges act on.
+/// Sets of nodes that contacts, equations, hinges and rigid bodies act on.
 struct Joined(Vec<BTreeSet<usize>>);
 
 impl Joined {
@@ -285,7 +285,11 @@ impl Joined {
         let dofs = model.equations.iter().flat_map(Equation::dofs);
         let of_equations: BTreeSet<usize> = dofs.map(|dof| dof / 2).collect();
         let of_hinges = model.hinges.iter().map(|hinge| hinge.nodes.into());
-        Joined(of_contact.chain([of_equations]).chain(of_hinges).collect())
+        let bodies = model.rigid_bodies.iter();
+        let of_bodies =
+            bodies.map(|body| body.nodes.iter().copied().chain([body.reference]).collect());
+        let all = of_contact.chain([of_equations]).chain(of_hinges);
+        Joined(all.chain(of_bodies).collect())
     }
 
     fn contains(&self, pair: [usize; 2]) -> bool {

@@ -2,12 +2,14 @@
 //! sense with the material.
 
 mod amplitudes;
+mod hinges;
 mod mesh;
 mod model;
 mod overlap;
 mod revolution;
 
 pub(super) use amplitudes::amplitudes;
+pub(super) use hinges::hinges;
 pub(super) use mesh::{coincident_nodes, magnitudes, mesh};
 pub(super) use model::{braked_flight, density, fixed_slaves, motion, proportion, thickness};
 pub(super) use overlap::overlap;

@@ -5,7 +5,7 @@
 use crate::diagnostics::Code;
 use crate::model::{
     ALL_EXTERIOR, Bodies, Contact, Equation, Face, Load, Mesh, Model, Procedure, Section, Step,
-    SupportMotion, Surface, SurfaceKind,
+    Surface, SurfaceKind,
 };
 use crate::reader::context::Context;
 use crate::reader::materials::MaterialPlaces;
@@ -81,11 +81,9 @@ pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
 
 /// Whether something in a step sets bodies in motion.
 fn has_cause(step: &Step) -> bool {
-    let moves = |motion: SupportMotion| match motion {
-        SupportMotion::Ramp { to } => to != 0.0,
-        SupportMotion::Amplitude { value, .. } | SupportMotion::Rate { value, .. } => value != 0.0,
-    };
-    step.supports.iter().any(|support| moves(support.motion))
+    step.supports
+        .iter()
+        .any(|support| !support.motion.is_still())
         || acts(&step.point_loads)
         || acts(&step.body_forces)
         || acts(&step.centrifugal_forces)

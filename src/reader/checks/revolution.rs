@@ -52,7 +52,13 @@ pub(crate) fn axis(model: &Model, places: &[Span], cx: &mut Context) {
     for (number, step) in model.steps.iter().enumerate() {
         let supports = step.supports.iter().map(|support| support.dof);
         let ruled = model.equations.iter().map(|equation| equation.dof);
-        let held: BTreeSet<usize> = supports.chain(ruled).collect();
+        let mut held: BTreeSet<usize> = supports.chain(ruled).collect();
+        // rigid bodies do not turn here: their nodes are held with the reference node
+        for body in &model.rigid_bodies {
+            if held.contains(&(2 * body.reference)) {
+                held.extend(body.nodes.iter().map(|node| 2 * node));
+            }
+        }
         let free = free_on_axis(mesh, &held);
         let Some(&(element, node)) = free.first() else {
             continue;

@@ -1,0 +1,71 @@
+//! Hinges that hold what other hinges or supports hold already. Section 11 of docs/theory.md, Hinges.
+
+use nalgebra::DVector;
+
+use crate::diagnostics::{Code, Span};
+use crate::model::{Model, RigidBody, Step};
+use crate::reader::context::Context;
+use crate::vectors::{difference, length};
+
+/// Part of a row of C at hinges, in units of its own, below which it follows from the rows before: the square is what
+/// the run takes for an eigenvalue of zero.
+const FOLLOWS: f64 = 1e-6;
+
+/// Reports hinges whose rows of C in (11.6) follow from those before and the supports of a step, with which the step would
+/// stop; `spans` are the places of the hinges.
+pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
+    for (number, step) in model.steps.iter().enumerate() {
+        let mut independent: Vec<DVector<f64>> = Vec::new();
+        for (hinge, &span) in model.hinges.iter().zip(spans) {
+            let rows = [0, 1].map(|axis| row(model, step, hinge.nodes, axis));
+            for mut row in rows {
+                let size = row.norm();
+                for other in &independent {
+                    row -= other * other.dot(&row);
+                }
+                if row.norm() <= FOLLOWS * size {
+                    let [a, b] = hinge.nodes.map(|node| model.node_name(node));
+                    let message = format!(
+                        "the hinge of nodes {a} and {b} holds in step {} what other hinges or supports hold already",
+                        number + 1
+                    );
+                    cx.error(Code::Coupling, span, message).help(
+                        "leave out this hinge, or another one or a support that holds the same motion",
+                    );
+                    return;
+                }
+                independent.push(row.normalize());
+            }
+        }
+    }
+}
+
+/// Row of C of a hinge along an axis, over the displacements and the angle, times the largest arm, of the reference nodes
+/// of all bodies; those that are prescribed have no part.
+fn row(model: &Model, step: &Step, nodes: [usize; 2], axis: usize) -> DVector<f64> {
+    let mut row = DVector::zeros(3 * model.rigid_bodies.len());
+    let is_free = |dof: usize| step.supports.binary_search_by_key(&dof, |s| s.dof).is_err();
+    let x = &model.mesh.coordinates;
+    for (node, sign) in nodes.into_iter().zip([1.0, -1.0]) {
+        let has =
+            |body: &RigidBody| body.reference == node || body.nodes.binary_search(&node).is_ok();
+        let Some(number) = model.rigid_bodies.iter().position(has) else {
+            continue;
+        };
+        let body = &model.rigid_bodies[number];
+        let Some(turning) = &body.turning else {
+            continue;
+        };
+        let arm = |node: usize| difference(x[body.reference], x[node]);
+        let longest = body.nodes.iter().map(|&node| length(arm(node)));
+        let longest = longest.fold(0.0, f64::max);
+        if is_free(2 * body.reference + axis) {
+            row[3 * number + axis] += sign;
+        }
+        if is_free(model.angle_of(turning)) && longest > 0.0 {
+            let [rx, ry] = arm(node);
+            row[3 * number + 2] += sign * [-ry, rx][axis] / longest;
+        }
+    }
+    row
+}
