@@ -79,7 +79,7 @@ pub enum NodeMass {
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct NodalResults {
     /// Support reaction, with the force that the support exerts through equations, eq. (9.12), `2 N` entries
-    /// (force); 0 at all other dofs. That of a rigid surface is at its reference node.
+    /// (force); 0 at all other dofs. That of a rigid body is at its reference node.
     pub reaction: Vec<f64>,
     /// Concentrated loads on the node, `2 N` entries (force).
     pub concentrated: Vec<f64>,

@@ -188,7 +188,13 @@ impl Supports {
             if prescribed.turns {
                 match targets.angle_at(node) {
                     Some(angle) => self.hold(angle, held, cx),
-                    None if prescribed.value != 0.0 => return report_no_angle(prescribed.span, cx),
+                    None if prescribed.value != 0.0 => {
+                        let carrier = rigid_bodies::carrier(&[node], targets.rigid_bodies);
+                        return match carrier {
+                            Some(body) => body.report_angle(prescribed.span, cx),
+                            None => report_no_angle(prescribed.span, cx),
+                        };
+                    }
                     None => {}
                 }
             }
@@ -315,7 +321,8 @@ pub(crate) fn row_dofs(
     cx: &mut Context,
 ) -> Option<Vec<usize>> {
     let field = row.required(1, "the direction", cx.d)?;
-    let dofs: Option<Vec<usize>> = match direction(field, cx)? {
+    let direction = direction(field, cx)?;
+    let dofs: Option<Vec<usize>> = match direction {
         Direction::Plane(direction) => {
             Some(nodes.iter().map(|node| 2 * node + direction).collect())
         }
@@ -323,6 +330,12 @@ pub(crate) fn row_dofs(
         Direction::OutOfPlane => None,
     };
     if dofs.is_none() && value != 0.0 {
+        if let Direction::Rotation = direction
+            && let Some(body) = rigid_bodies::carrier(nodes, targets.rigid_bodies)
+        {
+            body.report_angle(field.span, cx);
+            return None;
+        }
         let message = "only directions 1 and 2 lie in the plane, and direction 6 at the reference node \
                        of a rigid body";
         cx.error(Code::BadDof, field.span, message);
@@ -330,14 +343,23 @@ pub(crate) fn row_dofs(
     dofs
 }
 
-/// Reads initial velocities, `2 N` entries, and those of nodes without element with their places; `supports` hold at the
-/// start.
+/// Initial velocities of a deck.
+pub(crate) struct InitialVelocity {
+    /// Values, `2 N` entries, then those of the angles of the rigid bodies.
+    pub values: Vec<f64>,
+    /// Rows that give them, by the dof.
+    pub places: BTreeMap<usize, Span>,
+    /// Those of nodes without element.
+    pub actions: Actions,
+}
+
+/// Reads initial velocities; `at_start` are the supports of the first step, whose places `supports` knows.
 pub(crate) fn initial_velocity(
     outline: &Outline,
     targets: Targets,
-    supports: &[Support],
+    (at_start, supports): (&[Support], &Supports),
     cx: &mut Context,
-) -> (Vec<f64>, Actions) {
+) -> InitialVelocity {
     let dofs = targets.mesh_index.mesh.dof_count() + 4 * targets.rigid_bodies.len();
     let mut velocity = vec![0.0; dofs];
     let (mut places, mut actions) = (BTreeMap::new(), Actions::default());
@@ -365,8 +387,12 @@ pub(crate) fn initial_velocity(
             }
         }
     }
-    report_supported(&velocity, &places, supports, targets, cx);
-    (velocity, actions)
+    report_supported((&velocity, &places), (at_start, supports), targets, cx);
+    InitialVelocity {
+        values: velocity,
+        places,
+        actions,
+    }
 }
 
 /// Warns about initial velocities before a static step, which is at rest.
@@ -462,14 +488,13 @@ fn velocity_row(row: Line, targets: Targets, cx: &mut Context) -> Vec<(usize, f6
 
 /// Reports initial velocities of supported dofs, which move as prescribed from the start.
 fn report_supported(
-    velocity: &[f64],
-    places: &BTreeMap<usize, Span>,
-    supports: &[Support],
+    (velocity, places): (&[f64], &BTreeMap<usize, Span>),
+    (at_start, supports): (&[Support], &Supports),
     targets: Targets,
     cx: &mut Context,
 ) {
     let mut rows: BTreeMap<Span, Vec<usize>> = BTreeMap::new();
-    for dof in supports
+    for dof in at_start
         .iter()
         .filter(|s| is_given(s))
         .map(|support| support.dof)
@@ -487,7 +512,10 @@ fn report_supported(
             "{} degrees of freedom with this velocity are prescribed, the first is {name}",
             dofs.len(),
         );
-        cx.error(Code::VelocityOnSupport, span, message)
-            .help("give the velocity to free nodes only");
+        let mut error = cx.error(Code::VelocityOnSupport, span, message);
+        if let Some(place) = supports.place(*first) {
+            error = error.other("the row of *BOUNDARY", place);
+        }
+        error.help("give the velocity to free nodes only");
     }
 }

@@ -9,7 +9,7 @@ use super::outline::Outline;
 use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
 use crate::model::{
-    Connector, ConnectorDirection, ConnectorLaw, ForceCurve, Model, Procedure, Step,
+    Connector, ConnectorDirection, ConnectorLaw, Equation, ForceCurve, Model, Procedure, Step,
 };
 
 fn keyword(law: ConnectorLaw) -> &'static str {
@@ -56,12 +56,17 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
         .flat_map(|element| &element.nodes);
     let bodies = model.rigid_bodies.iter();
     let bodies = bodies.flat_map(|body| body.nodes.iter().copied().chain([body.reference]));
-    let equations = model.equations.iter().flat_map(|equation| equation.dofs());
-    for node in (of_elements.copied())
-        .chain(bodies)
-        .chain(equations.map(|dof| dof / 2))
-    {
+    for node in of_elements.copied().chain(bodies) {
         has_mass[node] = true;
+    }
+    // what a node with mass follows has its mass, and what follows one
+    for Equation { dof, terms } in &model.equations {
+        if has_mass[dof / 2] {
+            terms.iter().for_each(|term| has_mass[term.0 / 2] = true);
+        }
+    }
+    for Equation { dof, terms } in &model.equations {
+        has_mass[dof / 2] |= terms.iter().any(|term| has_mass[term.0 / 2]);
     }
     let dynamic = |step: &&Step| step.procedure != Procedure::Static;
     let is_held = |node: usize| {

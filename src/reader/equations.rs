@@ -46,7 +46,7 @@ pub(crate) fn read<'a>(
     cx: &mut Context,
 ) -> Vec<(Equation, Owner<'a>)> {
     let mut solved = ByDof::new();
-    of_ties(constraints, &mut solved, targets, steps, cx);
+    of_ties(constraints, &mut solved, targets, (supports, steps), cx);
     of_links(constraints.links, &mut solved, targets, steps, cx);
     for cut in constraints.cuts {
         for Equation { dof, terms } in cut.equations() {
@@ -226,7 +226,7 @@ fn of_ties<'a>(
     of: Constraints<'a>,
     solved: &mut ByDof<'a>,
     targets: Targets,
-    steps: &[Step],
+    (supports, steps): (&Supports, &[Step]),
     cx: &mut Context,
 ) {
     for (tie, &span) in of.ties.all.iter().zip(&of.ties.spans) {
@@ -256,7 +256,11 @@ fn of_ties<'a>(
                 0 => String::new(),
                 others => format!("so are {others} more directions of tied nodes; "),
             };
-            cx.error(Code::Tie, span, message).help(format!(
+            let mut error = cx.error(Code::Tie, span, message);
+            if let Some(other) = holder(dof, supports, targets) {
+                error = error.other(other.title(), other.span());
+            }
+            error.help(format!(
                 "{others}prescribe the nodes of the master there alike, exchange slave and master, or leave the node \
                  out with TIED NSET="
             ));
@@ -343,6 +347,15 @@ fn name(dof: usize, targets: Targets) -> String {
     format!("direction {} of node {name}", dof % 2 + 1)
 }
 
+/// What prescribes a dof: a support, or the body that it moves with.
+fn holder<'a>(dof: usize, supports: &Supports, targets: Targets<'a>) -> Option<Owner<'a>> {
+    let rides = |body: &&Rigid| body.has(dof / 2);
+    match supports.place(dof) {
+        Some(span) => Some(Owner::Support(span)),
+        None => targets.rigid_bodies.iter().find(rides).map(Owner::Body),
+    }
+}
+
 /// An eliminated dof cannot be prescribed as well.
 fn report_prescribed(
     solved: &ByDof,
@@ -353,11 +366,7 @@ fn report_prescribed(
     let supports = steps.iter().flat_map(|step| &step.supports);
     let prescribed: BTreeSet<usize> = supports.map(|support| support.dof).collect();
     for (dof, equation) in solved.iter().filter(|(dof, _)| prescribed.contains(dof)) {
-        let rides = |body: &&Rigid| body.has(dof / 2);
-        let other = match places.place(*dof) {
-            Some(span) => Some(Owner::Support(span)),
-            None => targets.rigid_bodies.iter().find(rides).map(Owner::Body),
-        };
+        let other = holder(*dof, places, targets);
         let (dof, own) = (name(*dof, targets), equation.owner);
         let by = match own {
             Owner::Equation(_) => "an equation".to_owned(),
@@ -404,9 +413,18 @@ fn substituted<'a>(
         equations.insert(dof, (Equation { dof, terms }, owner));
     }
     if let Some((&dof, equation)) = solved.first_key_value() {
-        let message = format!("equations eliminate {} in a circle", name(dof, targets));
-        cx.error(Code::BadEquation, equation.owner.span(), message)
-            .help("put a term first that no other of these equations eliminates");
+        let own = equation.owner;
+        let mut terms = equation.terms.iter();
+        let next = terms
+            .find_map(|(to, _)| solved.get(to))
+            .map(|next| next.owner);
+        let other = next.unwrap_or(own);
+        let (dof, first, second) = (name(dof, targets), own.title(), other.title());
+        let message = format!(
+            "equations eliminate {dof} in a circle: {first} makes it follow what follows by {second}"
+        );
+        own.contradicts(other, message, cx)
+            .help("put a term first that no other of these equations eliminates, or leave out what says the same");
     }
     equations.into_values().collect()
 }

@@ -125,17 +125,18 @@ fn read(cx: &mut Context) -> Model {
     let connectors = connectors::read(&outline, targets, cx);
     let mut steps = steps::read(&outline, targets, (&surfaces, &contacts), guide, cx);
     checks::density(&properties, mesh, &steps.all, cx);
-    let (mut initial_velocity, velocities) =
-        boundary::initial_velocity(&outline, targets, &steps.at_start, cx);
+    let at_start = (steps.at_start.as_slice(), &steps.supports);
+    let mut velocity = boundary::initial_velocity(&outline, targets, at_start, cx);
     let all = &mut steps.all;
-    let bodies = rigid_bodies::complete(&rigid_bodies, &mesh_index, all, &mut initial_velocity, cx);
+    let known = (&mesh_index, &steps.supports);
+    let bodies = rigid_bodies::complete(&rigid_bodies, known, all, &mut velocity, cx);
     let of_steps = (&steps.supports, steps.all.as_slice());
     let equations = equations::read(&outline, targets, (constraints, of_steps), cx);
-    let actions = [&steps.supports.actions, &steps.forces, &velocities];
+    let actions = [&steps.supports.actions, &steps.forces, &velocity.actions];
     owners::check_actions(actions, targets, (&connectors, &equations, &cuts), cx);
     rigid_bodies::check(&rigid_bodies, &bodies, mesh, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
-    equations::check_velocities(&equations, &initial_velocity, &steps.at_start, targets, cx);
+    equations::check_velocities(&equations, &velocity.values, &steps.at_start, targets, cx);
     let equations = equations.into_iter().map(|(equation, _)| equation);
     let equations: Vec<Equation> = equations.collect();
     let (hinges, hinge_places) = couplings::hinges(&links, cx);
@@ -152,7 +153,7 @@ fn read(cx: &mut Context) -> Model {
         ties: ties.all,
         equations,
         hinges,
-        initial_velocity,
+        initial_velocity: velocity.values,
         steps: steps.all,
         rigid_bodies: bodies,
         restarts: steps.restarts,

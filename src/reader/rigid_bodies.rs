@@ -1,6 +1,7 @@
 //! `*RIGID BODY`: rigid surfaces, rigid elements and nodes move with their reference nodes, and turn by an angle
 //! where it is prescribed or they have mass.
 
+use super::boundary::{InitialVelocity, Supports};
 use super::context::Context;
 use super::mesh_index::{MeshIndex, PointElement, PointKind};
 use super::outline::Outline;
@@ -37,8 +38,8 @@ pub(crate) struct Rigid {
     rotary_inertia: f64,
     /// Whether it is made of coupled nodes.
     is_coupling: bool,
-    /// Whether some of its nodes belong to elements that deform, whose mass it has.
-    carries_mass: bool,
+    /// Its nodes of elements that deform, whose mass it has.
+    carried: Vec<usize>,
     /// Place of `*RIGID BODY`, or of what couples its nodes.
     span: Span,
 }
@@ -82,6 +83,17 @@ impl Rigid {
         self.nodes.dedup();
     }
 
+    /// Reports that a node of it has no angle, which is direction 6 of its reference node.
+    pub fn report_angle(&self, span: Span, cx: &mut Context) {
+        let (title, label) = (self.title(), &self.label);
+        let message = format!(
+            "nodes that ride on {title} have no direction 6: it is that of its reference node {label}"
+        );
+        cx.error(Code::BadDof, span, message)
+            .other(title, self.span)
+            .help("name the reference node");
+    }
+
     /// Name in the deck.
     pub fn name(&self) -> &str {
         &self.name
@@ -110,7 +122,8 @@ impl Rigid {
     fn moves_freely(&self, step: &Step) -> bool {
         let is_free = |direction: &usize| motion_of(step, 2 * self.reference + direction).is_none();
         self.has_mass()
-            || self.carries_mass
+            || self.is_coupling
+            || !self.carried.is_empty()
             || (step.procedure == Procedure::Static && [0, 1].iter().any(is_free))
     }
 
@@ -119,11 +132,15 @@ impl Rigid {
         !self.elements.is_empty() || !self.masses.is_empty()
     }
 
-    /// Whether it has a moment of inertia about its centre of mass.
-    fn has_inertia(&self) -> bool {
-        let mut nodes = self.masses.iter().map(|(node, _)| node);
-        let first = nodes.next();
-        !self.elements.is_empty() || self.rotary_inertia > 0.0 || nodes.any(|n| Some(n) != first)
+    /// Whether it has a moment of inertia about its centre of mass: masses at two places.
+    fn has_inertia(&self, mesh: &Mesh) -> bool {
+        let masses = self.masses.iter().map(|(node, _)| node);
+        let mut places = masses
+            .chain(&self.carried)
+            .map(|&node| mesh.coordinates[node]);
+        let first = places.next();
+        let is_elsewhere = |place: [f64; 2]| Some(place) != first;
+        !self.elements.is_empty() || self.rotary_inertia > 0.0 || places.any(is_elsewhere)
     }
 }
 
@@ -351,6 +368,16 @@ impl Rigid {
     }
 }
 
+/// The body that some of these nodes ride on.
+pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<&'a Rigid> {
+    let rides = |rigid: &&Rigid| {
+        nodes
+            .iter()
+            .any(|node| rigid.nodes.binary_search(node).is_ok())
+    };
+    rigid_bodies.iter().find(rides)
+}
+
 /// Dof of the angle of the rigid body with this number, among all, in a mesh.
 fn angle_dof(number: usize, mesh: &Mesh) -> usize {
     2 * (mesh.node_count() + 2 * number + 1)
@@ -388,7 +415,8 @@ pub(super) fn find_carried(all: &mut [Rigid], mesh: &Mesh) {
         element.nodes.iter().for_each(|&node| deforms[node] = true);
     }
     for rigid in all {
-        rigid.carries_mass = rigid.is_coupling || rigid.nodes.iter().any(|&node| deforms[node]);
+        rigid.carried = rigid.nodes.clone();
+        rigid.carried.retain(|&node| deforms[node]);
     }
 }
 
@@ -401,12 +429,17 @@ enum BodyMotion {
     Turns(usize),
 }
 
-/// Gives steps and initial velocities the motion of the rigid bodies; the bodies as the model holds them.
+/// Gives steps and initial velocities the motion of the rigid bodies; the bodies as the model holds them. `supports` and the
+/// velocities know the places of what is prescribed and given.
 pub(crate) fn complete(
     rigid_bodies: &[Rigid],
-    mesh_index: &MeshIndex,
+    (mesh_index, supports): (&MeshIndex, &Supports),
     steps: &mut [Step],
-    velocity: &mut Vec<f64>,
+    InitialVelocity {
+        values: velocity,
+        places,
+        ..
+    }: &mut InitialVelocity,
     cx: &mut Context,
 ) -> Vec<RigidBody> {
     let mesh = &mesh_index.mesh;
@@ -426,8 +459,8 @@ pub(crate) fn complete(
         match motion {
             BodyMotion::Translates => report_moments(rigid, angle, steps, cx),
             BodyMotion::Turns(_) => {
-                complete_turning(rigid, angle, mesh_index, steps, cx);
-                report_own_velocities(rigid, angle, mesh_index, velocity, cx);
+                complete_turning(rigid, angle, (mesh_index, supports), steps, cx);
+                report_own_velocities(rigid, angle, mesh_index, (velocity, places), cx);
             }
         }
     }
@@ -435,7 +468,7 @@ pub(crate) fn complete(
         follow(
             rigid_bodies,
             &motions,
-            mesh_index,
+            (mesh_index, supports),
             index + 1,
             &mut step.supports,
             cx,
@@ -587,7 +620,7 @@ fn report_own_velocities(
     rigid: &Rigid,
     angle: usize,
     mesh_index: &MeshIndex,
-    velocity: &[f64],
+    (velocity, places): (&[f64], &BTreeMap<usize, Span>),
     cx: &mut Context,
 ) {
     let x = &mesh_index.mesh.coordinates;
@@ -609,7 +642,12 @@ fn report_own_velocities(
             mesh_index.node_name(node),
             rigid.name
         );
-        cx.error(Code::RigidSurface, rigid.span, message).help(
+        let place = (0..2).find_map(|i| places.get(&(2 * node + i)));
+        let mut error = cx.error(Code::RigidSurface, rigid.span, message);
+        if let Some(&place) = place {
+            error = error.other("the row of *INITIAL CONDITIONS", place);
+        }
+        error.help(
             "*INITIAL CONDITIONS gives the velocity of a rigid body at its reference node, directions 1, 2 and 6",
         );
     }
@@ -619,22 +657,22 @@ fn report_own_velocities(
 fn complete_turning(
     rigid: &Rigid,
     angle: usize,
-    mesh_index: &MeshIndex,
+    (mesh_index, supports): (&MeshIndex, &Supports),
     steps: &mut [Step],
     cx: &mut Context,
 ) {
-    let has_mass = rigid.has_mass() && !rigid.carries_mass;
+    let has_mass = rigid.has_mass() || !rigid.carried.is_empty();
     let own: BTreeSet<usize> = rigid.nodes.iter().copied().collect();
     if rigid.is_coupling && !report_empty_coupling(rigid, &own, mesh_index, cx) {
         return;
     }
     for (index, step) in steps.iter_mut().enumerate() {
         if let Some(held) = step.supports.iter().find(|s| own.contains(&(s.dof / 2))) {
-            return report_other_motion(rigid, &mesh_index.node_name(held.dof / 2), cx);
+            return report_other_motion(rigid, held.dof, (mesh_index, supports), cx);
         }
         let turns_freely = motion_of(step, angle).is_none();
         let needs_inertia = has_mass && step.procedure != Procedure::Static;
-        if needs_inertia && turns_freely && !rigid.has_inertia() {
+        if needs_inertia && turns_freely && !rigid.has_inertia(&mesh_index.mesh) {
             let message = format!("{} may turn and has no rotary inertia", rigid.name);
             cx.error(Code::RigidSurface, rigid.span, message).help(
                 "add *ELEMENT, TYPE=ROTARYI and *ROTARY INERTIA, or hold direction 6 of its reference node",
@@ -698,7 +736,7 @@ fn report_empty_coupling(
 fn follow(
     rigid_bodies: &[Rigid],
     of_bodies: &[BodyMotion],
-    mesh_index: &MeshIndex,
+    (mesh_index, places): (&MeshIndex, &Supports),
     step: usize,
     supports: &mut Vec<Support>,
     cx: &mut Context,
@@ -713,9 +751,10 @@ fn follow(
                 continue;
             };
             for &node in &rigid.nodes {
-                let other = motions.insert(2 * node + direction, motion);
+                let dof = 2 * node + direction;
+                let other = motions.insert(dof, motion);
                 if other.is_some_and(|other| other != motion) {
-                    return report_other_motion(rigid, &mesh_index.node_name(node), cx);
+                    return report_other_motion(rigid, dof, (mesh_index, places), cx);
                 }
             }
         }
@@ -724,13 +763,22 @@ fn follow(
     *supports = all.map(|(dof, motion)| Support { dof, motion }).collect();
 }
 
-fn report_other_motion(rigid: &Rigid, node: &str, cx: &mut Context) {
+fn report_other_motion(
+    rigid: &Rigid,
+    dof: usize,
+    (mesh_index, supports): (&MeshIndex, &Supports),
+    cx: &mut Context,
+) {
+    let node = mesh_index.node_name(dof / 2);
     let message = format!(
         "node {node} of {} is prescribed otherwise than the reference node {}",
         rigid.name, rigid.label
     );
-    cx.error(Code::RigidSurface, rigid.span, message)
-        .help("a rigid body moves as its reference node, which *BOUNDARY prescribes");
+    let mut error = cx.error(Code::RigidSurface, rigid.span, message);
+    if let Some(place) = supports.place(dof) {
+        error = error.other("the row of *BOUNDARY", place);
+    }
+    error.help("a rigid body moves as its reference node, which *BOUNDARY prescribes");
 }
 
 fn report_free(rigid: &Rigid, direction: usize, step: usize, cx: &mut Context) {

@@ -5,6 +5,7 @@ mod errors;
 mod flat;
 mod fuzz;
 mod model;
+mod owners;
 mod parameters;
 mod picture;
 mod reference;

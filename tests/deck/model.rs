@@ -1027,7 +1027,7 @@ fn equations_that_cannot_be_used_are_told() {
         (
             "2\n4, 1, 1., 3, 1, 1.\n2\n4, 1, 1., 2, 1, 1.",
             "D517",
-            "eliminated by an earlier equation",
+            "direction 1 of node 4 follows other nodes twice",
         ),
         (
             "2\n4, 1, 1., 4, 1, 1.",

@@ -28,6 +28,7 @@ mod mean_dilatation;
 mod neo_hooke;
 mod neutral;
 mod on_and_off;
+mod owners;
 mod patch;
 mod quasi_static;
 mod redistributed_mass;
