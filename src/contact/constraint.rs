@@ -8,11 +8,14 @@
 
 use std::array::from_fn;
 
+use smallvec::SmallVec;
+
 use super::geometry::position;
 use super::keys::{ConstraintKey, NodeAtSegment};
 use super::lists::PerDof;
-use super::targets::PairTarget;
-use super::tolerances::NOTHING;
+use super::targets::{PairTarget, position_round_off};
+use super::tolerances::{NOTHING, SOLVED_GAP};
+use crate::vectors::dot;
 
 /// A normal and a tangential row over the dofs of a constraint.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -171,6 +174,12 @@ impl Constraint {
         }
     }
 
+    /// Round-off of its slip (length): what solves leave of it, and round-off of the slave node's position at the start.
+    pub fn slip_round_off(&self, (x, u0): (&[[f64; 2]], &[f64])) -> f64 {
+        let place = position(x, u0, self.source.nodes[0]);
+        SOLVED_GAP * self.scale + 4.0 * position_round_off(place)
+    }
+
     /// Bn d: the work of a unit normal force on a displacement over all dofs (length).
     pub fn normal_motion(&self, d: &[f64]) -> f64 {
         self.product(&self.force_rows.normal, |dof| d[dof])
@@ -299,6 +308,16 @@ impl Constraint {
         own.map(|(_, force)| force)
     }
 
+    /// The parts of its normal force that the nodes of the contact's slave surface take, and those of its master.
+    pub fn surface_parts(&self) -> [SurfaceParts; 2] {
+        let all: SmallVec<[(usize, [f64; 2]); 8]> = self.nodal_forces([1.0, 0.0]).collect();
+        let (slaves, others) = all.split_at(self.slave_dofs / 2);
+        match self.is_of_master() {
+            true => [others, slaves].map(SurfaceParts::of),
+            false => [slaves, others].map(SurfaceParts::of),
+        }
+    }
+
     /// Bn^T Pn + Bt^T Pt at every slave node.
     pub fn slave_forces(&self, force: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         self.nodal_forces(force).take(self.slave_dofs / 2)
@@ -312,6 +331,36 @@ impl Constraint {
 
     fn product(&self, row: &[f64], v: impl Fn(usize) -> f64) -> f64 {
         row.iter().zip(&self.dofs).map(|(b, &dof)| b * v(dof)).sum()
+    }
+}
+
+/// The nodes of one of the surfaces that a constraint acts on, with the parts of its normal force that they take:
+///
+/// ```text
+/// f_k = Bn_k.N/(N.N),  N = sum_k Bn_k,  sum_k f_k = 1    eq. (9.15)
+/// ```
+///
+/// From surface to surface these are the weights of its mean; a node that takes no normal force, as one that only turns
+/// a disc, has no part.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct SurfaceParts {
+    /// N, a normal force of 1 on the surface.
+    pub normal: [f64; 2],
+    /// Nodes with their parts f.
+    pub parts: SmallVec<[(usize, f64); 4]>,
+}
+
+impl SurfaceParts {
+    /// Those of nodes with Bn there.
+    fn of(at_nodes: &[(usize, [f64; 2])]) -> Self {
+        let sum = |[x, y]: [f64; 2], (_, n): &(usize, [f64; 2])| [x + n[0], y + n[1]];
+        let normal = at_nodes.iter().fold([0.0; 2], sum);
+        let square = dot(normal, normal);
+        let part = |&(node, n): &(usize, [f64; 2])| (node, dot(n, normal) / square);
+        SurfaceParts {
+            normal,
+            parts: at_nodes.iter().map(part).collect(),
+        }
     }
 }
 

@@ -757,6 +757,11 @@ impl Interior {
         self.at_nodes.of(side[0]).rfind(has_side)
     }
 
+    /// Whether a segment is a side of an element.
+    pub fn has_body(&self, segment: [usize; 2]) -> bool {
+        self.left(segment).is_some()
+    }
+
     /// Whether a node behind the line of a segment, at the positions `at`, has penetrated the body
     /// there through this segment: it lies in the body, belongs to none of the elements on the
     /// line, and is nearer to the segment than to the far side. Behind a segment without an element
@@ -782,14 +787,19 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether a point of a face behind the line of a segment has penetrated the body there through this segment: the
-    /// same of a point between nodes.
+    /// Whether a point of a face at a place xi of a segment and a gap behind its line has penetrated the body there through
+    /// this segment: the same of a point between nodes. Place and gap may be those of the straight line that stands for a
+    /// curved side, from which the sides of the element are as far as its nodes between corners are off.
     pub fn takes_in_point(
         &self,
         segment: [usize; 2],
-        (point, face): ([f64; 2], [usize; 2]),
+        ([xi, gap], face): ([f64; 2], [usize; 2]),
         at: impl Fn(usize) -> [f64; 2],
     ) -> bool {
+        let [a, b] = segment.map(&at);
+        let on_it = between(a, b, xi);
+        let normal = project(a, a, b).normal;
+        let point = [0, 1].map(|i| on_it[i] + gap * normal[i]);
         self.line_to(segment, point, NEARER_HALF, at)
             .is_none_or(|line| face.iter().all(|&node| self.is_foreign(&line, node)))
     }

@@ -319,7 +319,8 @@ impl<'a> Finder<'a> {
             let [a, b] = self.slave.edge_of_segment(self.start, segment).ends;
             project(x, a, b)
         };
-        let depth = -at(segment).gap;
+        let place = at(segment);
+        let depth = -place.gap;
         let is_nearer = |other: usize| {
             let p = at(other);
             let on_it = CLOSED_GAP * p.length;
@@ -347,7 +348,10 @@ impl<'a> Finder<'a> {
         let ends = self.surfaces.slave_faces[face];
         let own = self.surfaces.segments[segment];
         let node_at = |node: usize| self.positions.of(node);
-        let is_inside = || (self.surfaces.interior).takes_in_point(own, (x, ends), node_at);
+        let is_inside = || {
+            let place = [place.xi, place.gap];
+            (self.surfaces.interior).takes_in_point(own, (place, ends), node_at)
+        };
         others().any(|other| is_beside(other.segment))
             || (is_inside() && !others().any(|other| is_nearer(other.segment)))
     }

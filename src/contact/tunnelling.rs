@@ -6,14 +6,14 @@
 
 use super::closed_pairs::{ClosedPair, ClosedPairs};
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{Along, ContactSurfaces, Projection, position, project};
+use super::geometry::{Along, ContactSurfaces, Projection, between, position, project};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
-use super::search::Search;
+use super::search::{ListedSlave, Search};
 use super::targets::raised;
 use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END};
 use crate::linear::{larger, largest};
-use crate::vectors::{cross, difference};
+use crate::vectors::{cross, difference, length};
 
 /// The first slave node that penetrates a body on its straight path from the displacements `u0` to
 /// `u1`, if there is one, with the segment through which it has entered. The search must cover the paths; `closed` are the pairs in contact before
@@ -342,7 +342,56 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     most
 }
 
-/// The same for one edge and one segment; none if they do not cross.
+/// How deep a slave node of contact from surface to surface, whose gaps are means, is inside of a master, the most of
+/// all that the search lists in the displacements `u`, 0 where none is inside:
+///
+/// ```text
+/// |x_s - x_m|/L    eq. (10.7)
+/// ```
+///
+/// x_m being the nearest place of the master, L the length of the segment there; behind a rigid one that of the longer
+/// edge at the node.
+pub fn sunk_nodes(search: &Search, u: &[f64]) -> f64 {
+    let at = |node: usize| position(search.coordinates(), u, node);
+    let is_of_mean = |listed: &ListedSlave| !listed.is_fitted() && !listed.meets_segments();
+    let slaves = search.slaves().filter(is_of_mean);
+    slaves.fold(0.0, |most, listed| larger(most, depth_of(&listed, at)))
+}
+
+/// The same for one node.
+fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 {
+    let (node, surfaces) = (listed.node(), listed.surfaces);
+    let s = at(node);
+    let beside = |i: usize| {
+        let [a, b] = surfaces.segments[i].map(at);
+        let p = project(s, a, b);
+        let apart = length(difference(between(a, b, p.xi.clamp(0.0, 1.0)), s));
+        (i, p, apart)
+    };
+    let others = (listed.candidates().map(|candidate| candidate.segment))
+        .filter(|&i| !surfaces.segments[i].contains(&node));
+    let nearest = others.map(beside).min_by(|p, q| p.2.total_cmp(&q.2));
+    let Some((i, p, apart)) = nearest.filter(|(_, p, _)| p.gap < 0.0) else {
+        return 0.0;
+    };
+    let segment = surfaces.segments[i];
+    if surfaces.interior.has_body(segment) {
+        let is_inside = surfaces.interior.takes_in(segment, node, at);
+        return if is_inside { apart / p.length } else { 0.0 };
+    }
+    // beyond the end of a rigid surface nothing is inside
+    let is_beyond_end = (p.xi < 0.0 && surfaces.previous[i].is_none())
+        || (p.xi > 1.0 && surfaces.next[i].is_none());
+    let adjacent = surfaces.adjacent[listed.number].into_iter().flatten();
+    let edges = adjacent.map(|other| length(difference(at(other), s)));
+    let edge = edges.fold(0.0, larger);
+    match is_beyond_end || edge == 0.0 {
+        true => 0.0,
+        false => apart / edge,
+    }
+}
+
+/// How far one edge and one segment cross, eq. (10.6); none if they do not.
 fn crossed_by(edge: [[f64; 2]; 2], segment: [[f64; 2]; 2]) -> Option<f64> {
     let depth = |[p, q]: [[f64; 2]; 2], [a, b]: [[f64; 2]; 2]| {
         let [p, q] = [project(p, a, b), project(q, a, b)];

@@ -290,6 +290,9 @@ pub struct IncrementReport {
     pub strain: Strained,
     /// Resultants, one per contact of the model.
     pub contacts: Vec<ContactResultant>,
+    /// Difference of the work of friction, wear and heat of the nodes from those of the contacts, as a part of all that
+    /// was added since the start.
+    pub surface_work_difference: f64,
     /// Landings of this increment.
     #[serde(skip)]
     pub landings: Vec<Landing>,
@@ -413,7 +416,8 @@ pub struct ContactViolation {
     pub gap: f64,
     /// Largest slip of a sticking pair in the increment, in absolute value.
     pub slip: f64,
-    /// Largest penetration: of an open pair, or of edges that cross, in lengths of the edge.
+    /// Largest penetration: of an open pair, of edges that cross, or of nodes whose means are kept out, in lengths of the
+    /// edge.
     pub penetration: f64,
 }
 

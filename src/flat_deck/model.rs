@@ -5,9 +5,9 @@ use super::lines::{DeckWriter, name, named, number, set};
 use crate::materials::Law;
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorDirection, ConnectorLaw, Contact, Curve,
-    Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Interaction, Material,
-    Mesh, Model, Reach, RigidPart, RigidProfile, Section, Set, Signal, SurfaceKind, Tie, TieReach,
-    TimeBase, Wear,
+    Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Heat, Interaction,
+    Material, Mesh, Model, Reach, RigidPart, RigidProfile, Section, Set, Signal, SurfaceKind, Tie,
+    TieReach, TimeBase, Wear,
 };
 
 /// Terms of an equation on a data line.
@@ -151,9 +151,9 @@ impl Interactions {
                 lines.card("WEAR SURFACE PROPERTIES", parameters);
                 lines.row([number(rate)]);
             }
-            if let Some(heat) = interaction.heat {
+            if let Some(Heat { part, to_slave }) = interaction.heat {
                 lines.card("GAP HEAT GENERATION", []);
-                lines.row([heat, 1.0].map(number));
+                lines.row([part, to_slave].map(number));
             }
         }
         interactions

@@ -21,8 +21,17 @@ pub struct Interaction {
     pub friction: Friction,
     /// Wear of the slave surface.
     pub wear: Option<Wear>,
-    /// Part of the work of friction that heats the slave surface.
-    pub heat: Option<f64>,
+    /// Heat of friction.
+    pub heat: Option<Heat>,
+}
+
+/// What of the work of friction becomes heat, and where it goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heat {
+    /// Part of the work that becomes heat.
+    pub part: f64,
+    /// Part of the heat that goes into the slave surface.
+    pub to_slave: f64,
 }
 
 /// Archard's law of wear; the geometry stays as it is.

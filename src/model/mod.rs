@@ -22,7 +22,7 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
-    ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Hinge,
+    ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Heat, Hinge,
     Interaction, Reach, RigidBody, RigidPart, RigidProfile, Surface, SurfaceKind, TurningInertia,
     Wear,
 };

@@ -11,7 +11,7 @@ use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
-    Interaction, Model, Reach, Surface, SurfaceKind, Wear,
+    Heat, Interaction, Model, Reach, Surface, SurfaceKind, Wear,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -431,7 +431,7 @@ fn wear_of(card: &Card, cx: &mut Context) -> Option<Wear> {
 }
 
 /// `part of the work of friction, part of it that heats the slave`
-fn heat_of(card: &Card, cx: &mut Context) -> Option<f64> {
+fn heat_of(card: &Card, cx: &mut Context) -> Option<Heat> {
     let part = |index: usize, default: f64, cx: &mut Context| {
         let field = card.rows.first().and_then(|row| row.get(index));
         let rule = "parts lie between 0 and 1";
@@ -443,8 +443,11 @@ fn heat_of(card: &Card, cx: &mut Context) -> Option<f64> {
         let help = "heat is that of the work of friction";
         row.without_effect(2, "only the two parts are read here", help, cx.d);
     }
-    let (heat, slave) = (part(0, 1.0, cx), part(1, 0.5, cx));
-    Some(heat? * slave?)
+    let (part, to_slave) = (part(0, 1.0, cx), part(1, 0.5, cx));
+    Some(Heat {
+        part: part?,
+        to_slave: to_slave?,
+    })
 }
 
 /// A field that is not negative, 0 where it is empty; `what` it is.

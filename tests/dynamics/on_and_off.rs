@@ -165,7 +165,9 @@ fn a_body_that_approaches_another_is_in_balance() {
 /// Weight and support do works that cancel: what they leave is no scale of the losses.
 #[test]
 fn a_block_that_tips_loses_little_beside_the_work_of_its_weight() {
-    let text = blocks(0.0).replace("1000., .3", "1.E7, .3").replace("\n.3\n*CONTACT", "\n1.\n*CONTACT")
+    let text = blocks(0.0)
+        .replace("1000., .3", "1.E7, .3")
+        .replace("\n.3\n*CONTACT", "\n1.\n*CONTACT")
         + "*STEP\n*STATIC\n1., 1.\n*DLOAD\nUP, GRAV, 10., 0., -1.\n*END STEP\n\
            *STEP\n*STATIC\n.05, 1., 1.E-5, .05\n*BOUNDARY\n14, 1, 1, .01\n*END STEP\n";
     let (keep, _) = run_to_end(&read(&text));

@@ -21,10 +21,22 @@ const BASE: &str = "*NODE\n1, 0., 0.\n2, 1., 0.\n5, 1., .5\n6, 0., .5\n3, 1., 1.
 
 /// What may meet at node N: its name, model cards, cards in the step.
 const FEATURES: [(&str, &str, &str); 24] = [
-    ("rider", "*NSET, NSET=R\nN, 13, 14\n*RIGID BODY, TIE NSET=R, REF NODE=80\n", ""),
+    (
+        "rider",
+        "*NSET, NSET=R\nN, 13, 14\n*RIGID BODY, TIE NSET=R, REF NODE=80\n",
+        "",
+    ),
     ("reference", "*RIGID BODY, NSET=TOP, REF NODE=N\n", ""),
-    ("kinematic rider", "*KINEMATIC COUPLING, REF NODE=81, NAME=KR\nN, 1, 2\n13, 1, 2\n14, 1, 2\n", ""),
-    ("kinematic reference", "*KINEMATIC COUPLING, REF NODE=N, NAME=KC\n13, 1, 2\n14, 1, 2\n", ""),
+    (
+        "kinematic rider",
+        "*KINEMATIC COUPLING, REF NODE=81, NAME=KR\nN, 1, 2\n13, 1, 2\n14, 1, 2\n",
+        "",
+    ),
+    (
+        "kinematic reference",
+        "*KINEMATIC COUPLING, REF NODE=N, NAME=KC\n13, 1, 2\n14, 1, 2\n",
+        "",
+    ),
     (
         "distributing member",
         "*SURFACE, NAME=DM, TYPE=NODE\nN,\n14,\n*COUPLING, CONSTRAINT NAME=DMC, REF NODE=82, SURFACE=DM\n*DISTRIBUTING\n",
@@ -50,17 +62,37 @@ const FEATURES: [(&str, &str, &str); 24] = [
     ("pin first", "*MPC\nPIN, N, 12\n", ""),
     ("pin second", "*MPC\nPIN, 12, N\n", ""),
     ("equation first", "*EQUATION\n2\nN, 1, 1., 13, 1, -1.\n", ""),
-    ("equation second", "*EQUATION\n2\n14, 1, 1., N, 1, -1.\n", ""),
-    ("spring", "*ELEMENT, TYPE=SPRING1, ELSET=SP\n50, N\n*SPRING, ELSET=SP\n1\n5.\n", ""),
+    (
+        "equation second",
+        "*EQUATION\n2\n14, 1, 1., N, 1, -1.\n",
+        "",
+    ),
+    (
+        "spring",
+        "*ELEMENT, TYPE=SPRING1, ELSET=SP\n50, N\n*SPRING, ELSET=SP\n1\n5.\n",
+        "",
+    ),
     ("section", "*PRE-TENSION SECTION, NODE=N, SURFACE=CUT\n", ""),
     ("support", "", "*BOUNDARY\nN, 1\n"),
     ("motion", "", "*BOUNDARY\nN, 1, 1, 0.001\n"),
     ("rotation", "", "*BOUNDARY\nN, 6, 6, 0.001\n"),
     ("force", "", "*CLOAD\nN, 1, 1.\n"),
     ("moment", "", "*CLOAD\nN, 6, .1\n"),
-    ("velocity", "*INITIAL CONDITIONS, TYPE=VELOCITY\nN, 1, .1\n", ""),
-    ("mass", "*ELEMENT, TYPE=MASS, ELSET=EM\n60, N\n*MASS, ELSET=EM\n1.\n", ""),
-    ("rotary inertia", "*ELEMENT, TYPE=ROTARYI, ELSET=ER\n61, N\n*ROTARY INERTIA, ELSET=ER\n, , 1.\n", ""),
+    (
+        "velocity",
+        "*INITIAL CONDITIONS, TYPE=VELOCITY\nN, 1, .1\n",
+        "",
+    ),
+    (
+        "mass",
+        "*ELEMENT, TYPE=MASS, ELSET=EM\n60, N\n*MASS, ELSET=EM\n1.\n",
+        "",
+    ),
+    (
+        "rotary inertia",
+        "*ELEMENT, TYPE=ROTARYI, ELSET=ER\n61, N\n*ROTARY INERTIA, ELSET=ER\n, , 1.\n",
+        "",
+    ),
 ];
 
 /// Model or errors with the titles of the other cards that they name, of features at a node.
@@ -96,7 +128,8 @@ fn meet(features: &[usize], node: &str) -> Result<Model, Vec<(String, Option<Str
 
 /// Largest violation of what holds at the nodes of a model: rigid bodies keep their distances, equations hold.
 fn violation(model: &Model, last: &IncrementReport) -> f64 {
-    let at = |node: usize| [0, 1].map(|i| model.mesh.coordinates[node][i] + last.state.u[2 * node + i]);
+    let at =
+        |node: usize| [0, 1].map(|i| model.mesh.coordinates[node][i] + last.state.u[2 * node + i]);
     let distance = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
     let of_bodies = model.rigid_bodies.iter().flat_map(|body| {
         let [from, x] = [at(body.reference), model.mesh.coordinates[body.reference]];
@@ -109,7 +142,9 @@ fn violation(model: &Model, last: &IncrementReport) -> f64 {
         let sum: f64 = terms.iter().map(|(to, c)| c * last.state.u[*to]).sum();
         last.state.u[*dof] - sum
     });
-    of_bodies.chain(of_equations).fold(0.0, |most, v| most.max(v.abs()))
+    of_bodies
+        .chain(of_equations)
+        .fold(0.0, |most, v| most.max(v.abs()))
 }
 
 /// Pairs of 24 features at a node of an element (3) and at one of none (90).
@@ -118,7 +153,9 @@ fn every_pair_at_one_node_works_or_is_an_error_that_names_both() {
     let mut faults = Vec::new();
     let mut works = BTreeMap::new();
     for node in ["3", "90"] {
-        let alone: Vec<_> = (0..FEATURES.len()).map(|f| meet(&[f], node).err()).collect();
+        let alone: Vec<_> = (0..FEATURES.len())
+            .map(|f| meet(&[f], node).err())
+            .collect();
         for a in 0..FEATURES.len() {
             for b in a + 1..FEATURES.len() {
                 let names = format!("{} and {} at {node}", FEATURES[a].0, FEATURES[b].0);
@@ -138,7 +175,10 @@ fn every_pair_at_one_node_works_or_is_an_error_that_names_both() {
                 };
                 let mut keep = Keep::default();
                 let summary = run(&model, &mut keep).expect("the observer never fails");
-                let Some(last) = keep.reports.last().filter(|_| summary.outcome == Outcome::Finished)
+                let Some(last) = keep
+                    .reports
+                    .last()
+                    .filter(|_| summary.outcome == Outcome::Finished)
                 else {
                     faults.push(format!("{names}: the run stops"));
                     continue;
@@ -147,11 +187,17 @@ fn every_pair_at_one_node_works_or_is_an_error_that_names_both() {
                 let energy = |r: &IncrementReport| {
                     r.energy.kinetic + r.energy.strain + r.energy.external_work.abs()
                 };
-                let largest = keep.reports.iter().map(energy).fold(f64::MIN_POSITIVE, f64::max);
+                let largest = keep
+                    .reports
+                    .iter()
+                    .map(energy)
+                    .fold(f64::MIN_POSITIVE, f64::max);
                 let balance = last.energy.balance.abs() / largest;
                 let violation = violation(&model, last);
                 if !(violation < 1e-13 && balance < 1e-9) {
-                    faults.push(format!("{names}: violation {violation:e}, balance {balance:e}"));
+                    faults.push(format!(
+                        "{names}: violation {violation:e}, balance {balance:e}"
+                    ));
                 }
             }
         }
@@ -205,14 +251,30 @@ fn all_that_a_card_of_a_rigid_body_names_moves_with_it() {
     let (keep, _) = run_to_end(&model);
     for label in [3, 4, 11, 14] {
         let [ux, uy] = displacement(&model, &keep, label);
-        assert!(ux.abs() < 1e-15 && (uy - 0.01).abs() < 1e-15, "{label}: {ux} {uy}");
+        assert!(
+            ux.abs() < 1e-15 && (uy - 0.01).abs() < 1e-15,
+            "{label}: {ux} {uy}"
+        );
     }
     let last = keep.reports.last().expect("increments");
     // E (1 - nu)/((1 + nu) (1 - 2 nu)) of a block that is held sideways at its ends, 1 high
-    let node = |label: u64| model.mesh.node_labels.iter().position(|&l| l == label).expect("a node");
+    let node = |label: u64| {
+        model
+            .mesh
+            .node_labels
+            .iter()
+            .position(|&l| l == label)
+            .expect("a node")
+    };
     let held = last.nodal.reaction[2 * node(90) + 1];
-    let base: f64 = [1, 2].map(|label| last.nodal.reaction[2 * node(label) + 1]).iter().sum();
-    assert!((held + base).abs() < 1e-9 * held && held > 10.0, "{held} {base}");
+    let base: f64 = [1, 2]
+        .map(|label| last.nodal.reaction[2 * node(label) + 1])
+        .iter()
+        .sum();
+    assert!(
+        (held + base).abs() < 1e-9 * held && held > 10.0,
+        "{held} {base}"
+    );
 }
 
 /// A punch without mass, and nodes of a block, under a force in a static step.
@@ -225,14 +287,18 @@ fn static_steps_need_no_mass() {
         displacement(&model, &keep, 90)
     };
     let tied = by("*RIGID BODY, TIE NSET=TOP, REF NODE=90\n*BOUNDARY\n90, 1\n90, 6\n");
-    let coupled = by("*KINEMATIC COUPLING, REF NODE=90\n13, 1, 2\n14, 1, 2\n*BOUNDARY\n90, 1\n90, 6\n");
+    let coupled =
+        by("*KINEMATIC COUPLING, REF NODE=90\n13, 1, 2\n14, 1, 2\n*BOUNDARY\n90, 1\n90, 6\n");
     assert_eq!(tied, coupled);
     let punch = "*SURFACE, NAME=BT\n2, S3\n*SURFACE, NAME=TOOL, TYPE=SEGMENTS\nSTART, 2., 2.\nLINE, -1., 2.\n\
                  *RIGID BODY, ANALYTICAL SURFACE=TOOL, REF NODE=90\n*SURFACE INTERACTION, NAME=I\n\
                  *CONTACT PAIR, INTERACTION=I\nBT, TOOL\n*BOUNDARY\n90, 1\n90, 6\n";
     let massive = format!("{punch}*ELEMENT, TYPE=MASS, ELSET=EM\n60, 90\n*MASS, ELSET=EM\n7.\n");
     let [light, heavy] = [by(punch), by(&massive)];
-    assert!((light[1] - heavy[1]).abs() < 1e-12 * light[1].abs(), "{light:?} {heavy:?}");
+    assert!(
+        (light[1] - heavy[1]).abs() < 1e-12 * light[1].abs(),
+        "{light:?} {heavy:?}"
+    );
     assert!(light[1] < -0.008 && light[1] > -0.012, "{light:?}");
 }
 
@@ -285,9 +351,17 @@ fn the_normal_of_a_section_may_point_either_way() {
              1., 1.\n*CLOAD\n90, 1, 5.\n*END STEP\n{second}"
         ));
         let (keep, _) = run_to_end(&model);
-        let node = model.mesh.node_labels.iter().position(|&l| l == 90).expect("a node");
+        let node = model
+            .mesh
+            .node_labels
+            .iter()
+            .position(|&l| l == 90)
+            .expect("a node");
         let last = keep.reports.last().expect("increments");
-        let base: f64 = [0, 1].map(|node| last.nodal.reaction[2 * node + 1]).iter().sum();
+        let base: f64 = [0, 1]
+            .map(|node| last.nodal.reaction[2 * node + 1])
+            .iter()
+            .sum();
         [base, last.nodal.reaction[2 * node]]
     };
     let mean = stress("", "");
@@ -296,9 +370,16 @@ fn the_normal_of_a_section_may_point_either_way() {
     }
     // the support pulls the base down
     assert!((mean[0] + 5.0).abs() < 1e-9, "{mean:?}");
-    let locked = |op: &str| format!("*STEP\n*STATIC\n1., 1.\n*BOUNDARY, FIXED\n90, 1\n{op}*END STEP\n");
+    let locked =
+        |op: &str| format!("*STEP\n*STATIC\n1., 1.\n*BOUNDARY, FIXED\n90, 1\n{op}*END STEP\n");
     let kept = stress("", &locked(""));
     let removed = stress("", &locked("*CLOAD, OP=NEW\n"));
-    assert!((kept[0] + 5.0).abs() < 1e-9 && kept[1].abs() < 1e-9, "{kept:?}");
-    assert!((removed[0] + 5.0).abs() < 1e-9 && (removed[1] - 5.0).abs() < 1e-9, "{removed:?}");
+    assert!(
+        (kept[0] + 5.0).abs() < 1e-9 && kept[1].abs() < 1e-9,
+        "{kept:?}"
+    );
+    assert!(
+        (removed[0] + 5.0).abs() < 1e-9 && (removed[1] - 5.0).abs() < 1e-9,
+        "{removed:?}"
+    );
 }

@@ -1,7 +1,7 @@
 //! Work of friction, wear and heat at the slave nodes against the ledger and closed forms.
 
 use stickslip::dynamics::IncrementReport;
-use stickslip::model::{ContactMass, LandingRule, Model, Wear};
+use stickslip::model::{ContactMass, Heat, LandingRule, Model, Wear};
 
 use crate::blocks::{Block, SCHEMES, run_to_end, throw};
 use crate::friction::block_on_base;
@@ -18,7 +18,10 @@ fn sliding(scheme: stickslip::model::Scheme, by_friction: bool) -> (Model, Block
         rate: RATE,
         by_friction,
     });
-    interaction.heat = Some(PART);
+    interaction.heat = Some(Heat {
+        part: 0.9,
+        to_slave: PART / 0.9,
+    });
     throw(&mut model, &block, [1.0, 0.0], 0.0, [0.0, 0.0]);
     (model, block)
 }

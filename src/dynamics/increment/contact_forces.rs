@@ -64,7 +64,7 @@ impl ContactForces {
     }
 
     /// All constraints with the closed pair that belongs to each, if any.
-    pub fn iter(&self) -> impl Iterator<Item = (&Constraint, Option<&ClosedPair>)> {
+    pub fn iter(&self) -> impl Iterator<Item = (&Constraint, Option<&ClosedPair>)> + Clone {
         let mut closed = self.closed.iter().peekable();
         let constraints = self.constraints.iter();
         constraints.map(move |constraint| {
@@ -75,7 +75,7 @@ impl ContactForces {
     }
 
     /// The closed constraints with their forces.
-    pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> {
+    pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> + Clone {
         self.iter()
             .filter_map(|(constraint, pair)| Some((constraint, pair?)))
     }

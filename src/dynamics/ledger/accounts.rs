@@ -58,7 +58,7 @@ impl Accounts {
             rigid: RigidSurfaces::new(model),
             contacts: ContactLedger::new(model, faces.start.clone()),
             touches: Touches::new(&model.mesh),
-            surface_work: SurfaceWork::new(model, &faces.start),
+            surface_work: SurfaceWork::new(model, &faces),
             consistent: (!redistribution.is_empty()).then(consistent),
             faces,
             damped: Momentum::default(),
@@ -114,15 +114,17 @@ impl Accounts {
         }
     }
 
-    /// Enters a converged increment: results at nodes, of contacts, bodies and rigid surfaces.
+    /// Enters a converged increment from a start: results at nodes, of contacts, bodies and rigid surfaces.
     pub fn enter(
         &mut self,
         problem: &StepProblem,
-        solved: &Solved,
+        (start, solved): (&State, &Solved),
         interval: Interval,
         ledger: &Ledger,
     ) -> IncrementReport {
         self.enter_damping(problem, solved);
+        let bodies = &self.bodies.bodies;
+        let mut contacts = contact_resultants(problem, bodies, solved, (&start.u, interval));
         let mut report = self.moving(problem, &solved.end, ledger);
         let u = &solved.equilibrium.u_theta;
         // forces that act in no time give no impulse
@@ -133,10 +135,9 @@ impl Accounts {
                 ..interval
             },
         };
-        let mut contacts = contact_resultants(problem, solved);
-        let bodies = &self.bodies.bodies;
         report.touches = (self.touches).enter(problem, bodies, solved, interval, &mut contacts);
-        report.returns = (self.contacts).enter_returns(solved, interval, &mut contacts);
+        report.returns =
+            (self.contacts).enter_returns((problem.model, bodies), solved, interval, &mut contacts);
         let both = (solved, &ledger.works[..]);
         (self.contacts).enter(problem, bodies, both, interval.dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
@@ -145,6 +146,7 @@ impl Accounts {
         nodal.pressure = contact_pressure(&self.faces, problem, u, &solved.contact.forces);
         nodal.slip.clone_from(&self.contacts.slip);
         (self.surface_work).enter(problem, &self.faces, solved, &ledger.works);
+        report.surface_work_difference = self.surface_work.difference(&self.contacts);
         nodal.friction = FrictionResults {
             coefficient: nodal.friction.coefficient,
             ..self.surface_work.results()

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use super::nodal_results::MasterMeans;
-use super::pair_work::PairWork;
+use super::nodal_results::{MasterMeans, forces_on_side};
+use super::pair_work::{PairWork, given_back};
 use crate::archive::{Archive, ArchiveError};
-use crate::contact::{ClosedPair, Constraint, ConstraintKey, Search, crossed_edges};
+use crate::contact::{ClosedPair, Constraint, ConstraintKey, Search, crossed_edges, sunk_nodes};
 use crate::dynamics::increment::{PairReturn, Solved};
 use crate::dynamics::results::{
     ContactImpulse, ContactOnBody, ContactResultant, ContactViolation, ReturnedImpulse, State,
@@ -25,6 +25,8 @@ struct Sums {
     normal_work: f64,
     handover_work: f64,
     friction_dissipation: f64,
+    /// Normal forces times the ways that pairs slide (energy).
+    sliding: f64,
     landing_return: f64,
     release_loss: f64,
     impulse: ContactImpulse,
@@ -86,12 +88,14 @@ impl ContactLedger {
             let sums = &mut self.contacts[work.key.contact()];
             sums.normal_work += work.normal;
             sums.friction_dissipation += work.friction;
+            sums.sliding += work.sliding;
         }
         for (constraint, pair) in solved.contact.forces.acting() {
             let contact = pair.key.contact();
             let [pn, pt] = pair.force;
             let result = &mut resultants[contact];
-            result.impulse.add(constraint, [dt * pn, dt * pt]);
+            let on_side = |force| forces_on_side(problem.model, bodies, constraint, force);
+            result.impulse.add([dt * pn, dt * pt], on_side);
             if !result.bodies.is_empty() {
                 let forces = constraint.nodal_forces(pair.force);
                 add_to_bodies(problem, bodies, u, forces, &mut result.bodies);
@@ -100,7 +104,8 @@ impl ContactLedger {
         for (constraint, pair) in solved.contact.impulses.acting() {
             let impulse = &mut resultants[pair.key.contact()].impulse;
             let [phi, psi] = pair.force;
-            impulse.add(constraint, [phi, psi]);
+            let on_side = |force| forces_on_side(problem.model, bodies, constraint, force);
+            impulse.add([phi, psi], on_side);
             impulse.impact_normal += phi;
             impulse.impact_tangential += psi;
         }
@@ -121,19 +126,36 @@ impl ContactLedger {
         }
     }
 
+    /// Of every contact the energy that friction has dissipated, and the sum of normal forces times the ways that pairs
+    /// slide.
+    pub fn slid(&self) -> impl Iterator<Item = (f64, f64)> {
+        let sums = self.contacts.iter();
+        sums.map(|sums| (sums.friction_dissipation, sums.sliding))
+    }
+
     /// Enters what is given back after an increment, before the increment itself; gives the total impulses of these
     /// pairs.
     pub fn enter_returns(
         &mut self,
+        (model, bodies): (&Model, &Bodies),
         solved: &Solved,
         interval: Interval,
         resultants: &mut [ContactResultant],
     ) -> Vec<ReturnedImpulse> {
+        let totals = match solved.returned.pairs.is_empty() {
+            true => Totals::new(),
+            false => total_impulses(solved, interval.dt),
+        };
         for pair in &solved.returned.pairs {
             let contact = pair.key.contact();
             self.contacts[contact].landing_return += pair.energy;
             self.contacts[contact].friction_dissipation -= pair.friction;
-            resultants[contact].impulse.add_return(pair);
+            let constraint = totals.get(&pair.key).map(|(constraint, _)| *constraint);
+            let side = constraint.map_or(1.0, |c| side_of_slave(model, bodies, c));
+            resultants[contact].impulse.add_return(pair, side);
+        }
+        for work in given_back(solved) {
+            self.contacts[work.key.contact()].sliding += work.sliding;
         }
         for (key, loss) in solved.returned.release.losses() {
             self.contacts[key.contact()].release_loss += loss;
@@ -141,7 +163,6 @@ impl ContactLedger {
         if solved.returned.pairs.is_empty() {
             return Vec::new();
         }
-        let totals = total_impulses(solved, interval.dt);
         Self::measure_cones(&totals, resultants);
         let total = |pair: &PairReturn| {
             let (constraint, [normal, tangential, _]) = totals.get(&pair.key)?;
@@ -196,6 +217,18 @@ impl ContactLedger {
     }
 }
 
+/// 1 where the slave surface that a constraint acts on is the side whose forces are told, -1 where it is the other, 0
+/// within one body.
+fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64 {
+    let on_side = forces_on_side(model, bodies, constraint, [1.0, 0.0]);
+    let slave = constraint.forces_on_slave_surface([1.0, 0.0]).next();
+    match slave {
+        _ if on_side.is_empty() => 0.0,
+        Some((slave, _)) if on_side.iter().any(|(node, _)| *node == slave) => 1.0,
+        _ => -1.0,
+    }
+}
+
 /// Normal and tangential impulses of pairs in an increment, and the sum of the sizes of the normal ones: where all of
 /// a force is taken back, the total is round-off of its parts.
 type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 3])>;
@@ -231,9 +264,13 @@ fn add_impulse([normal, tangential, size]: &mut [f64; 3], impulse: [f64; 2]) {
 }
 
 impl ContactImpulse {
-    /// Adds the normal and tangential impulse of a constraint.
-    fn add(&mut self, constraint: &Constraint, [normal, tangential]: [f64; 2]) {
-        for (_, [x, y]) in constraint.forces_on_slave_surface([normal, tangential]) {
+    /// Adds the normal and tangential impulse of a constraint, whose impulses at the nodes of the side are given.
+    fn add<N: IntoIterator<Item = (usize, [f64; 2])>>(
+        &mut self,
+        [normal, tangential]: [f64; 2],
+        on_side: impl Fn([f64; 2]) -> N,
+    ) {
+        for (_, [x, y]) in on_side([normal, tangential]) {
             self.vector[0] += x;
             self.vector[1] += y;
         }
@@ -241,10 +278,10 @@ impl ContactImpulse {
         self.tangential += tangential;
     }
 
-    /// Adds the impulse of a landing return.
-    fn add_return(&mut self, returned: &PairReturn) {
-        self.vector[0] += returned.vector[0];
-        self.vector[1] += returned.vector[1];
+    /// Adds the impulse of a landing return, whose slave node is on the side (1), on the other (-1) or on both (0).
+    fn add_return(&mut self, returned: &PairReturn, side: f64) {
+        self.vector[0] += side * returned.vector[0];
+        self.vector[1] += side * returned.vector[1];
         self.normal += returned.normal;
         self.tangential += returned.tangential;
         self.landing_return += returned.normal;
@@ -300,8 +337,10 @@ pub(crate) fn contact_violation(
     let largest = pairs
         .map(of_pair)
         .fold(ContactViolation::default(), ContactViolation::larger);
+    let u = &solved.end.u;
+    let inside = larger(crossed_edges(search, u), sunk_nodes(search, u));
     ContactViolation {
-        penetration: larger(largest.overlap, crossed_edges(search, &solved.end.u)),
+        penetration: larger(largest.overlap, inside),
         ..largest
     }
 }

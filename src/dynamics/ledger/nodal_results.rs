@@ -4,6 +4,8 @@
 //!
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
+use smallvec::SmallVec;
+
 use crate::contact::tolerances::SOLVED_GAP;
 use crate::contact::{
     ClosedPair, Configurations, Constraint, Crossing, CrossingSense, QuadraticMotion, RowForm,
@@ -16,7 +18,7 @@ use crate::dynamics::results::{
 use crate::dynamics::step::{Equilibrium, Interval, SlaveFaces, StepProblem};
 use crate::lcp::ContactState;
 use crate::linear::larger;
-use crate::model::{ContactMass, Model};
+use crate::model::{Bodies, ContactMass, Model};
 use crate::vectors::cross;
 
 /// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is
@@ -213,8 +215,33 @@ fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a>
     }
 }
 
-/// Resultants of every contact; moments about the origin, forces acting at U_theta.
-pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<ContactResultant> {
+/// Forces of a constraint on the slave surface of its contact. Where the surface touches itself it is no side of the
+/// contact: those on the body with the smaller number, none within one body.
+pub(super) fn forces_on_side(
+    model: &Model,
+    bodies: &Bodies,
+    constraint: &Constraint,
+    force: [f64; 2],
+) -> SmallVec<[(usize, [f64; 2]); 8]> {
+    if !model.contacts[constraint.key.contact()].is_self_contact() {
+        return constraint.forces_on_slave_surface(force).collect();
+    }
+    let body = |node: usize| bodies.of_node[node];
+    let first = constraint.nodes().map(body).min().flatten();
+    let is_within = constraint.nodes().all(|node| body(node) == first);
+    let all = constraint.nodal_forces(force);
+    all.filter(|(node, _)| !is_within && body(*node) == first)
+        .collect()
+}
+
+/// Resultants of every contact in an increment from the displacements `u0`; moments about the origin, forces acting at
+/// U_theta. How far friction is from the cone is measured with the coefficients of the law.
+pub(crate) fn contact_resultants(
+    problem: &StepProblem,
+    bodies: &Bodies,
+    solved: &Solved,
+    (u0, interval): (&[f64], Interval),
+) -> Vec<ContactResultant> {
     let none = ContactResultant {
         min_gap: f64::NAN,
         friction_coefficient: f64::NAN,
@@ -223,13 +250,18 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
     let mut resultants = vec![none; problem.contacts.len()];
     let mut largest_normal = vec![0.0_f64; resultants.len()];
     let mut coefficients = vec![MeanCoefficient::default(); resultants.len()];
-    for (constraint, pair) in solved.contact.forces.iter() {
+    for (constraint, _) in solved.contact.forces.iter() {
+        let r = &mut resultants[constraint.key.contact()];
+        r.min_gap = r.min_gap.min(end_gap(problem, solved, constraint));
+    }
+    let acting = solved.contact.forces.acting();
+    let increment = (u0, &solved.d[..], interval);
+    let bounds = (problem.frictions).bounds(problem.coordinates, increment, acting.clone());
+    for ((constraint, pair), [least, most]) in acting.zip(bounds) {
         let contact = constraint.key.contact();
         let r = &mut resultants[contact];
-        r.min_gap = r.min_gap.min(end_gap(problem, solved, constraint));
-        let Some(pair) = pair else { continue };
         let [pn, pt] = pair.force;
-        for (node, [fx, fy]) in constraint.forces_on_slave_surface(pair.force) {
+        for (node, [fx, fy]) in forces_on_side(problem.model, bodies, constraint, pair.force) {
             let x = problem.position(&solved.equilibrium.u_theta, node);
             r.force[0] += fx;
             r.force[1] += fy;
@@ -239,7 +271,8 @@ pub(crate) fn contact_resultants(problem: &StepProblem, solved: &Solved) -> Vec<
         r.tangential += pt;
         r.closed += 1;
         r.sticking += usize::from(pair.state == ContactState::Stick);
-        r.cone_violation = larger(r.cone_violation, pt.abs() - constraint.mu * pn);
+        let outside = larger(pt.abs() - most * pn, least * pn - pt.abs());
+        r.cone_violation = larger(r.cone_violation, outside);
         largest_normal[contact] = larger(largest_normal[contact], pn);
         coefficients[contact].add(constraint.mu, pn);
     }

@@ -2,21 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use smallvec::SmallVec;
-
-use crate::contact::{Constraint, ConstraintKey, SlaveKey};
-use crate::dynamics::increment::{ContactForces, Solved};
+use crate::contact::{Constraint, ConstraintKey, SlaveKey, SurfaceParts};
+use crate::dynamics::increment::{ContactForces, PairReturn, Solved};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, difference, dot};
 use crate::elements::Motion;
-
-/// Nodes of a slave surface, and what a normal force of 1 of a pair is there.
-type OnSlaveSurface = SmallVec<[(usize, [f64; 2]); 4]>;
-
-/// The nodes of the slave surface that a pair acts on.
-pub(super) fn on_slave_surface(constraint: &Constraint) -> OnSlaveSurface {
-    constraint.forces_on_slave_surface([1.0, 0.0]).collect()
-}
 
 /// Work of the contact forces of a pair in an increment.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -31,8 +21,8 @@ pub(crate) struct PairWork {
     pub friction: f64,
     /// Normal force times the way that the pair slides (energy).
     pub sliding: f64,
-    /// Where it acts. A pair that has opened is no pair of the end any more.
-    pub slaves: OnSlaveSurface,
+    /// Where it acts on the slave surface and on the master. A pair that has opened is no pair of the end any more.
+    pub surfaces: [SurfaceParts; 2],
 }
 
 /// Work of the pairs in an increment whose forces act all the time:
@@ -49,7 +39,7 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
             fit: pn * constraint.shrinkage,
             friction: -(pt * slip),
             sliding: pn * slip.abs(),
-            slaves: on_slave_surface(constraint),
+            surfaces: constraint.surface_parts(),
         }
     };
     let acting = solved
@@ -58,6 +48,33 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
         .acting()
         .map(|(c, pair)| (c, pair.force));
     acting.map(work).collect()
+}
+
+/// Work of friction that landing returns take back, of pairs in contact and of those that have opened.
+pub(super) fn given_back(solved: &Solved) -> Vec<PairWork> {
+    if solved.returned.pairs.is_empty() {
+        return Vec::new();
+    }
+    let acting = solved.contact.forces.acting().map(|(c, _)| c);
+    let opened = solved.returned.release.opened.iter().map(|(c, _)| c);
+    let constraints: BTreeMap<ConstraintKey, &Constraint> =
+        acting.chain(opened).map(|c| (c.key, c)).collect();
+    let work = |pair: &PairReturn| {
+        let constraint = constraints.get(&pair.key)?;
+        let sliding = match constraint.mu > 0.0 {
+            true => pair.friction / constraint.mu,
+            false => 0.0,
+        };
+        Some(PairWork {
+            key: pair.key,
+            normal: 0.0,
+            fit: 0.0,
+            friction: -pair.friction,
+            sliding: -sliding,
+            surfaces: constraint.surface_parts(),
+        })
+    };
+    solved.returned.pairs.iter().filter_map(work).collect()
 }
 
 /// Work that parts the surfaces of fits by the impulses in an increment of length `dt`: the surfaces move with the velocity
@@ -199,7 +216,7 @@ impl EndForces {
                     fit: pn * parts / 2.0,
                     friction: if is_end { friction } else { friction.max(0.0) },
                     sliding: mean * pn * slip.abs(),
-                    slaves: on_slave_surface(constraint),
+                    surfaces: constraint.surface_parts(),
                 });
             }
         }

@@ -1,35 +1,99 @@
-//! Work of friction, depth of wear and heat at the slave nodes since the start. Section 9 of docs/theory.md, Wear and
-//! heat.
+//! Work of friction, depth of wear and heat at the nodes of slave surfaces since the start. Section 9 of docs/theory.md,
+//! Wear and heat.
 
-use std::collections::BTreeMap;
-
-use super::pair_work::{PairWork, on_slave_surface};
-use crate::archive::{Archive, ArchiveError};
-use crate::contact::{Constraint, ConstraintKey};
+use super::contact_ledger::ContactLedger;
+use super::pair_work::{PairWork, given_back};
+use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::contact::SurfaceParts;
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::FrictionResults;
 use crate::dynamics::step::{SlaveFaces, StepProblem};
-use crate::model::Model;
+use crate::linear::{larger, largest};
+use crate::model::{Contact, Model};
 
 /// Sums over the run, where the deck asks for wear or heat.
 pub(crate) struct SurfaceWork {
-    sums: FrictionResults,
+    fields: FrictionResults,
+    /// What has been added to the nodes: work, volume of wear and heat; and the sizes of all that was added.
+    added: [Sums; 2],
+    /// What each contact has to do with it.
+    contacts: Vec<Option<Surfaces>>,
+}
+
+/// Work of friction (energy), volume of wear (length^3) and heat (energy).
+type Sums = [f64; 3];
+
+/// What the work of friction of a contact does to its surfaces.
+#[derive(Debug, Clone, Copy)]
+struct Surfaces {
+    /// Whether both are slaves, where a surface touches itself.
+    both: bool,
+    /// Depth of wear over its measure (length^2/force), and whether this is the work of friction.
+    wear: Option<(f64, bool)>,
+    /// Part of the work of friction that heats each of these surfaces.
+    heat: f64,
+    /// Whether all slave nodes have faces, as those of discs have not.
+    has_faces: bool,
+}
+
+impl Surfaces {
+    /// Those of a contact; none where it has neither wear nor heat.
+    fn new(model: &Model, contact: &Contact, faces: &SlaveFaces) -> Option<Self> {
+        let interaction = &contact.interaction;
+        let both = contact.is_self_contact();
+        // no side of it is the slave that the part is meant for
+        let of_each = |to_slave: f64| if both { 0.5 } else { to_slave };
+        let own = Surfaces {
+            both,
+            wear: interaction.wear.map(|wear| (wear.rate, wear.by_friction)),
+            heat: (interaction.heat).map_or(0.0, |heat| heat.part * of_each(heat.to_slave)),
+            has_faces: (model.slave_nodes(contact).into_iter()).all(|node| faces.has_faces(node)),
+        };
+        (interaction.wear.is_some() || interaction.heat.is_some()).then_some(own)
+    }
+
+    /// Work, volume of wear and heat of all its surfaces, of work of friction and of normal force times way.
+    fn sums(&self, friction: f64, sliding: f64) -> Sums {
+        let count = if self.both { 2.0 } else { 1.0 };
+        let on_faces = if self.has_faces { count } else { 0.0 };
+        let worn = self.wear.map_or(0.0, |(rate, by_friction)| {
+            rate * if by_friction { friction } else { sliding }
+        });
+        [
+            on_faces * friction,
+            on_faces * worn,
+            count * self.heat * friction,
+        ]
+    }
 }
 
 impl SurfaceWork {
-    /// Nothing yet; `start` is 0 at slave nodes, NaN at others.
-    pub fn new(model: &Model, start: &[f64]) -> Self {
+    /// Nothing yet; 0 at slave nodes, NaN at others, and work and wear at those without faces.
+    pub fn new(model: &Model, faces: &SlaveFaces) -> Self {
+        let of_contact = |contact: &Contact| Surfaces::new(model, contact, faces);
+        let contacts: Vec<Option<Surfaces>> = model.contacts.iter().map(of_contact).collect();
+        let where_asked = |is_asked: bool, needs_faces: bool| match is_asked {
+            false => Vec::new(),
+            true => {
+                let start = faces.start.iter().enumerate();
+                let bare = |node: usize| needs_faces && !faces.has_faces(node);
+                start
+                    .map(|(node, &start)| if bare(node) { f64::NAN } else { start })
+                    .collect()
+            }
+        };
         let interactions = || model.contacts.iter().map(|contact| &contact.interaction);
-        let where_asked = |is_asked: bool| if is_asked { start.to_vec() } else { Vec::new() };
         let has_wear = interactions().any(|own| own.wear.is_some());
         let has_heat = interactions().any(|own| own.heat.is_some());
         SurfaceWork {
-            sums: FrictionResults {
+            fields: FrictionResults {
                 coefficient: Vec::new(),
-                work: where_asked(has_wear || has_heat),
-                wear: where_asked(has_wear),
-                heat: where_asked(has_heat),
+                work: where_asked(has_wear || has_heat, true),
+                wear: where_asked(has_wear, true),
+                heat: where_asked(has_heat, false),
             },
+            added: [[0.0; 3]; 2],
+            contacts,
         }
     }
 
@@ -40,22 +104,23 @@ impl SurfaceWork {
             work,
             wear,
             heat,
-        } = &mut self.sums;
+        } = &mut self.fields;
         archive.carry_values(work)?;
         archive.carry_values(wear)?;
-        archive.carry_values(heat)
+        archive.carry_values(heat)?;
+        carry_fields!(archive, self => Self { added; fields, contacts })
     }
 
     /// Work, wear and heat so far.
     pub fn results(&self) -> FrictionResults {
-        self.sums.clone()
+        self.fields.clone()
     }
 
-    /// Enters the works of the pairs in a converged increment. With D the work of friction of a pair and A the area of
-    /// its slave node against the normal,
+    /// Enters the works of the pairs in a converged increment. With D the work of friction of a pair, f the part of a node
+    /// in its normal force and A the area of the node against this force,
     ///
     /// ```text
-    /// w += D/A,  h += k/H Pn |Bt d|/A  or  k/H D/A,  q += eta f D    eq. (9.15)
+    /// w += f D/A,  h += k/H f Pn |Bt d|/A  or  k/H f D/A,  q += eta s f D    eq. (9.15)
     /// ```
     pub fn enter(
         &mut self,
@@ -64,48 +129,74 @@ impl SurfaceWork {
         solved: &Solved,
         works: &[PairWork],
     ) {
-        if self.sums.work.is_empty() {
+        if self.fields.work.is_empty() {
             return;
         }
-        let acting = solved.contact.forces.acting();
-        let constraints: BTreeMap<ConstraintKey, &Constraint> = acting
-            .map(|(constraint, _)| (constraint.key, constraint))
-            .collect();
-        let u = &solved.equilibrium.u_theta;
-        let given_back = solved.returned.pairs.iter().filter_map(|pair| {
-            let constraint = constraints.get(&pair.key)?;
-            let sliding = match constraint.mu > 0.0 {
-                true => pair.friction / constraint.mu,
-                false => 0.0,
-            };
-            Some((
-                pair.key,
-                -pair.friction,
-                -sliding,
-                on_slave_surface(constraint),
-            ))
-        });
-        let works = works
-            .iter()
-            .map(|work| (work.key, work.friction, work.sliding, work.slaves.clone()));
-        for (key, friction, sliding, slaves) in works.chain(given_back) {
-            let interaction = &problem.model.contacts[key.contact()].interaction;
-            if interaction.wear.is_none() && interaction.heat.is_none() {
-                continue;
-            }
-            for (node, normal) in slaves {
-                let area = faces.area(node, normal, |node| problem.position(u, node));
+        for work in works.iter().chain(&given_back(solved)) {
+            self.add(problem, (faces, solved), work);
+        }
+    }
+
+    /// Adds the work of a pair to the nodes of its slave surfaces.
+    fn add(
+        &mut self,
+        problem: &StepProblem,
+        (faces, solved): (&SlaveFaces, &Solved),
+        work: &PairWork,
+    ) {
+        let Some(own) = self.contacts[work.key.contact()] else {
+            return;
+        };
+        let at = |node: usize| problem.position(&solved.equilibrium.u_theta, node);
+        let count = if own.both { 2 } else { 1 };
+        for SurfaceParts { normal, parts } in &work.surfaces[..count] {
+            for &(node, part) in parts {
+                let (friction, sliding) = (part * work.friction, part * work.sliding);
+                let area = match faces.area(node, *normal, at) {
+                    // a node at a corner, whose faces are along the normal
+                    0.0 => faces.whole_area(node, at),
+                    area => area,
+                };
+                let mut added = [0.0; 3];
                 if area > 0.0 {
-                    self.sums.work[node] += friction / area;
+                    self.fields.work[node] += friction / area;
+                    added[0] = friction;
                 }
-                if let Some(wear) = interaction.wear.filter(|_| area > 0.0) {
-                    let by = if wear.by_friction { friction } else { sliding };
-                    self.sums.wear[node] += wear.rate * by / area;
+                if let Some((rate, by_friction)) = own.wear.filter(|_| area > 0.0) {
+                    let by = if by_friction { friction } else { sliding };
+                    self.fields.wear[node] += rate * by / area;
+                    added[1] = rate * by;
                 }
-                if let Some(part) = interaction.heat {
-                    self.sums.heat[node] += part * friction;
+                if let Some(heat) = self.fields.heat.get_mut(node) {
+                    *heat += own.heat * friction;
+                    added[2] = own.heat * friction;
+                }
+                for (k, added) in added.into_iter().enumerate() {
+                    self.added[0][k] += added;
+                    self.added[1][k] += added.abs();
                 }
             }
         }
+    }
+
+    /// The largest difference of what has been added to the nodes from what the contacts have in the ledger, as a part of
+    /// the sizes of all that was added.
+    pub fn difference(&self, ledger: &ContactLedger) -> f64 {
+        let [mut missing, sizes] = self.added;
+        let mut scales = sizes;
+        for (own, (friction, sliding)) in self.contacts.iter().zip(ledger.slid()) {
+            let sums = own.map_or([0.0; 3], |own| own.sums(friction, sliding));
+            for k in 0..3 {
+                missing[k] -= sums[k];
+                scales[k] = larger(scales[k], sums[k].abs());
+            }
+        }
+        let parts = missing.iter().zip(scales);
+        let parts = parts.filter(|(_, scale)| *scale > 0.0);
+        largest(
+            &parts
+                .map(|(missing, scale)| missing / scale)
+                .collect::<Vec<_>>(),
+        )
     }
 }

@@ -680,7 +680,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let Equilibrium { load, internal, .. } = &solved.equilibrium;
         (workspace.seen).take_in(problem, &solved.end.u, [load, internal]);
         let path = (!problem.integration.has_rates).then(|| solved.static_path(interval.dt));
-        let accounted = (self.accounts).enter(problem, &solved, interval, &ledger);
+        let accounted = (self.accounts).enter(problem, (&self.state, &solved), interval, &ledger);
         let (held, part) = held_motions(problem, workspace, &solved);
         let solver = SolverCounts {
             held: part,

@@ -3,9 +3,12 @@
 
 use super::loads::{Interval, TimePoint};
 use super::slave_faces::SlaveFaces;
-use crate::contact::{ClosedPairs, Constraint, position};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint, position};
 use crate::lcp::ContactState;
 use crate::model::{FormerFriction, Friction, Model, Step};
+
+/// Part of a slip that passes leave of it.
+const SOLVED_SLIP: f64 = 1e-9;
 
 /// Friction of the contacts in a step.
 pub(crate) struct Frictions<'m> {
@@ -90,32 +93,75 @@ impl<'m> Frictions<'m> {
         (u0, interval, closed): (&[f64], Interval, &ClosedPairs),
         constraints: &mut [Constraint],
     ) {
-        let normal = self.faces.as_ref().map(|faces| {
-            let mut force = vec![0.0; 2 * x.len()];
-            for constraint in constraints.iter() {
-                let [pn, _] = closed.force(constraint.key);
-                constraint.add_force([pn, 0.0], &mut force);
-            }
-            (faces, force)
-        });
-        let pressure = |node: usize| {
-            let (faces, force) = normal.as_ref()?;
-            let own = [force[2 * node], force[2 * node + 1]];
-            let area = faces.area(node, own, |node| position(x, u0, node));
-            Some(own[0].hypot(own[1]) / area).filter(|pressure| !pressure.is_nan())
-        };
+        let forces = constraints.iter().map(|c| (c, closed.force(c.key)[0]));
+        let normal = self.normal_forces(x.len(), forces);
         for constraint in constraints {
             let friction = &self.of_contacts[constraint.key.contact()];
             constraint.mu_varies = !friction.is_constant();
-            let slave = constraint.nodes().next();
-            let pressure = slave
-                .filter(|_| friction.depends_on_pressure())
-                .and_then(pressure)
-                .unwrap_or(0.0);
+            let pressure = self.pressure(constraint, (x, u0), &normal);
             let slides =
                 constraint.mu_varies && closed.state(constraint.key) != ContactState::Stick;
             let rate = slides.then(|| constraint.slip / interval.dt);
             constraint.mu = friction.at(rate, pressure, (interval.end, self.model));
         }
+    }
+
+    /// The least and the largest coefficient that the law allows every closed pair of a converged increment, whatever
+    /// coefficients the passes had: that of its slip rate Bt d/dt, or any up to that at rest where it has not slipped, under
+    /// the pressure of the forces. A slip that is round-off is none. Their friction is between mu Pn of both.
+    pub fn bounds<'c>(
+        &self,
+        x: &[[f64; 2]],
+        (u0, d, interval): (&[f64], &[f64], Interval),
+        pairs: impl Iterator<Item = (&'c Constraint, &'c ClosedPair)> + Clone,
+    ) -> Vec<[f64; 2]> {
+        let forces = pairs.clone().map(|(c, pair)| (c, pair.force[0]));
+        let normal = self.normal_forces(x.len(), forces);
+        let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| {
+            let friction = &self.of_contacts[constraint.key.contact()];
+            let pressure = self.pressure(constraint, (x, u0), &normal);
+            let at = |rate: Option<f64>| friction.at(rate, pressure, (interval.end, self.model));
+            let slip = constraint.tangential_motion(d).abs();
+            let noise = constraint.slip_round_off((x, u0)) + SOLVED_SLIP * slip;
+            let [slower, faster] =
+                [(slip - noise).max(0.0), slip + noise].map(|slip| at(Some(slip / interval.dt)));
+            match pair.state == ContactState::Stick || slip <= noise {
+                true => [0.0, at(None).max(faster)],
+                false => [slower.min(faster), slower.max(faster)],
+            }
+        };
+        pairs.map(of_pair).collect()
+    }
+
+    /// N of eq. (3.13) over the dofs of all nodes from the forces Pn of constraints, none where no pressure counts.
+    fn normal_forces<'c>(
+        &self,
+        nodes: usize,
+        forces: impl Iterator<Item = (&'c Constraint, f64)>,
+    ) -> Vec<f64> {
+        if self.faces.is_none() {
+            return Vec::new();
+        }
+        let mut normal = vec![0.0; 2 * nodes];
+        forces.for_each(|(constraint, pn)| constraint.add_force([pn, 0.0], &mut normal));
+        normal
+    }
+
+    /// Pressure on the slave node of a constraint from the forces N at the nodes, 0 where its friction does not depend on
+    /// it, eq. (3.13).
+    fn pressure(
+        &self,
+        constraint: &Constraint,
+        (x, u0): (&[[f64; 2]], &[f64]),
+        normal: &[f64],
+    ) -> f64 {
+        let of_slave = || {
+            let (faces, node) = (self.faces.as_ref()?, constraint.nodes().next()?);
+            let own = [normal[2 * node], normal[2 * node + 1]];
+            let area = faces.area(node, own, |node| position(x, u0, node));
+            Some(own[0].hypot(own[1]) / area).filter(|pressure| !pressure.is_nan())
+        };
+        let depends = self.of_contacts[constraint.key.contact()].depends_on_pressure();
+        depends.then(of_slave).flatten().unwrap_or(0.0)
     }
 }

@@ -100,25 +100,48 @@ impl SlaveFaces {
     /// uniform pressure give this pressure. In a body of revolution t is 2 pi r at a third of the segment from the node,
     /// eq. (2.35), and at the node itself where the side has a node between its corners.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
-        let from = self.faces.partition_point(|face| face.node < node);
-        let own = self.faces[from..]
-            .iter()
-            .take_while(|face| face.node == node);
         let size = force[0].hypot(force[1]);
+        // n l = (e_y, -e_x): on the right of the direction from a to b
+        self.sum(node, at, |e| {
+            (force[1] * e[0] - force[0] * e[1]).max(0.0) / size
+        })
+    }
+
+    /// Area of a node whatever its faces are turned to.
+    pub fn whole_area(&self, node: usize, at: impl Fn(usize) -> [f64; 2]) -> f64 {
+        self.sum(node, at, |e| e[0].hypot(e[1]))
+    }
+
+    /// Whether a node has faces.
+    pub fn has_faces(&self, node: usize) -> bool {
+        self.of(node).next().is_some()
+    }
+
+    fn of(&self, node: usize) -> impl Iterator<Item = &SlaveFace> {
+        let from = self.faces.partition_point(|face| face.node < node);
+        let all = self.faces[from..].iter();
+        all.take_while(move |face| face.node == node)
+    }
+
+    /// Sum over the segments of a node of t w l, with a length l of the way from one end to the other.
+    fn sum(
+        &self,
+        node: usize,
+        at: impl Fn(usize) -> [f64; 2],
+        length: impl Fn([f64; 2]) -> f64,
+    ) -> f64 {
         let mut area = 0.0;
-        for face in own {
+        for face in self.of(node) {
             let [a, b] = face.segment.map(&at);
-            // n l = (e_y, -e_x): on the right of the direction from a to b
-            let e = [b[0] - a[0], b[1] - a[1]];
-            let against = force[1] * e[0] - force[0] * e[1];
-            if against > 0.0 {
+            let length = length([b[0] - a[0], b[1] - a[1]]);
+            if length > 0.0 {
                 let (own, other) = if face.segment[0] == node {
                     (a, b)
                 } else {
                     (b, a)
                 };
                 let radius = own[0] + (other[0] - own[0]) * face.place;
-                area += face.thickness.at(radius) * against / size * face.part;
+                area += face.thickness.at(radius) * length * face.part;
             }
         }
         area
