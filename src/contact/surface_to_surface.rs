@@ -830,6 +830,22 @@ mod tests {
     }
 
     #[test]
+    fn the_parts_of_its_force_on_each_surface_sum_to_one() {
+        let at = between_displacements(RowForm::DiscreteGradient, &U0, &U1);
+        let surfaces = constraint(source(), &at).surface_parts();
+        for (surface, nodes) in surfaces.iter().zip([[0, 1, 2], [3, 4, 5]]) {
+            let mut found: Vec<usize> = surface.parts.iter().map(|(node, _)| *node).collect();
+            found.sort_unstable();
+            assert_eq!(found, nodes);
+            let sum: f64 = surface.parts.iter().map(|(_, part)| part).sum();
+            assert!((sum - 1.0).abs() < 1e-14, "{sum}");
+        }
+        let [slave, master] = surfaces.map(|surface| surface.normal);
+        assert!((slave[0] + master[0]).abs() < 1e-14 && (slave[1] + master[1]).abs() < 1e-14);
+        assert!(slave[1] > 0.9, "out of the master");
+    }
+
+    #[test]
     fn an_overlap_at_the_start_stays() {
         // slave nodes below the master at the start, deeper at the end
         let (mut u0, mut u1) = (U0, U1);

@@ -662,14 +662,14 @@ const LARGEST_ELASTIC: Meaning = (
 
 #[rustfmt::skip]
 const CONTACT: [DatasetEntry<ContactResultant>; 27] = [
-    ("force", "force", "contact force on the slave surface", Vector(|c| c.force)),
+    ("force", "force", "contact force on the slave surface, or on the first body of each pair where a surface touches itself", Vector(|c| c.force)),
     ("moment", "force*length", "moment of the force about the origin", Real(|c| c.moment)),
     ("normal", "force", "sum of the normal forces Pn", Real(|c| c.normal)),
     ("tangential", "force", "sum of the tangential forces Pt", Real(|c| c.tangential)),
     ("min_gap", "length", "smallest gap of the candidate pairs, NaN without", Real(|c| c.min_gap)),
     ("friction_coefficient", "1",
      "coefficient of friction of the closed pairs, mean by Pn, NaN without", Real(|c| c.friction_coefficient)),
-    ("cone_violation", "1", "max(|Pt| - mu Pn, 0) / max(Pn)", Real(|c| c.cone_violation)),
+    ("cone_violation", "1", "max(|Pt| - mu Pn, 0) / max(Pn), where a pair slips ||Pt| - mu Pn| / max(Pn), mu that of the law", Real(|c| c.cone_violation)),
     ("impulse_cone_violation", "1",
      "the same of the total impulses of the pairs in the increment, with impacts and what is given back",
      Real(|c| c.impulse_cone_violation)),

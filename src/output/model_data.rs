@@ -10,8 +10,8 @@ use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
 use crate::materials::{Law, Polynomial};
 use crate::model::{
-    ContactFormulation, Disc, ElementType, Material, Model, Procedure, Scheme, Segment, Step,
-    Surface, SurfaceKind, Variation,
+    ContactFormulation, Disc, ElementType, FrictionLaw, Heat, Material, Model, Procedure, Scheme,
+    Segment, Step, Surface, SurfaceKind, Variation,
 };
 
 /// Writes the datasets and groups into `/model`.
@@ -113,6 +113,16 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
             &model.friction_range(index),
             FRICTION,
         )?;
+        write_friction(&at, model, index)?;
+        if let Some(Heat { part, to_slave }) = contact.interaction.heat {
+            // of both sides where a surface touches itself
+            let told = if contact.is_self_contact() {
+                part
+            } else {
+                part * to_slave
+            };
+            constant(&at, "heat", &[], &[told], HEAT)?;
+        }
         let acts = |step: &Step| u8::from(!step.contacts.removed.contains(&index));
         let acts: Vec<u8> = model.steps.iter().map(acts).collect();
         constant(&at, "acts", &[acts.len()], &acts, ACTS)?;
@@ -121,6 +131,52 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
         }
     }
     Ok(())
+}
+
+/// The law of friction of a contact in every step.
+fn write_friction(at: &Group, model: &Model, contact: usize) -> hdf5::Result<()> {
+    let own = &model.contacts[contact].interaction.friction;
+    let (mut decays, mut limits, mut ramps, mut rows) = (vec![], vec![], vec![], vec![]);
+    for (number, step) in model.steps.iter().enumerate() {
+        let mut changes = step.contacts.friction.iter();
+        let change = changes.find(|change| change.contact == contact);
+        let friction = change.map_or(own, |change| &change.friction);
+        decays.push(match &friction.law {
+            FrictionLaw::Decay {
+                at_rest,
+                sliding,
+                decay,
+            } => [*at_rest, *sliding, *decay],
+            FrictionLaw::Rough => [friction.at_rest(0.0), friction.at_rest(0.0), 0.0],
+            FrictionLaw::Table(curves) => {
+                for curve in curves {
+                    let of_point =
+                        |&[rate, mu]: &[f64; 2]| [(number + 1) as f64, curve.pressure, rate, mu];
+                    rows.extend(curve.points.iter().map(of_point));
+                }
+                [f64::NAN; 3]
+            }
+        });
+        limits.push(friction.shear_limit);
+        ramps.push(u8::from(change.is_some_and(|change| change.from.is_some())));
+    }
+    let steps = model.steps.len();
+    constant(
+        at,
+        "friction_decay",
+        &[steps, 3],
+        decays.as_flattened(),
+        FRICTION_DECAY,
+    )?;
+    constant(
+        at,
+        "friction_rows",
+        &[rows.len(), 4],
+        rows.as_flattened(),
+        FRICTION_ROWS,
+    )?;
+    constant(at, "shear_limit", &[steps], &limits, SHEAR_LIMIT)?;
+    constant(at, "friction_ramps", &[steps], &ramps, FRICTION_RAMPS)
 }
 
 /// Radius of a disc that is slave, and the arcs of its master.
@@ -304,6 +360,26 @@ const ARC_CENTRES: Meaning = (
 const ACTS: Meaning = (
     "1",
     "whether the contact acts in each step: 1, or 0 where it is removed",
+);
+const FRICTION_DECAY: Meaning = (
+    "1",
+    "of every step the coefficient of friction at rest, that of fast slip, and the decay (time/length) from the one to the other; NaN of a table",
+);
+const FRICTION_ROWS: Meaning = (
+    "1",
+    "rows of tables of friction: step, pressure (force/length^2), slip rate (length/time), coefficient",
+);
+const SHEAR_LIMIT: Meaning = (
+    "force/length^2",
+    "largest shear stress of friction in every step; infinite without",
+);
+const FRICTION_RAMPS: Meaning = (
+    "1",
+    "whether another friction gives way to this one in each step",
+);
+const HEAT: Meaning = (
+    "1",
+    "part of the energy dissipated by friction that is in FRICTION_HEAT",
 );
 const FRICTION: Meaning = (
     "1",

@@ -45,6 +45,7 @@ fn agrees_with_the_ledger(last: &IncrementReport, by_friction: bool, what: &str)
     println!("{what}: heat {heat:.6}, error {error:.1e}");
     assert!(dissipated > 0.05, "{what}: {dissipated}");
     assert!(error < 1e-12 * dissipated, "{what}: {heat} {dissipated}");
+    assert!(last.surface_work_difference < 1e-12, "{what}");
     let factor = if by_friction { RATE } else { RATE / MU };
     let friction = &last.nodal.friction;
     for (work, wear) in friction.work.iter().zip(&friction.wear) {

@@ -101,6 +101,11 @@ def less_friction(file: h5py.File) -> None:
     file[f"model/contacts/{CONTACT}/friction"][...] *= 0.5
 
 
+def less_of_the_law(file: h5py.File) -> None:
+    """A law of less friction than the forces have: what a run with a wrong coefficient writes."""
+    file[f"model/contacts/{CONTACT}/friction_decay"][:, :2] *= 0.9
+
+
 SPOILED: dict[str, tuple[Spoil, str]] = {
     "a displacement": (add("VTKHDF/PointData/U", 1e-6), "stresses"),
     "a velocity": (add("VTKHDF/PointData/V", 1e-6), "kinetic energy"),
@@ -131,6 +136,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     "a thickness": (add("model/thickness", 1e-6), "mass"),
     "a coordinate": (add("model/coordinates", 1e-6), "stresses"),
     "friction": (less_friction, "cone"),
+    "the law of friction": (less_of_the_law, "cone"),
     "cone": (add(f"history/contact/{CONTACT}/cone_violation", 1e-6), "cone"),
     "impulse cone": (add(f"history/contact/{CONTACT}/impulse_cone_violation", 1e-6), "cone"),
     "a normal force": (add(f"history/contact/{CONTACT}/normal", -2.0), "cone"),
@@ -188,7 +194,7 @@ def test_the_run_keeps_its_checks_in_one_table(result: Path, tmp_path: Path) -> 
     with Result(result) as read:
         checks = {check.name.rpartition("/")[2]: check for check in own_checks(read)}
         # two bodies, one of which is clamped: no momentum is kept
-        assert {*checks} == {*OWN, "penetration"} - {"momentum"}
+        assert {*checks} == {*OWN, "penetration"} - {"momentum", "surface_work"}
         bounds = {name: check.bound for name, check in checks.items() if name != "penetration"}
         assert bounds == {name: OWN[name] for name in bounds}
         assert np.isnan(checks["penetration"].bound)
@@ -238,6 +244,20 @@ def test_edges_that_cross_beyond_what_is_recorded_fail(job: Job, tmp_path: Path)
     assert certificate.holds, certificate.table()
     with Result(path) as result:
         assert result.history.certificate.penetration.max() > 1e-3
+
+    def forget(file: h5py.File) -> None:
+        file["history/certificate/penetration"][...] = 0.0
+
+    assert broken(spoiled(path, tmp_path, forget)) == ["crossing"]
+
+
+def test_nodes_between_means_are_as_deep_as_is_recorded(job: Job, tmp_path: Path) -> None:
+    path = job(Deck.read(DECKS / "quadratic_means.inp"), "--frames", "1")
+    with Result(path) as result:
+        assert result.history.certificate.penetration.max() > 1e-4
+    found = next(check for check in certify(path).checks if check.name == "penetration")
+    with Result(path) as result:
+        assert result.history.certificate.penetration.max() == pytest.approx(found.value, rel=1e-6)
 
     def forget(file: h5py.File) -> None:
         file["history/certificate/penetration"][...] = 0.0
@@ -306,7 +326,7 @@ HEAD, 2, 2, -0.05
     "name",
     [
         *("assembly", "connections", "drop", "every_card", "friction", "quadratic", "rigid_floor"),
-        *("static_steps", "steps"),
+        *("static_steps", "steps", "quadratic_means", "self_contact"),
     ],
 )
 def test_decks_of_all_kinds_hold(job: Job, name: str) -> None:

@@ -27,7 +27,7 @@ TEXTS = {
     "cone": "force outside of Coulomb's cone, part of the largest",
     "slip": "slip of nodes inside of the cone, in lengths",
     "penetration": "depth of slave nodes inside of masters, in edges",
-    "crossing": "how far edges cross beyond what the history tells, in edges",
+    "crossing": "how far edges cross, or nodes are between means, beyond what the history tells, in edges",
     "balance": "energy balance from its accounts, part of the largest energy",
     "signs": "energy given back by what dissipates, part of the largest energy",
     "accounts": "sums that must agree, part of the largest value",

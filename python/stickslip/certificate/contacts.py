@@ -36,6 +36,56 @@ class Disc:
 
 
 @dataclass(frozen=True)
+class Law:
+    """Friction of a contact in a step, eqs (3.10), (3.12) and (3.14)."""
+
+    decay: Array
+    """Coefficients at rest and of fast slip, and the decay from the one to the other; NaN of a table."""
+    rows: Array
+    """Rows of a table: pressure, slip rate, coefficient."""
+    limit: float
+    """Largest shear stress."""
+    ramps: bool
+    """Whether another friction gives way to it."""
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        """Whether the coefficient depends on the pressure."""
+        return bool(np.isfinite(self.limit)) or len(np.unique(self.rows[:, 0])) > 1
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the coefficient is always the same."""
+        at_rest, sliding, decay = self.decay
+        return (at_rest == sliding or decay == 0.0) and not self.ramps and not self.depends_on_pressure
+
+    def at(self, rate: float, pressure: float) -> float:
+        """Coefficient at a slip rate and a pressure."""
+        if np.isfinite(self.decay).all():
+            at_rest, sliding, decay = self.decay
+            moves = at_rest != sliding and decay != 0.0
+            mu = sliding + (at_rest - sliding) * np.exp(-decay * rate) if moves else at_rest
+        else:
+            curves = np.unique(self.rows[:, 0])
+            of_curves = [np.interp(rate, *self.rows[self.rows[:, 0] == p][:, 1:].T) for p in curves]
+            mu = np.interp(pressure, curves, of_curves)
+        return float(min(mu, self.limit / pressure) if mu * pressure > self.limit else mu)
+
+    def bounds(self, slip: float, noise: float, pressure: float, dt: float) -> tuple[float, float]:
+        """The least and the largest coefficient of a slip in an increment, which may be off by a noise; from zero on where
+        this may be all of it."""
+        slower, faster = (self.at(max(s, 0.0) / dt, pressure) for s in (slip - noise, slip + noise))
+        if slip <= noise:
+            return 0.0, max(self.at(0.0, pressure), faster)
+        return min(slower, faster), max(slower, faster)
+
+    def most(self, pressure: float) -> float:
+        """The largest coefficient at any slip rate."""
+        rates = [0.0, np.inf, *self.rows[:, 1]]
+        return max(self.at(rate, pressure) for rate in rates)
+
+
+@dataclass(frozen=True)
 class Contact:
     """A contact of the deck."""
 
@@ -55,6 +105,10 @@ class Contact:
     """Slave faces of means [F, 2], their body on the left."""
     disc: Disc | None = None
     """Set where the slave is a disc."""
+    laws: tuple[Law, ...] = ()
+    """Friction in each step; none in a file of an older program."""
+    heat: float = 0.0
+    """Part of what friction dissipates that heats the nodes."""
 
     @property
     def is_constant(self) -> bool:
@@ -81,10 +135,26 @@ def contacts(result: Result) -> list[Contact]:
             disc = Disc(float(radius), int(arm), arcs, centres)
         kind = result.file[f"history/contact/{name}"].attrs["formulation"]
         faces = None if kind == EXACT else result.read(f"{at}/{name}/slave_faces")
+        heat = float(result.read(f"{at}/{name}/heat")) if f"{at}/{name}/heat" in result.file else 0.0
+        laws = _laws(result, f"{at}/{name}")
+        has_means = kind != EXACT
         found.append(
-            Contact(name, slaves, segments, friction, acts, body, kind != EXACT, faces, disc)
+            Contact(name, slaves, segments, friction, acts, body, has_means, faces, disc, laws, heat)
         )
     return found
+
+
+def _laws(result: Result, at: str) -> tuple[Law, ...]:
+    """Friction of a contact in all steps."""
+    if f"{at}/friction_decay" not in result.file:
+        return ()
+    parts = ("friction_decay", "friction_rows", "shear_limit", "friction_ramps")
+    decays, rows, limits, ramps = (result.read(f"{at}/{part}") for part in parts)
+    rows = rows.reshape(-1, 4)
+    return tuple(
+        Law(decay, rows[rows[:, 0] == step + 1][:, 1:], float(limit), bool(ramp))
+        for step, (decay, limit, ramp) in enumerate(zip(decays, limits, ramps, strict=True))
+    )
 
 
 def disc_gap(contact: Contact, disc: Disc, start: Array, x: Array) -> float:
@@ -177,17 +247,21 @@ class Touch:
 
 def touching(
     x: Array, way: Array, found: list[Contact], nodes: Integers, limit: float
-) -> tuple[list[Touch], Array, Array]:
+) -> tuple[list[Touch], Array, Array, set[int]]:
     """Slave nodes among `nodes` that are on segments; the nearest distance of each node from a line,
-    and of a slave node from a segment beyond the way of the increment [N]."""
+    and of a slave node from a segment beyond the way of the increment [N]; and the nodes of the corners
+    that others of them meet."""
     nearest = np.full(len(x), np.inf)
     reached = np.full(len(x), np.inf)
     touches = []
+    corners: set[int] = set()
     for contact in found:
         for near in places(x, way, np.intersect1d(contact.slaves, nodes), contact):
             least = near.distance.min(axis=1)
             for row in np.flatnonzero(least > limit):
                 least[row], ends = _at_corner(x, way, contact, int(near.nodes[row]), least[row])
+                if least[row] <= limit:
+                    corners |= ends
                 for end in ends:
                     nearest[end] = min(nearest[end], least[row])
             nearest[near.nodes] = np.minimum(nearest[near.nodes], least)
@@ -198,7 +272,7 @@ def touching(
                 touches.append(Touch(contact, int(near.nodes[row]), (int(one), int(two))))
                 for end in (one, two):
                     nearest[end] = min(nearest[end], near.distance[row, segment])
-    return touches, nearest, reached
+    return touches, nearest, reached, corners
 
 
 def _at_corner(

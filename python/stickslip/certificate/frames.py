@@ -49,6 +49,12 @@ SLIP = 1e-8
 CONE = 1e-8
 """Forces outside of the cone, as a part of the largest force of the frame."""
 
+AREA = 1e-2
+"""Change of the area of a node in an increment, as a part of it: the file tells pressures of its middle or end."""
+
+HEAT = 1e-10
+"""Difference of sums over nodes from sums over pairs that is round-off."""
+
 EULER = 3
 """The backward Euler rule among the schemes of /model/steps."""
 
@@ -174,6 +180,7 @@ class Frames:
                 self._equilibrium(frame, increment)
             self._law(frame, increment)
             self._sets(frame, row)
+            self._heat(frame, row)
             last = (row, u)
 
     def _finite(self, frame: Frame) -> None:
@@ -274,6 +281,18 @@ class Frames:
                     if field in members:
                         differ = (members[field][row] != frame[field][at]).any()
                         check.add(float(differ), 0.0, f"{field} of the set {name}, {place}")
+
+    def _heat(self, frame: Frame, row: int) -> None:
+        """Heat of all nodes is that of the contacts."""
+        if "FRICTION_HEAT" not in self.result.frames.fields:
+            return
+        work = {one.name: self.result.contact[one.name]["friction_dissipation"] for one in self.contacts}
+        largest = sum(one.heat * float(np.abs(work[one.name]).max(initial=0.0)) for one in self.contacts)
+        told = sum(one.heat * float(work[one.name][row]) for one in self.contacts)
+        error = abs(float(np.nansum(frame["FRICTION_HEAT"])) - told)
+        if largest > 0.0:
+            place = f"FRICTION_HEAT of all nodes, t = {frame.time:g}"
+            self.checks["accounts"].add(error / largest, HEAT, place)
 
     def _sum(self, values: Array) -> Array:
         """Sums of nodal values over the bodies."""
@@ -474,7 +493,7 @@ class Frames:
                 force[nodes] = 0.0
         contacts, discs = self._discs(contacts, x, status, f"t = {frame.time:g}")
         closed, active = np.setdiff1d(closed, discs), np.setdiff1d(active, discs)
-        touches, nearest, reached = touching(x, way, contacts, active, TOUCH)
+        touches, nearest, reached, corners = touching(x, way, contacts, active, TOUCH)
         noise = 16 * EPS * np.abs(x).max() / self._edge
         place = f"t = {frame.time:g}"
         self.checks["gap"].add(
@@ -499,7 +518,7 @@ class Frames:
         self.checks["complementarity"].add(
             nearest[loaded], TOUCH + noise, f"{{}} of {len(loaded)} loaded nodes, {place}"
         )
-        self._cones(frame, increment, touches, status)
+        self._cones(frame, increment, touches, corners)
 
     def _means(
         self, frame: Frame, increment: Increment, contacts: list[Contact]
@@ -550,7 +569,7 @@ class Frames:
             if self._is_shared(contact):
                 self.checks["cone"].skip("nodes of means that are in several contacts are left out")
                 continue
-            self._mean_cones(means, closed, frame, told)
+            self._mean_cones(means, closed, frame, increment, told)
         return [contact for contact in contacts if not contact.has_means]
 
     def _is_shared(self, contact: Contact) -> bool:
@@ -559,7 +578,9 @@ class Frames:
         nodes = [np.append(one.slaves, one.segments.ravel()) for one in others]
         return bool(nodes) and bool(np.isin(contact.slaves, np.concatenate(nodes)).any())
 
-    def _mean_cones(self, means: Means, closed: list[Mean], frame: Frame, told: bool) -> None:
+    def _mean_cones(
+        self, means: Means, closed: list[Mean], frame: Frame, increment: Increment, told: bool
+    ) -> None:
         """The forces of closed means: what nodal forces they leave, the cone, and slips."""
         forces, is_told, left = means.forces(closed, frame["CONTACT_FORCE"])
         place = f"{means.contact.name}, t = {frame.time:g}"
@@ -571,8 +592,8 @@ class Frames:
             if not one:
                 continue
             at = f"mean at node {self.result.node_labels[mean.node]}, t = {frame.time:g}"
-            outside = max(abs(tangential) - friction * normal, -normal)
-            self.checks["cone"].add(outside / self.force_scale, MEANS, at)
+            slip = (mean.slip, (SLIP + noise) * self._edge) if told and not mean.moved else None
+            self._cone(frame, increment, means.contact, mean.node, (normal, tangential), slip, MEANS, at)
             if not told or not means.contact.is_constant or friction == 0.0:
                 continue
             room = friction * normal - abs(tangential)
@@ -621,17 +642,44 @@ class Frames:
             off[asked], bound, f"GAP of {{}} of {len(asked)} open nodes, {place}"
         )
 
-    def _cones(
-        self, frame: Frame, increment: Increment, touches: list[Touch], status: Integers
+    def _cone(
+        self,
+        frame: Frame,
+        increment: Increment,
+        contact: Contact,
+        node: int,
+        force: tuple[float, float],
+        slip: tuple[float, float] | None,
+        bound: float,
+        at: str,
     ) -> None:
-        """Cone and slip of the nodes that touch one segment, and are no end of a touched one."""
+        """Friction of a node or mean beside that of the law at its slip, which may be off by a noise, and its pressure."""
+        normal, tangential = force
+        least, most, law = 0.0, float(contact.friction.max()), None
+        if contact.laws and not contact.laws[increment.step].ramps:
+            law = contact.laws[increment.step]
+            pressure = float(frame["CONTACT_PRESSURE"][node]) if law.depends_on_pressure else 0.0
+            if np.isfinite(pressure):
+                most = law.most(pressure)
+                if slip is not None and increment.dt > 0.0:
+                    least, most = law.bounds(abs(slip[0]), slip[1], pressure, increment.dt)
+        if law is not None and law.depends_on_pressure:
+            # the pressure of the law is that of the area at the start
+            bound += AREA * most * normal / self.force_scale
+        outside = max(abs(tangential) - most * normal, least * normal - abs(tangential), -normal)
+        self.checks["cone"].add(outside / self.force_scale, bound, at)
+
+    def _cones(
+        self, frame: Frame, increment: Increment, touches: list[Touch], corners: set[int]
+    ) -> None:
+        """Cone and slip of the nodes that touch one segment, and are no end of a touched one nor at a touched corner."""
         if increment.start is None and increment.scheme != 0:
             return
         x1 = self.result.coordinates + frame["U"]
         halfway = increment.scheme == 1
         known = increment.start is not None
         x0 = x1 if increment.start is None else self.result.coordinates + increment.start
-        ends = {node for touch in touches for node in touch.segment}
+        ends = corners | {node for touch in touches for node in touch.segment}
         count: dict[int, int] = {}
         for touch in touches:
             count[touch.node] = count.get(touch.node, 0) + 1
@@ -645,16 +693,17 @@ class Frames:
             own = split(x0, x1, force[touch.node], touch, halfway)
             if own.has_slid_on:
                 continue
-            friction = float(touch.contact.friction.max())
             label = self.result.node_labels[touch.node]
-            outside = max(abs(own.tangential) - friction * own.normal, -own.normal)
             at = f"node {label}, {place}"
-            self.checks["cone"].add(outside / self.force_scale, CONE, at)
+            noise = 64 * EPS * np.abs(x1).max() / self._edge
+            length = float(np.linalg.norm(x1[touch.segment[1]] - x1[touch.segment[0]]))
+            slip = (own.slip * length, (SLIP + noise) * length) if known else None
+            self._cone(frame, increment, touch.contact, touch.node, (own.normal, own.tangential), slip, CONE, at)
+            friction = float(touch.contact.friction.max())
             if not known or not touch.contact.is_constant or friction == 0.0:
                 continue
             # inside of the cone nothing slips, on it friction opposes the slip
             room = friction * own.normal - abs(own.tangential)
-            noise = 64 * EPS * np.abs(x1).max() / self._edge
             if room > 1e-6 * self.force_scale:
                 self.checks["slip"].add(abs(own.slip), SLIP + noise, at)
             elif abs(own.slip) > SLIP + noise:

@@ -16,6 +16,7 @@ OWN = {
     "cone": 1e-9,
     "impulse_cone": 1e-9,
     "balance": 1e-8,
+    "surface_work": 1e-10,
     "momentum": 1e-9,
 }
 """What the program has measured itself, with bounds."""

@@ -60,8 +60,10 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             if not contact.acts[fits.step(frame) - 1]:
                 continue
             found = _in_bodies(x, bodies, contact, result.body)
+            if contact.has_means:
+                crossed = max([crossed, *(one.depth for one in found)])
             found += _in_obstacles(x, bodies, obstacles, contact, gone)
-            depth = max((one.depth for one in found), default=depth)
+            depth = max([depth, *(one.depth for one in found)])
             count += len(contact.slaves)
             if not contact.has_means:
                 crossed = max(crossed, _crossed(x, bodies, contact))

@@ -68,19 +68,28 @@ impl Surfaces {
 }
 
 impl SurfaceWork {
-    /// Nothing yet; 0 at slave nodes, NaN at others, and work and wear at those without faces.
+    /// Nothing yet; 0 at the nodes of slave surfaces with wear or heat, NaN at others, and work and wear at those without
+    /// faces.
     pub fn new(model: &Model, faces: &SlaveFaces) -> Self {
         let of_contact = |contact: &Contact| Surfaces::new(model, contact, faces);
         let contacts: Vec<Option<Surfaces>> = model.contacts.iter().map(of_contact).collect();
-        let where_asked = |is_asked: bool, needs_faces: bool| match is_asked {
-            false => Vec::new(),
-            true => {
-                let start = faces.start.iter().enumerate();
-                let bare = |node: usize| needs_faces && !faces.has_faces(node);
-                start
-                    .map(|(node, &start)| if bare(node) { f64::NAN } else { start })
-                    .collect()
+        let [mut start, mut on_faces] = [(); 2].map(|()| vec![f64::NAN; model.mesh.node_count()]);
+        let with_own = model.contacts.iter().zip(&contacts);
+        for (contact, _) in with_own.filter(|(_, own)| own.is_some()) {
+            let nodes = match model.disc(contact) {
+                Some(disc) => vec![disc.centre],
+                None => model.surfaces[contact.slave].nodes(&model.mesh),
+            };
+            for node in nodes {
+                start[node] = 0.0;
+                if faces.has_faces(node) {
+                    on_faces[node] = 0.0;
+                }
             }
+        }
+        let where_asked = |is_asked: bool, start: &[f64]| match is_asked {
+            true => start.to_vec(),
+            false => Vec::new(),
         };
         let interactions = || model.contacts.iter().map(|contact| &contact.interaction);
         let has_wear = interactions().any(|own| own.wear.is_some());
@@ -88,9 +97,9 @@ impl SurfaceWork {
         SurfaceWork {
             fields: FrictionResults {
                 coefficient: Vec::new(),
-                work: where_asked(has_wear || has_heat, true),
-                wear: where_asked(has_wear, true),
-                heat: where_asked(has_heat, false),
+                work: where_asked(has_wear || has_heat, &on_faces),
+                wear: where_asked(has_wear, &on_faces),
+                heat: where_asked(has_heat, &start),
             },
             added: [[0.0; 3]; 2],
             contacts,

@@ -165,3 +165,66 @@ impl<'m> Frictions<'m> {
         depends.then(of_slave).flatten().unwrap_or(0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Configurations, RowForm, testing};
+    use crate::model::FrictionLaw;
+
+    #[test]
+    fn the_bounds_are_those_of_the_law_whatever_coefficient_a_pair_had() {
+        let friction = Friction::from(FrictionLaw::Decay {
+            at_rest: 0.4,
+            sliding: 0.2,
+            decay: 3.0,
+        });
+        let (model, dt) = (Model::default(), 0.5);
+        let point = |total: f64| TimePoint {
+            step: total,
+            total,
+            period: dt,
+        };
+        let interval = Interval {
+            start: point(0.0),
+            end: point(dt),
+            dt,
+        };
+        let frictions = Frictions {
+            model: &model,
+            of_contacts: vec![FrictionOfContact {
+                friction: &friction,
+                from: None,
+            }],
+            faces: None,
+        };
+        let x = [[-0.5, 0.0], [0.0, 0.0], [-2.0, 0.0]];
+        let of_slip = |slip: f64, state: ContactState| {
+            let (u0, u) = ([0.0; 6], [slip, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            let form = RowForm::End;
+            let at = Configurations {
+                form,
+                x: &x,
+                u0: &u0,
+                u: &u,
+            };
+            let mut constraint = Constraint::new(testing::face(), &at);
+            // a wrong one, which the check must not take over
+            constraint.mu = 9.0;
+            let pair = ClosedPair::new(&constraint, [1.0, 0.3], state);
+            let pairs = std::iter::once((&constraint, &pair));
+            frictions.bounds(&x, (&u0, &u, interval), pairs)[0]
+        };
+        let near = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+            assert!(
+                (a - c).abs() < 1e-8 && (b - d).abs() < 1e-8,
+                "{a} {b}, {c} {d}"
+            );
+        };
+        let mu = friction.at(0.2, 0.0);
+        near(of_slip(0.1, ContactState::SlipPlus), [mu, mu]);
+        near(of_slip(-0.1, ContactState::SlipMinus), [mu, mu]);
+        near(of_slip(0.0, ContactState::Stick), [0.0, 0.4]);
+        near(of_slip(1e-16, ContactState::SlipPlus), [0.0, 0.4]);
+    }
+}
