@@ -449,9 +449,10 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// Coefficient of friction of the closed pairs, their mean by Pn; NaN without any.
     pub friction_coefficient: f64,
-    /// max(|Pt| - mu Pn, 0) / max(Pn); 0 without contact.
+    /// max(|Pt| - mu Pn, 0) / max(Pn), of a pair that slips ||Pt| - mu Pn| / max(Pn); 0 without contact; mu is that of the
+    /// law.
     pub cone_violation: f64,
-    /// The same of the total impulses of the pairs in the increment, with impacts and what is given back; of a
+    /// Distance from the cone of the total impulses of the pairs in the increment, with impacts and what is given back; of a
     /// pair whose total pulls, the pull.
     pub impulse_cone_violation: f64,
     /// Moment of the force about the reference node of a rigid master (force length); 0 for other
