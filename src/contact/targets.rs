@@ -520,14 +520,7 @@ impl SlaveNode<'_> {
         // distance from the corner along the sum of both tangents, whose length is 2 at most
         let offset = (p.xi - 1.0) * p.length + q.xi * q.length;
         let length = p.length.min(q.length);
-        let turn = self.corner_sine(i, j);
-        // the surfaces of a fit are parted along the normal, which that of one side alone would turn to this side; at a
-        // concave vertex of more than a gentle turn a node meets both segments
-        let is_vertex = match self.allowed == [0.0; 2] {
-            true => turn > STRAIGHT_SINE,
-            false => turn != 0.0 && turn >= -GENTLE_SINE,
-        };
-        if offset.abs() > 2.0 * CORNER_TIP * length || !is_vertex {
+        if offset.abs() > 2.0 * CORNER_TIP * length || self.corner_sine(i, j) <= STRAIGHT_SINE {
             return None;
         }
         let node = self.surfaces.slaves[self.slave];
@@ -761,7 +754,7 @@ pub(super) fn raised(
     [s, a, b]
 }
 
-/// A corner, convex or gently concave, between a segment and the next, as the target of a slave node.
+/// A convex corner, between a segment and the next, as the target of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Corner {
     /// The segment after the corner.
@@ -784,18 +777,15 @@ impl Corner {
 /// normal cone between `normals` and in the cone between the opposites of `own`; the common normal
 /// is the middle of their intersection. Flush blocks meet with the normal of their faces, corners
 /// with that of their bisectors. A node in a concave corner has no common normal with a sharp one; with a vertex of a
-/// surface that turns gently, as that of a pin in a bore, it has the middle of both cones; so has a node of a fit at a
-/// vertex that is gently concave.
+/// surface that turns gently, as that of a pin in a bore, it has the middle of both cones.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let opposite = own.map(|n| [-n[0], -n[1]]);
     // angles from the first normal
     let width = angle(n, m);
-    let is_hollow = width < 0.0 && (width.sin() < -GENTLE_SINE || width.cos() < 0.0);
-    if width.is_nan() || width == 0.0 || is_hollow {
+    if width.is_nan() || width <= 0.0 {
         return None;
     }
-    let (least, most) = (width.min(0.0), width.max(0.0));
     let from = angle(n, opposite[0]);
     let mut cone = [from, from + angle(opposite[0], opposite[1])];
     if cone[1] < cone[0] - CONE_MISS {
@@ -804,11 +794,11 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
         }
         cone.reverse();
     }
-    let (low, high) = (cone[0].max(least), cone[1].min(most));
+    let (low, high) = (cone[0].max(0.0), cone[1].min(width));
     if low > high + CONE_MISS {
         return None;
     }
-    let middle = ((low + high) / 2.0).clamp(least, most);
+    let middle = ((low + high) / 2.0).clamp(0.0, width);
     // w = sin psi/(sin(phi - psi) + sin psi), eq. (10.4)
     let (first, second) = ((width - middle).sin(), middle.sin());
     Some(second / (first + second))
@@ -894,22 +884,6 @@ mod corner_tests {
             common_normal(pin, bore),
             None,
             "concave, of more than 30 degrees"
-        );
-    }
-
-    #[test]
-    fn a_node_at_a_gently_concave_vertex_meets_the_normal_between() {
-        let unit = |[x, y]: [f64; 2]| [x, y].map(|e| e / x.hypot(y));
-        let hollow = |turn: f64| [[-turn, 1.0], [turn, 1.0]].map(unit);
-        for own in [0.0, 0.004, 0.02, -0.004] {
-            let own = [[-own, -1.0], [own, -1.0]].map(unit);
-            let weight = common_normal(hollow(0.009), own).unwrap_or(f64::NAN);
-            assert!((weight - 0.5).abs() < 1e-12, "{own:?} {weight}");
-        }
-        assert_eq!(
-            common_normal(hollow(0.02), [DOWN, DOWN]),
-            None,
-            "both normals"
         );
     }
 

@@ -33,7 +33,6 @@ ENOUGH = 0.5
 
 EVERY_CARD = ROOT / "tests/decks/every_card.inp"
 FLOOR = ROOT / "tests/decks/rigid_floor.inp"
-FIT = ROOT / "tests/decks/fit_at_a_vertex.inp"
 
 
 def sample(name: str) -> Sample:
@@ -49,25 +48,6 @@ def test_what_has_one_answer_has_it_in_every_form(name: str) -> None:
     assert {form: outcome for form, outcome in outcomes if not outcome.is_good} == {}
     assert verdict.compared >= 10
     assert sum(not outcome.refused for _, outcome in outcomes) >= 5
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [("", ""), ("*FRICTION\n0.3\n", ""), ("SB_BOT, SA_TOP\n*BOUNDARY", "SA_TOP, SB_BOT\n*BOUNDARY")],
-    ids=["fit", "without friction", "other order"],
-)
-def test_a_node_at_a_vertex_has_no_preferred_side(
-    tmp_path: Path, job: Job, old: str, new: str
-) -> None:
-    text = FIT.read_text().replace(old, new)
-    if "SA_TOP, SB_BOT" in text:
-        text = text.replace("SHRINK\nSB_BOT, SA_TOP", "SHRINK\nSA_TOP, SB_BOT")
-    deck = flat(binary(), Deck.parse(text).write(tmp_path / "fit.inp"))
-    first = Seen(job(deck), deck)
-    form = FORMS["mirrored"](deck, first)
-    found = compared(deck, form.deck, form.change, job).by_name
-    assert found["VTKHDF/PointData/V"].max() < TOLERANCE
-    assert found["VTKHDF/PointData/RF"].max() < TOLERANCE
 
 
 def flat_floor(folder: Path) -> Deck:
