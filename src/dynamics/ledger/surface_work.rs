@@ -167,14 +167,16 @@ impl SurfaceWork {
                     area => area,
                 };
                 let mut added = [0.0; 3];
+                // sums over nodes are told where all of them have faces
+                let is_told = if own.has_faces { 1.0 } else { 0.0 };
                 if area > 0.0 {
                     self.fields.work[node] += friction / area;
-                    added[0] = friction;
+                    added[0] = is_told * friction;
                 }
                 if let Some((rate, by_friction)) = own.wear.filter(|_| area > 0.0) {
                     let by = if by_friction { friction } else { sliding };
                     self.fields.wear[node] += rate * by / area;
-                    added[1] = rate * by;
+                    added[1] = is_told * rate * by;
                 }
                 if let Some(heat) = self.fields.heat.get_mut(node) {
                     *heat += own.heat * friction;
