@@ -167,10 +167,19 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Distance up to which nodes at rest pair with segments at rest in every contact (length); infinite without one.
+    /// Distance up to which nodes at rest pair with segments at rest in every contact (length); infinite without one. A
+    /// contact that is removed has neither.
     pub fn reach(&self) -> f64 {
-        let reaches = self.territories.iter().map(|territory| territory.reach);
-        reaches.fold(f64::INFINITY, f64::min)
+        let acts = |territory: &&Territory| {
+            let ContactSurfaces {
+                slaves, segments, ..
+            } = territory.contact;
+            !slaves.is_empty() && !segments.is_empty()
+        };
+        let reaches = self.territories.iter().filter(acts);
+        reaches
+            .map(|territory| territory.reach)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The contacts with their candidates, one after the other; from surface to surface with their corners.

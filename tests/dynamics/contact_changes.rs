@@ -8,6 +8,7 @@ use stickslip::model::{
 
 use crate::blocks::{Block, Keep, SCHEMES, run, run_to_end};
 use crate::friction::block_on_base;
+use crate::statics::run_deck;
 
 const GRAVITY: f64 = 10.0;
 
@@ -245,5 +246,30 @@ fn in_a_static_step_the_forces_of_a_removed_contact_fade() {
         let taken = held(&report.nodal) - held(&first.nodal);
         assert!((taken / total - part).abs() < 1e-3, "{taken} {part}");
         assert!(report.energy.balance.abs() < 1e-9);
+    }
+}
+
+/// A body on springs goes as far as they let it where the pair that could touch it is removed: the reach of a search that
+/// has nothing to look for is no limit.
+#[test]
+fn a_body_on_springs_moves_where_its_pair_is_removed() {
+    let (keep, failure) = run_deck(
+        "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n5, 0., -1.\n6, 1., -1.\n7, 1., 0.\n8, 0., 0.\n\
+         11, -6., 1.\n12, 7., 1.\n13, 0., 7.\n14, 1., 7.\n*ELEMENT, TYPE=CPE4, ELSET=B\n1, 1, 2, 3, 4\n\
+         *ELEMENT, TYPE=CPE4, ELSET=A\n2, 5, 6, 7, 8\n\
+         *ELEMENT, TYPE=SPRINGA, ELSET=K\n11, 11, 4\n12, 12, 3\n13, 13, 4\n14, 14, 3\n*SPRING, ELSET=K\n\n5.\n\
+         *NSET, NSET=HELD\n5, 6, 11, 12, 13, 14\n*BOUNDARY\nHELD, 1, 2\n\
+         *SOLID SECTION, ELSET=B, MATERIAL=M\n1.\n*SOLID SECTION, ELSET=A, MATERIAL=M\n1.\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*SURFACE, NAME=SB\nB, S1\n*SURFACE, NAME=SA\nA, S3\n\
+         *SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nSB, SA\n\
+         *STEP, NLGEOM\n*STATIC\n0.25, 1.\n*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nSB, SA\n\
+         *DLOAD\n1, P3, -0.3\n*END STEP\n",
+    );
+    assert_eq!(failure, None);
+    // a force of 0.3 against two springs of 5 each
+    let u = &keep.reports.last().expect("reports").state.u;
+    for node in [2, 3] {
+        let v = u[2 * node + 1];
+        assert!((v - 0.03).abs() < 1e-4, "{v}");
     }
 }
