@@ -5,6 +5,7 @@ use stickslip::model::{ContactMass, Heat, LandingRule, Model, Wear};
 
 use crate::blocks::{Block, SCHEMES, run_to_end, throw};
 use crate::friction::block_on_base;
+use crate::statics::run_deck;
 
 const MU: f64 = 0.3;
 const RATE: f64 = 2e-4;
@@ -87,4 +88,34 @@ fn landings_that_give_back_take_their_wear_back() {
         let last = keep.reports.last().expect("reports");
         agrees_with_the_ledger(last, false, &format!("{mass:?}"));
     }
+}
+
+/// A block that has slid on a rigid floor is lifted off in one static increment, on its way back: friction does no work as
+/// the pairs open, and nothing wears.
+#[test]
+fn a_pair_that_opens_wears_as_its_friction_works() {
+    let (keep, failure) = run_deck(
+        "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 2., 0.\n4, 0., 1.\n5, 1., 1.\n6, 2., 1.\n9, 1., -1.\n\
+         *ELEMENT, TYPE=CPE4, ELSET=E\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n*SURFACE, NAME=SB\nE, S1\n*NSET, NSET=TOP\n4, 5, 6\n\
+         *SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, -5., 0.\nLINE, 5., 0.\n\
+         *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=9\n*BOUNDARY\n9, 1, 2\n\
+         *SURFACE INTERACTION, NAME=I\n*FRICTION\n0.1\n*WEAR SURFACE PROPERTIES\n1.E-4\n*GAP HEAT GENERATION\n0.9, 0.4\n\
+         *CONTACT PAIR, INTERACTION=I\nSB, FLOOR\n\
+         *STEP, NLGEOM\n*STATIC, DIRECT\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 0.02\nTOP, 2, 2, -0.01\n*END STEP\n\
+         *STEP, NLGEOM\n*STATIC, DIRECT\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 0.01\n*END STEP\n",
+    );
+    assert_eq!(failure, None);
+    for report in &keep.reports {
+        let friction = &report.nodal.friction;
+        for (work, wear) in friction.work.iter().zip(&friction.wear) {
+            let expected = 1e-4 / 0.1 * work;
+            assert!(
+                work.is_nan() || (wear - expected).abs() <= 1e-12 * expected.abs(),
+                "{wear} {work}"
+            );
+        }
+    }
+    let last = keep.reports.last().expect("reports");
+    assert!(last.contacts[0].closed == 0 && last.energy.friction_dissipation > 0.0);
 }

@@ -209,13 +209,21 @@ impl EndForces {
                 let work = pt * slip;
                 let parts = shrinkage.get(&slave).unwrap_or(&0.0);
                 tangential += work / 2.0;
-                let friction = -mean * work;
+                let friction = match is_end {
+                    true => -mean * work,
+                    false => (-mean * work).max(0.0),
+                };
+                // one that opens slides as far as its friction works
+                let sliding = match is_end || constraint.mu == 0.0 {
+                    true => mean * pn * slip.abs(),
+                    false => friction / constraint.mu,
+                };
                 works.push(PairWork {
                     key: constraint.key,
                     normal: pn * (constraint.normal_motion(d) - parts) / 2.0,
                     fit: pn * parts / 2.0,
-                    friction: if is_end { friction } else { friction.max(0.0) },
-                    sliding: mean * pn * slip.abs(),
+                    friction,
+                    sliding,
                     surfaces: constraint.surface_parts(),
                 });
             }
