@@ -140,6 +140,7 @@ fn landing(
             energy,
             // (6.11)
             most: 2.0 * pn / dt,
+            pulls: true,
         },
     ))
 }
@@ -234,7 +235,11 @@ pub(super) fn give_back(
         }
     }
     let a = products(&patterns);
-    let most: Vec<f64> = loads.iter().map(|load| load.most).collect();
+    let most = |(load, sign): (&ReturnLoad, &f64)| match load.pulls || *sign > 0.0 {
+        true => load.most,
+        false => 0.0,
+    };
+    let most: Vec<f64> = loads.iter().zip(&signs).map(most).collect();
     let y = shares(&a, &b, &energies, &signs, &most);
     for (VelocityPattern { w, .. }, y) in patterns.iter().zip(&y) {
         v.iter_mut().zip(w).for_each(|(v, w)| *v += y * w);
@@ -330,6 +335,7 @@ pub(crate) fn return_release(
                 friction: None,
                 energy,
                 most: 2.0 / dt,
+                pulls: false,
             }],
         )?;
         solved.returned.support_work += given.support_work;

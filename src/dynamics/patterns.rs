@@ -20,6 +20,8 @@ pub(crate) struct ReturnLoad {
     pub energy: f64,
     /// Largest share, of either sign: its impulse is that of the force of the increment.
     pub most: f64,
+    /// Whether the share may be negative: a force of the increment is taken back.
+    pub pulls: bool,
 }
 
 /// The friction that goes with a load.

@@ -2,6 +2,7 @@
 
 use crate::blocks::{Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw};
 use crate::invariants::drift;
+use crate::statics::run_deck;
 use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{
@@ -278,4 +279,46 @@ fn redistributed_mass_is_for_energy_momentum_and_for_all_steps() {
     );
     assert!(!messages([on, on]).contains("error"));
     assert!(!messages([on, "*STICKSLIP, LCP=LEMKE"]).contains("error"));
+}
+
+/// Two bars whose ends lie flush on each other: the corners slide off, those of both bars come to rest, and no impulse that is
+/// given back pulls.
+#[test]
+fn flush_bars_part_again() {
+    let bar = |first: usize, x0: f64, count: usize, name: &str| {
+        let node = |i: usize, j: usize| first + j * (count + 1) + i;
+        let mut text = "*NODE\n".to_string();
+        for (i, j) in (0..3).flat_map(|j| (0..=count).map(move |i| (i, j))) {
+            let (x, y) = (x0 + 10.0 * i as f64, 10.0 * j as f64);
+            text += &format!("{}, {x:?}, {y:?}\n", node(i, j));
+        }
+        text += &format!("*ELEMENT, TYPE=CPS4, ELSET={name}\n");
+        for (i, j) in (0..2).flat_map(|j| (0..count).map(move |i| (i, j))) {
+            let [a, b] = [node(i, j), node(i, j + 1)];
+            text += &format!(
+                "{}, {a}, {}, {}, {b}\n",
+                first + j * count + i,
+                a + 1,
+                b + 1
+            );
+        }
+        text
+    };
+    let (keep, failure) = run_deck(&format!(
+        "{}*NSET, NSET=MOVING, GENERATE\n1, 12\n*SURFACE, NAME=SR\n3, S2\n6, S2\n\
+         {}*SURFACE, NAME=AL\n101, S4\n107, S4\n\
+         *MATERIAL, NAME=ST\n*ELASTIC\n210000., 0.\n*DENSITY\n7.85E-9\n\
+         *MATERIAL, NAME=AL\n*ELASTIC\n70000., 0.\n*DENSITY\n2.7E-9\n\
+         *SOLID SECTION, ELSET=S, MATERIAL=ST\n20.\n*SOLID SECTION, ELSET=A, MATERIAL=AL\n20.\n\
+         *SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nSR, AL\n\
+         *INITIAL CONDITIONS, TYPE=VELOCITY\nMOVING, 1, 5000.\n\
+         *STEP\n*DYNAMIC, DIRECT\n1.5E-6, 6.E-5\n*STICKSLIP, CONTACT MASS=REDISTRIBUTED, LANDING=RETURN\n*END STEP\n",
+        bar(1, -30.0, 3, "S"),
+        bar(101, 0.0, 6, "A"),
+    ));
+    assert_eq!(failure, None);
+    assert_sound(&keep);
+    let cone = |report: &IncrementReport| report.contacts[0].impulse_cone_violation;
+    let worst = keep.reports.iter().map(cone).fold(0.0, f64::max);
+    assert!(worst < 1e-12, "{worst:e}");
 }
