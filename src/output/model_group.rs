@@ -101,6 +101,12 @@ fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
     for (element, &body) in model.mesh.elements.iter().zip(&bodies.of_element) {
         mass[body] += model.element_mass(element);
     }
+    for (rigid, turning) in model.turning_bodies() {
+        if let Some(&element) = rigid.elements.first() {
+            let of_points = turning.masses.iter().map(|(_, mass)| mass);
+            mass[bodies.of_element[element]] += of_points.sum::<f64>();
+        }
+    }
     let times = body_times(model, &bodies);
     let edge: Vec<f64> = times.iter().map(|times| times.edge).collect();
     let body: Vec<f64> = times.iter().map(|times| times.body).collect();
@@ -116,7 +122,10 @@ fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
 
 const MEMBERS: &str = "indices of the members, from 0";
 const COORDINATES: Meaning = ("length", "reference coordinates");
-const MASS: Meaning = ("mass", "mass of each body");
+const MASS: Meaning = (
+    "mass",
+    "mass of each body, with that of point elements at its rigid parts",
+);
 const EDGE_TIME: Meaning = (
     "time",
     "shortest time a longitudinal wave takes along an edge of an element",

@@ -6,6 +6,7 @@ use stickslip::model::Model;
 use stickslip::{deck, reader};
 
 use crate::blocks::run_to_end;
+use crate::statics::run_deck;
 
 /// The model of a deck.
 pub fn read(text: &str) -> Model {
@@ -321,4 +322,77 @@ fn landing_return_and_redistributed_mass_leave_bodies_out_that_turn() {
     // the elastic blocks lose nothing to impulses, and the rigid one lands on surfaces without mass
     assert!(redistributed.impact_loss < 1e-3 * plain.impact_loss);
     run("*STICKSLIP, LANDING=RETURN, CONTACT MASS=REDISTRIBUTED\n");
+}
+
+/// Velocities of nodes that move as a rigid body, with mass of elements that deform, under a force, driven by a reference
+/// node that changes its velocity, and through an impact: all are those of one rigid motion, and every energy is told.
+#[test]
+fn nodes_with_mass_of_elements_have_rigid_velocities() {
+    let column = "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n5, 1., 2.\n6, 0., 2.\n9, 0.5, 2.2\n\
+                  11, -1., -1.\n12, 2., -1.\n13, 2., -0.006\n14, -1., -0.003\n\
+                  *ELEMENT, TYPE=CPE4, ELSET=E\n1, 1, 2, 3, 4\n*ELEMENT, TYPE=CPE4, ELSET=R\n2, 4, 3, 5, 6\n\
+                  *ELEMENT, TYPE=CPE4, ELSET=A\n3, 11, 12, 13, 14\n*NSET, NSET=BASE\n11, 12, 13, 14\n\
+                  *NSET, NSET=GROUND\n1, 2\n*BOUNDARY\nBASE, 1, 2\n\
+                  *SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n*SOLID SECTION, ELSET=R, MATERIAL=M\n1.\n\
+                  *SOLID SECTION, ELSET=A, MATERIAL=M\n1.\n*SURFACE, NAME=SA\nA, S3\n*SURFACE, NAME=SB\nE, S1\n\
+                  *SURFACE, NAME=JOINT\nE, S3\n*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nSB, SA\n\
+                  *AMPLITUDE, NAME=JUMPS\n0., 0., 0.02, 1., 0.05, 0.7, 0.1, 3.\n";
+    let rigid = "*RIGID BODY, ELSET=R, REF NODE=9\n";
+    let coupled = "*COUPLING, CONSTRAINT NAME=C, REF NODE=9, SURFACE=JOINT\n*KINEMATIC\n";
+    let down = "*BOUNDARY, TYPE=VELOCITY\n9, 1, 1\n9, 2, 2, -0.5\n";
+    let driven = "*BOUNDARY, AMPLITUDE=JUMPS\n9, 1, 1, 0.004\n9, 2, 2, -0.01\n";
+    let turned = "*BOUNDARY, AMPLITUDE=JUMPS\n9, 6, 6, 0.02\n";
+    // nodes of the rigid part
+    let cases = [
+        (
+            rigid,
+            &[2, 3, 4, 5, 6][..],
+            "*BOUNDARY\nGROUND, 1, 2\n*CLOAD\n9, 1, 10.\n",
+        ),
+        (rigid, &[2, 3, 4, 5, 6], down),
+        (rigid, &[2, 3, 4, 5, 6], driven),
+        (rigid, &[2, 3, 4, 5, 6], turned),
+        (
+            coupled,
+            &[2, 3, 6],
+            "*BOUNDARY\nGROUND, 1, 2\n*CLOAD\n9, 1, 10.\n",
+        ),
+        (coupled, &[2, 3, 6], down),
+        (coupled, &[2, 3, 6], driven),
+        (coupled, &[2, 3, 6], turned),
+    ];
+    for (part, nodes, moved) in cases {
+        let (keep, failure) = run_deck(&format!(
+            "{column}{MATERIAL}{part}*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 0.1\n{moved}*END STEP\n"
+        ));
+        assert_eq!(failure, None, "{part}{moved}");
+        let off = unbalanced(&keep.reports);
+        assert!(off < 1e-11, "{part}{moved}: balance {off:e}");
+        let coordinates = [[1.0, 1.0], [0.0, 1.0], [1.0, 2.0], [0.0, 2.0], [0.5, 2.2]];
+        for report in &keep.reports {
+            let (u, v) = (&report.state.u, &report.state.v);
+            let at = |node: usize, of: &[f64]| [of[2 * node], of[2 * node + 1]];
+            let x = |node: usize| {
+                let (x, u) = (coordinates[node - 2], at(node, u));
+                [x[0] + u[0], x[1] + u[1]]
+            };
+            // v - v_0 = omega J (x - x_0)
+            let relative = |node: usize| {
+                let [r, w] = [[x(node), x(nodes[0])], [at(node, v), at(nodes[0], v)]]
+                    .map(|[a, b]| [a[0] - b[0], a[1] - b[1]]);
+                (r, w)
+            };
+            let (r, w) = relative(nodes[1]);
+            let omega = (r[0] * w[1] - r[1] * w[0]) / (r[0] * r[0] + r[1] * r[1]);
+            let size = v.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
+            for &node in &nodes[1..] {
+                let (r, w) = relative(node);
+                let error = (w[0] + omega * r[1]).abs().max((w[1] - omega * r[0]).abs());
+                assert!(
+                    error <= 1e-13 * size,
+                    "{part}{moved}{node}: {error:e} of {size:e}"
+                );
+            }
+        }
+    }
 }

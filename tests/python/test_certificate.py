@@ -335,6 +335,53 @@ def test_decks_of_all_kinds_hold(job: Job, name: str) -> None:
     assert certificate.holds, certificate.table()
 
 
+PARTLY_RIGID = """
+*NODE
+1, 0., 0.
+2, 1., 0.
+3, 1., 1.
+4, 0., 1.
+5, 1., 2.
+6, 0., 2.
+9, 0.5, 2.2
+*ELEMENT, TYPE=CPE4, ELSET=E
+1, 1, 2, 3, 4
+*ELEMENT, TYPE=CPE4, ELSET=R
+2, 4, 3, 5, 6
+{mass}*SOLID SECTION, ELSET=E, MATERIAL=M
+1.
+*SOLID SECTION, ELSET=R, MATERIAL=M
+1.
+*RIGID BODY, ELSET=R, REF NODE=9
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*DENSITY
+1.
+*BOUNDARY
+1, 1, 2
+2, 1, 2
+*STEP, NLGEOM
+*DYNAMIC, DIRECT
+0.01, 0.2
+*CLOAD
+9, 1, 10.
+*END STEP
+"""
+"""The upper half of a column is rigid and turns with a node, under a force."""
+
+
+@pytest.mark.parametrize("mass", ["", "*ELEMENT, TYPE=MASS, ELSET=EM\n7, 9\n*MASS, ELSET=EM\n3.\n"])
+def test_rigid_parts_of_bodies_hold(job: Job, mass: str) -> None:
+    path = job(Deck.parse(PARTLY_RIGID.format(mass=mass)))
+    certificate = certify(path)
+    assert certificate.holds, certificate.table()
+    with h5py.File(path) as file:
+        assert file["model/bodies/mass"][0] == pytest.approx(5.0 if mass else 2.0)
+    told = {check.name for check in certificate.checks if check.is_told}
+    assert ("kinetic energy" in told) == (not mass)
+
+
 def test_command_line(result: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "stickslip.certificate"]
 

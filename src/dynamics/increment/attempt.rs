@@ -12,6 +12,7 @@ use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
+use super::rigid_velocity::{RigidImpulse, make_rigid};
 use super::trace::{Failed, Trace};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
@@ -85,6 +86,8 @@ pub(crate) struct Solved {
     pub passes: Vec<PassReport>,
     /// What is given back once it has converged.
     pub returned: Returned,
+    /// Impulse that makes velocities of its end those of rigid motions.
+    pub rigid: RigidImpulse,
     /// Motions that are held in it.
     pub held: HeldMotions,
     /// Whether K* held the closed pairs.
@@ -640,9 +643,22 @@ impl<'m> Attempt<'_, 'm> {
         let integration = &self.problem.integration;
         let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
-        if !self.problem.integration.has_rates {
-            v.fill(0.0);
-        }
+        let mut a = equilibrium.acceleration.clone();
+        let rigid = match self.problem.integration.has_rates {
+            true => {
+                let increment = (&v0p[..], self.interval.dt);
+                make_rigid(
+                    self.problem,
+                    self.workspace,
+                    increment,
+                    (&u, &mut v, &mut a),
+                )?
+            }
+            false => {
+                v.fill(0.0);
+                RigidImpulse::default()
+            }
+        };
         let Updated {
             variables: internal,
             dissipated,
@@ -653,7 +669,7 @@ impl<'m> Attempt<'_, 'm> {
         let end = State {
             u,
             v,
-            a: equilibrium.acceleration.clone(),
+            a,
             internal,
             contact: contact.forces.closed.clone(),
         };
@@ -668,6 +684,7 @@ impl<'m> Attempt<'_, 'm> {
             tangent,
             passes: Vec::new(),
             returned: Returned::default(),
+            rigid,
             held,
             holds_pairs: false,
         })

@@ -212,7 +212,8 @@ impl Impulses {
     }
 
     /// What the equilibrium of an iterate with the given constraints needs of the velocity of the start: V0
-    /// with the impulses beside it, so that nothing is solved with M, unless U_theta depends on V0+.
+    /// with the impulses beside it, so that nothing is solved with M, unless U_theta depends on V0+, or the mass of bodies
+    /// that turn acts by other arms at the iterate than at the start.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,
@@ -222,7 +223,7 @@ impl Impulses {
         before: &EarlierPass,
     ) -> Result<StartVelocity<'a>, Cause> {
         self.solve(problem, workspace, constraints, start, before)?;
-        match problem.integration.lags() {
+        match problem.integration.lags() || problem.unknowns.turning.turn_mass() {
             true => self.velocity(problem, workspace, start),
             false => Ok(StartVelocity {
                 v0p: Cow::Borrowed(&start.v),

@@ -13,6 +13,7 @@ mod pin_iteration;
 mod refactorization;
 mod returned;
 mod rigid_predictor;
+mod rigid_velocity;
 mod trace;
 
 pub(crate) use attempt::{Attempt, Path, Solved};
@@ -20,4 +21,5 @@ pub(crate) use contact_forces::ContactForces;
 pub(crate) use contact_states::ContactStates;
 pub(crate) use contact_system::ContactSystem;
 pub(crate) use returned::{PairReturn, Release};
+pub(crate) use rigid_velocity::RigidImpulse;
 pub(crate) use trace::Failed;

@@ -10,7 +10,7 @@ use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
 use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::increment::{ContactStates, Solved};
+use crate::dynamics::increment::{ContactStates, RigidImpulse, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, difference, dot, sum};
 use crate::elements::{ElementResult, Motion, TangentPart};
@@ -212,24 +212,32 @@ impl Ledger {
             force
         };
         let at_poles;
-        let [load, internal, contact] = match turning.is_empty() {
-            true => [load, internal, contact],
+        let [load, internal, contact, inertia] = match turning.is_empty() {
+            true => [load, internal, contact, inertia],
             false => {
-                // what the mass of a body that is free in some direction asks of its supports acts on d
-                let carried = handed_over(inertia, true);
-                let passed = |p: &usize| d[*p] * (carried[*p] - inertia[*p]);
-                e.external_work += problem
-                    .unknowns
-                    .prescribed()
-                    .map(|p| passed(&p))
-                    .sum::<f64>();
-                at_poles = [load, internal, contact].map(|force| handed_over(force, false));
+                let forces = [
+                    (load, false),
+                    (internal, false),
+                    (contact, false),
+                    (inertia, true),
+                ];
+                at_poles = forces.map(|(force, keeps_driven)| handed_over(force, keeps_driven));
                 at_poles.each_ref()
             }
         };
         let [load, internal, inertia, contact] =
             [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
         let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
+        // V1.J of supports, and what velocities that leave rigid motions have, eq. (11.12)
+        let RigidImpulse { force, loss } = &solved.rigid;
+        if !force.is_empty() {
+            let mut force = force.clone();
+            let nothing = vec![0.0; d.len()];
+            turning.hand_over([&end.u, &nothing], true, &mut force);
+            let force = problem.unknowns.passed_on(&force);
+            e.external_work += prescribed().map(|p| dt * end.v[p] * force[p]).sum::<f64>();
+            e.numerical_dissipation += loss;
+        }
         // (d - dt V_mid).M A of what is free, eq. (4.27)
         if problem.integration.backward_euler {
             let beyond = |dof: usize| d[dof] - dt * (v0p[dof] + end.v[dof]) / 2.0;

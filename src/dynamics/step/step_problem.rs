@@ -354,8 +354,18 @@ impl StepProblem<'_> {
         for (a, (d, v0p)) in acceleration.iter_mut().zip(d.iter().zip(v0p.iter())) {
             *a = c * (d - dt * v0p);
         }
-        (self.unknowns).prescribe_acceleration(interval.end, &start.v, dt, acceleration);
         let turning = &self.unknowns.turning;
+        let own = match turning.is_empty() {
+            true => Vec::new(),
+            false => acceleration.clone(),
+        };
+        (self.unknowns).prescribe_acceleration(interval.end, &start.v, dt, acceleration);
+        turning.carry(
+            [&start.u, d],
+            &own,
+            |dof| self.unknowns.is_prescribed(dof),
+            acceleration,
+        );
         turning.drive([&start.u, d], &start.v, dt, acceleration);
         self.mass.write_product(acceleration, inertia);
         // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet

@@ -228,6 +228,13 @@ impl<'m> Turning<'m> {
         })
     }
 
+    /// Whether nodes of a body that is not driven carry mass of elements that deform: their velocities would leave its
+    /// rigid motion.
+    pub fn carry_elements(&self) -> bool {
+        let mut all = self.bodies.iter().zip(&self.driven);
+        all.any(|(body, driven)| !driven && !body.loaded.is_empty())
+    }
+
     /// Whether a node belongs to a body that turns.
     pub fn moves(&self, node: usize) -> bool {
         self.body_of.get(node).copied().flatten().is_some()
@@ -375,6 +382,17 @@ impl<'m> Turning<'m> {
         }
     }
 
+    /// Sets the velocities of the nodes of all bodies to those of the pole and the angle, `u` being the displacements.
+    pub fn move_with_poles(&self, u: &[f64], v: &mut [f64]) {
+        for (body, pole) in self.with_poles() {
+            let (omega, own) = (v[body.spin] / body.length, [v[2 * pole], v[2 * pole + 1]]);
+            for (node, r) in body.arms_from(pole, body.angle(u)) {
+                let j = turned(r);
+                (0..2).for_each(|i| v[2 * node + i] = own[i] + omega * j[i]);
+            }
+        }
+    }
+
     /// Writes the increment of free poles and angles that goes on with the velocities `v`.
     pub fn predict(
         &self,
@@ -401,6 +419,36 @@ impl<'m> Turning<'m> {
                     let v1 = own + s / body.length * j[i];
                     a[2 * node + i] = (v1 - v0[2 * node + i]) / dt;
                 }
+            }
+        }
+    }
+
+    /// Adds to the accelerations of the nodes of the other bodies what those of prescribed poles and angles are more than
+    /// `own`, those of eq. (4.1), in an increment `d` from `u0`:
+    ///
+    /// ```text
+    /// A += A_p + (A_s/L) J r_m      eq. (11.11)
+    /// ```
+    pub fn carry(
+        &self,
+        [u0, d]: [&[f64]; 2],
+        own: &[f64],
+        is_prescribed: impl Fn(usize) -> bool,
+        a: &mut [f64],
+    ) {
+        for ((body, pole), _) in self.with_poles().zip(&self.driven).filter(|(_, d)| !**d) {
+            let leading = [2 * pole, 2 * pole + 1, body.spin];
+            let more = leading.map(|dof| match is_prescribed(dof) {
+                true => a[dof] - own[dof],
+                false => 0.0,
+            });
+            if more == [0.0; 3] {
+                continue;
+            }
+            let (c, spin) = (d[body.spin] / body.length, more[2] / body.length);
+            for (node, r0) in body.arms_from(pole, body.angle(u0)) {
+                let j = turned(mean_arm(r0, c));
+                (0..2).for_each(|i| a[2 * node + i] += more[i] + spin * j[i]);
             }
         }
     }
