@@ -32,6 +32,7 @@ mod owners;
 mod patch;
 mod quasi_static;
 mod redistributed_mass;
+mod released;
 mod rest;
 mod restart;
 mod rigid;

@@ -40,7 +40,7 @@ pub(crate) struct Ledger {
     pub contact_energy: Option<f64>,
     /// Work of the pairs in the last increment.
     pub works: Vec<PairWork>,
-    /// Forces at the end of the last increment, in a static step.
+    /// Forces at the end of the last increment, in a static or quasi-static step.
     pub end: Option<EndForces>,
     /// T + W at the start of the analysis.
     start: f64,
@@ -119,7 +119,10 @@ impl Ledger {
         e.kinetic = kinetic;
         match problem.integration.has_rates {
             true => e.external_work += change,
-            false => e.numerical_dissipation -= change,
+            false => {
+                e.numerical_dissipation -= change;
+                self.end = None;
+            }
         }
     }
 
@@ -282,7 +285,18 @@ impl Ledger {
         let strain1 = e.strain + loss - load_work;
         e.numerical_dissipation +=
             dot(d, &solved.equilibrium.internal) - (strain1 - strain0) - damping - dissipated;
-        self.end = None;
+        // of a slow motion its inertia counts as load
+        self.end = problem.integration.fades().then(|| {
+            let Equilibrium {
+                load,
+                internal,
+                inertia,
+                ..
+            } = &solved.equilibrium;
+            let mut last = EndForces::new(difference(load, inertia), internal.clone(), forces);
+            last.reactions = last.of_supports(problem, [&end.u, d]);
+            last
+        });
         self.balanced(end, contact_work0)
     }
 
@@ -305,7 +319,7 @@ impl Ledger {
             Some(before) => before,
             None => EndForces::at(problem, start)?,
         };
-        let end = EndForces::new(
+        let mut end = EndForces::new(
             equilibrium.load.clone(),
             equilibrium.internal.clone(),
             &contact.forces,
@@ -317,16 +331,15 @@ impl Ledger {
         let way = turning.way(d);
         let [of_loads, mut of_supports] =
             [EndForces::trapezoid(&way, [&before.load, &end.load]), 0.0];
-        for (forces, u) in [(&before, &start.u), (&end, &solved.end.u)] {
-            let mut missing = forces.missing(d.len());
+        end.reactions = end.of_supports(problem, [&solved.end.u, d]);
+        let at_start = before.of_supports(problem, [&start.u, d]);
+        for (forces, reactions) in [(&before, &at_start), (&end, &end.reactions)] {
             let mut left = match turning.is_empty() {
                 true => 0.0,
-                false => dot(&way, &missing),
+                false => dot(&way, &forces.missing(d.len())),
             };
-            turning.hand_over([u, d], false, &mut missing);
-            let missing = problem.unknowns.passed_on(&missing);
-            for p in problem.unknowns.prescribed() {
-                let work = way[p] * missing[p];
+            for &(p, reaction) in reactions {
+                let work = way[p] * reaction;
                 of_supports += work / 2.0;
                 left -= work;
             }

@@ -99,6 +99,8 @@ pub(crate) struct EndForces {
     pub internal: Vec<f64>,
     /// The pairs in contact with their forces.
     pairs: Vec<(Constraint, [f64; 2])>,
+    /// Forces of the supports (dof, force), see [`Self::of_supports`].
+    pub reactions: Vec<(usize, f64)>,
 }
 
 impl EndForces {
@@ -109,6 +111,7 @@ impl EndForces {
             load,
             internal,
             pairs: acting.collect(),
+            reactions: Vec::new(),
         }
     }
 
@@ -120,6 +123,7 @@ impl EndForces {
             load: internal.clone(),
             internal,
             pairs: Vec::new(),
+            reactions: Vec::new(),
         })
     }
 
@@ -131,6 +135,16 @@ impl EndForces {
         missing
     }
 
+    /// Forces of supports, with what equations and bodies that turn hand on to them at the end, at displacements `u`, of an
+    /// increment `d`, or at its start (dof, force).
+    pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
+        let unknowns = &problem.unknowns;
+        let mut missing = self.missing(d.len());
+        unknowns.turning.hand_over([u, d], false, &mut missing);
+        let missing = unknowns.passed_on(&missing);
+        unknowns.prescribed().map(|p| (p, missing[p])).collect()
+    }
+
     /// Contact force over all dofs (force).
     pub fn contact(&self, dofs: usize) -> Vec<f64> {
         let mut force = vec![0.0; dofs];
@@ -140,9 +154,14 @@ impl EndForces {
         force
     }
 
-    /// Takes out the pairs of contacts that do not act any more; gives their force over all dofs (force).
-    pub fn take_out(&mut self, removed: &[usize], dofs: usize) -> Vec<f64> {
-        let mut force = vec![0.0; dofs];
+    /// Makes loads of the forces of contacts that do not act any more, and of supports that the next step has not; gives
+    /// them (dof, force), eq. (12.13).
+    pub fn release(
+        &mut self,
+        removed: &[usize],
+        is_gone: impl Fn(usize) -> bool,
+    ) -> Vec<(usize, f64)> {
+        let mut force = vec![0.0; self.load.len()];
         self.pairs.retain(|(constraint, pair)| {
             let is_out = removed.contains(&constraint.key.contact());
             if is_out {
@@ -150,7 +169,12 @@ impl EndForces {
             }
             !is_out
         });
-        force
+        let gone = self.reactions.iter().filter(|(dof, _)| is_gone(*dof));
+        gone.for_each(|&(dof, reaction)| force[dof] += reaction);
+        let acts = |(_, force): &(usize, f64)| *force != 0.0;
+        let released: Vec<_> = force.into_iter().enumerate().filter(acts).collect();
+        (released.iter()).for_each(|&(dof, force)| self.load[dof] += force);
+        released
     }
 
     /// Sums of the forces of every slave node.

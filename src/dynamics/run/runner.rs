@@ -136,8 +136,6 @@ struct Runner<'m, 'o> {
     seen: Seen,
     /// Largest displacement increment and length of a static increment that has led too far (length; time).
     rejected: Option<[f64; 2]>,
-    /// Prescribed dofs of the last static step.
-    supported: Vec<usize>,
     /// Procedure of the step before.
     procedure: Procedure,
     /// The motion of the last increment, in a static step.
@@ -167,7 +165,6 @@ impl<'m, 'o> Runner<'m, 'o> {
             },
             ledger: Ledger::default(),
             seen: Seen::new(&discretization.parts),
-            supported: Vec::new(),
             rejected: None,
             procedure: Procedure::Dynamic,
             path: None,
@@ -226,7 +223,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let dofs = self.state.u.len();
         carry_fields!(archive, self => Runner {
-            [ledger, accounts] progress, state, rejected, supported, procedure, path, accuracy;
+            [ledger, accounts] progress, state, rejected, procedure, path, accuracy;
             discretization, seen, summary, observer
         })?;
         let State { u, v, a, .. } = &self.state;
@@ -272,7 +269,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 self.release(&mut problem, step);
                 self.path = None;
             }
-            Some(_) => problem.loads.release(self.progress.released.clone()),
+            Some(_) => problem.release(&self.progress.released),
         }
         let mut workspace = Workspace::new(&problem, std::mem::take(&mut self.seen));
         let outcome = self.increments(&problem, &mut workspace, (step, place), resumed);
@@ -282,32 +279,18 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Takes the forces of contacts that a step has removed, and of supports that it has not any more: at once in a
-    /// dynamic step, while over a static one they fade.
+    /// dynamic step, while over a static or quasi-static one they fade.
     fn release(&mut self, problem: &mut StepProblem, step: &Step) {
         let removed = &step.contacts.removed;
         (self.state.contact).retain(|pair| !removed.contains(&pair.key.contact()));
-        let dofs = self.state.u.len();
-        let forces = self.ledger.end.as_mut().map(|end| {
-            let missing = end.missing(dofs);
-            (missing, end.take_out(removed, dofs))
-        });
-        if problem.integration.has_rates {
+        let unknowns = &problem.unknowns;
+        let is_gone = |dof: usize| unknowns.depends(dof) && !unknowns.is_prescribed(dof);
+        let released = (self.ledger.end.as_mut()).map(|end| end.release(removed, is_gone));
+        if !problem.integration.fades() {
             return;
         }
-        if let (Some(end), Some((missing, of_contacts))) = (&mut self.ledger.end, forces) {
-            let supports = self.supported.iter();
-            let free = supports.filter(|dof| problem.unknowns.is_free(**dof));
-            let of_contacts = of_contacts.into_iter().enumerate();
-            let released: Vec<(usize, f64)> = (free.map(|&dof| (dof, missing[dof])))
-                .chain(of_contacts.filter(|(_, force)| *force != 0.0))
-                .collect();
-            released
-                .iter()
-                .for_each(|&(dof, force)| end.load[dof] += force);
-            self.progress.released.clone_from(&released);
-            problem.loads.release(released);
-        }
-        self.supported = problem.unknowns.prescribed().collect();
+        self.progress.released = released.unwrap_or_default();
+        problem.release(&self.progress.released);
     }
 
     /// The motion of the start, then all increments; or those after the checkpoint `resumed`.

@@ -70,6 +70,11 @@ impl Integration {
         self.has_rates && !self.backward_euler
     }
 
+    /// Whether the forces of supports and contacts that a step removes fade over it.
+    pub fn fades(&self) -> bool {
+        !self.has_rates || self.backward_euler
+    }
+
     /// Rows of the impulses: at the start in the energy-momentum form, else those of the end.
     pub fn impulses_at_start(&self) -> bool {
         self.energy_momentum

@@ -139,6 +139,15 @@ impl<'m> StepProblem<'m> {
 }
 
 impl StepProblem<'_> {
+    /// Lets forces fade over the step that acted at the end of the step before (dof, force).
+    pub fn release(&mut self, forces: &[(usize, f64)]) {
+        let load = |&(dof, force): &(usize, f64)| {
+            let length = self.unknowns.turning.length_of(dof);
+            (dof, length.map_or(force, |length| length * force))
+        };
+        self.loads.release(forces.iter().map(load).collect());
+    }
+
     /// Solver of the complementarity problems.
     pub fn method(&self) -> LcpMethod {
         self.settings.lcp.into()

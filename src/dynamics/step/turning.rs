@@ -211,6 +211,12 @@ impl<'m> Turning<'m> {
         self.bodies.is_empty()
     }
 
+    /// L of the body whose angle this dof is: a force on it is a moment over L.
+    pub fn length_of(&self, dof: usize) -> Option<f64> {
+        let body = self.bodies.iter().find(|body| body.spin == dof);
+        body.map(|body| body.length)
+    }
+
     /// Whether some nodes all belong to one body.
     pub fn are_of_one_body(&self, nodes: &[usize]) -> bool {
         let body = |node: &usize| self.body_of.get(*node).copied().flatten();

@@ -74,11 +74,6 @@ impl<'m> Unknowns<'m> {
         dofs.any(|dof| self.depends(dof))
     }
 
-    /// Whether a dof is an unknown.
-    pub fn is_free(&self, dof: usize) -> bool {
-        self.dof.binary_search(&dof).is_ok()
-    }
-
     /// Whether a dof depends on an unknown.
     pub fn depends(&self, dof: usize) -> bool {
         !self.map.row(dof).is_empty()
