@@ -1,0 +1,1 @@
+"""A laboratory of combinations: small decks of every pair of levels, judged without stored answers."""
