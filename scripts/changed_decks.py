@@ -101,9 +101,11 @@ def _mirrored(deck: Deck) -> Deck:
         if card.keyword == "ELEMENT":
             rows = []
             for label, *nodes in card.rows:
-                rows.append([label, *nodes[1::-1], *reversed(nodes[2:])])
+                corners, between = _corners(card, nodes)
                 # face 1-2 stays, the others are met in the other order
-                others = [str(face) for face in range(2, len(nodes) + 1)]
+                back = [*between[:1], *reversed(between[1:])]
+                rows.append([label, *corners[1::-1], *reversed(corners[2:]), *back])
+                others = [str(face) for face in range(2, len(corners) + 1)]
                 faces[label] = {"1": "1"} | dict(zip(others, reversed(others)))
             return _with_rows(card, rows)
         if _is_profile(card):
@@ -114,6 +116,13 @@ def _mirrored(deck: Deck) -> Deck:
         return _with_faces(card, faces)
 
     return _each(deck, change)
+
+
+def _corners(card: Card, nodes: list[str]) -> tuple[list[str], list[str]]:
+    """Corners of an element, and its nodes between them: none in most."""
+    is_quadratic = card.parameters["TYPE"].startswith("C") and len(nodes) > 4
+    corners = len(nodes) // 2 if is_quadratic else len(nodes)
+    return nodes[:corners], nodes[corners:]
 
 
 def _with_faces(card: Card, faces: dict[str, dict[str, str]]) -> Card:
@@ -644,9 +653,11 @@ def reordered(deck: Deck, seed: int = 2) -> Deck:
         if card.keyword == "ELEMENT":
             rows = []
             for label, *nodes in card.rows:
-                n = len(nodes)
+                corners, between = _corners(card, nodes)
+                n = len(corners)
                 by = int(random.integers(n)) if card.parameters["TYPE"].startswith("C") else 0
-                rows.append([label, *nodes[by:], *nodes[:by]])
+                turned_on = (*corners[by:], *corners[:by], *between[by:], *between[:by])
+                rows.append([label, *turned_on])
                 faces[label] = {str(old + 1): str((old - by) % n + 1) for old in range(n)}
             return _with_rows(card, rows)
         return _with_faces(card, faces)

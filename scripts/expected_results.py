@@ -22,7 +22,7 @@ REPORTED_NEARBY = ("CONTACT_STATUS", "GAP", "min_gap")
 """Reported of nodes near a segment; how near depends on ways and passes of the increment."""
 
 LEFT_OUT = re.compile(
-    r"history/solver/(?!converged)\w+|history/certificate/.*|history/(impacts|returns|touches)/.*|.*/(labels|node|BODY)"
+    r"history/solver/(?!converged)\w+|history/certificate/.*|history/(impacts|returns|touches)/.*|.*/points/.*|.*/(labels|node|BODY)"
 )
 """Work and errors of the solver, and numbers; impacts are compared by themselves."""
 
@@ -43,7 +43,7 @@ VECTORS = (
     "linear",
 )
 STRAINS = ("E", "LE")
-TENSORS = (*STRAINS, "S")
+TENSORS = (*STRAINS, "S", "S_AT_NODES", "E_AT_NODES", "LE_AT_NODES")
 """Rows xx, yy, xy."""
 
 HANDED = re.compile(r"\w*(tangential\w*|angle|angular|angular_velocity|moment)")
@@ -433,7 +433,8 @@ def _in_order(
     group, _, own = name.rpartition("/")
     labels = f"{group}/labels"
     if labels in old.data and not group.startswith(BETWEEN_NODES):
-        map_ = change.nodes if group.startswith("history/nodes") else change.elements
+        is_of_nodes = group.startswith("history/nodes") or group.endswith("nodes")
+        map_ = change.nodes if is_of_nodes else change.elements
         return wanted, actual[:, _places(old[labels], new[labels], map_, 0, 0)]
     return wanted, actual
 
@@ -500,5 +501,5 @@ def _listed(seen: Seen, rows: int, change: Change) -> Impacts:
         if change.hand < 0.0:
             segment, xi = segment[::-1], 1.0 - xi
         landing = np.array([xi, approach * speed, at * time])
-        listed[int(increment)].setdefault((renamed[int(slave)], *segment), landing)
+        listed[int(increment)].setdefault((renamed.get(int(slave), 0), *segment), landing)
     return listed

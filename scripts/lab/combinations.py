@@ -25,7 +25,7 @@ from stickslip.program import binary
 
 from lab.covering import Choice, Covering, pairs_of
 from lab.levels import FACTORS, RULES, SIMPLEST, allows, known
-from lab.oracles import ALWAYS, FORMS, Trial, Untold, runs
+from lab.oracles import ALWAYS, FORMS, READERS, Trial, Untold, runs
 from lab.scene import Scene
 from lab.single import SINGLE
 
@@ -65,7 +65,8 @@ def judge(name: str, choice: Choice, program: Path, only: str | None = None) -> 
         trial = Trial(choice, program, Path(folder))
         oracles = {"runs": runs}
         if trial.base.code == 0:
-            oracles |= {**ALWAYS, choice["form"]: FORMS[choice["form"]]}
+            # forms first: they read the file of a result that is not open yet
+            oracles |= {choice["form"]: FORMS[choice["form"]], **ALWAYS, choice["reader"]: READERS[choice["reader"]]}
         else:
             oracles["check"] = ALWAYS["check"]
         verdict.code = trial.base.code
@@ -99,7 +100,7 @@ def judge_all(decks: Iterable[tuple[str, Choice]], program: Path, jobs: int) -> 
 def shrunk(verdict: Verdict, oracle: str, program: Path) -> Choice:
     """The choice with as many levels as possible the simplest ones, which fails the same oracle."""
     choice = dict(verdict.choice)
-    fixed = {"form"} if oracle in FORMS else set()
+    fixed = {"form"} if oracle in FORMS else {"reader"} if oracle in READERS else set()
     has_changed = True
     while has_changed:
         has_changed = False
@@ -170,7 +171,7 @@ class Counts:
         told = Counter(oracle for verdict in self.verdicts for oracle in verdict.told)
         failed = Counter(oracle for verdict in self.verdicts for oracle in verdict.failures)
         excused = Counter(oracle for verdict in self.verdicts for oracle in verdict.known)
-        for oracle in ("runs", *ALWAYS, *FORMS):
+        for oracle in ("runs", *ALWAYS, *READERS, *FORMS):
             lines.append(f"| {oracle} | {told[oracle]} | {failed[oracle]} | {excused[oracle]} |")
         return "\n".join(lines) + "\n"
 
@@ -210,9 +211,7 @@ def main() -> int:
     """Judges decks and prints what fails, and tables."""
     arguments = parse()
     if arguments.mutations:
-        from lab.mutations import find_all
-
-        return find_all()
+        return find_all(arguments.jobs)
     seeds = arguments.seed or [SEED]
     if arguments.deck is not None:
         print_deck(seeds[0], arguments.deck)
@@ -227,12 +226,12 @@ def main() -> int:
         for verdict in judge_all(decks, program, arguments.jobs):
             tell(verdict)
             counts.add(verdict)
+            if arguments.table:
+                rows = [vars(verdict) for verdict in counts.verdicts]
+                arguments.table.write_text(json.dumps(rows, indent=1))
     if arguments.number is None:
         bad += tell_single(program)
     print(counts.tables())
-    if arguments.table:
-        rows = [vars(verdict) for verdict in counts.verdicts]
-        arguments.table.write_text(json.dumps(rows, indent=1))
     if arguments.shrink:
         shrink_all(counts.verdicts, program, arguments.output)
     bad += sum(not verdict.is_good for verdict in counts.verdicts)

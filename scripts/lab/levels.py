@@ -136,6 +136,9 @@ FORMS = (
 ).split(", ")
 """What else is run and compared (`lab.oracles`)."""
 
+READERS = "h5py, pandas, xarray, PyVista, report".split(", ")
+"""What the result is opened with."""
+
 FACTORS: dict[str, list[str]] = {
     "family": PLANE + RINGS,
     "material": list(MATERIALS),
@@ -149,6 +152,7 @@ FACTORS: dict[str, list[str]] = {
     "written": WRITTEN,
     "output": list(OUTPUTS),
     "form": FORMS,
+    "reader": READERS,
 }
 
 
@@ -186,6 +190,7 @@ RULES = [
     Rule("these schemes are made of the energy-momentum scheme", {"procedure": ["ss22"], "form": ["slowly"]}),
     Rule("a slow motion is compared with a static step", {"form": ["slowly"], "procedure": but("procedure", *STATIC)}),
     Rule("a slow motion has no inertia of its own", {"form": ["slowly"], "load": ["gravity", "centrifugal", "thrown", "velocity", "acceleration"]}),
+    Rule("a slow motion has another rate of slip", {"form": ["slowly"], "interaction": ["table", "decay"]}),
     Rule("a slow motion follows one path", {"form": ["slowly"], "sequence": but("sequence", "one")}),
     Rule("a step is cut into halves where it is alone", {"form": ["halves"], "sequence": but("sequence", "one")}),
     Rule("an amplitude of a step would begin anew", {"form": ["halves"], "amplitude": but("amplitude", "none", "total time")}),
@@ -227,6 +232,7 @@ SIMPLEST = {
     "contact": "none",
     "procedure": "static",
     "form": "moved",
+    "reader": "h5py",
 }
 """Levels that a failing deck is shrunk to, where it goes on failing."""
 
@@ -252,3 +258,8 @@ def known(oracle: str, choice: Mapping[str, str], said: str) -> str:
         if one.oracle == oracle and fits and one.text in said:
             return one.reason
     return ""
+
+
+ELSEWHERE = {
+}
+"""Keywords that no level has, with the reason."""

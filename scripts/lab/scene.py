@@ -24,6 +24,7 @@ from lab.levels import (
     MATERIALS,
     OUTPUTS,
     PROCEDURES,
+    SLOW,
     STATIC,
     TURNING,
     WITH_CAP,
@@ -94,6 +95,12 @@ class Scene:
     """Whether the only step is two of half its length."""
     zero_for_removed: bool = False
     """Whether loads become zero where the choice removes them."""
+    has_guides: bool = True
+    """Whether springs guide what is loaded."""
+    base: str = ""
+    """What the base is made of in place of the material: `stiff`, or `rigid` by its elements."""
+    motion: tuple[float, float] = (0.004, -0.004)
+    """Displacement of a motion."""
     include: str = ""
     """Text of the file that the deck includes."""
     bodies: list[Body] = field(default_factory=list)
@@ -170,7 +177,8 @@ class Scene:
         return text
 
     def _section(self, elements: str) -> str:
-        return card(f"SOLID SECTION, ELSET={elements}, MATERIAL=M", *([] if self.is_ring else [(1.0,)]))
+        material = "STIFF" if self.base == "stiff" and elements == "LOWER" else "M"
+        return card(f"SOLID SECTION, ELSET={elements}, MATERIAL={material}", *([] if self.is_ring else [(1.0,)]))
 
     def _sets(self, body: Body, instance: str = "") -> str:
         """Node sets and surfaces of the sides of a body; rows name numbers of its instance."""
@@ -251,8 +259,9 @@ class Scene:
         if self.connection == "pre-tension":
             nodes.append((BOLT, middle, 0.5))
         text = self._guides(nodes)
-        if self.contact in FLOORS:
+        if self.contact in FLOORS or self.base == "rigid":
             nodes.append((FLOOR, self.x0 + 1.5, -0.5))
+        if self.contact in FLOORS:
             text += card("SURFACE, NAME=FLOOR, TYPE=SEGMENTS", ("START", self.x0, 0.0), ("LINE", self.x0 + 3.0, 0.0))
         if self.connection == "disc":
             rim = [(middle + 0.3 * cos(a), top + 0.3 + 0.3 * sin(a)) for a in np.arange(0.5, -2.5, -0.5) * pi]
@@ -263,7 +272,7 @@ class Scene:
         if self.connection in ("disc", "rigid nodes", "rigid tie nodes", "rigid elements"):
             text += card("ELEMENT, TYPE=MASS, ELSET=EMASS", (981, REFERENCE))
             text += card("ELEMENT, TYPE=ROTARYI, ELSET=EROTARY", (982, REFERENCE))
-        return card("NODE", *nodes) + text
+        return (card("NODE", *nodes) if nodes else "") + text
 
     def _guides(self, nodes: list[tuple[object, ...]]) -> str:
         """Springs that hold what is loaded weakly, and those of a connection; their grounds join `nodes`."""
@@ -282,12 +291,13 @@ class Scene:
             ends.append((str(REFERENCE), left + 0.5, 1.3, 0.0, 1.0))
             if across:
                 ends.append((str(REFERENCE), left + 0.5, 1.3, 1.0, 0.0))
+        ends = ends if self.has_guides else []
         rows = []
         for number, (node, x, y, dx, dy) in enumerate(ends):
             nodes.append((GROUND + number, self.x0 + x + dx, y + dy))
             rows.append((951 + number, node, GROUND + number))
         self.grounds = [GROUND + number for number in range(len(ends))]
-        text = card("ELEMENT, TYPE=SPRINGA, ELSET=GUIDES", *rows)
+        text = card("ELEMENT, TYPE=SPRINGA, ELSET=GUIDES", *rows) if rows else ""
         pairs = [
             (self._node(upper, left + x, 1.0), self._node(self.top, left + z, 1.4))
             for x, z in ((0.0, 0.0), (1.0, 1.0), (0.0, 1.0))
@@ -306,7 +316,12 @@ class Scene:
     def _model(self) -> str:
         """Materials, connections, contact and supports."""
         text = card("MATERIAL, NAME=M") + MATERIALS[self.choice["material"]] + card("DENSITY", (1.0,))
-        text += card("SPRING, ELSET=GUIDES", (), (GUIDE,))
+        if self.grounds:
+            text += card("SPRING, ELSET=GUIDES", (), (GUIDE,))
+        if self.base == "stiff":
+            text += card("MATERIAL, NAME=STIFF") + card("ELASTIC", (1e7, 0.3)) + card("DENSITY", (1.0,))
+        if self.base == "rigid":
+            text += card(f"RIGID BODY, ELSET=LOWER, REF NODE={FLOOR}")
         text += self._connection() + self._interactions()
         procedure = PROCEDURES[self.choice["procedure"]]
         end = procedure.duration * (self.slowed if self.choice["procedure"] not in STATIC else 1.0)
@@ -457,16 +472,18 @@ class Scene:
         return "*STEP, NLGEOM=YES\n" + procedure.text + cards + output + "*END STEP\n"
 
     def _supports(self, head: str = "BOUNDARY") -> str:
-        """What holds the base, the grounds of springs and rigid surfaces."""
+        """What holds the base, the grounds of springs and rigid bodies."""
         rows: list[tuple[object, ...]] = [(number, 1, 2) for number in self.grounds]
         if self.contact == "none":
             rows.append(("UPPER_BOTTOM_NODES", 1, 2))
-        if self.has_base:
+        if self.has_base and self.base != "rigid":
             rows.append(("LOWER_BOTTOM_NODES", 1, 2))
-        if self.contact in FLOORS:
+        if self.contact in FLOORS or self.base == "rigid":
             rows += [(FLOOR, 1, 2), (FLOOR, 6, 6)]
         if self.connection in TURNING and self.is_ring:
             rows += [(REFERENCE, 1, 1), (REFERENCE, 6, 6)]
+        elif self.connection == "disc" and (self.choice["procedure"] in SLOW or self.choice["sequence"] == "rest"):
+            rows.append((REFERENCE, 6, 6))  # without inertia it would roll away
         if self.connection == "pre-tension" and "NEW" in head:
             rows.append((BOLT, 1, 1, OVERLAP))
         return card(head, *rows)
@@ -515,8 +532,8 @@ class Scene:
                 axis = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0) if ring else (0.0, 8.0, 0.0, 0.0, 0.0, 1.0)
                 text += card(f"DLOAD{amplitude}", ("UPPER", "CENTRIF", 0.5 * scale, *axis))
             case "motion":
-                across = [] if ring and self.grip == str(REFERENCE) else [(grip, 1, 1, 0.004 * scale)]
-                text += card(f"BOUNDARY{amplitude}", *across, (grip, 2, 2, -0.004 * scale))
+                across = [] if ring and self.grip == str(REFERENCE) else [(grip, 1, 1, self.motion[0] * scale)]
+                text += card(f"BOUNDARY{amplitude}", *across, (grip, 2, 2, self.motion[1] * scale))
             case "rotation":
                 text += card(f"BOUNDARY{amplitude}", *([] if ring else [(grip, 6, 6, 0.01 * scale)]), (grip, 2, 2, -0.004 * scale))
             case "velocity" | "acceleration":
