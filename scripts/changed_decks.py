@@ -277,11 +277,12 @@ def _support_rows(card: Card) -> Iterator[tuple[tuple[str, int], Support]]:
 
 
 def _left(support: Support, period: float, amplitudes: dict[str, Card]) -> Support:
-    """The support that a step leaves to the next: a displacement keeps what it has reached."""
-    if "TYPE=" in support.parameters:
-        return support
+    """The support that a step leaves to the next: a displacement, or velocity, keeps what it has reached."""
     if "AMPLITUDE=" in support.parameters:
-        return Support("", support.value * _value_at(period, amplitudes[_amplitude(support)]))
+        kept = "".join(
+            f", {part.strip()}" for part in support.parameters.split(",") if "TYPE=" in part
+        )
+        return Support(kept, support.value * _value_at(period, amplitudes[_amplitude(support)]))
     return support
 
 

@@ -63,14 +63,14 @@ SEQUENCES = "one, on and off, hold, rest, removed, released, contact removed, fr
 
 CONTACTS = (
     "none, node to surface, surface to surface, both orders, both orders s2s, node surface, general, general nodes, "
-    "general surfaces, rigid floor, rigid floor s2s, general floor, clearance, adjusted, interference"
+    "general surfaces, general adjusted, rigid floor, rigid floor s2s, general floor, clearance, adjusted, interference"
 ).split(", ")
 GENERAL = [name for name in CONTACTS if name.startswith("general")]
 FLOORS = [name for name in CONTACTS if name.endswith(("floor", "floor s2s"))]
 
 INTERACTIONS = {
     "frictionless": "",
-    "friction": "*FRICTION\n0.3\n",
+    "friction": "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*FRICTION\n0.3\n",
     "table": "*FRICTION\n0.3, 0., 0.\n0.2, 1., 0.\n0.25, 0., 10.\n0.15, 1., 10.\n",
     "decay": "*FRICTION, EXPONENTIAL DECAY\n0.4, 0.2, 1.\n",
     "taumax": "*FRICTION, TAUMAX=0.5\n0.3\n",
@@ -128,6 +128,7 @@ OUTPUTS = {
     ),
     "few": "*OUTPUT, FIELD, FREQUENCY=0\n*NODE OUTPUT\nU\n",
     "times": "*OUTPUT, FIELD, NUMBER INTERVAL=2\n*ELEMENT OUTPUT\nS\n*CONTACT OUTPUT\nCSTRESS\n",
+    "points": "*TIME POINTS, NAME=T{number}\n{half!r},\n*OUTPUT, FIELD, TIME POINTS=T{number}\n*NODE OUTPUT\nU\n",
 }
 
 FORMS = (
@@ -192,6 +193,8 @@ RULES = [
     Rule("a slow motion has no inertia of its own", {"form": ["slowly"], "load": ["gravity", "centrifugal", "thrown", "velocity", "acceleration"]}),
     Rule("a slow motion has another rate of slip", {"form": ["slowly"], "interaction": ["table", "decay"]}),
     Rule("a slow motion follows one path", {"form": ["slowly"], "sequence": but("sequence", "one")}),
+    Rule("an overlap is pressed out in the whole step", {"form": ["halves"], "contact": ["interference"]}),
+    Rule("a body that is held is not thrown", {"load": ["thrown"], "contact": ["none"]}),
     Rule("a step is cut into halves where it is alone", {"form": ["halves"], "sequence": but("sequence", "one")}),
     Rule("an amplitude of a step would begin anew", {"form": ["halves"], "amplitude": but("amplitude", "none", "total time")}),
     Rule("a step is halved where its increments are its own", {"form": ["halves"], "procedure": ["automatic", "static", "quasi-static"]}),
@@ -202,6 +205,7 @@ RULES = [
     Rule("both orders are exchanged", {"form": ["exchanged"], "contact": but("contact", "both orders", "both orders s2s")}),
     Rule("a flat deck is not written otherwise", {"form": ["otherwise written"], "written": ["flat"]}),
     Rule("impacts of meshes that differ differ", {"form": ["finer family"], "procedure": FAST}),
+    Rule("a finer family ends elsewhere after its load", {"form": ["finer family"], "sequence": but("sequence", "one", "hold")}),
     Rule("a finer family yields elsewhere", {"form": ["finer family"], "material": INELASTIC}),
 ]
 
@@ -261,5 +265,7 @@ def known(oracle: str, choice: Mapping[str, str], said: str) -> str:
 
 
 ELSEWHERE = {
+    "RESTART": "the form `restarted`",
+    "NO ANALYSIS": "nothing is solved",
 }
 """Keywords that no level has, with the reason."""

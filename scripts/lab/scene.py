@@ -101,6 +101,8 @@ class Scene:
     """What the base is made of in place of the material: `stiff`, or `rigid` by its elements."""
     motion: tuple[float, float] = (0.004, -0.004)
     """Displacement of a motion."""
+    steps: int = 0
+    """Steps that have been written."""
     include: str = ""
     """Text of the file that the deck includes."""
     bodies: list[Body] = field(default_factory=list)
@@ -116,7 +118,7 @@ class Scene:
         self.load = self.choice["load"]
         self.has_base = self.contact not in ("none", *FLOORS)
         self._number = [1, 1]
-        gap = {"clearance": 0.01, "adjusted": 0.01, "interference": -0.002}.get(self.contact, 0.0)
+        gap = {"clearance": 0.01, "adjusted": 0.01, "general adjusted": 0.01, "interference": -0.002}.get(self.contact, 0.0)
         if self.has_base:
             self._add("LOWER", 4, 1, lambda x, y: (self.x0 + 3.0 * x, y - 1.0 - gap))
         self._add("UPPER", 2, 2, lambda x, y: (self.x0 + LEFT + x, y))
@@ -412,11 +414,16 @@ class Scene:
                 text += card(f"{head}, ADJUST=0.05", pair)
             case "clearance":
                 text += card(head, pair) + card("CLEARANCE, SLAVE=UPPER_BOTTOM, MASTER=LOWER_TOP, VALUE=0.")
-            case "general" | "general floor" | "general nodes" | "general surfaces":
+            case "general" | "general floor" | "general nodes" | "general surfaces" | "general adjusted":
+                is_adjusted = self.contact == "general adjusted"
+                if is_adjusted:
+                    text += card("CONTACT INITIALIZATION DATA, NAME=FIT, SEARCH ABOVE=0.02")
                 kind = {"general nodes": "NODE", "general surfaces": "SURFACE"}.get(self.contact)
                 text += card("CONTACT") + card("CONTACT INCLUSIONS, ALL EXTERIOR")
                 text += card("CONTACT PROPERTY ASSIGNMENT", ("", "", "DRY"))
                 text += card(f"CONTACT FORMULATION, TYPE={kind} TO SURFACE") if kind else ""
+                if is_adjusted:
+                    text += card("CONTACT INITIALIZATION ASSIGNMENT", ("", "", "FIT"))
             case _:
                 text += card(head, pair)
         if self.contact in FLOORS:
@@ -434,8 +441,10 @@ class Scene:
         if self.choice["contact"] == "interference":
             first += card("CONTACT INTERFERENCE, SHRINK", ("UPPER_BOTTOM", "LOWER_TOP"))
         if self.is_halved:
-            half = _slowed(procedure, 0.5)
-            return self._step(half, self._loads(0.5)) + self._step(half, self._loads(1.0))
+            half = _halved(procedure)
+            grows = procedure.duration == 1.0 or self.load in ("motion", "rotation")
+            first = self._loads(0.5 if grows and self.choice["amplitude"] == "none" else 1.0)
+            return self._step(half, first) + self._step(half, self._loads(1.0))
         if sequence == "rest":
             static = PROCEDURES["static"]
             if self.choice["procedure"] == "redistributed":
@@ -467,9 +476,14 @@ class Scene:
 
     def _step(self, procedure: Procedure, cards: str) -> str:
         output = OUTPUTS[self.choice["output"]].format(
-            nodes="UPPER_TOP_NODES", elements="UPPER", monitor=self._node(self.body("UPPER"), LEFT, 1.0)
+            nodes="UPPER_TOP_NODES", elements="UPPER", half=procedure.duration / 2.0, number=self._count(), monitor=self._node(self.body("UPPER"), LEFT, 1.0)
         )
         return "*STEP, NLGEOM=YES\n" + procedure.text + cards + output + "*END STEP\n"
+
+    def _count(self) -> int:
+        """Number of the step that is written."""
+        self.steps += 1
+        return self.steps
 
     def _supports(self, head: str = "BOUNDARY") -> str:
         """What holds the base, the grounds of springs and rigid bodies."""
@@ -548,6 +562,13 @@ def _slowed(procedure: Procedure, factor: float) -> Procedure:
     head, row, *rest = procedure.card.split("\n")
     times = [repr(float(text) * factor) for text in row.split(",")]
     return replace(procedure, card="\n".join([head, ", ".join(times), *rest]), duration=procedure.duration * factor)
+
+
+def _halved(procedure: Procedure) -> Procedure:
+    """A procedure of half the duration, with the same increments."""
+    head, row, *rest = procedure.card.split("\n")
+    first, end = row.split(",")
+    return replace(procedure, card="\n".join([head, f"{first}, {float(end) / 2.0!r}", *rest]))
 
 
 def _in_rows(head: str, numbers: list[int]) -> str:
