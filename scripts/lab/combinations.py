@@ -25,6 +25,7 @@ from stickslip.program import binary
 
 from lab.covering import Choice, Covering, pairs_of
 from lab.levels import FACTORS, RULES, SIMPLEST, allows, known
+from lab.mutations import Found, find_all
 from lab.oracles import ALWAYS, FORMS, READERS, Trial, Untold, runs
 from lab.scene import Scene
 from lab.single import SINGLE
@@ -211,7 +212,7 @@ def main() -> int:
     """Judges decks and prints what fails, and tables."""
     arguments = parse()
     if arguments.mutations:
-        return find_all(arguments.jobs)
+        return min(find_all(lambda program: failures(program, arguments.jobs)), 1)
     seeds = arguments.seed or [SEED]
     if arguments.deck is not None:
         print_deck(seeds[0], arguments.deck)
@@ -239,6 +240,25 @@ def main() -> int:
     return 1 if bad else 0
 
 
+def failures(program: Path, jobs: int) -> Found:
+    """What the short part finds."""
+    _, decks = decks_of(SEED, SHORT)
+    verdicts = judge_all(decks, program, jobs)
+    return {(verdict.name, oracle) for verdict in verdicts for oracle in verdict.failures} | {
+        (name, name) for name, said in single(program) if said
+    }
+
+
+def single(program: Path) -> Iterator[tuple[str, list[str]]]:
+    """What the comparisons of single models find wrong, by their names."""
+    for name, ask in SINGLE.items():
+        with tempfile.TemporaryDirectory(prefix="combinations_") as folder:
+            try:
+                yield name, ask(program, Path(folder))
+            except Exception as error:  # noqa: BLE001 - no comparison may end the laboratory
+                yield name, [one_line(error) or type(error).__name__]
+
+
 def print_deck(seed: int, number: int) -> None:
     """Writes a deck of an array to the screen, and what it includes behind it."""
     _, decks = decks_of(seed, number + 1)
@@ -249,14 +269,9 @@ def print_deck(seed: int, number: int) -> None:
 
 
 def tell_single(program: Path) -> int:
-    """Runs the single comparisons; prints what fails and counts it."""
+    """Prints what the comparisons of single models find wrong, and counts them."""
     bad = 0
-    for name, ask in SINGLE.items():
-        with tempfile.TemporaryDirectory(prefix="combinations_") as folder:
-            try:
-                said = ask(program, Path(folder))
-            except Exception as error:  # noqa: BLE001 - no comparison may end the laboratory
-                said = [one_line(error) or type(error).__name__]
+    for name, said in single(program):
         for text in said:
             print(f"{name}: {text}", flush=True)
         bad += bool(said)

@@ -1,0 +1,56 @@
+"""The short part of the laboratory of combinations: no deck fails but for what is known."""
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from lab.combinations import SEED, SHORT, decks_of, judge_all
+from lab.covering import Covering, pairs_of
+from lab.levels import FACTORS, allows
+from lab.scene import Scene
+from lab.single import SINGLE
+from stickslip import program
+
+
+def test_short_part() -> None:
+    _, decks = decks_of(SEED, SHORT)
+    wrong = [
+        f"{verdict.name}: {', '.join(verdict.choice.values())}: {oracle}: {said}"
+        for verdict in judge_all(decks, program.binary(), 2)
+        for oracle, said in verdict.failures.items()
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("name", SINGLE)
+def test_single_models(name: str, tmp_path: Path) -> None:
+    assert SINGLE[name](program.binary(), tmp_path) == []
+
+
+def test_an_array_covers_all_pairs_that_may_stand_together() -> None:
+    factors = {"a": ["1", "2", "3"], "b": ["1", "2"], "c": ["1", "2", "3", "4"], "d": ["1", "2"]}
+
+    def may(choice: dict[str, str]) -> bool:
+        return not (choice.get("a") == "1" and choice.get("c") == "4")
+
+    covering = Covering(factors, may, 3)
+    choices = list(covering.choices())
+    covered = {pair for choice in choices for pair in pairs_of(choice)}
+    every = {
+        frozenset(((a, one), (b, other)))
+        for a, b in combinations(factors, 2)
+        for one in factors[a]
+        for other in factors[b]
+    }
+    assert covered == covering.pairs == every - {frozenset((("a", "1"), ("c", "4")))}
+    assert len(choices) < 2 * 12
+    assert choices == list(Covering(factors, may, 3).choices())
+
+
+def test_decks_are_small_and_the_same_each_time() -> None:
+    _, decks = decks_of(SEED, 12)
+    for _, choice in decks:
+        assert set(choice) == set(FACTORS) and allows(choice)
+        scene = Scene(choice)
+        assert scene.deck() == Scene(choice).deck()
+        assert sum(len(body.mesh.elements) for body in scene.bodies) <= 150
