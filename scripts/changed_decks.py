@@ -271,9 +271,10 @@ def supports(deck: Deck) -> list[Held]:
 def _support_rows(card: Card) -> Iterator[tuple[tuple[str, int], Support]]:
     parameters = {name: value for name, value in card.parameters.items() if name != "OP"}
     text = "".join(f", {name}={value}" for name, value in parameters.items())
-    for node, first, last, value in card.rows:
-        for direction in range(int(first), int(last) + 1):
-            yield (node, direction), Support(text, float(value))
+    for node, first, *rest in card.rows:
+        last, value = (*rest, *("", "")[len(rest) :])
+        for direction in range(int(first), int(last or first) + 1):
+            yield (node, direction), Support(text, float(value or 0.0))
 
 
 def _left(support: Support, period: float, amplitudes: dict[str, Card]) -> Support:

@@ -1,9 +1,9 @@
 """Runs small decks made of all pairs of levels and judges them without stored answers.
 
-    scripts/lab/combinations                the short part, some two minutes
-    scripts/lab/combinations --all          every pair; --seed for another array, several times for several
-    scripts/lab/combinations --deck 17      prints a deck of an array
-    scripts/lab/combinations --shrink       drops levels of failing decks and writes what is left
+scripts/lab/combinations                the short part, some two minutes
+scripts/lab/combinations --all          every pair; --seed for another array, several times for several
+scripts/lab/combinations --deck 17      prints a deck of an array
+scripts/lab/combinations --shrink       drops levels of failing decks and writes what is left
 """
 
 import argparse
@@ -67,7 +67,11 @@ def judge(name: str, choice: Choice, program: Path, only: str | None = None) -> 
         oracles = {"runs": runs}
         if trial.base.code == 0:
             # forms first: they read the file of a result that is not open yet
-            oracles |= {choice["form"]: FORMS[choice["form"]], **ALWAYS, choice["reader"]: READERS[choice["reader"]]}
+            oracles |= {
+                choice["form"]: FORMS[choice["form"]],
+                **ALWAYS,
+                choice["reader"]: READERS[choice["reader"]],
+            }
         else:
             oracles["check"] = ALWAYS["check"]
         verdict.code = trial.base.code
@@ -199,9 +203,13 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--number", type=int, metavar="NUMBER", help=help_)
     help_ = "shrink failing decks, one for each oracle and message, into the folder of --output"
     parser.add_argument("--shrink", action="store_true", help=help_)
-    parser.add_argument("-o", "--output", type=Path, default=Path("combinations"), help="folder of shrunk decks")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=Path("combinations"), help="folder of shrunk decks"
+    )
     parser.add_argument("--program", type=Path, help="the program to run")
-    parser.add_argument("--jobs", type=positive_integer, default=2, metavar="N", help="decks at a time (default 2)")
+    parser.add_argument(
+        "--jobs", type=positive_integer, default=2, metavar="N", help="decks at a time (default 2)"
+    )
     parser.add_argument("--table", type=Path, metavar="FILE", help="all verdicts as JSON")
     help_ = "build the program with faults, one at a time, which the short part must find"
     parser.add_argument("--mutations", action="store_true", help=help_)
@@ -220,7 +228,9 @@ def main() -> int:
     program = (arguments.program or binary()).resolve()
     start, counts, bad = time.monotonic(), Counts(), 0
     for seed in seeds:
-        covering, decks = decks_of(seed, None if arguments.all else max(SHORT, (arguments.number or 0) + 1))
+        covering, decks = decks_of(
+            seed, None if arguments.all else max(SHORT, (arguments.number or 0) + 1)
+        )
         counts.pairs, counts.impossible = len(covering.pairs), len(covering.impossible)
         if arguments.number is not None:
             decks = decks[arguments.number : arguments.number + 1]
@@ -236,7 +246,9 @@ def main() -> int:
     if arguments.shrink:
         shrink_all(counts.verdicts, program, arguments.output)
     bad += sum(not verdict.is_good for verdict in counts.verdicts)
-    print(f"{len(counts.verdicts)} decks, {bad} fail; {len(RULES)} rules; {time.monotonic() - start:.0f} s")
+    print(
+        f"{len(counts.verdicts)} decks, {bad} fail; {len(RULES)} rules; {time.monotonic() - start:.0f} s"
+    )
     return 1 if bad else 0
 
 

@@ -52,7 +52,9 @@ class Covering:
                 self.impossible.add(first)
                 del missing[first]
 
-    def _whole(self, start: Choice, missing: Mapping[Pair, None], attempts: int = 12) -> Choice | None:
+    def _whole(
+        self, start: Choice, missing: Mapping[Pair, None], attempts: int = 12
+    ) -> Choice | None:
         """A choice of all factors with some given, whose other levels cover much that is missing."""
         for _ in range(attempts):
             choice = dict(start)

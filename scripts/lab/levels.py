@@ -59,7 +59,9 @@ STATIC = ["static", "static direct"]
 SLOW = [*STATIC, "quasi-static"]
 FAST = [name for name in PROCEDURES if name not in SLOW]
 
-SEQUENCES = "one, on and off, hold, rest, removed, released, contact removed, friction changed, two loads".split(", ")
+SEQUENCES = "one, on and off, hold, rest, removed, released, contact removed, friction changed, two loads".split(
+    ", "
+)
 
 CONTACTS = (
     "none, node to surface, surface to surface, both orders, both orders s2s, node surface, general, general nodes, "
@@ -84,7 +86,15 @@ CONNECTIONS = (
     "none, tie, kinematic, distributing, kinematic coupling, beam, pin, equation, hinge, springs, springs along axes, "
     "rigid nodes, rigid tie nodes, rigid elements, pre-tension, disc"
 ).split(", ")
-TURNING = ["kinematic", "kinematic coupling", "beam", "rigid nodes", "rigid tie nodes", "rigid elements", "disc"]
+TURNING = [
+    "kinematic",
+    "kinematic coupling",
+    "beam",
+    "rigid nodes",
+    "rigid tie nodes",
+    "rigid elements",
+    "disc",
+]
 """Connections whose reference node has an angle."""
 WITH_REFERENCE = [*TURNING, "distributing", "pin", "equation"]
 WITH_CAP = ["tie", "hinge", "springs", "springs along axes"]
@@ -173,39 +183,116 @@ def but(factor: str, *levels: str) -> list[str]:
 
 
 RULES = [
-    Rule("friction needs a contact", {"contact": ["none"], "interaction": but("interaction", "frictionless")}),
-    Rule("contact is removed where there is one", {"contact": ["none"], "sequence": ["contact removed", "friction changed"]}),
-    Rule("an overlap is pressed out in one step", {"contact": ["interference"], "sequence": but("sequence", "one", "hold", "rest")}),
-    Rule("a fit is pressed together over increments", {"contact": ["interference"], "procedure": ["events"]}, "D"),
+    Rule(
+        "friction needs a contact",
+        {"contact": ["none"], "interaction": but("interaction", "frictionless")},
+    ),
+    Rule(
+        "contact is removed where there is one",
+        {"contact": ["none"], "sequence": ["contact removed", "friction changed"]},
+    ),
+    Rule(
+        "an overlap is pressed out in one step",
+        {"contact": ["interference"], "sequence": but("sequence", "one", "hold", "rest")},
+    ),
+    Rule(
+        "a fit is pressed together over increments",
+        {"contact": ["interference"], "procedure": ["events"]},
+        "D422",
+    ),
     Rule("a disc rolls away under a moment", {"load": ["moment"], "connection": ["disc"]}),
     Rule("a node that is held is not thrown", {"load": ["thrown"], "sequence": ["released"]}),
     Rule("general contact is no pair", {"contact": GENERAL, "sequence": ["contact removed"]}),
-    Rule("friction that is no coefficient does not change", {"interaction": ["rough", "frictionless"], "sequence": ["friction changed"]}),
+    Rule(
+        "friction that is no coefficient does not change",
+        {"interaction": ["rough", "frictionless"], "sequence": ["friction changed"]},
+    ),
     Rule("rest begins with a static step of its own", {"sequence": ["rest"], "procedure": STATIC}),
-    Rule("an angle is that of a reference node that turns", {"load": ["moment", "rotation"], "connection": but("connection", *TURNING)}),
-    Rule("a pressure acts on a side of elements", {"load": ["pressure", "traction", "face pressure", "face traction"], "connection": ["disc", "rigid elements"]}),
+    Rule(
+        "an angle is that of a reference node that turns",
+        {"load": ["moment", "rotation"], "connection": but("connection", *TURNING)},
+    ),
+    Rule(
+        "a pressure acts on a side of elements",
+        {
+            "load": ["pressure", "traction", "face pressure", "face traction"],
+            "connection": ["disc", "rigid elements"],
+        },
+    ),
     Rule("a thrown body has time to fly", {"load": ["thrown"], "procedure": SLOW}),
-    Rule("a velocity given at the start does not change", {"load": ["thrown"], "sequence": ["rest", "on and off", "removed", "two loads"]}),
-    Rule("a velocity given at the start has no amplitude", {"load": ["thrown"], "amplitude": but("amplitude", "none")}),
-    Rule("velocities go on: they are no loads that come and go", {"load": ["velocity", "acceleration"], "sequence": ["on and off", "rest", "hold", "two loads"]}),
-    Rule("these schemes are made of the energy-momentum scheme", {"procedure": ["ss22"], "form": ["slowly"]}),
-    Rule("a slow motion is compared with a static step", {"form": ["slowly"], "procedure": but("procedure", *STATIC)}),
-    Rule("a slow motion has no inertia of its own", {"form": ["slowly"], "load": ["gravity", "centrifugal", "thrown", "velocity", "acceleration"]}),
-    Rule("a slow motion has another rate of slip", {"form": ["slowly"], "interaction": ["table", "decay"]}),
-    Rule("a slow motion follows one path", {"form": ["slowly"], "sequence": but("sequence", "one")}),
-    Rule("an overlap is pressed out in the whole step", {"form": ["halves"], "contact": ["interference"]}),
+    Rule(
+        "a velocity given at the start does not change",
+        {"load": ["thrown"], "sequence": ["rest", "on and off", "removed", "two loads"]},
+    ),
+    Rule(
+        "a velocity given at the start has no amplitude",
+        {"load": ["thrown"], "amplitude": but("amplitude", "none")},
+    ),
+    Rule(
+        "velocities go on: they are no loads that come and go",
+        {
+            "load": ["velocity", "acceleration"],
+            "sequence": ["on and off", "rest", "hold", "two loads"],
+        },
+    ),
+    Rule(
+        "these schemes are made of the energy-momentum scheme",
+        {"procedure": ["ss22"], "form": ["slowly"]},
+    ),
+    Rule(
+        "a slow motion is compared with a static step",
+        {"form": ["slowly"], "procedure": but("procedure", *STATIC)},
+    ),
+    Rule(
+        "a slow motion has no inertia of its own",
+        {
+            "form": ["slowly"],
+            "load": ["gravity", "centrifugal", "thrown", "velocity", "acceleration"],
+        },
+    ),
+    Rule(
+        "a slow motion has another rate of slip",
+        {"form": ["slowly"], "interaction": ["table", "decay"]},
+    ),
+    Rule(
+        "a slow motion follows one path", {"form": ["slowly"], "sequence": but("sequence", "one")}
+    ),
+    Rule(
+        "an overlap is pressed out in the whole step",
+        {"form": ["halves"], "contact": ["interference"]},
+    ),
     Rule("a body that is held is not thrown", {"load": ["thrown"], "contact": ["none"]}),
-    Rule("a step is cut into halves where it is alone", {"form": ["halves"], "sequence": but("sequence", "one")}),
-    Rule("an amplitude of a step would begin anew", {"form": ["halves"], "amplitude": but("amplitude", "none", "total time")}),
-    Rule("a step is halved where its increments are its own", {"form": ["halves"], "procedure": ["automatic", "static", "quasi-static"]}),
+    Rule(
+        "a step is cut into halves where it is alone",
+        {"form": ["halves"], "sequence": but("sequence", "one")},
+    ),
+    Rule(
+        "an amplitude of a step would begin anew",
+        {"form": ["halves"], "amplitude": but("amplitude", "none", "total time")},
+    ),
+    Rule(
+        "a step is halved where its increments are its own",
+        {"form": ["halves"], "procedure": ["automatic", "static", "quasi-static"]},
+    ),
     Rule("a velocity given at the start acts once", {"form": ["halves"], "load": ["acceleration"]}),
-    Rule("there is a load to remove", {"form": ["removed as zero"], "sequence": but("sequence", "removed")}),
+    Rule(
+        "there is a load to remove",
+        {"form": ["removed as zero"], "sequence": but("sequence", "removed")},
+    ),
     Rule("a removed support is not one of value 0", {"form": ["removed as zero"], "load": DRIVEN}),
     Rule("a restart needs a second step", {"form": ["restarted"], "sequence": ["one"]}),
-    Rule("both orders are exchanged", {"form": ["exchanged"], "contact": but("contact", "both orders", "both orders s2s")}),
-    Rule("a flat deck is not written otherwise", {"form": ["otherwise written"], "written": ["flat"]}),
+    Rule(
+        "both orders are exchanged",
+        {"form": ["exchanged"], "contact": but("contact", "both orders", "both orders s2s")},
+    ),
+    Rule(
+        "a flat deck is not written otherwise", {"form": ["otherwise written"], "written": ["flat"]}
+    ),
     Rule("impacts of meshes that differ differ", {"form": ["finer family"], "procedure": FAST}),
-    Rule("a finer family ends elsewhere after its load", {"form": ["finer family"], "sequence": but("sequence", "one", "hold")}),
+    Rule(
+        "a finer family ends elsewhere after its load",
+        {"form": ["finer family"], "sequence": but("sequence", "one", "hold")},
+    ),
     Rule("a finer family yields elsewhere", {"form": ["finer family"], "material": INELASTIC}),
 ]
 

@@ -73,7 +73,9 @@ def find_all(judge: Callable[[Path], Found]) -> int:
             missed += not new
             oracles = sorted({oracle for _, oracle in new})
             decks = len({deck for deck, _ in new})
-            print(f"{mutation.name}: {decks} decks fail {', '.join(oracles) or 'nothing'}", flush=True)
+            print(
+                f"{mutation.name}: {decks} decks fail {', '.join(oracles) or 'nothing'}", flush=True
+            )
     return missed
 
 

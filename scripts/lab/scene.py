@@ -63,7 +63,9 @@ class Body:
     first_node: int
     first_element: int
 
-    def nodes(self, place: Callable[[np.ndarray], np.ndarray] = lambda points: points) -> list[tuple]:
+    def nodes(
+        self, place: Callable[[np.ndarray], np.ndarray] = lambda points: points
+    ) -> list[tuple]:
         """Rows of *NODE, numbered from `first_node`."""
         points = place(self.mesh.points)
         return [(self.first_node + k, *map(float, point)) for k, point in enumerate(points)]
@@ -118,7 +120,12 @@ class Scene:
         self.load = self.choice["load"]
         self.has_base = self.contact not in ("none", *FLOORS)
         self._number = [1, 1]
-        gap = {"clearance": 0.01, "adjusted": 0.01, "general adjusted": 0.01, "interference": -0.002}.get(self.contact, 0.0)
+        gap = {
+            "clearance": 0.01,
+            "adjusted": 0.01,
+            "general adjusted": 0.01,
+            "interference": -0.002,
+        }.get(self.contact, 0.0)
         if self.has_base:
             self._add("LOWER", 4, 1, lambda x, y: (self.x0 + 3.0 * x, y - 1.0 - gap))
         self._add("UPPER", 2, 2, lambda x, y: (self.x0 + LEFT + x, y))
@@ -165,7 +172,14 @@ class Scene:
             text = mesh + inner
         if written == "include":
             self.include, text = text, "*INCLUDE, INPUT=mesh.inc\n"
-        text = "*HEADING\n" + ", ".join(self.choice.values()) + "\n" + text + self._model() + self._steps()
+        text = (
+            "*HEADING\n"
+            + ", ".join(self.choice.values())
+            + "\n"
+            + text
+            + self._model()
+            + self._steps()
+        )
         return _with_parameters(text) if written == "parameters" else text
 
     def _mesh(self) -> str:
@@ -180,7 +194,10 @@ class Scene:
 
     def _section(self, elements: str) -> str:
         material = "STIFF" if self.base == "stiff" and elements == "LOWER" else "M"
-        return card(f"SOLID SECTION, ELSET={elements}, MATERIAL={material}", *([] if self.is_ring else [(1.0,)]))
+        return card(
+            f"SOLID SECTION, ELSET={elements}, MATERIAL={material}",
+            *([] if self.is_ring else [(1.0,)]),
+        )
 
     def _sets(self, body: Body, instance: str = "") -> str:
         """Node sets and surfaces of the sides of a body; rows name numbers of its instance."""
@@ -200,7 +217,9 @@ class Scene:
         text += _in_rows(f"NSET, NSET={body.name}_ALL{parameter}", numbers)
         numbers = [start[1] + k for k, _ in body.mesh.faces("TOP")]
         text += _in_rows(f"ELSET, ELSET={body.name}_HIGHEST{parameter}", numbers)
-        upper = [k for k, one in enumerate(body.mesh.elements) if body.mesh.points[one, 1].mean() > 0.5]
+        upper = [
+            k for k, one in enumerate(body.mesh.elements) if body.mesh.points[one, 1].mean() > 0.5
+        ]
         if self.contact == "node surface" and body.name == "UPPER":
             text += card("SURFACE, NAME=POINTS, TYPE=NODE", ("UPPER_BOTTOM_NODES",))
         if self.connection == "rigid elements" and body.name == "UPPER":
@@ -237,8 +256,12 @@ class Scene:
             text += self._section("ALL") + card("END PART")
         text += card("ASSEMBLY, NAME=A")
         for body in self.bodies:
-            rows = [(*map(float, shift), 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, TILT)] if moved else []
-            text += card(f"INSTANCE, NAME=I_{body.name}, PART=P_{body.name}", *rows) + card("END INSTANCE")
+            rows = (
+                [(*map(float, shift), 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, TILT)] if moved else []
+            )
+            text += card(f"INSTANCE, NAME=I_{body.name}, PART=P_{body.name}", *rows) + card(
+                "END INSTANCE"
+            )
         for body in self.bodies:
             text += self._sets(body, f"I_{body.name}")
         return text + mesh_inner + card("END ASSEMBLY")
@@ -253,7 +276,11 @@ class Scene:
         """Nodes without element, springs and rigid profiles: in the assembly where there is one."""
         middle, top = self.x0 + LEFT + 0.5, 1.0
         nodes: list[tuple[object, ...]] = []
-        self.references = [number for number, used in ((REFERENCE, [*WITH_REFERENCE, "hinge"]), (SECOND, ["hinge"])) if self.connection in used]
+        self.references = [
+            number
+            for number, used in ((REFERENCE, [*WITH_REFERENCE, "hinge"]), (SECOND, ["hinge"]))
+            if self.connection in used
+        ]
         if self.references:
             nodes.append((REFERENCE, middle, top + (0.3 if self.connection == "disc" else 0.0)))
         if self.connection == "hinge":
@@ -264,9 +291,16 @@ class Scene:
         if self.contact in FLOORS or self.base == "rigid":
             nodes.append((FLOOR, self.x0 + 1.5, -0.5))
         if self.contact in FLOORS:
-            text += card("SURFACE, NAME=FLOOR, TYPE=SEGMENTS", ("START", self.x0, 0.0), ("LINE", self.x0 + 3.0, 0.0))
+            text += card(
+                "SURFACE, NAME=FLOOR, TYPE=SEGMENTS",
+                ("START", self.x0, 0.0),
+                ("LINE", self.x0 + 3.0, 0.0),
+            )
         if self.connection == "disc":
-            rim = [(middle + 0.3 * cos(a), top + 0.3 + 0.3 * sin(a)) for a in np.arange(0.5, -2.5, -0.5) * pi]
+            rim = [
+                (middle + 0.3 * cos(a), top + 0.3 + 0.3 * sin(a))
+                for a in np.arange(0.5, -2.5, -0.5) * pi
+            ]
             rim[-1] = rim[1]
             centre = (middle, top + 0.3)
             arcs = [("CIRCL", *map(float, point), *centre) for point in rim[2:]]
@@ -288,7 +322,10 @@ class Scene:
             lift = LIFT[self.connection]
             if across:
                 ends.append((self._node(self.top, left, lift), left, lift, -1.0, 0.0))
-            ends += [(self._node(self.top, left + x, lift + 0.4), left + x, lift + 0.4, 0.0, 1.0) for x in (0.0, 1.0)]
+            ends += [
+                (self._node(self.top, left + x, lift + 0.4), left + x, lift + 0.4, 0.0, 1.0)
+                for x in (0.0, 1.0)
+            ]
         if self.connection == "disc":
             ends.append((str(REFERENCE), left + 0.5, 1.3, 0.0, 1.0))
             if across:
@@ -305,10 +342,16 @@ class Scene:
             for x, z in ((0.0, 0.0), (1.0, 1.0), (0.0, 1.0))
         ]
         if self.connection == "springs":
-            text += card("ELEMENT, TYPE=SPRINGA, ELSET=LINKS", *((971 + k, *pair) for k, pair in enumerate(pairs)))
+            text += card(
+                "ELEMENT, TYPE=SPRINGA, ELSET=LINKS",
+                *((971 + k, *pair) for k, pair in enumerate(pairs)),
+            )
             text += card("ELEMENT, TYPE=DASHPOTA, ELSET=DASHPOTS", (975, *pairs[0]))
         if self.connection == "springs along axes":
-            text += card("ELEMENT, TYPE=SPRING2, ELSET=LINKS", *((971 + k, *pair) for k, pair in enumerate(pairs[:2])))
+            text += card(
+                "ELEMENT, TYPE=SPRING2, ELSET=LINKS",
+                *((971 + k, *pair) for k, pair in enumerate(pairs[:2])),
+            )
             text += card("ELEMENT, TYPE=SPRING1, ELSET=GROUNDED", (975, pairs[0][1]))
             text += card("ELEMENT, TYPE=DASHPOT2, ELSET=DASHPOTS", (976, *pairs[1]))
         return text
@@ -317,11 +360,15 @@ class Scene:
 
     def _model(self) -> str:
         """Materials, connections, contact and supports."""
-        text = card("MATERIAL, NAME=M") + MATERIALS[self.choice["material"]] + card("DENSITY", (1.0,))
+        text = (
+            card("MATERIAL, NAME=M") + MATERIALS[self.choice["material"]] + card("DENSITY", (1.0,))
+        )
         if self.grounds:
             text += card("SPRING, ELSET=GUIDES", (), (GUIDE,))
         if self.base == "stiff":
-            text += card("MATERIAL, NAME=STIFF") + card("ELASTIC", (1e7, 0.3)) + card("DENSITY", (1.0,))
+            text += (
+                card("MATERIAL, NAME=STIFF") + card("ELASTIC", (1e7, 0.3)) + card("DENSITY", (1.0,))
+            )
         if self.base == "rigid":
             text += card(f"RIGID BODY, ELSET=LOWER, REF NODE={FLOOR}")
         text += self._connection() + self._interactions()
@@ -334,21 +381,32 @@ class Scene:
         if self.load == "thrown":
             moving = [body.name for body in self.bodies if body.name != "LOWER"]
             sets = [f"{name}_ALL" for name in moving] + [str(node) for node in self.references]
-            rows = [(name, i, v) for name in sets for i, v in ((1, 0.2), (2, -0.5)) if i == 2 or not self.is_ring]
+            rows = [
+                (name, i, v)
+                for name in sets
+                for i, v in ((1, 0.2), (2, -0.5))
+                if i == 2 or not self.is_ring
+            ]
             text += card("INITIAL CONDITIONS, TYPE=VELOCITY", *rows)
         return text
 
     def _connection(self) -> str:
         """Cards of the connection."""
         ref = f"REF NODE={REFERENCE}"
-        middle_mass = card("MASS, ELSET=EMASS", (0.3,)) + card("ROTARY INERTIA, ELSET=EROTARY", ("", "", 0.05))
+        middle_mass = card("MASS, ELSET=EMASS", (0.3,)) + card(
+            "ROTARY INERTIA, ELSET=EROTARY", ("", "", 0.05)
+        )
         match self.connection:
             case "tie":
                 return card("TIE, NAME=BOND", ("CAP_BOTTOM", "UPPER_TOP"))
             case "kinematic":
-                return card(f"COUPLING, CONSTRAINT NAME=GRIP, {ref}, SURFACE=UPPER_TOP") + card("KINEMATIC", (1, 2))
+                return card(f"COUPLING, CONSTRAINT NAME=GRIP, {ref}, SURFACE=UPPER_TOP") + card(
+                    "KINEMATIC", (1, 2)
+                )
             case "distributing":
-                return card(f"COUPLING, CONSTRAINT NAME=GRIP, {ref}, SURFACE=UPPER_TOP") + card("DISTRIBUTING")
+                return card(f"COUPLING, CONSTRAINT NAME=GRIP, {ref}, SURFACE=UPPER_TOP") + card(
+                    "DISTRIBUTING"
+                )
             case "kinematic coupling":
                 return card(f"KINEMATIC COUPLING, {ref}", ("UPPER_TOP_NODES", 1, 2))
             case "beam":
@@ -356,20 +414,37 @@ class Scene:
             case "pin":
                 return card("MPC", ("PIN", "UPPER_TOP_NODES", REFERENCE))
             case "equation":
-                terms = ((2,), ("UPPER_TOP_NODES", 1, 1.0, REFERENCE, 1, -1.0), (2,), ("UPPER_TOP_NODES", 2, 1.0, REFERENCE, 2, -1.0))
+                terms = (
+                    (2,),
+                    ("UPPER_TOP_NODES", 1, 1.0, REFERENCE, 1, -1.0),
+                    (2,),
+                    ("UPPER_TOP_NODES", 2, 1.0, REFERENCE, 2, -1.0),
+                )
                 return card("EQUATION", *terms)
             case "hinge":
                 return (
-                    card(f"COUPLING, CONSTRAINT NAME=BELOW, {ref}, SURFACE=UPPER_TOP") + card("KINEMATIC")
-                    + card(f"COUPLING, CONSTRAINT NAME=ABOVE, REF NODE={SECOND}, SURFACE=CAP_BOTTOM") + card("KINEMATIC")
+                    card(f"COUPLING, CONSTRAINT NAME=BELOW, {ref}, SURFACE=UPPER_TOP")
+                    + card("KINEMATIC")
+                    + card(
+                        f"COUPLING, CONSTRAINT NAME=ABOVE, REF NODE={SECOND}, SURFACE=CAP_BOTTOM"
+                    )
+                    + card("KINEMATIC")
                     + card("MPC", ("PIN", SECOND, REFERENCE))
                 )
             case "springs":
-                return card("SPRING, ELSET=LINKS", (), (300.0,)) + card("DASHPOT, ELSET=DASHPOTS", (), (2.0,))
+                return card("SPRING, ELSET=LINKS", (), (300.0,)) + card(
+                    "DASHPOT, ELSET=DASHPOTS", (), (2.0,)
+                )
             case "springs along axes":
                 return (
                     card("SPRING, ELSET=LINKS", (2, 2), (300.0,))
-                    + card("SPRING, ELSET=GROUNDED, NONLINEAR", (1,), (-30.0, -1.0), (0.0, 0.0), (60.0, 1.0))
+                    + card(
+                        "SPRING, ELSET=GROUNDED, NONLINEAR",
+                        (1,),
+                        (-30.0, -1.0),
+                        (0.0, 0.0),
+                        (60.0, 1.0),
+                    )
                     + card("DASHPOT, ELSET=DASHPOTS", (2, 2), (2.0,))
                 )
             case "rigid nodes":
@@ -382,7 +457,8 @@ class Scene:
                 return card(f"PRE-TENSION SECTION, NODE={BOLT}, SURFACE=CUT")
             case "disc":
                 return (
-                    card(f"RIGID BODY, ANALYTICAL SURFACE=DISC, {ref}") + middle_mass
+                    card(f"RIGID BODY, ANALYTICAL SURFACE=DISC, {ref}")
+                    + middle_mass
                     + self._rolling()
                 )
         return ""
@@ -413,8 +489,16 @@ class Scene:
             case "adjusted":
                 text += card(f"{head}, ADJUST=0.05", pair)
             case "clearance":
-                text += card(head, pair) + card("CLEARANCE, SLAVE=UPPER_BOTTOM, MASTER=LOWER_TOP, VALUE=0.")
-            case "general" | "general floor" | "general nodes" | "general surfaces" | "general adjusted":
+                text += card(head, pair) + card(
+                    "CLEARANCE, SLAVE=UPPER_BOTTOM, MASTER=LOWER_TOP, VALUE=0."
+                )
+            case (
+                "general"
+                | "general floor"
+                | "general nodes"
+                | "general surfaces"
+                | "general adjusted"
+            ):
                 is_adjusted = self.contact == "general adjusted"
                 if is_adjusted:
                     text += card("CONTACT INITIALIZATION DATA, NAME=FIT, SEARCH ABOVE=0.02")
@@ -451,32 +535,56 @@ class Scene:
                 static = replace(static, settings=procedure.settings)
             return self._step(static, first) + self._step(procedure, "")
         if sequence == "released":
-            first += card("BOUNDARY", (self._node(self.body("UPPER"), LEFT, 0.5 if self.contact == "none" else 0.0), 1, 1))
+            first += card(
+                "BOUNDARY",
+                (
+                    self._node(self.body("UPPER"), LEFT, 0.5 if self.contact == "none" else 0.0),
+                    1,
+                    1,
+                ),
+            )
         kept = self._loads(1.0, is_steady=True) if self.load in DRIVEN else ""
         text = self._step(procedure, first)
-        pair = ("UPPER_BOTTOM" if self.contact != "node surface" else "POINTS", "FLOOR" if self.contact in FLOORS else "LOWER_TOP")
+        pair = (
+            "UPPER_BOTTOM" if self.contact != "node surface" else "POINTS",
+            "FLOOR" if self.contact in FLOORS else "LOWER_TOP",
+        )
         match sequence:
             case "on and off":
                 text += self._step(procedure, self._loads(0.0))
             case "hold":
-                locked = card("BOUNDARY, FIXED", (BOLT, 1, 1)) if self.connection == "pre-tension" else ""
+                locked = (
+                    card("BOUNDARY, FIXED", (BOLT, 1, 1))
+                    if self.connection == "pre-tension"
+                    else ""
+                )
                 text += self._step(procedure, locked)
             case "two loads":
                 text += self._step(procedure, self._loads(0.6))
             case "removed":
-                text += self._step(procedure, self._loads(0.0) if self.zero_for_removed else self._removed())
+                text += self._step(
+                    procedure, self._loads(0.0) if self.zero_for_removed else self._removed()
+                )
             case "released":
                 text += self._step(procedure, self._supports("BOUNDARY, OP=NEW") + kept)
             case "contact removed":
                 rows = [pair, pair[::-1]] if "both" in self.contact else [pair]
-                text += self._step(procedure, card("MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE", *rows))
+                text += self._step(
+                    procedure, card("MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE", *rows)
+                )
             case "friction changed":
-                text += self._step(procedure, card("CHANGE FRICTION, INTERACTION=DRY") + card("FRICTION", (0.1,)))
+                text += self._step(
+                    procedure, card("CHANGE FRICTION, INTERACTION=DRY") + card("FRICTION", (0.1,))
+                )
         return text
 
     def _step(self, procedure: Procedure, cards: str) -> str:
         output = OUTPUTS[self.choice["output"]].format(
-            nodes="UPPER_TOP_NODES", elements="UPPER", half=procedure.duration / 2.0, number=self._count(), monitor=self._node(self.body("UPPER"), LEFT, 1.0)
+            nodes="UPPER_TOP_NODES",
+            elements="UPPER",
+            half=procedure.duration / 2.0,
+            number=self._count(),
+            monitor=self._node(self.body("UPPER"), LEFT, 1.0),
         )
         return "*STEP, NLGEOM=YES\n" + procedure.text + cards + output + "*END STEP\n"
 
@@ -496,7 +604,9 @@ class Scene:
             rows += [(FLOOR, 1, 2), (FLOOR, 6, 6)]
         if self.connection in TURNING and self.is_ring:
             rows += [(REFERENCE, 1, 1), (REFERENCE, 6, 6)]
-        elif self.connection == "disc" and (self.choice["procedure"] in SLOW or self.choice["sequence"] == "rest"):
+        elif self.connection == "disc" and (
+            self.choice["procedure"] in SLOW or self.choice["sequence"] == "rest"
+        ):
             rows.append((REFERENCE, 6, 6))  # without inertia it would roll away
         if self.connection == "pre-tension" and "NEW" in head:
             rows.append((BOLT, 1, 1, OVERLAP))
@@ -522,7 +632,11 @@ class Scene:
             "force": [(grip, 1, side_force / count), (grip, 2, -down / count)],
             "moment": [(grip, 6, 0.3 * down), (grip, 2, -down)],
         }
-        text = card("BOUNDARY", (BOLT, 1, 1, OVERLAP * scale)) if self.connection == "pre-tension" else ""
+        text = (
+            card("BOUNDARY", (BOLT, 1, 1, OVERLAP * scale))
+            if self.connection == "pre-tension"
+            else ""
+        )
         match self.load:
             case "force" | "moment":
                 rows = [row for row in ends[self.load] if row[2] or scale == 0.0]
@@ -532,28 +646,56 @@ class Scene:
             case "pressure":
                 text += card(f"DSLOAD{amplitude}", (sides, "P", down))
             case "traction":
-                text += card(f"DSLOAD, FOLLOWER=NO{amplitude}", (sides, "TRVEC", down, *((0.0, -1.0) if ring else (0.28, -0.96))))
+                text += card(
+                    f"DSLOAD, FOLLOWER=NO{amplitude}",
+                    (sides, "TRVEC", down, *((0.0, -1.0) if ring else (0.28, -0.96))),
+                )
             case "face pressure":
                 text += card(f"DLOAD{amplitude}", (f"{top}_HIGHEST", f"P{self.top_face}", down))
             case "face traction":
-                text += card(f"DLOAD, FOLLOWER=NO{amplitude}", (f"{top}_HIGHEST", f"TRVEC{self.top_face}", down, *((0.0, -1.0) if ring else (0.28, -0.96))))
+                text += card(
+                    f"DLOAD, FOLLOWER=NO{amplitude}",
+                    (
+                        f"{top}_HIGHEST",
+                        f"TRVEC{self.top_face}",
+                        down,
+                        *((0.0, -1.0) if ring else (0.28, -0.96)),
+                    ),
+                )
             case "gravity":
-                text += card(f"DLOAD{amplitude}", ("", "GRAV", down, *((0.0, -1.0) if ring else (0.28, -0.96))))
+                text += card(
+                    f"DLOAD{amplitude}",
+                    ("", "GRAV", down, *((0.0, -1.0) if ring else (0.28, -0.96))),
+                )
             case "body force":
-                rows = [(elements, "BZ", -down)] if ring else [(elements, "BX", side_force), (elements, "BY", -down)]
+                rows = (
+                    [(elements, "BZ", -down)]
+                    if ring
+                    else [(elements, "BX", side_force), (elements, "BY", -down)]
+                )
                 text += card(f"DLOAD{amplitude}", *rows)
             case "centrifugal":
                 axis = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0) if ring else (0.0, 8.0, 0.0, 0.0, 0.0, 1.0)
                 text += card(f"DLOAD{amplitude}", ("UPPER", "CENTRIF", 0.5 * scale, *axis))
             case "motion":
-                across = [] if ring and self.grip == str(REFERENCE) else [(grip, 1, 1, self.motion[0] * scale)]
+                across = (
+                    []
+                    if ring and self.grip == str(REFERENCE)
+                    else [(grip, 1, 1, self.motion[0] * scale)]
+                )
                 text += card(f"BOUNDARY{amplitude}", *across, (grip, 2, 2, self.motion[1] * scale))
             case "rotation":
-                text += card(f"BOUNDARY{amplitude}", *([] if ring else [(grip, 6, 6, 0.01 * scale)]), (grip, 2, 2, -0.004 * scale))
+                text += card(
+                    f"BOUNDARY{amplitude}",
+                    *([] if ring else [(grip, 6, 6, 0.01 * scale)]),
+                    (grip, 2, 2, -0.004 * scale),
+                )
             case "velocity" | "acceleration":
                 size = 0.01 * scale if self.load == "velocity" else 0.1 * scale
                 across = [] if ring and self.grip == str(REFERENCE) else [(grip, 1, 1, size)]
-                text += card(f"BOUNDARY, TYPE={self.load.upper()}{amplitude}", *across, (grip, 2, 2, -size))
+                text += card(
+                    f"BOUNDARY, TYPE={self.load.upper()}{amplitude}", *across, (grip, 2, 2, -size)
+                )
         return text
 
 
@@ -561,7 +703,11 @@ def _slowed(procedure: Procedure, factor: float) -> Procedure:
     """A procedure of another duration, with as many increments."""
     head, row, *rest = procedure.card.split("\n")
     times = [repr(float(text) * factor) for text in row.split(",")]
-    return replace(procedure, card="\n".join([head, ", ".join(times), *rest]), duration=procedure.duration * factor)
+    return replace(
+        procedure,
+        card="\n".join([head, ", ".join(times), *rest]),
+        duration=procedure.duration * factor,
+    )
 
 
 def _halved(procedure: Procedure) -> Procedure:

@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 from bodies import grid
 from repository import ROOT
-from stickslip.cards import card
 from stickslip.deck import Deck
 from stickslip.report.page import page_of
 from stickslip.result import SLIP, Result
 
-from lab.levels import ELSEWHERE, FACTORS, SIMPLEST
+from lab.levels import ELSEWHERE, FACTORS, RULES, SIMPLEST
 from lab.oracles import Trial
 from lab.scene import Scene
 
@@ -40,7 +39,10 @@ def _near(works: Mapping[str, float], tolerance: float) -> list[str]:
 def rings(program: Path, folder: Path) -> list[str]:
     """A ring of a large radius is a plane body."""
     wrong = []
-    for shape, contact in product(("3", "4", "4H", "4I", "4R", "6", "8", "8R", "8H", "8RH"), ("node to surface", "surface to surface")):
+    for shape, contact in product(
+        ("3", "4", "4H", "4I", "4R", "6", "8", "8R", "8H", "8RH"),
+        ("node to surface", "surface to surface"),
+    ):
         choice = {**PLAIN, "contact": contact, "interaction": "rough", "load": "pressure"}
         plane = Scene({**choice, "family": f"CPE{shape}"}, has_guides=False)
         ring = Scene({**choice, "family": f"CAX{shape}"}, radius=1e5, has_guides=False)
@@ -58,11 +60,21 @@ def rigid(program: Path, folder: Path) -> list[str]:
     """A rigid base, by a surface or by elements, is one 10 000 times as stiff."""
     wrong = []
     for family, load in product(("CPE4", "CPS8", "CPE6"), ("force", "gravity", "motion")):
-        choice = {**PLAIN, "contact": "node to surface", "interaction": "friction", "family": family, "load": load}
+        choice = {
+            **PLAIN,
+            "contact": "node to surface",
+            "interaction": "friction",
+            "family": family,
+            "load": load,
+        }
         works = {
-            f"stiff, {family}, {load}": _work(program, folder, "stiff", Scene(choice, base="stiff")),
+            f"stiff, {family}, {load}": _work(
+                program, folder, "stiff", Scene(choice, base="stiff")
+            ),
             "elements": _work(program, folder, "elements", Scene(choice, base="rigid")),
-            "surface": _work(program, folder, "surface", Scene({**choice, "contact": "rigid floor"})),
+            "surface": _work(
+                program, folder, "surface", Scene({**choice, "contact": "rigid floor"})
+            ),
         }
         wrong += _near(works, 2e-3)
     return wrong
@@ -91,7 +103,10 @@ def walls(program: Path, folder: Path) -> list[str]:
             wrong.append(f"{place}: {run.error}")
             continue
         with Result(run.result) as result:
-            depth = max(-float((frame["U"][:9, 1] + result.coordinates[:9, 1]).min()) for frame in result.frames)
+            depth = max(
+                -float((frame["U"][:9, 1] + result.coordinates[:9, 1]).min())
+                for frame in result.frames
+            )
             speed = float(result.history.bodies.velocity[-1, 0, 1])
         if depth > 1e-3 or speed < -0.5:
             wrong.append(f"{place}: depth {depth:.1e}, velocity {speed:.2g} at the end")
@@ -131,23 +146,39 @@ def _thrown(settings: str, dt: float, way: str) -> Deck:
         if way != "rigid":
             deck.set_formulation(way.upper())
     deck.velocity("BODY", 0.1, -4.0)
-    deck.extend(f"*STEP, NLGEOM=YES\n{settings}\n*DYNAMIC, DIRECT\n{dt!r}, {max(0.1 // dt, 4) * dt!r}\n*END STEP\n")
+    deck.extend(
+        f"*STEP, NLGEOM=YES\n{settings}\n*DYNAMIC, DIRECT\n{dt!r}, {max(0.1 // dt, 4) * dt!r}\n*END STEP\n"
+    )
     return deck
 
 
 def sliding(program: Path, folder: Path) -> list[str]:
     """Friction is mu N where a driven block slips, in every formulation."""
     wrong = []
-    contacts = [one for one in FACTORS["contact"] if one not in ("none", "interference", "adjusted", "clearance")]
+    contacts = [
+        one
+        for one in FACTORS["contact"]
+        if one not in ("none", "interference", "adjusted", "clearance")
+    ]
     for contact, family in product(contacts, ("CPE4", "CPE8", "CPS3")):
-        choice = {**PLAIN, "contact": contact, "interaction": "friction", "family": family, "load": "motion"}
-        run = Trial(choice, program, folder).run("slide", Scene(choice, has_guides=False, motion=(0.1, -0.004)))
+        choice = {
+            **PLAIN,
+            "contact": contact,
+            "interaction": "friction",
+            "family": family,
+            "load": "motion",
+        }
+        run = Trial(choice, program, folder).run(
+            "slide", Scene(choice, has_guides=False, motion=(0.1, -0.004))
+        )
         if run.code:
             wrong.append(f"{contact}, {family}: {run.error}")
             continue
         with Result(run.result) as result:
             status = result.frames[-1]["CONTACT_STATUS"]
-            parts = [(np.abs(one.tangential[-1]), one.normal[-1]) for one in result.contact.values()]
+            parts = [
+                (np.abs(one.tangential[-1]), one.normal[-1]) for one in result.contact.values()
+            ]
         tangential, normal = (sum(each) for each in zip(*parts))
         if not (status == SLIP).any() or not abs(tangential - 0.3 * normal) <= 1e-8 * normal:
             wrong.append(f"{contact}, {family}: friction {tangential:.9g} of {0.3 * normal:.9g}")
@@ -165,12 +196,26 @@ def pages(program: Path, folder: Path) -> list[str]:
     return wrong
 
 
+def refusals(program: Path, folder: Path) -> list[str]:
+    """The program refuses what a rule says it does, with the error that the rule names."""
+    wrong = []
+    for rule in RULES:
+        if rule.code:
+            given = {factor: levels[0] for factor, levels in rule.levels.items()}
+            run = Trial({}, program, folder).run("refused", Scene({**PLAIN, **given}))
+            if f"error[{rule.code}]" not in run.complaint:
+                wrong.append(f"{rule.reason}: not refused with {rule.code}: {run.error}")
+    return wrong
+
+
 def keywords(program: Path, folder: Path) -> list[str]:
     """Every keyword that docs/keywords.md says is read is in a deck of the array, or named as being elsewhere."""
     page = (ROOT / "docs" / "keywords.md").read_text()
     table = page.partition("## Keywords that are read")[2].partition("## Each keyword")[0]
-    read = set(re.findall(r"^\| \[`\*([A-Z -]+)`\]", table, re.M))
-    used = {_keyword(line) for text in _texts() for line in text.splitlines() if line.startswith("*")}
+    read = set(re.findall(r"^\| \[`\*([A-Z -]+)`\]", table, re.MULTILINE))
+    used = {
+        _keyword(line) for text in _texts() for line in text.splitlines() if line.startswith("*")
+    }
     missing = [name for name in sorted(read - used) if name not in ELSEWHERE]
     return [f"no level has *{name}" for name in missing]
 
@@ -183,7 +228,9 @@ def _texts() -> Iterator[str]:
     """A deck with each level."""
     for factor, levels in FACTORS.items():
         for level in levels:
-            scene = Scene({**SIMPLEST, "contact": "node to surface", "interaction": "friction", factor: level})
+            scene = Scene(
+                {**SIMPLEST, "contact": "node to surface", "interaction": "friction", factor: level}
+            )
             yield scene.deck() + scene.include
 
 
@@ -193,6 +240,7 @@ SINGLE: dict[str, Callable[[Path, Path], list[str]]] = {
     "walls": walls,
     "sliding": sliding,
     "pages": pages,
+    "refusals": refusals,
     "keywords": keywords,
 }
 """Comparisons by name."""
