@@ -258,6 +258,14 @@ RULES = [
         "a slow motion follows one path", {"form": ["slowly"], "sequence": but("sequence", "one")}
     ),
     Rule(
+        "a section closes over the whole step",
+        {"form": ["halves"], "connection": ["pre-tension"]},
+    ),
+    Rule(
+        "increments that follow their passes are others where passes are",
+        {"form": ["solved otherwise"], "procedure": ["static", "quasi-static"]},
+    ),
+    Rule(
         "an overlap is pressed out in the whole step",
         {"form": ["halves"], "contact": ["interference"]},
     ),
