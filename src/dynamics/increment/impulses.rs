@@ -594,7 +594,9 @@ mod tests {
     use super::steady_tests::turned;
     use super::*;
     use crate::contact::testing::{self, closed_pairs as pairs};
-    use crate::dynamics::step::{ClosedConstraints, Discretization, Equilibrium, HeldMotions};
+    use crate::dynamics::step::{
+        ClosedConstraints, Discretization, Equilibrium, HeldMotions, Seen,
+    };
     use crate::elements::Motion;
     use crate::model::{
         ContactChanges, ContactMass, Frames, Incrementation, Increments, Procedure, Scheme,

@@ -135,7 +135,7 @@ pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
 mod tests {
     use super::*;
     use crate::contact::{Constraint, ConstraintGroup, Rows, testing};
-    use crate::dynamics::step::{ClosedConstraints, Discretization, HeldMotions, Workspace};
+    use crate::dynamics::step::{ClosedConstraints, Discretization, HeldMotions, Seen, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
         ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
