@@ -163,7 +163,9 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
             incomplete = true;
             continue;
         };
-        report_repeated(&rigid, &all, cx);
+        if is_repeated(&rigid, &all, cx) {
+            continue;
+        }
         let same = |other: &&mut Rigid| other.reference == rigid.reference;
         match all.iter_mut().find(same) {
             Some(body) => body.join(rigid),
@@ -193,11 +195,11 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
     all
 }
 
-/// Reports a surface or set that a card before has made a body already.
-fn report_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) {
+/// Whether a card before has made a body of a surface or set already, which is reported.
+fn is_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) -> bool {
     let other = |part: &RigidPart| earlier.iter().find(|other| other.parts.contains(part));
     let Some(other) = rigid.parts.iter().find_map(other) else {
-        return;
+        return false;
     };
     let message = match rigid.reference == other.reference {
         true => format!("{} stands on two cards", rigid.title()),
@@ -206,6 +208,7 @@ fn report_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) {
     cx.error(Code::RigidSurface, rigid.span, message)
         .other(other.title(), other.span)
         .help("leave out one of the two");
+    true
 }
 
 /// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`; the masses by the point elements, 0 of
@@ -661,7 +664,11 @@ fn complete_turning(
     steps: &mut [Step],
     cx: &mut Context,
 ) {
-    let has_mass = rigid.has_mass() || !rigid.carried.is_empty();
+    let reference = rigid.reference;
+    // a mass beside a held reference node, or a spring there, resists the rotation of coupled nodes
+    let is_sprung = || (mesh_index.connectors.iter()).any(|own| own.nodes.contains(&reference));
+    let is_free = |step: &Step| (0..2).all(|i| motion_of(step, 2 * reference + i).is_none());
+    let rides = |step: &Step| !rigid.carried.is_empty() && is_free(step) && !is_sprung();
     let own: BTreeSet<usize> = rigid.nodes.iter().copied().collect();
     if rigid.is_coupling && !report_empty_coupling(rigid, &own, mesh_index, cx) {
         return;
@@ -671,6 +678,10 @@ fn complete_turning(
             return report_other_motion(rigid, held.dof, (mesh_index, supports), cx);
         }
         let turns_freely = motion_of(step, angle).is_none();
+        let has_mass = match rigid.carried.is_empty() {
+            true => rigid.has_mass(),
+            false => rides(step),
+        };
         let needs_inertia = has_mass && step.procedure != Procedure::Static;
         if needs_inertia && turns_freely && !rigid.has_inertia(&mesh_index.mesh) {
             let message = format!("{} may turn and has no rotary inertia", rigid.name);

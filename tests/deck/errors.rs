@@ -478,11 +478,6 @@ fn rigid_surfaces_that_cannot_be() {
             "*RIGID BODY, ELSET=EBASE, REF NODE=100\n",
             "*BOUNDARY\n100, 1\n100, 2, 2, 0.5\n",
         ),
-        rigid(
-            LINE,
-            "*RIGID BODY, ELSET=EBASE, ANALYTICAL SURFACE=FLOOR, REF NODE=100\n",
-            fixed,
-        ),
         rigid(LINE, "*CONTACT PAIR, INTERACTION=DRY\nFLOOR, SBOT\n", fixed),
         rigid(LINE, "*CONTACT PAIR, INTERACTION=DRY\nFLOOR\n", fixed),
         shared(
