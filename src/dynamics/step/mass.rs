@@ -99,7 +99,8 @@ impl Masses {
             }
         }
         // m at the centre, I/L² at s = L c
-        for body in bodies.iter().filter(|body| body.mass > 0.0) {
+        let has_inertia = |body: &&TurningBody| body.mass > 0.0 || body.inertia > 0.0;
+        for body in bodies.iter().filter(has_inertia) {
             let of_angle = body.inertia / (body.length * body.length);
             for (node, m) in [(body.centre, body.mass), (body.centre + 1, of_angle)] {
                 masses.of_elements.push((masses.nodes.len(), vec![m]));
