@@ -19,7 +19,7 @@ pub(crate) struct RigidImpulse {
 /// V = Vr + T M^-1 T^T M (V1 - Vr),  A += (V - V1)/dt      eq. (11.12)
 /// ```
 ///
-/// V1 = V0+ + dt A, Vr any rigid motion with what is prescribed, T the rows (11.3) of the end.
+/// V1 = V0+ + dt A, Vr any rigid motion with what is prescribed, T the rows (11.3) of the end. With hinges V1 stays.
 pub(super) fn make_rigid(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -27,7 +27,7 @@ pub(super) fn make_rigid(
     (u, v, a): (&[f64], &mut Vec<f64>, &mut [f64]),
 ) -> Result<RigidImpulse, Cause> {
     let turning = &problem.unknowns.turning;
-    if !turning.carry_elements() {
+    if !turning.carry_elements() || !problem.hinges.are_none() {
         return Ok(RigidImpulse::default());
     }
     for [dof, ..] in turning.followers() {
@@ -38,10 +38,6 @@ pub(super) fn make_rigid(
     workspace.stiffness.start(problem, u);
     let mut mass = workspace.m();
     mass.factorize()?;
-    if !problem.hinges.are_none() {
-        let (_, change) = mass.close(&problem.hinges.gaps(&rigid))?;
-        rigid = sum(&rigid, &change);
-    }
     let response = mass.respond(&problem.mass.times(&difference(v, &rigid)))?;
     let end = sum(&rigid, &response);
     let change = difference(&end, v);
