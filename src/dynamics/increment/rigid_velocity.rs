@@ -27,11 +27,15 @@ pub(super) fn make_rigid(
     (u, v, a): (&[f64], &mut Vec<f64>, &mut [f64]),
 ) -> Result<RigidImpulse, Cause> {
     let turning = &problem.unknowns.turning;
-    if !turning.carry_elements() || !problem.hinges.are_none() {
+    if turning.is_empty() {
         return Ok(RigidImpulse::default());
     }
     for [dof, ..] in turning.followers() {
         v[dof] = v0p[dof] + dt * a[dof];
+    }
+    problem.unknowns.move_bodies(u, v);
+    if !turning.carry_elements() || !problem.hinges.are_none() {
+        return Ok(RigidImpulse::default());
     }
     let mut rigid = v.clone();
     turning.move_with_poles(u, &mut rigid);
