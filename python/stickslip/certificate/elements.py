@@ -29,6 +29,9 @@ COMPLEX_STEP = 1e-170
 MOST_STEPS = 60
 """Steps of Newton's method for the stretch across."""
 
+REST = 1e-5
+"""A change of the strains so small beside them that what it adds to the stress of the middle is less than round-off."""
+
 LAST_STEP = 1e-9
 """A step of Newton's method so small beside the strain leaves an error of round-off."""
 

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.certificate.elements import CORNERS, EPS, LAST_STEP, PATH, PATH_WEIGHTS, Block
+from stickslip.certificate.elements import CORNERS, EPS, LAST_STEP, PATH, PATH_WEIGHTS, REST, Block
 from stickslip.result import Array
 
 PATTERN = np.array([1.0, -1.0, 1.0, -1.0])
@@ -102,8 +102,8 @@ class EnhancedBlock(Block):
         for place, weight in zip(PATH, PATH_WEIGHTS):
             off = self.stress(0.5 * (e0 + e1) + 0.5 * place * own) - stress
             f += 0.5 * weight * np.einsum("eg,egij,egij->e", self.weight, off, own)
-        square = np.einsum("eg,egij,egij->e", self.weight, change, change)
-        ratio = np.divide(f, square, out=np.zeros_like(f), where=square > 0.0)
+        square, size = (np.einsum("eg,egij,egij->e", self.weight, c, c) for c in (change, c1))
+        ratio = np.divide(f, square, out=np.zeros_like(f), where=square > REST**2 * size)
         return stress + ratio[:, None, None, None] * change
 
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:

@@ -11,6 +11,7 @@ from stickslip.certificate.elements import (
     LAST_STEP,
     PATH,
     PATH_WEIGHTS,
+    REST,
     _cofactor,
     _determinant,
     _identity,
@@ -65,11 +66,15 @@ class CondensedBlock(RingBlock):
     def _sum(self, stress: Strain, change: Strain) -> Array:
         return (self.weight * _work(stress, change)).sum(axis=1)
 
-    def doing(self, stress: Strain, change: Strain, work: Array) -> Strain:
-        """S + f/(sum v dE:dE) dE."""
-        square = (self.weight * (np.einsum("egij,egij->eg", change[0], change[0]) + 0.25 * change[1] ** 2)).sum(axis=1)
+    def _square(self, strain: Strain) -> Array:
+        """sum v E:E."""
+        return (self.weight * (np.einsum("egij,egij->eg", strain[0], strain[0]) + 0.25 * strain[1] ** 2)).sum(axis=1)
+
+    def doing(self, stress: Strain, change: Strain, work: Array, least: Array | float = 0.0) -> Strain:
+        """S + f/(sum v dE:dE) dE where the sum is more than the least that is no round-off."""
+        square = self._square(change)
         f = work - self._sum(stress, change)
-        ratio = np.divide(f, square, out=np.zeros_like(f), where=square > 0.0)[:, None]
+        ratio = np.divide(f, square, out=np.zeros_like(f), where=square > least)[:, None]
         return stress[0] + ratio[..., None, None] * change[0], stress[1] + 0.5 * ratio * change[1]
 
     def means(self, u: Array) -> tuple[Array, Array]:
@@ -95,7 +100,7 @@ class CondensedBlock(RingBlock):
             at = _plus(_times(_plus(e0, e1), 0.5), own, 0.5 * place)
             work += 0.5 * weight * self._sum(self.stress_at(at), own)
         stress = self.on_displacements(middle, self.stress_at(mid))
-        stress = self.doing(stress, _plus(c1, c0, -1.0), work)
+        stress = self.doing(stress, _plus(c1, c0, -1.0), work, REST**2 * self._square(c1))
         self._add_at(total, stress, 0.5 * (u0 + u1))
 
     def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
