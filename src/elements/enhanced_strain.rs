@@ -12,16 +12,19 @@
 //! S_g = S_g(E_m) + f/(sum v dE:dE) dE_g,   f = Phi(E1) - Phi(E0) - sum v S(E_m):dE
 //! ```
 //!
+//! S is what does work on the displacement strains E, beside the stress of the material on its own E_g (eq. 2.28).
+//!
 //! E is quadratic in the displacements, so that B(U_m) d = dE and d.F = Phi(E1) - Phi(E0) exactly. Because Phi is least
 //! in alpha, errors of the local solution enter f squared.
 
 use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 use super::formulation::{
-    Configuration, ElementFormulation, PointState, Reference, add_geometric, determinant,
-    displacement_gradient, green_lagrange, smaller, strain_displacement,
+    Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
+    determinant, displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::local_solution::{LAST_STEP, least, zero};
+use super::stretch::{MeanStrain, Variation};
 use crate::materials::{Committed, Strains, StressAtPoints};
 
 /// Number of strains of the element.
@@ -106,9 +109,35 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         })
     }
 
-    /// Strains of all points with the element's own.
-    fn enhanced(&self, compatible: &[Matrix2<f64>; P], alpha: &Vector4<f64>) -> [Matrix2<f64>; P] {
+    /// Mean of strains over the volume.
+    fn mean_of(element: &Reference<N, P>, strains: &[Matrix2<f64>; P]) -> Matrix2<f64> {
+        let all = element.points.iter().zip(strains);
+        all.map(|(point, e)| e * point.volume).sum::<Matrix2<f64>>() / element.volume()
+    }
+
+    /// Strains of the displacements with their mean, in the measure of a material.
+    fn measured(
+        &self,
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        compatible: [Matrix2<f64>; P],
+    ) -> Measured<P> {
+        let mean = Self::mean_of(element, &compatible);
+        Measured {
+            compatible,
+            mean: MeanStrain::new(mean, material.convex_in().second_order()),
+        }
+    }
+
+    /// E + M alpha at all points.
+    fn linear(&self, compatible: &[Matrix2<f64>; P], alpha: &Vector4<f64>) -> [Matrix2<f64>; P] {
         std::array::from_fn(|p| compatible[p] + self.strain(p, alpha))
+    }
+
+    /// Strains of the material at all points, with the element's own.
+    fn enhanced(&self, measured: &Measured<P>, alpha: &Vector4<f64>) -> [Matrix2<f64>; P] {
+        let linear = self.linear(&measured.compatible, alpha);
+        linear.map(|linear| measured.mean.strain(&linear))
     }
 
     fn strain(&self, p: usize, alpha: &Vector4<f64>) -> Matrix2<f64> {
@@ -116,20 +145,10 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         terms.map(|(m, a)| m * *a).sum()
     }
 
-    /// sum v M:S
-    fn work(&self, element: &Reference<N, P>, s: &[Matrix2<f64>; P]) -> Vector4<f64> {
-        let mut work = Vector4::zeros();
-        for (p, point) in element.points.iter().enumerate() {
-            let s = s[p] * point.volume;
-            work += Vector4::from_fn(|k, _| self.strains[p][k].dot(&s));
-        }
-        work
-    }
-
     /// Columns (xx, yy, 2 xy) of the strains of a point.
     pub fn columns(&self, p: usize) -> SMatrix<f64, 3, 4> {
         let m = &self.strains[p];
-        SMatrix::from_fn(|i, k| [m[k].m11, m[k].m22, 2.0 * m[k].m12][i])
+        SMatrix::from_columns(&m.each_ref().map(as_strain))
     }
 
     /// K_aa = sum v M C M
@@ -146,17 +165,33 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         k
     }
 
-    /// sum v M:S and K_aa = sum v M C M times a factor at strains of the material.
+    /// Derivatives of the energy by alpha, sum v M:(S + Z) and K_aa, this times a factor, at strains of the material.
     fn derivatives(
         &self,
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
+        (measured, alpha): (&Measured<P>, &Vector4<f64>),
         (strains, factor): (&[Strains; P], f64),
     ) -> (Vector4<f64>, Matrix4<f64>) {
-        let slope = self.work(element, &material.stresses(strains));
-        let c = material.tangents(strains);
-        let k = self.stiffness(element, |p| c[p] * factor);
-        (slope, k)
+        let linear = self.linear(&measured.compatible, alpha);
+        let (s, c) = (material.stresses(strains), material.tangents(strains));
+        let (mut slope, mut stiffness) = (Vector4::zeros(), Matrix4::zeros());
+        for (p, point) in element.points.iter().enumerate() {
+            let [z, _] = measured.mean.conjugate(&linear[p], &s[p]);
+            let stress = (s[p] + z) * point.volume;
+            slope += Vector4::from_fn(|k, _| self.strains[p][k].dot(&stress));
+            let own = self.strains[p].map(|m| Columns::new(measured, &linear[p], m, None));
+            add_products(
+                &own,
+                &own,
+                (&s[p], &(c[p] * factor)),
+                measured,
+                |k, l, value| {
+                    stiffness[(k, l)] += value * point.volume;
+                },
+            );
+        }
+        (slope, stiffness)
     }
 
     /// alpha with which the energy is least at strains of the displacements, eq. (2.28), sought from a first one on. NaN
@@ -165,37 +200,138 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         &self,
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
-        (compatible, first): (&[Matrix2<f64>; P], Vector4<f64>),
+        (measured, first): (&Measured<P>, Vector4<f64>),
     ) -> Vector4<f64> {
-        let last = LAST_STEP * largest(compatible) + f64::EPSILON;
+        let last = LAST_STEP * largest(&measured.compatible) + f64::EPSILON;
         let derivatives = |alpha: &Vector4<f64>| {
-            let e = self.enhanced(compatible, alpha);
-            self.derivatives(element, material, (&e.map(Strains::At), 1.0))
+            let e = self.enhanced(measured, alpha);
+            let strains = (&e.map(Strains::At), 1.0);
+            self.derivatives(element, material, (measured, alpha), strains)
         };
         let change = |from: &Vector4<f64>, to: &Vector4<f64>| {
-            let ends = [from, to].map(|alpha| self.enhanced(compatible, alpha));
-            energy_change(element, material, &ends, |p| self.strain(p, &(to - from)))
+            let none = [Matrix2::zeros(); P];
+            self.energy_change(
+                element,
+                material,
+                &[(measured, from), (measured, to)],
+                &none,
+            )
         };
         least(first, derivatives, change, last).unwrap_or(Vector4::from_element(f64::NAN))
     }
 
-    /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own,
+    /// alpha of the end of an increment with which the stresses of a viscosity do no work on the element's own strains,
     /// from the strains of the displacements of start and end. NaN where Newton's method does not converge.
     fn of_rates(
         &self,
         element: &Reference<N, P>,
         viscosity: &impl StressAtPoints,
-        [e0, e1]: &[[Matrix2<f64>; P]; 2],
-    ) -> [Matrix2<f64>; P] {
+        (e0, end): (&[Matrix2<f64>; P], &Measured<P>),
+    ) -> Vector4<f64> {
+        let e1 = &end.compatible;
         let change: [Matrix2<f64>; P] = std::array::from_fn(|p| e1[p] - e0[p]);
         let last = LAST_STEP * largest(&change) + f64::EPSILON * largest(e1) + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Vector4<f64>| {
-            let e = self.enhanced(e1, alpha);
+            let e = self.enhanced(end, alpha);
             let strains = std::array::from_fn(|p| Strains::Between(e0[p], e[p]));
-            self.derivatives(element, viscosity, (&strains, 0.5))
+            self.derivatives(element, viscosity, (end, alpha), (&strains, 0.5))
         };
-        let alpha = zero(derivatives, last).unwrap_or(Vector4::from_element(f64::NAN));
-        self.enhanced(e1, &alpha)
+        zero(derivatives, last).unwrap_or(Vector4::from_element(f64::NAN))
+    }
+
+    /// Stresses that do work on the strains of the displacements, S + Z less the mean of Z + Y, from those of the material.
+    fn stresses(
+        &self,
+        element: &Reference<N, P>,
+        (measured, alpha): (&Measured<P>, &Vector4<f64>),
+        of_material: &[Matrix2<f64>; P],
+    ) -> [Matrix2<f64>; P] {
+        let linear = self.linear(&measured.compatible, alpha);
+        let conjugate: [[Matrix2<f64>; 2]; P] =
+            std::array::from_fn(|p| measured.mean.conjugate(&linear[p], &of_material[p]));
+        let mean = Self::mean_of(element, &conjugate.map(|[z, y]| z + y));
+        std::array::from_fn(|p| of_material[p] + conjugate[p][0] - mean)
+    }
+
+    /// sum v (W(E1) - W(E0)) between strains with alpha, the displacement strains of which change by `changes`. Its round-off
+    /// is relative to the changes: the difference of the two strains has the round-off of the strains.
+    fn energy_change(
+        &self,
+        element: &Reference<N, P>,
+        material: &impl StressAtPoints,
+        [(start, alpha0), (end, alpha1)]: &[(&Measured<P>, &Vector4<f64>); 2],
+        changes: &[Matrix2<f64>; P],
+    ) -> f64 {
+        let (e0, e1) = (self.enhanced(start, alpha0), self.enhanced(end, alpha1));
+        let strains: [Strains; P] = std::array::from_fn(|p| Strains::Between(e0[p], e1[p]));
+        let s = material.stresses(&strains);
+        let linear0 = self.linear(&start.compatible, alpha0);
+        let linear1 = self.linear(&end.compatible, alpha1);
+        let of_mean = Self::mean_of(element, changes);
+        let of_point = |(p, point): (usize, &IntegrationPoint<N>)| {
+            let at_point = changes[p] + self.strain(p, &(*alpha1 - *alpha0));
+            let variation = Variation { at_point, of_mean };
+            let means = [&start.mean, &end.mean];
+            let change = MeanStrain::change(means, [&linear0[p], &linear1[p]], &variation);
+            s[p].dot(&change) * point.volume
+        };
+        element.points.iter().enumerate().map(of_point).sum()
+    }
+}
+
+/// Strains of the displacements of all points, and their mean in the measure of a material.
+struct Measured<const P: usize> {
+    compatible: [Matrix2<f64>; P],
+    mean: MeanStrain<2>,
+}
+
+/// The vector (xx, yy, 2 xy) of a strain.
+fn as_strain(e: &Matrix2<f64>) -> Vector3<f64> {
+    Vector3::new(e.m11, e.m22, 2.0 * e.m12)
+}
+
+/// Change of the strain of the material at a point by one displacement of the element or one alpha.
+struct Columns {
+    /// dE_g (xx, yy, 2 xy).
+    first: Vector3<f64>,
+    /// B of S : d²E_g.
+    second: Matrix2<f64>,
+}
+
+impl Columns {
+    /// From the change of E + M alpha at the point, and of the mean where the displacements change.
+    fn new<const P: usize>(
+        measured: &Measured<P>,
+        linear: &Matrix2<f64>,
+        at_point: Matrix2<f64>,
+        of_mean: Option<Matrix2<f64>>,
+    ) -> Self {
+        let of_mean = of_mean.unwrap_or_default();
+        let variation = Variation { at_point, of_mean };
+        let [first, second] = measured.mean.variation(linear, &variation);
+        Columns {
+            first: as_strain(&first),
+            second,
+        }
+    }
+}
+
+/// dE_g C dE_g + S : d²E_g at a point for each of some changes and each of others.
+fn add_products<const P: usize>(
+    left: &[Columns],
+    right: &[Columns],
+    (s, c): (&Matrix2<f64>, &Matrix3<f64>),
+    measured: &Measured<P>,
+    mut add: impl FnMut(usize, usize, f64),
+) {
+    for (l, right) in right.iter().enumerate() {
+        let (stress, second) = (
+            c * right.first,
+            measured.mean.second_stress(&right.second, s),
+        );
+        for (k, left) in left.iter().enumerate() {
+            add(k, l, left.first.dot(&stress) + left.second.dot(&second));
+        }
     }
 }
 
@@ -217,22 +353,6 @@ fn largest(e: &[Matrix2<f64>]) -> f64 {
     e.iter().fold(0.0, |most, e| most.max(e.amax()))
 }
 
-/// sum v (W(E1) - W(E0)), with a round-off that is relative to the change of the strains. That of a point is given beside its
-/// strains, whose difference has the round-off of the strains.
-fn energy_change<const N: usize, const P: usize>(
-    element: &Reference<N, P>,
-    material: &impl StressAtPoints,
-    [e0, e1]: &[[Matrix2<f64>; P]; 2],
-    change: impl Fn(usize) -> Matrix2<f64>,
-) -> f64 {
-    let strains: [Strains; P] = std::array::from_fn(|p| Strains::Between(e0[p], e1[p]));
-    let s = material.stresses(&strains);
-    let points = element.points.iter().enumerate();
-    points
-        .map(|(p, point)| s[p].dot(&change(p)) * point.volume)
-        .sum()
-}
-
 /// alpha of the last committed increment, from which the next is sought: the energy may have several minima, and the
 /// element follows one.
 fn committed<const P: usize>(material: &impl StressAtPoints) -> Vector4<f64> {
@@ -245,8 +365,13 @@ fn committed<const P: usize>(material: &impl StressAtPoints) -> Vector4<f64> {
 /// What a configuration gives at all points.
 struct States<const P: usize> {
     states: [PointState; P],
-    /// Strains at which the material has its tangent.
+    /// Strains of the displacements and alpha at which the material has its tangent.
+    measured: Measured<P>,
+    alpha: Vector4<f64>,
+    /// Strains of the material there.
     tangent_at: [Strains; P],
+    /// Its stresses there (force/length^2).
+    of_material: [Matrix2<f64>; P],
 }
 
 /// Strains and stresses of all points, eq. (2.29) between two configurations.
@@ -260,45 +385,54 @@ fn states<const N: usize, const P: usize>(
         Configuration::At(u) => [u, u],
         Configuration::Between(u0, u1) => [u0, u1],
     };
-    let compatible = u.map(|u| modes.compatible(element, u));
+    let [c0, c1] = u.map(|u| modes.compatible(element, u));
     let first = committed::<P>(material);
-    let least = |e: &[Matrix2<f64>; P]| modes.least(element, material, (e, first));
-    let (strains, tangent_at): ([Strains; P], [Strains; P]);
-    let mut s: [Matrix2<f64>; P];
+    let solved = |compatible: [Matrix2<f64>; P]| {
+        let measured = modes.measured(element, material, compatible);
+        let alpha = modes.least(element, material, (&measured, first));
+        let strains = modes.enhanced(&measured, &alpha);
+        (measured, alpha, strains)
+    };
+    let mut work = None;
+    let (measured, alpha, strains, tangent_at): (_, _, [Strains; P], [Strains; P]);
     match configuration {
         Configuration::At(_) => {
-            let alpha = least(&compatible[1]);
-            strains = modes.enhanced(&compatible[1], &alpha).map(Strains::At);
+            let end;
+            (measured, alpha, end) = solved(c1);
+            strains = end.map(Strains::At);
             tangent_at = strains;
-            s = material.stresses(&strains);
         }
         Configuration::Between(..) if material.is_viscous() => {
-            let end = modes.of_rates(element, material, &compatible);
-            strains = std::array::from_fn(|p| Strains::Between(compatible[0][p], end[p]));
+            measured = modes.measured(element, material, c1);
+            alpha = modes.of_rates(element, material, (&c0, &measured));
+            let end = modes.enhanced(&measured, &alpha);
+            strains = std::array::from_fn(|p| Strains::Between(c0[p], end[p]));
             tangent_at = strains;
-            s = material.stresses(&strains);
         }
         Configuration::Between(..) => {
-            let [c0, c1] = &compatible;
-            let [alpha0, alpha1] = [least(c0), least(c1)];
-            let ends = [modes.enhanced(c0, &alpha0), modes.enhanced(c1, &alpha1)];
-            let middle = std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0);
-            let middle = modes.enhanced(&middle, &least(&middle));
-            strains = std::array::from_fn(|p| Strains::Between(ends[0][p], ends[1][p]));
+            let (start, alpha0, strains0) = solved(c0);
+            let (end, alpha1, strains1) = solved(c1);
+            let middle;
+            (measured, alpha, middle) = solved(std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0));
+            strains = std::array::from_fn(|p| Strains::Between(strains0[p], strains1[p]));
             tangent_at = middle.map(Strains::At);
-            s = material.stresses(&tangent_at);
-            let change = |p: usize| c1[p] - c0[p] + modes.strain(p, &(alpha1 - alpha0));
-            let mut f = energy_change(element, material, &ends, change);
-            let mut squares = 0.0;
-            for (p, point) in element.points.iter().enumerate() {
-                let change = c1[p] - c0[p];
-                f -= s[p].dot(&change) * point.volume;
-                squares += change.norm_squared() * point.volume;
-            }
-            if (squares / element.volume()).sqrt() > f64::EPSILON {
-                for p in 0..P {
-                    s[p] += (c1[p] - c0[p]) * (f / squares);
-                }
+            let changes = std::array::from_fn(|p| c1[p] - c0[p]);
+            let ends = [(&start, &alpha0), (&end, &alpha1)];
+            work = Some(modes.energy_change(element, material, &ends, &changes));
+        }
+    }
+    let of_material = material.stresses(&tangent_at);
+    let mut s = modes.stresses(element, (&measured, &alpha), &of_material);
+    if let Some(mut f) = work {
+        let mut squares = 0.0;
+        for (p, point) in element.points.iter().enumerate() {
+            let change = c1[p] - c0[p];
+            f -= s[p].dot(&change) * point.volume;
+            squares += change.norm_squared() * point.volume;
+        }
+        if (squares / element.volume()).sqrt() > f64::EPSILON {
+            for p in 0..P {
+                s[p] += (c1[p] - c0[p]) * (f / squares);
             }
         }
     }
@@ -316,7 +450,13 @@ fn states<const N: usize, const P: usize>(
             determinant: if s[p].m11.is_nan() { f64::NAN } else { least },
         }
     });
-    States { states, tangent_at }
+    States {
+        states,
+        measured,
+        alpha,
+        tangent_at,
+        of_material,
+    }
 }
 
 /// q of a configuration, eq. (2.26) (length).
@@ -335,9 +475,9 @@ fn stored<const N: usize, const P: usize>(
     modes: &Modes<N, P>,
     element: &Reference<N, P>,
     material: &Committed,
-    (compatible, alpha): (&[Matrix2<f64>; P], &Vector4<f64>),
+    (measured, alpha): (&Measured<P>, &Vector4<f64>),
 ) -> f64 {
-    let e = modes.enhanced(compatible, alpha);
+    let e = modes.enhanced(measured, alpha);
     let points = element.points.iter().enumerate();
     points
         .map(|(p, point)| material.stored_energy(p, &e[p]) * point.volume)
@@ -367,7 +507,8 @@ impl ElementFormulation for EnhancedStrain {
         else {
             return of_points;
         };
-        let [c0, c1] = [u0, u1].map(|u| modes.compatible(element, u));
+        let [c0, c1] =
+            [u0, u1].map(|u| modes.measured(element, material, modes.compatible(element, u)));
         let first = committed::<P>(material);
         let mut alpha = modes.least(element, material, (&c1, first));
         let mut dissipated = 0.0;
@@ -382,6 +523,7 @@ impl ElementFormulation for EnhancedStrain {
         dissipated
     }
 
+    /// The stresses visited are those of the material.
     fn for_each_state<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
@@ -390,7 +532,8 @@ impl ElementFormulation for EnhancedStrain {
     ) {
         let states = states(&Modes::new(element), element, material, configuration);
         for (p, state) in states.states.iter().enumerate() {
-            visit(p, state);
+            let s = states.of_material[p];
+            visit(p, &PointState { s, ..*state });
         }
     }
 
@@ -414,35 +557,62 @@ impl ElementFormulation for EnhancedStrain {
         (force, determinant)
     }
 
-    /// K = sum v B^T C B - K_ua K_aa^-1 K_au and the part of the stress, eq. (2.30), at E_m in the energy-momentum form.
+    /// K = K_uu - K_ua K_aa^-1 K_au, eq. (2.30), at E_m in the energy-momentum form.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D> {
         let modes = Modes::new(element);
-        let States { states, tangent_at } = states(&modes, element, material, configuration);
+        let states = states(&modes, element, material, configuration);
+        let measured = &states.measured;
         let q = hourglass(&modes, configuration);
         let along_q = SMatrix::<f64, 1, D>::from_fn(|_, j| q[j % 2] * modes.gamma[j / 2]);
-        let c = material.tangents(&tangent_at);
-        let mut k = SMatrix::<f64, D, D>::zeros();
-        let mut mixed = SMatrix::<f64, D, 4>::zeros();
-        for (p, point) in element.points.iter().enumerate() {
-            let (slope, state) = (modes.slope[p], &states[p]);
-            let (x, y) = (slope.x, slope.y);
-            let b = strain_displacement::<N, D>(point, &state.f())
+        let rows: [[Matrix2<f64>; D]; P] = std::array::from_fn(|p| {
+            let (x, y) = (modes.slope[p].x, modes.slope[p].y);
+            let b = strain_displacement::<N, D>(&element.points[p], &states.states[p].f())
                 - Vector3::new(x * x, y * y, 2.0 * x * y) * along_q;
-            k += b.transpose() * (c[p] * b) * point.volume;
-            mixed += b.transpose() * (c[p] * modes.columns(p)) * point.volume;
+            let half = |j: usize| b[(2, j)] / 2.0;
+            std::array::from_fn(|j| Matrix2::new(b[(0, j)], half(j), half(j), b[(1, j)]))
+        });
+        let of_mean: [Matrix2<f64>; D] =
+            std::array::from_fn(|j| Modes::mean_of(element, &std::array::from_fn(|p| rows[p][j])));
+        let linear = modes.linear(&measured.compatible, &states.alpha);
+        let c = material.tangents(&states.tangent_at);
+        let (mut k, mut mixed) = (SMatrix::<f64, D, D>::zeros(), SMatrix::<f64, D, 4>::zeros());
+        let mut stiffness = Matrix4::zeros();
+        for (p, point) in element.points.iter().enumerate() {
+            let (slope, state) = (modes.slope[p], &states.states[p]);
+            let of_displacements: [Columns; D] = std::array::from_fn(|j| {
+                Columns::new(measured, &linear[p], rows[p][j], Some(of_mean[j]))
+            });
+            let own = modes.strains[p].map(|m| Columns::new(measured, &linear[p], m, None));
+            let at = (&states.of_material[p], &c[p]);
+            let v = point.volume;
+            add_products(
+                &of_displacements,
+                &of_displacements,
+                at,
+                measured,
+                |i, j, value| {
+                    k[(i, j)] += value * v;
+                },
+            );
+            add_products(&of_displacements, &own, at, measured, |i, j, value| {
+                mixed[(i, j)] += value * v;
+            });
+            add_products(&own, &own, at, measured, |i, j, value| {
+                stiffness[(i, j)] += value * v
+            });
             add_geometric(&mut k, point, &state.s);
-            let stress = slope.dot(&(state.s * slope)) * point.volume;
+            let stress = slope.dot(&(state.s * slope)) * v;
             for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {
                 for i in 0..2 {
                     k[(2 * a + i, 2 * b + i)] -= stress * modes.gamma[a] * modes.gamma[b];
                 }
             }
         }
-        match modes.stiffness(element, |p| c[p]).try_inverse() {
+        match stiffness.try_inverse() {
             Some(inverse) => k - mixed * inverse * mixed.transpose(),
             None => k,
         }

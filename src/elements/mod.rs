@@ -22,6 +22,7 @@ mod reduced;
 mod ring;
 mod shapes;
 mod solid;
+mod stretch;
 #[cfg(test)]
 mod testing;
 

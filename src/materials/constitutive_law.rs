@@ -21,6 +21,25 @@ impl<E> Strains<E> {
     }
 }
 
+/// Measures of strain in which energies are convex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StrainMeasure {
+    /// E of Green and Lagrange.
+    Green,
+    /// Logarithms of stretches.
+    Logarithmic,
+}
+
+impl StrainMeasure {
+    /// k of C0 + 2 A + 2 k A C0^-1 A, in which strains A are added to C0 in this measure up to their second order.
+    pub fn second_order(self) -> f64 {
+        match self {
+            StrainMeasure::Green => 0.0,
+            StrainMeasure::Logarithmic => 1.0,
+        }
+    }
+}
+
 /// What happens across the thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Across {
@@ -90,6 +109,12 @@ pub trait ConstitutiveLaw {
         None
     }
 
+    /// The measure of strain in which the potential of the stress is convex: that of logarithms where the law fulfils Hill's
+    /// inequality.
+    fn convex_in(&self) -> StrainMeasure {
+        StrainMeasure::Logarithmic
+    }
+
     /// Part of the yield stress that a strain uses of a metal, 1 where it flows.
     fn used_strength(&self, _e: &Matrix2<f64>, _z: &[f64]) -> f64 {
         0.0
@@ -125,6 +150,11 @@ pub trait StressAtPoints {
     fn initial_tangent(&self) -> Matrix3<f64> {
         let zero = Matrix2::zeros();
         self.tangent(0, &Strains::Between(zero, zero))
+    }
+
+    /// As [`ConstitutiveLaw::convex_in`]; that of a viscosity is quadratic in the strains of Green and Lagrange.
+    fn convex_in(&self) -> StrainMeasure {
+        StrainMeasure::Green
     }
 
     /// The variables of an element behind those of its points; none of a law without an element.

@@ -12,7 +12,7 @@ use super::yielding::Yielding;
 use super::{
     Across, ConstitutiveLaw, LawCard, NeoHooke, Plane, PlanePlastic, PlanePolynomial,
     PlaneSaintVenantKirchhoff, Plastic, Polynomial, RingStressAtPoints, SaintVenantKirchhoff,
-    SmallStrainModuli, Strains, StressAtPoints, Symmetric,
+    SmallStrainModuli, StrainMeasure, Strains, StressAtPoints, Symmetric,
 };
 
 /// Law of a material with the constants of the deck.
@@ -192,6 +192,17 @@ impl ConstitutiveLaw for PlaneLaw {
         of_each!(self, law => law.yield_stress(z))
     }
 
+    fn convex_in(&self) -> StrainMeasure {
+        match self {
+            PlaneLaw::SaintVenantKirchhoff(_) => StrainMeasure::Green,
+            PlaneLaw::NeoHooke(_) | PlaneLaw::Polynomial(_) | PlaneLaw::Plastic(_) => {
+                StrainMeasure::Logarithmic
+            }
+            #[cfg(test)]
+            PlaneLaw::Yielding(_) => StrainMeasure::Green,
+        }
+    }
+
     fn used_strength(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
         of_each!(self, law => ConstitutiveLaw::used_strength(law, e, z))
     }
@@ -324,6 +335,10 @@ impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
         self.law.tangent(&Strains::At(Matrix2::zeros()), &z0)
     }
 
+    fn convex_in(&self) -> StrainMeasure {
+        self.law.convex_in()
+    }
+
     fn beyond(&self, points: usize) -> &[f64] {
         self.behind(points)
     }
@@ -362,6 +377,10 @@ impl RingStressAtPoints for Committed<'_> {
         let z0: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.law.variables());
         let zero = Strains::At(Symmetric::zeros());
         self.law.of_ring().tangent(&zero, &z0)
+    }
+
+    fn ring_convex_in(&self) -> StrainMeasure {
+        self.law.convex_in()
     }
 
     fn ring_beyond(&self, points: usize) -> &[f64] {

@@ -27,7 +27,7 @@ mod viscosity_lanes;
 #[cfg(test)]
 pub(crate) mod yielding;
 
-pub use constitutive_law::{Across, ConstitutiveLaw, Strains, StressAtPoints};
+pub use constitutive_law::{Across, ConstitutiveLaw, StrainMeasure, Strains, StressAtPoints};
 pub use hyperelastic::Hyperelastic;
 pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
 pub(crate) use law::in_lanes;

@@ -4,9 +4,9 @@
 
 use nalgebra::{Matrix4, Vector4};
 
-use super::Strains;
 use super::hyperelastic::{NO_CHANGE, NO_CHANGE_OF_TANGENT};
 use super::symmetric::{Symmetric, contract};
+use super::{StrainMeasure, Strains};
 
 /// A material with the internal variables z0 that the last accepted increment has committed, as
 /// [`super::ConstitutiveLaw`] in the components 11 (radial), 22 (axial), 33 (around the axis) and 12.
@@ -51,6 +51,11 @@ pub trait RingStressAtPoints {
     fn ring_initial_tangent(&self) -> Matrix4<f64> {
         let zero = Symmetric::zeros();
         self.ring_tangent(0, &Strains::Between(zero, zero))
+    }
+
+    /// As [`super::StressAtPoints::convex_in`].
+    fn ring_convex_in(&self) -> StrainMeasure {
+        StrainMeasure::Green
     }
 
     /// As [`super::StressAtPoints::beyond`].

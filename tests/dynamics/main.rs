@@ -19,6 +19,7 @@ mod friction;
 mod friction_laws;
 mod halving;
 mod hinges;
+mod homogeneous;
 mod invariants;
 mod landing_return;
 mod lcp_methods;

@@ -205,6 +205,7 @@ impl RingDilatation {
             strains,
             tangent_at,
             s,
+            of_material: None,
             determinant,
         }
     }

@@ -1,13 +1,15 @@
 //! Enhanced strains of a ring with the section of a four-node quadrilateral (CAX4I): as
 //! [`crate::elements::enhanced_strain`] with a fifth strain, around the axis. Section 2 of docs/theory.md.
 
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
+use nalgebra::{Matrix2, Matrix4, SMatrix, SVector, Vector2, Vector4};
 
+use super::at_strains::{AtStrains, Column, components, mean_of, tensor};
 use super::points::{OfPoints, RingPoint, as_strain, section};
 use super::stresses::{Compatible, StrainRows, Stresses, energy_change, size};
 use crate::elements::enhanced_strain::{alternating, finite_or, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
+use crate::elements::stretch::{MeanStrain, Variation};
 use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
 
 /// Number of strains of the element.
@@ -28,6 +30,12 @@ pub(super) struct Enhanced {
 
 /// Number of nodes of the quadrilateral.
 const NODES: usize = 4;
+
+/// Strains of the displacements of all points, and their mean in the measure of a material.
+struct Measured {
+    compatible: OfPoints<Symmetric>,
+    mean: MeanStrain<3>,
+}
 
 impl Enhanced {
     /// Those of an element at its four points, b being the mean of the gradients over the area:
@@ -149,27 +157,73 @@ impl Enhanced {
         SMatrix::from_columns(&self.strains[p].map(|m| as_strain(&m)))
     }
 
-    /// E + M alpha
-    fn enhanced(&self, compatible: &[Symmetric], alpha: &Alpha) -> OfPoints<Symmetric> {
+    /// E + M alpha at all points.
+    fn linear(&self, compatible: &[Symmetric], alpha: &Alpha) -> OfPoints<Symmetric> {
         let of_point = |(e, m): (&Symmetric, &[Symmetric; STRAINS])| {
             m.iter().zip(alpha.iter()).fold(*e, |e, (m, a)| e + m * *a)
         };
         compatible.iter().zip(&self.strains).map(of_point).collect()
     }
 
-    /// sum v M:S and K_aa = sum v M C M at strains of the material.
+    /// Strains of the displacements with their mean, in the measure of a material.
+    fn measured(
+        &self,
+        points: &[RingPoint],
+        material: &impl RingStressAtPoints,
+        compatible: &[Symmetric],
+    ) -> Measured {
+        let mean = tensor(&mean_of(points, compatible));
+        Measured {
+            compatible: compatible.into(),
+            mean: MeanStrain::new(mean, material.ring_convex_in().second_order()),
+        }
+    }
+
+    /// Strains of the material at all points, with the element's own.
+    fn enhanced(&self, measured: &Measured, alpha: &Alpha) -> OfPoints<Symmetric> {
+        let linear = self.linear(&measured.compatible, alpha);
+        let of_point = |linear| components(&measured.mean.strain(&tensor(linear)));
+        linear.iter().map(of_point).collect()
+    }
+
+    /// The material at strains.
+    fn at(
+        &self,
+        material: &impl RingStressAtPoints,
+        (measured, alpha): (&Measured, &Alpha),
+        strains: impl Fn(usize) -> Strains<Symmetric>,
+    ) -> AtStrains {
+        let linear = self.linear(&measured.compatible, alpha);
+        let stress = |p: usize| material.ring_stress(p, &strains(p));
+        AtStrains {
+            mean: measured.mean,
+            stresses: (0..linear.len()).map(stress).collect(),
+            linear: linear.iter().map(tensor).collect(),
+        }
+    }
+
+    /// Changes of the strain of the material at a point by the alpha.
+    fn own_columns(&self, at: &AtStrains, p: usize) -> [Column; STRAINS] {
+        (self.strains[p].each_ref()).map(|m| at.column(p, m, &Symmetric::zeros()))
+    }
+
+    /// Derivatives of the energy by alpha, sum v M:(S + Z) and K_aa, this times a factor, at strains of the material.
     fn derivatives(
         &self,
         points: &[RingPoint],
         material: &impl RingStressAtPoints,
+        (measured, alpha): (&Measured, &Alpha),
         (strains, factor): (impl Fn(usize) -> Strains<Symmetric>, f64),
     ) -> (Alpha, StrainStiffness) {
+        let at = self.at(material, (measured, alpha), &strains);
         let (mut slope, mut stiffness) = (Alpha::zeros(), StrainStiffness::zeros());
         for (p, point) in points.iter().enumerate() {
-            let (m, strains) = (self.columns(p), strains(p));
-            slope += m.tr_mul(&material.ring_stress(p, &strains)) * point.volume;
-            let c = material.ring_tangent(p, &strains) * (point.volume * factor);
-            stiffness += m.tr_mul(&(c * m));
+            let own = self.own_columns(&at, p);
+            let stress = at.stresses[p] * point.volume;
+            let c = material.ring_tangent(p, &strains(p)) * factor;
+            slope += Alpha::from_fn(|k, _| own[k].0.dot(&stress));
+            stiffness +=
+                StrainStiffness::from_fn(|k, l| at.product(p, &c, &own[k], &own[l]) * point.volume);
         }
         (slope, stiffness)
     }
@@ -188,39 +242,64 @@ impl Enhanced {
         &self,
         points: &[RingPoint],
         material: &impl RingStressAtPoints,
-        (compatible, first): (&[Symmetric], Alpha),
+        (measured, first): (&Measured, Alpha),
     ) -> Alpha {
-        let last = LAST_STEP * largest(compatible) + f64::EPSILON;
+        let last = LAST_STEP * largest(&measured.compatible) + f64::EPSILON;
         let derivatives = |alpha: &Alpha| {
-            let e = self.enhanced(compatible, alpha);
-            self.derivatives(points, material, (|p| Strains::At(e[p]), 1.0))
+            let e = self.enhanced(measured, alpha);
+            let strains = (|p: usize| Strains::At(e[p]), 1.0);
+            self.derivatives(points, material, (measured, alpha), strains)
         };
+        let none = OfPoints::from_elem(Symmetric::zeros(), points.len());
         let change = |from: &Alpha, to: &Alpha| {
-            let ends = [from, to].map(|alpha| self.enhanced(compatible, alpha));
-            let none = compatible.iter().map(|_| Symmetric::zeros());
-            let changes = self.enhanced(&none.collect::<OfPoints<_>>(), &(to - from));
-            energy_change(points, material, between(&ends), &changes)
+            self.energy_change(points, material, [(measured, from), (measured, to)], &none)
         };
         least(first, derivatives, change, last).unwrap_or(Alpha::from_element(f64::NAN))
     }
 
-    /// Strains of the end of an increment with which the stresses of a viscosity do no work on the element's own.
+    /// alpha of the end of an increment with which the stresses of a viscosity do no work on the element's own strains.
     fn of_rates(
         &self,
         points: &[RingPoint],
         viscosity: &impl RingStressAtPoints,
-        Compatible { start, end, .. }: &Compatible,
-    ) -> OfPoints<Symmetric> {
-        let changes = end.iter().zip(start).map(|(e1, e0)| e1 - e0);
+        (start, end): (&[Symmetric], &Measured),
+    ) -> Alpha {
+        let changes = end.compatible.iter().zip(start).map(|(e1, e0)| e1 - e0);
         let change = changes.fold(0.0_f64, |most, e| most.max(e.amax()));
-        let last = LAST_STEP * change + f64::EPSILON * largest(end) + f64::MIN_POSITIVE;
+        let round_off = f64::EPSILON * largest(&end.compatible);
+        let last = LAST_STEP * change + round_off + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Alpha| {
             let e = self.enhanced(end, alpha);
             let strains = |p: usize| Strains::Between(start[p], e[p]);
-            self.derivatives(points, viscosity, (strains, 0.5))
+            self.derivatives(points, viscosity, (end, alpha), (strains, 0.5))
         };
-        let alpha = zero(derivatives, last).unwrap_or(Alpha::from_element(f64::NAN));
-        self.enhanced(end, &alpha)
+        zero(derivatives, last).unwrap_or(Alpha::from_element(f64::NAN))
+    }
+
+    /// sum v (W(E1) - W(E0)) between strains with alpha, the displacement strains of which change by `changes`.
+    fn energy_change(
+        &self,
+        points: &[RingPoint],
+        material: &impl RingStressAtPoints,
+        [(start, alpha0), (end, alpha1)]: [(&Measured, &Alpha); 2],
+        changes: &[Symmetric],
+    ) -> f64 {
+        let of_mean = tensor(&mean_of(points, changes));
+        let [linear0, linear1] = [(start, alpha0), (end, alpha1)]
+            .map(|(measured, alpha)| self.linear(&measured.compatible, alpha));
+        let at_points = self.linear(changes, &(alpha1 - alpha0));
+        let of_point = |(p, change): (usize, &Symmetric)| {
+            let variation = Variation {
+                at_point: tensor(change),
+                of_mean,
+            };
+            let linear = [&tensor(&linear0[p]), &tensor(&linear1[p])];
+            let means = [&start.mean, &end.mean];
+            components(&MeanStrain::change(means, linear, &variation))
+        };
+        let changes: OfPoints<Symmetric> = at_points.iter().enumerate().map(of_point).collect();
+        let ends = [self.enhanced(start, alpha0), self.enhanced(end, alpha1)];
+        energy_change(points, material, between(&ends), &changes)
     }
 
     /// Strains and stresses of all points, eq. (2.29) between two configurations.
@@ -231,34 +310,38 @@ impl Enhanced {
         compatible: &Compatible,
     ) -> Stresses {
         let first = self.committed(material);
-        let least = |e: &[Symmetric]| self.least(points, material, (e, first));
+        let solved = |compatible: &[Symmetric]| {
+            let measured = self.measured(points, material, compatible);
+            let alpha = self.least(points, material, (&measured, first));
+            let strains = self.enhanced(&measured, &alpha);
+            (measured, alpha, strains)
+        };
         let (strains, tangent_at): (OfPoints<Strains<Symmetric>>, OfPoints<Strains<Symmetric>>);
+        let (measured, alpha);
         let mut work = None;
         if !compatible.is_increment {
-            strains = self
-                .enhanced(&compatible.end, &least(&compatible.end))
-                .into_iter()
-                .map(Strains::At)
-                .collect();
+            let end;
+            (measured, alpha, end) = solved(&compatible.end);
+            strains = end.into_iter().map(Strains::At).collect();
             tangent_at = strains.clone();
         } else if material.ring_is_viscous() {
-            let end = self.of_rates(points, material, compatible);
+            measured = self.measured(points, material, &compatible.end);
+            alpha = self.of_rates(points, material, (&compatible.start, &measured));
+            let end = self.enhanced(&measured, &alpha);
             strains = compatible.strains(compatible.start.iter(), end.iter());
             tangent_at = strains.clone();
         } else {
-            let [c0, c1] = [&compatible.start, &compatible.end];
-            let [alpha0, alpha1] = [least(c0), least(c1)];
-            let ends = [self.enhanced(c0, &alpha0), self.enhanced(c1, &alpha1)];
-            let middle = compatible.halfway();
-            let middle = self.enhanced(&middle, &least(&middle));
-            strains = compatible.strains(ends[0].iter(), ends[1].iter());
+            let (start, alpha0, strains0) = solved(&compatible.start);
+            let (end, alpha1, strains1) = solved(&compatible.end);
+            let middle;
+            (measured, alpha, middle) = solved(&compatible.halfway());
+            strains = compatible.strains(strains0.iter(), strains1.iter());
             tangent_at = middle.into_iter().map(Strains::At).collect();
-            let changes = self.enhanced(&compatible.changes(), &(alpha1 - alpha0));
-            work = Some(energy_change(points, material, between(&ends), &changes));
+            let ends = [(&start, &alpha0), (&end, &alpha1)];
+            work = Some(self.energy_change(points, material, ends, &compatible.changes()));
         }
-        let stresses = tangent_at.iter().enumerate();
-        let mut s: OfPoints<Symmetric> =
-            stresses.map(|(p, e)| material.ring_stress(p, e)).collect();
+        let at = self.at(material, (&measured, &alpha), |p| tangent_at[p]);
+        let mut s = at.of_displacements(points);
         if let Some(work) = work {
             compatible.do_work(work, points, &mut s);
         }
@@ -267,27 +350,42 @@ impl Enhanced {
             strains,
             tangent_at,
             s,
+            of_material: Some(at),
             determinant: if is_number { f64::INFINITY } else { f64::NAN },
         }
     }
 
-    /// Takes K_ua K_aa^-1 K_au from the tangent, eq. (2.30).
-    pub fn condense(
+    /// Adds K_uu - K_ua K_aa^-1 K_au, eq. (2.30), but for the part of the stress on the second derivatives of the strains of
+    /// the displacements. `rows` are those of these strains.
+    pub fn add_tangent(
         &self,
         points: &[RingPoint],
-        c: impl Fn(usize) -> nalgebra::Matrix4<f64>,
+        (at, c): (&AtStrains, impl Fn(usize) -> Matrix4<f64>),
         rows: &[StrainRows],
         k: &mut [f64],
     ) {
         let d = size(k);
+        let of_row = |row: &Vector4<f64>| Vector4::new(row.x, row.y, row.z, row.w / 2.0);
+        let of_mean: OfPoints<Symmetric> = (0..d)
+            .map(|j| {
+                let all: OfPoints<Symmetric> = rows.iter().map(|r| of_row(&r[j])).collect();
+                mean_of(points, &all)
+            })
+            .collect();
         let mut stiffness = StrainStiffness::zeros();
         let mut mixed = [Alpha::zeros(); MAX_DOFS];
         for (p, (point, rows)) in points.iter().zip(rows).enumerate() {
-            let m = self.columns(p);
-            let cm = c(p) * m * point.volume;
-            stiffness += m.tr_mul(&cm);
-            for (mixed, row) in mixed.iter_mut().zip(rows).take(d) {
-                *mixed += cm.tr_mul(row);
+            let (c, own) = (c(p), self.own_columns(at, p));
+            let at_point = |j: usize| at.column(p, &of_row(&rows[j]), &of_mean[j]);
+            let all: OfPoints<Column> = (0..d).map(at_point).collect();
+            let product =
+                |left: &Column, right: &Column| at.product(p, &c, left, right) * point.volume;
+            stiffness += StrainStiffness::from_fn(|i, j| product(&own[i], &own[j]));
+            for (j, column) in all.iter().enumerate() {
+                mixed[j] += Alpha::from_fn(|i, _| product(&own[i], column));
+                for (i, other) in all.iter().enumerate() {
+                    k[j * d + i] += product(other, column);
+                }
             }
         }
         if let Some(inverse) = stiffness.try_inverse() {
@@ -314,12 +412,14 @@ impl Enhanced {
             return 0.0;
         };
         let first = self.committed(material);
-        let mut alpha = self.least(points, material, (&compatible.end, first));
+        let [start, end] = [&compatible.start, &compatible.end]
+            .map(|compatible| self.measured(points, material, compatible));
+        let mut alpha = self.least(points, material, (&end, first));
         let mut dissipated = 0.0;
         if !material.are_first_variables(&updated[..own]) {
             let after = material.with(updated);
-            alpha = finite_or(self.least(points, &after, (&compatible.end, alpha)), alpha);
-            let before = self.least(points, material, (&compatible.start, first));
+            alpha = finite_or(self.least(points, &after, (&end, alpha)), alpha);
+            let before = self.least(points, material, (&start, first));
             let strains = stresses.strains.iter().enumerate();
             let work = strains.map(|(p, strains)| match strains {
                 Strains::At(_) => 0.0,
@@ -327,15 +427,15 @@ impl Enhanced {
                     contract(&material.ring_stress(p, strains), &(e1 - e0)) * points[p].volume
                 }
             });
-            let stored = |material: &Committed, compatible: &[Symmetric], alpha: &Alpha| -> f64 {
-                let e = self.enhanced(compatible, alpha);
+            let stored = |material: &Committed, measured: &Measured, alpha: &Alpha| -> f64 {
+                let e = self.enhanced(measured, alpha);
                 let energies = points.iter().zip(&e).enumerate();
                 energies
                     .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
                     .sum()
             };
-            dissipated = work.sum::<f64>() + stored(material, &compatible.start, &before)
-                - stored(&after, &compatible.end, &alpha);
+            dissipated = work.sum::<f64>() + stored(material, &start, &before)
+                - stored(&after, &end, &alpha);
         }
         updated[own..].copy_from_slice(alpha.as_slice());
         dissipated

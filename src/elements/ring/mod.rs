@@ -3,6 +3,7 @@
 //! a pressure of their own (CPE8H, CPE8RH) are rings of an infinite radius. Section 2 of docs/theory.md, Bodies of
 //! revolution.
 
+mod at_strains;
 mod dilatation;
 mod enhanced;
 mod hourglass;
@@ -143,8 +144,9 @@ impl Ring {
             RingFormulation::Enhanced(enhanced) => {
                 let q = enhanced.q_halfway(self.ends(motion));
                 enhanced.correct_rows(q, &mut rows);
-                self.add_material(c, &rows, k);
-                enhanced.condense(&self.points, c, &rows, k);
+                if let Some(at) = &stresses.of_material {
+                    enhanced.add_tangent(&self.points, (at, c), &rows, k);
+                }
                 enhanced.add_geometric(&self.points, &stresses.s, k);
             }
             RingFormulation::Reduced(hourglass) => {
@@ -209,7 +211,9 @@ impl Ring {
         let paths = self.paths(motion);
         let stresses = self.stresses(material, &self.compatible(&paths, motion));
         let of_point = |(p, point): (usize, &RingPoint)| {
-            let (s, at) = (&stresses.s[p], &paths[p].end);
+            let of_material = stresses.of_material.as_ref();
+            let s = of_material.map_or(&stresses.s[p], |of| &of.stresses[p]);
+            let at = &paths[p].end;
             let (e, f, stretch) = (at.strain(), at.f(), at.stretch_around());
             let determinant = f.determinant();
             let result = PointResult {

@@ -3,6 +3,7 @@
 
 use nalgebra::{Matrix4, Vector4};
 
+use super::at_strains::AtStrains;
 use super::points::{OfPoints, RingPoint};
 use crate::elements::solid::MAX_DOFS;
 use crate::materials::{RingStressAtPoints, Strains, Symmetric, contract};
@@ -66,6 +67,8 @@ pub(super) struct Stresses {
     pub tangent_at: OfPoints<Strains<Symmetric>>,
     /// Second Piola-Kirchhoff stress that does work on the strains of the displacements (force/length^2).
     pub s: OfPoints<Symmetric>,
+    /// The material of an element with strains of its own at those of the tangent.
+    pub of_material: Option<AtStrains>,
     /// Smallest determinant met; NaN where there is no stress.
     pub determinant: f64,
 }
@@ -79,6 +82,7 @@ impl Stresses {
             s: stresses.map(|(p, e)| material.ring_stress(p, e)).collect(),
             tangent_at: strains.clone(),
             strains,
+            of_material: None,
             determinant: f64::INFINITY,
         }
     }

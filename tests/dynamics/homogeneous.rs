@@ -1,0 +1,113 @@
+//! Static steps of every element type with every law: homogeneous states stay homogeneous.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use stickslip::model::{ElementType, Shape};
+
+use crate::statics::run_deck;
+
+const RUBBER: &str = "*HYPERELASTIC, MOONEY-RIVLIN\n0.4, 0.25, 0.2\n";
+const NEO_HOOKE: &str = "*HYPERELASTIC, NEO HOOKE\n0.5, 0.02\n";
+const LINEAR: &str = "*ELASTIC\n100., 0.3\n";
+const METAL: &str =
+    "*ELASTIC\n120., 0.33\n*PLASTIC\n1., 0.\n1.3, 0.013\n1.6, 0.05\n2.2, 0.2\n2.6, 0.4\n4., 2.\n";
+
+/// Two times two distorted quadrilaterals, or twice as many triangles, over the unit square, with straight sides.
+fn patch(element_type: ElementType, material: &str) -> (String, Vec<[f64; 2]>) {
+    let middle = |i: usize, j: usize| match (i, j) {
+        (1, 1) => [0.63, 0.409],
+        _ => [i as f64 / 2.0, j as f64 / 2.0],
+    };
+    let mut x: Vec<[f64; 2]> = (0..9).map(|n| middle(n % 3, n / 3)).collect();
+    let quads = [0, 1, 3, 4].map(|a| vec![a, a + 1, a + 4, a + 3]);
+    let elements: Vec<Vec<usize>> = match element_type.shape {
+        Shape::Quad4 | Shape::Quad8 => quads.into(),
+        Shape::Tri3 | Shape::Tri6 => (quads.iter())
+            .flat_map(|q| [vec![q[0], q[1], q[2]], vec![q[0], q[2], q[3]]])
+            .collect(),
+    };
+    let mut between = BTreeMap::new();
+    let mut text = String::new();
+    for (e, mut nodes) in elements.into_iter().enumerate() {
+        let corners = nodes.clone();
+        for (i, &a) in corners.iter().enumerate() {
+            let b = corners[(i + 1) % corners.len()];
+            if element_type.is_quadratic() {
+                nodes.push(*between.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    x.push([(x[a][0] + x[b][0]) / 2.0, (x[a][1] + x[b][1]) / 2.0]);
+                    x.len() - 1
+                }));
+            }
+        }
+        let nodes: Vec<String> = nodes.iter().map(|n| (n + 1).to_string()).collect();
+        writeln!(text, "{}, {}", e + 1, nodes.join(", ")).expect("text");
+    }
+    let mut deck = String::from("*NODE\n");
+    for (n, [x, y]) in x.iter().enumerate() {
+        writeln!(deck, "{}, {x:?}, {y:?}", n + 1).expect("text");
+    }
+    for (name, i, value) in [("L", 0, 0.0), ("R", 0, 1.0), ("B", 1, 0.0), ("T", 1, 1.0)] {
+        let side = (0..x.len()).filter(|&n| x[n][i] == value);
+        let side: Vec<String> = side.map(|n| (n + 1).to_string()).collect();
+        writeln!(deck, "*NSET, NSET={name}\n{}", side.join(", ")).expect("text");
+    }
+    let name = element_type.name();
+    write!(
+        deck,
+        "*ELEMENT, TYPE={name}, ELSET=E\n{text}*MATERIAL, NAME=M\n{material}\
+         *SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n"
+    )
+    .expect("text");
+    (deck, x)
+}
+
+/// Displacements at the end of a deck that runs to its end.
+fn end(deck: &str, what: &str) -> Vec<f64> {
+    let (keep, failure) = run_deck(deck);
+    assert_eq!(failure, None, "{what}");
+    keep.reports.last().expect("reports").state.u.clone()
+}
+
+#[test]
+fn homogeneous_states_stay_homogeneous_to_large_strains() {
+    // stretches of the sides that are prescribed, less one; materials; those of rings have the first around the axis too
+    let loads = [
+        (RUBBER, Some(1.5), None),
+        (RUBBER, Some(1.5), Some(1.5)),
+        (RUBBER, None, Some(-0.3)),
+        (RUBBER, Some(-0.3), Some(0.5)),
+        (NEO_HOOKE, Some(1.5), None),
+        (NEO_HOOKE, None, Some(-0.3)),
+        (LINEAR, Some(0.3), None),
+        (LINEAR, None, Some(-0.3)),
+        (METAL, Some(0.2), None),
+        (METAL, None, Some(-0.3)),
+        (METAL, Some(-0.3), Some(0.5)),
+    ];
+    for element_type in ElementType::NAMED {
+        for (material, along, up) in loads {
+            if element_type.is_ring() && along.is_some() && up == along {
+                // the same stretch in three directions
+                continue;
+            }
+            let (mut deck, x) = patch(element_type, material);
+            deck += "*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY\nB, 2, 2\nL, 1, 1\n";
+            for (side, direction, value) in [("R", 1, along), ("T", 2, up)] {
+                if let Some(value) = value {
+                    writeln!(deck, "{side}, {direction}, {direction}, {value:?}").expect("text");
+                }
+            }
+            let what = format!("{} {material} {along:?} {up:?}", element_type.name());
+            let u = end(&(deck + "*END STEP\n"), &what);
+            // corners of the square: node 3 at (1, 0), node 7 at (0, 1)
+            let stretch = [u[2 * 2], u[2 * 6 + 1]];
+            for (n, x) in x.iter().enumerate() {
+                for i in 0..2 {
+                    let error = u[2 * n + i] - stretch[i] * x[i];
+                    assert!(error.abs() < 1e-9, "{what}: node {} {error:e}", n + 1);
+                }
+            }
+        }
+    }
+}
