@@ -2,22 +2,22 @@
 //! share with `run`.
 
 use std::fs;
-use std::io::ErrorKind;
-use std::path::Path;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
 
 use super::args::{
     CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs, VERSION,
 };
 use super::error::{CliError, Exit};
 use super::terminal::{coloured, complain, print};
-use crate::deck::{find_keyword, keywords};
+use crate::deck::{Keyword, Status, find_keyword, keywords, not_regular, open_regular};
 use crate::diagnostics::{Code, Diagnostics, EarlierDeck, Severity, Sources, closest, wrapped};
 use crate::dynamics::{Observer, RunError, RunSummary};
-use crate::flat_deck::{flat_deck, reads_as};
+use crate::flat_deck::{difference, flat_deck};
 use crate::lcp::solve_json;
 use crate::output::{
     Checkpoint, Existing, FileError, ModelEcho, ResultSummary, check_names, deck_line,
-    is_checkpoint, not_regular, picture, regular_file, write_whole,
+    is_checkpoint, picture, write_whole,
 };
 use crate::prepare::{PreparedModel, prepare};
 use crate::{dynamics, reader};
@@ -90,7 +90,7 @@ pub(super) fn old_job(deck: &DeckArgs) -> Result<Option<Checkpoint>, CliError> {
 
 /// Refuses a deck that cannot be opened.
 fn openable(path: &Path) -> Result<(), CliError> {
-    regular_file(path).map_err(FileError::new("read the deck", path))?;
+    open_regular(path).map_err(FileError::new("read the deck", path))?;
     Ok(())
 }
 
@@ -159,11 +159,52 @@ fn unknown(words: &[String]) -> CliError {
     };
     let beginnings = (1..=words.len()).rev().map(|count| &words[..count]);
     let meant = |words: &[String]| closest(&name(words), known()).map(|meant| (words.len(), meant));
-    let (count, meant) = beginnings.filter_map(meant).next().unzip();
+    let first = words
+        .first()
+        .map_or("", |word| word.trim_start_matches('*'));
+    let about = keywords_about(first);
+    let (count, meant) = match about.is_empty() {
+        true => beginnings.filter_map(meant).next().unzip(),
+        false => (None, None),
+    };
     CliError::Unexplained {
         word: words[..count.unwrap_or(1)].join(" "),
         meant,
+        about,
     }
+}
+
+/// Most keywords that a word leads to.
+const MOST_ABOUT: usize = 5;
+
+/// Keywords that speak of a thing: first those that are read, of them those that have the word in their names.
+fn keywords_about(word: &str) -> Vec<&'static str> {
+    let word = word.to_lowercase();
+    let word = word.strip_suffix('s').unwrap_or(&word);
+    let has = |text: &str| {
+        let text = text.to_lowercase();
+        let mut words = text.split(|c: char| !c.is_alphanumeric());
+        words.any(|one| one.starts_with(word))
+    };
+    let rank = |keyword: &Keyword| {
+        let mut texts = keyword.parameters.iter();
+        let in_text = has(keyword.text) || texts.any(|parameter| has(parameter.text));
+        match (has(keyword.name), in_text, keyword.status) {
+            (false, false, _) => None,
+            (true, _, Status::Read) => Some(0),
+            (false, true, Status::Read) => Some(1),
+            _ => Some(2),
+        }
+    };
+    if word.len() < 4 {
+        return Vec::new();
+    }
+    let mut found: Vec<_> = keywords()
+        .filter_map(|keyword| Some((rank(keyword)?, keyword.name)))
+        .collect();
+    found.sort_by_key(|(rank, _)| *rank);
+    let names = found.into_iter().map(|(_, name)| name);
+    names.take(MOST_ABOUT).collect()
 }
 
 /// Writes a deck as one flat deck, after a test that this reads as the same model. What `check` rejects
@@ -182,11 +223,11 @@ pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     };
     check_names(&model)?;
     let text = flat_deck(&model);
-    if !reads_as(&text, &model) {
-        complain(
-            "error: this deck cannot be written as a flat deck that reads as the same model: in a step with \
-             AMPLITUDE=RAMP a load on a face ramps while another there, in the same direction, follows an amplitude",
-        );
+    if let Some(what) = difference(&text, &model) {
+        complain(&format!(
+            "error: this deck cannot be written as a flat deck that reads as the same model: {what} would differ \
+             (docs/reliability.md)"
+        ));
         return Ok(Exit::Rejected);
     }
     match &args.output {
@@ -204,7 +245,7 @@ pub(super) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
 
 /// Solves a complementarity problem given as JSON and prints the answer as JSON.
 pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
-    let text = regular_file(&args.problem).and_then(|_| fs::read_to_string(&args.problem));
+    let text = open_regular(&args.problem).and_then(io::read_to_string);
     let text = text.map_err(FileError::new("read", &args.problem))?;
     let answer = solve_json(&text);
     print(&[answer.text])?;
@@ -292,7 +333,11 @@ fn read_deck(deck: &DeckArgs, earlier: Option<EarlierDeck>, colour: bool) -> Loa
     let mut sources = Sources::with_settings(&deck.settings, earlier);
     let mut d = Diagnostics::with_strictness(deck.strictness());
     let model = reader::read_model(&deck.path, &mut sources, &mut d);
-    let model = model.and_then(|model| prepare(model, &mut d));
+    let mut model = model.and_then(|model| prepare(model, &mut d));
+    if let Some(Err(error)) = model.as_ref().map(|model| check_names(&model.model)) {
+        d.error_without_place(Code::BadName, error.to_string());
+        model = None;
+    }
     let ours = d.without(Code::LongNumber);
     Loaded {
         model,

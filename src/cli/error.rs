@@ -89,14 +89,17 @@ pub(super) enum CliError {
     Summary(#[from] SummaryError),
     /// There is no keyword and no code of this name.
     #[error(
-        "{word} is neither a keyword nor the code of a message{}",
-        suggestion(meant)
+        "{word} is neither a keyword nor the code of a message{}{}",
+        suggestion(meant),
+        told(about)
     )]
     Unexplained {
         /// What was asked for.
         word: String,
         /// What was probably meant.
         meant: Option<&'static str>,
+        /// Keywords that speak of it.
+        about: Vec<&'static str>,
     },
     /// A file that the command makes exists.
     #[error("{} exists already; --overwrite replaces it", path.display())]
@@ -127,6 +130,14 @@ impl CliError {
 
 fn suggestion(meant: &Option<&str>) -> String {
     meant.map_or(String::new(), |meant| format!("; did you mean {meant}?"))
+}
+
+fn told(about: &[&str]) -> String {
+    let names: Vec<String> = about.iter().map(|name| format!("*{name}")).collect();
+    match names.is_empty() {
+        true => String::new(),
+        false => format!("; keywords about it: {}", names.join(", ")),
+    }
 }
 
 fn after(kept: &Option<String>) -> String {

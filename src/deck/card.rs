@@ -1,7 +1,7 @@
 //! Cards with their parameters and data lines, and typed access to the parameters; a wrong or missing
 //! value is reported with its place. Instances of parts, which the cards of parts are copied to.
 
-use super::keywords::Keyword;
+use super::keywords::{Data, Keyword};
 use super::lines::{Line, Lines};
 use super::text::{Name, Text};
 use crate::diagnostics::{Code, Diagnostics, FileId, Span};
@@ -18,6 +18,8 @@ pub struct Card {
     pub span: Span,
     /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
+    /// Whether a deck adds it to the model of the job that it goes on from.
+    pub added: bool,
     /// Its data lines.
     pub rows: DataLines,
     pub(crate) params: Vec<Param>,
@@ -107,24 +109,47 @@ impl Card {
         self.value(name).and_then(|value| value.integer(d))
     }
 
-    /// Warns about parameters that the reader has not used; those with a choice of words are
-    /// checked when the card is read.
+    /// Warns about parameters that the reader has not used, and reports the first row that it has not read.
     pub fn report_unused(&self, d: &mut Diagnostics) {
-        let unused = |p: &&Param| !p.used.get() && !p.faulty && p.choice.is_none();
+        let read = self.rows.read.get();
+        let may_be_left = read != ALL_ROWS && self.keyword.data != Data::Text;
+        let mut rows = self.rows.lines().flat_map(Lines::data);
+        if let Some(row) = may_be_left.then(|| rows.nth(read)).flatten() {
+            let lines = match read {
+                0 => "no data line is".to_owned(),
+                1 => "only 1 data line is".to_owned(),
+                more => format!("only {more} data lines are"),
+            };
+            let message = format!("{lines} read under this {}", self.title());
+            d.error(Code::StrayData, row.span(), message);
+        }
+        let unused = |p: &&Param| !p.used.get() && !p.faulty && !self.holds_anyway(p);
         for param in self.params.iter().filter(unused) {
             let message = format!("{} of {} has no effect here", param.name, self.title());
             d.warning(Code::IgnoredParameter, param.span, message);
         }
     }
+
+    /// Whether a parameter has a word that holds without it too.
+    fn holds_anyway(&self, param: &Param) -> bool {
+        let known = self.keyword.parameter(param.name);
+        let mut words = known.map_or(&[][..], |known| known.values()).iter();
+        words.any(|word| Some(word.name) == param.choice && word.is_default())
+    }
 }
 
 /// The data lines of a card: blocks of the texts of its files, cut into lines and fields when they are
-/// asked for.
+/// asked for. They count the rows that have been.
 #[derive(Debug, Clone, Default)]
 pub struct DataLines {
     blocks: Vec<LineBlock>,
     instance: u32,
+    /// Number of rows from the first one to the last that was asked for; [`ALL_ROWS`] where all were.
+    read: Cell<usize>,
 }
+
+/// More than the rows of any card.
+const ALL_ROWS: usize = usize::MAX;
 
 /// Lines one after the other in a file, among which are no keyword lines.
 #[derive(Debug, Clone)]
@@ -162,7 +187,7 @@ impl DataLines {
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.first().is_none()
+        self.lines().flat_map(Lines::data).next().is_none()
     }
 
     /// The first row.
@@ -177,7 +202,16 @@ impl DataLines {
 
     /// All rows in order.
     pub fn iter(&self) -> impl Iterator<Item = Line<'_>> + Clone {
-        self.lines().flat_map(Lines::data)
+        let rows = self.lines().flat_map(Lines::data).zip(1..);
+        let rows = rows.map(|(row, number)| {
+            self.read.set(self.read.get().max(number));
+            row
+        });
+        let end = std::iter::once(()).filter_map(|()| {
+            self.read.set(ALL_ROWS);
+            None
+        });
+        rows.chain(end)
     }
 
     /// Number of lines, not all of which may hold a row.

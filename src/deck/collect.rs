@@ -384,6 +384,7 @@ impl Collector<'_> {
             keyword,
             span,
             faulty: false,
+            added: false,
             rows: DataLines::default(),
             params: Vec::new(),
         });
@@ -517,7 +518,11 @@ impl Collector<'_> {
         let cards = &mut self.deck.cards;
         let added = cards[end..].iter();
         let added = added.take_while(|card| card.keyword.name != "STEP").count();
-        for card in &cards[end..end + added] {
+        for card in &mut cards[..end] {
+            card.added = false;
+        }
+        for card in &mut cards[end..end + added] {
+            card.added = true;
             if card.keyword.status == Status::Read && !ADDED.contains(&card.keyword.name) {
                 let message = format!("{} would change the model of the earlier job", card.title());
                 self.d.error(Code::WrongPlace, card.span, message).help(
@@ -608,15 +613,8 @@ fn begins_as_a_number(text: Text) -> bool {
 }
 
 fn content_of(path: &Path) -> Result<Content, String> {
-    if path.is_dir() {
-        return Err("it is a folder".to_string());
-    }
-    let content = match std::fs::metadata(path) {
-        Ok(data) if data.is_file() => Content::of(path),
-        Ok(_) => return Err("it is not a regular file".to_string()),
-        Err(error) => Err(error),
-    };
-    content.map_err(|error| match error.kind() {
+    Content::of(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::IsADirectory => "it is a folder".to_string(),
         std::io::ErrorKind::NotFound => "no such file".to_string(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_string(),
         _ => error.to_string(),

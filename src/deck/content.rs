@@ -3,15 +3,45 @@
 use super::lines::overlong;
 use crate::diagnostics::{Code, Diagnostic, FileId, Span};
 use memchr::{memchr, memrchr};
-use std::fs::File;
+use rustix::fs::OFlags;
+use std::fs::{self, File};
 use std::io::{self, Read};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 /// Longest line, in bytes.
-const LONGEST_LINE: usize = 1 << 16;
+pub(super) const LONGEST_LINE: usize = 1 << 16;
 
 /// Bytes that are read and looked at in one go.
 const PIECE: u64 = 1 << 20;
+
+/// The error of a fifo, a device or a file of the system in place of a file.
+pub fn not_regular() -> io::Error {
+    io::Error::other("it is not a regular file")
+}
+
+/// Opens a regular file to read it. Nothing waits here or when it is read: a fifo would wait for its writer, and a file
+/// that the system makes up as it is read, which says that it is empty, for an event.
+///
+/// # Errors
+/// The file does not exist, may not be read, or is not a regular file.
+pub fn open_regular(path: &Path) -> io::Result<File> {
+    let data = fs::metadata(path)?;
+    if data.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !data.is_file() {
+        return Err(not_regular());
+    }
+    let flags = OFlags::NONBLOCK.bits().cast_signed();
+    let mut file = File::options().read(true).custom_flags(flags).open(path)?;
+    let data = file.metadata()?;
+    let is_made_up = data.len() == 0 && !matches!(file.read(&mut [0]), Ok(0));
+    match data.is_file() && !is_made_up {
+        true => Ok(file),
+        false => Err(not_regular()),
+    }
+}
 
 /// Text of a file.
 pub(super) struct Content {
@@ -24,7 +54,7 @@ pub(super) struct Content {
 impl Content {
     /// Reads a regular file; stops at the first fault, however long the file is.
     pub fn of(path: &Path) -> io::Result<Content> {
-        Content::read(File::open(path)?)
+        Content::read(open_regular(path)?)
     }
 
     /// Content given as text.

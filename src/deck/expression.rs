@@ -53,6 +53,9 @@ pub(super) struct Fault {
 const DEEPEST: usize = 50;
 const MOST_OPERATORS: usize = 1000;
 
+/// Longest text: a line that other codes read.
+const LONGEST_TEXT: usize = 256;
+
 /// The value of an expression, and the names that it uses.
 pub(super) fn evaluate(
     text: &str,
@@ -84,6 +87,10 @@ pub(super) fn evaluate(
         values,
     };
     let value = scope.value(&tree, &mut used)?;
+    if matches!(&value, ParameterValue::Text(text) if text.len() > LONGEST_TEXT) {
+        let message = format!("a text of more than {LONGEST_TEXT} bytes");
+        return Err(fault(0..text.len(), &message));
+    }
     Ok((value, used))
 }
 

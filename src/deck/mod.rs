@@ -20,6 +20,7 @@ mod text;
 pub use card::{Card, DataLines, Instance, Param, Placement};
 pub use change::first_change;
 pub use collect::Deck;
+pub(crate) use content::{not_regular, open_regular};
 pub use keywords::{
     Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes, Value,
     dimensions_json, find_keyword, keyword_reference, keywords,

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::content::LONGEST_LINE;
 use super::expression::{ParameterValue, evaluate};
 use super::lines::{Line, LineKind, Lines};
 use crate::diagnostics::{Code, Diagnostics, Replaced, Sources, Span, closest};
@@ -141,24 +142,47 @@ impl Parameters {
         let mut text = String::new();
         let mut replaced = Vec::new();
         let mut rest = 0..line.text.len();
+        let length = |text: &str| text.chars().count() as u32;
+        let mut column = 1;
         while let Some((bytes, name)) = next_name(line.text, rest.clone()) {
             self.used.insert(name.to_owned());
-            text.push_str(&line.text[rest.start..bytes.start]);
-            let (column, typed) = (text.chars().count() as u32 + 1, line.span_of(bytes.clone()));
+            let before = &line.text[rest.start..bytes.start];
+            text.push_str(before);
+            column += length(before);
+            let (at, typed) = (column, line.span_of(bytes.clone()));
             match self.values.get(name).map(ParameterValue::written) {
                 Some(value) => {
                     text.push_str(&value);
+                    let length = length(&value);
                     replaced.push(Replaced {
                         column,
-                        length: value.chars().count() as u32,
+                        length,
                         typed,
                     });
+                    column += length;
+                    if text.len() >= LONGEST_LINE {
+                        self.has_failed = true;
+                        let message = format!(
+                            "with the values of its parameters this line has {LONGEST_LINE} bytes or more"
+                        );
+                        d.error(Code::EndlessLine, typed, message);
+                        return None;
+                    }
                 }
                 None => {
-                    text.push_str(&line.text[bytes.clone()]);
+                    let unknown = &line.text[bytes.clone()];
+                    text.push_str(unknown);
+                    column += length(unknown);
                     self.has_failed = true;
                     if !self.faulty.contains(name) {
-                        self.report_unknown(name, Span { column, ..typed }, d);
+                        self.report_unknown(
+                            name,
+                            Span {
+                                column: at,
+                                ..typed
+                            },
+                            d,
+                        );
                     }
                 }
             }

@@ -115,7 +115,7 @@ codes! {
         "It is a binary file, or a text in UTF-16."
         "Save the deck as ASCII or UTF-8."
     EndlessLine "D122" "A line is longer than the program reads."
-        "A text has no line of 65536 bytes: the file is probably none."
+        "A text has no line of 65536 bytes, with the values of its parameters neither: the file is probably none."
         "Check that the file is a deck, and cut the line."
     BadExpression "D123" "A parameter cannot be computed."
         "Its row of *PARAMETER is not `name = expression`, the expression is not one of Python's, or it has no \
@@ -129,11 +129,11 @@ codes! {
         "Use it as `<name>`, or remove its row."
     UnsupportedKeyword "D201" "A known keyword that cannot be honoured and would change the answer."
         "The program does not have what it asks for."
-        "Do as the message says, or remove the keyword if the model does not need it."
+        "Take the keyword that the message names in its place, or remove it if the model does not need it."
     UnsupportedParameter "D202"
         "A known parameter or value that cannot be honoured and would change the answer."
         "The program does not have what it asks for."
-        "Do as the message says, or remove it if the model does not need it."
+        "Take the parameter or value that the message names in its place, or remove it if the model does not need it."
     IgnoredKeyword "D203" "A known keyword that is left out without changing the answer."
         "It speaks of another program's solver, output or material data that are not used."
         "Nothing need be done; remove it to silence the warning."
@@ -223,9 +223,9 @@ codes! {
         "Its sets are empty, or their faces are all inside a body."
         "Fill it, or remove it."
     LineElement "D318"
-        "A line element, which only names a side of a plane element, or other traces of a mesh \
-         generator."
-        "Gmsh writes line elements for curves and CPS3, CPS4 for surfaces, whatever the physics."
+        "A line element that is no side of a plane element, or other traces of a mesh generator."
+        "There are no trusses and beams: line elements only name sides. Gmsh writes them for curves, and CPS3, CPS4 for \
+         surfaces, whatever the physics."
         "Remove line elements that are no sides; write CPE3 and CPE4 for plane strain."
     CoincidentNodes "D319" "Nodes lie at the same place and nothing joins them."
         "Two parts were meshed apart and not merged: there is a crack between them."
@@ -287,7 +287,8 @@ codes! {
     RigidSurface "D413" "A rigid surface, or its reference node, that cannot be used as it is."
         "Its profile is not a chain of lines and arcs, or its reference node is missing, shared \
          or free."
-        "Do as the message says."
+        "Give LINE and CIRCL rows that go on from each other, one *RIGID BODY for each surface with a node of its own, and \
+         prescribe directions 1 and 2 of that node, or give the body mass."
     NothingFaced "D414" "No node of the slave surface faces the master surface at the start."
         "The names of the pair or the faces are wrong, or the bodies are far apart."
         "Check both surfaces; the pair still acts when the bodies meet."
@@ -308,16 +309,20 @@ codes! {
         "Give POSITION TOLERANCE=, or exchange slave and master."
     Coupling "D421" "Nodes that cannot be coupled as the deck says."
         "A node belongs to two couplings, none is coupled, or the type of the constraint is not known."
-        "Do as the message says."
+        "Put a node into one coupling, name at least one node of a body besides the reference node, and take BEAM, PIN or \
+         TIE; single directions are coupled with *EQUATION."
     Interference "D422" "A fit that cannot be pressed together as it is given."
         "*CONTACT INTERFERENCE names surfaces without a contact pair or a step that it cannot begin in, or nothing overlaps."
-        "Do as the message says."
+        "Name slave and master of a *CONTACT PAIR, put SHRINK into the first step, and let the bodies overlap in the mesh by \
+         the interference."
     PreTension "D423" "A pre-tension section that cannot be cut."
         "Its surface does not run through a body from side to side, or its node belongs to an element."
-        "Do as the message says."
+        "Let the surface run between elements from one side of the body to the other, with faces of one side of it, and \
+         take a node that no element has."
     ContactChange "D424" "A change of the contacts that cannot be made, or changes nothing."
         "No contact pair has these surfaces, it is removed already, or ADD and REMOVE or RESET and *FRICTION contradict each other."
-        "Do as the message says."
+        "Write slave and master as on the data line of *CONTACT PAIR, remove a pair before it is added, and give one of ADD \
+         and REMOVE, of RESET and *FRICTION."
     NoDensity "D425" "A material without density in static steps."
         "Static steps without gravity do not use a density; masses in the results are volumes then."
         "Give *DENSITY, if masses are to be read from the results."

@@ -9,8 +9,8 @@ mod model;
 mod steps;
 
 use crate::deck;
-use crate::diagnostics::{Diagnostics, Sources, Span};
-use crate::model::Model;
+use crate::diagnostics::{Diagnostics, Severity, Sources, Span};
+use crate::model::{Model, Step};
 use crate::reader;
 use lines::DeckWriter;
 
@@ -23,12 +23,61 @@ pub fn flat_deck(model: &Model) -> String {
     lines.text()
 }
 
-/// Whether a deck reads as this model but for the places of its contacts and the instances of parts.
-pub fn reads_as(text: &str, model: &Model) -> bool {
+/// What a deck reads otherwise than this model, but for the places of its contacts and the instances of parts; none where
+/// it reads as the same.
+pub fn difference(text: &str, model: &Model) -> Option<String> {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
     let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
-    let read = reader::build(&deck, &mut d);
-    read.is_some_and(|read| flat(read) == flat(model.clone()))
+    let Some(read) = reader::build(&deck, &mut d) else {
+        let error = d.iter().find(|item| item.severity == Severity::Error);
+        return Some(error.map_or(String::new(), |error| error.message.clone()));
+    };
+    let (a, b) = (flat(read), flat(model.clone()));
+    if a == b {
+        return None;
+    }
+    let of_steps = a.steps.iter().zip(&b.steps).zip(1..);
+    let of_steps = of_steps.filter_map(|((a, b), number)| {
+        let what = difference_of_steps(a, b)?;
+        Some(format!("the {what} of step {number}"))
+    });
+    let of_model = [
+        ("nodes and elements", a.mesh != b.mesh),
+        ("sets", a.sets != b.sets),
+        ("surfaces", a.surfaces != b.surfaces),
+        ("materials", a.materials != b.materials),
+        ("sections", a.sections != b.sections),
+        ("springs and dashpots", a.connectors != b.connectors),
+        ("contacts", a.contacts != b.contacts),
+        ("amplitudes", a.amplitudes != b.amplitudes),
+        ("ties", a.ties != b.ties),
+        ("equations", a.equations != b.equations),
+        ("hinges", a.hinges != b.hinges),
+        ("rigid bodies", a.rigid_bodies != b.rigid_bodies),
+        (
+            "initial velocities",
+            a.initial_velocity != b.initial_velocity,
+        ),
+    ];
+    let of_model = of_model.into_iter().filter(|(_, differs)| *differs);
+    let mut all = of_model
+        .map(|(what, _)| format!("the {what}"))
+        .chain(of_steps);
+    Some(all.next().unwrap_or("title or checkpoints".to_owned()))
+}
+
+/// What two steps do otherwise.
+fn difference_of_steps(a: &Step, b: &Step) -> Option<&'static str> {
+    let loads = a.point_loads != b.point_loads
+        || a.body_forces != b.body_forces
+        || a.centrifugal_forces != b.centrifugal_forces
+        || a.pressures != b.pressures
+        || a.tractions != b.tractions;
+    match (a.supports != b.supports, loads) {
+        (true, _) => Some("supports"),
+        (false, true) => Some("loads"),
+        (false, false) => (a != b).then_some("settings"),
+    }
 }
 
 /// A model without what a flat deck does not hold.

@@ -2,13 +2,16 @@
 //! amplitudes, contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{DeckWriter, name, named, number, set};
+use crate::deck::Text;
+use crate::diagnostics::Span;
 use crate::materials::Law;
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorDirection, ConnectorLaw, Contact, Curve,
     Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Heat, Interaction,
-    Material, Mesh, Model, Reach, RigidPart, RigidProfile, Section, Set, Signal, SurfaceKind, Tie,
-    TieReach, TimeBase, Wear,
+    Material, Mesh, Model, Reach, RigidBody, RigidPart, RigidProfile, Section, Set, Signal,
+    SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
+use std::collections::BTreeSet;
 
 /// Terms of an equation on a data line.
 const TERMS: usize = 4;
@@ -73,8 +76,15 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
             lines.card("RIGID BODY", [part, set("REF NODE", label)]);
         }
     }
-    if !model.hinges.is_empty() {
+    let riders: Vec<[usize; 2]> = (model.rigid_bodies.iter())
+        .flat_map(|body| riders(body, model).map(|node| [node, body.reference]))
+        .collect();
+    if !riders.is_empty() || !model.hinges.is_empty() {
         lines.card("MPC", []);
+    }
+    for nodes in riders {
+        let [a, b] = nodes.map(|node| model.mesh.node_labels[node].to_string());
+        lines.row(["BEAM".to_owned(), a, b]);
     }
     for hinge in &model.hinges {
         let [a, b] = hinge
@@ -94,6 +104,34 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
     for equation in model.equations.iter().filter(is_own) {
         write_equation(equation, model, lines);
     }
+}
+
+/// Nodes of a rigid body that are neither those of its elements or node sets nor points of its surfaces: they ride on it by
+/// a constraint.
+fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
+    let elements = body.elements.iter();
+    let mut own: BTreeSet<usize> = elements
+        .flat_map(|&element| &model.mesh.elements[element].nodes)
+        .copied()
+        .collect();
+    let key = |text: &str| {
+        let span = Span::default();
+        Text { text, span }.name_key()
+    };
+    for part in &body.parts {
+        match part {
+            RigidPart::Surface(surface) => own.extend(model.surfaces[*surface].nodes(&model.mesh)),
+            RigidPart::Nodes(name) => {
+                let mut sets = model.sets.nodes.iter();
+                let set = sets.find(|set| key(&set.name) == key(name));
+                own.extend(set.iter().flat_map(|set| &set.members));
+            }
+            RigidPart::Elements(_) => {}
+        }
+    }
+    let is_whole = body.is_coupling;
+    let nodes = body.nodes.iter().copied();
+    nodes.filter(move |node| !is_whole && !own.contains(node))
 }
 
 /// Masses and rotary inertia of the bodies that turn, as elements with numbers after the largest one.

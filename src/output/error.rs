@@ -1,9 +1,9 @@
 //! Errors in writing the files of a job, and the system's error behind a failure of the HDF5
 //! library.
 
+use std::io;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use thiserror::Error;
 
@@ -57,11 +57,6 @@ impl FileError {
             source,
         }
     }
-}
-
-/// The error of a fifo, a device or a folder in place of a file.
-pub fn not_regular() -> io::Error {
-    io::Error::other("it is not a regular file")
 }
 
 /// A name that is not possible in the result file.
@@ -124,22 +119,6 @@ fn errno(text: &str) -> Option<i32> {
     let (_, rest) = text.split_once("errno = ")?;
     let end = rest.find(|c: char| !c.is_ascii_digit());
     rest.get(..end.unwrap_or(rest.len()))?.parse().ok()
-}
-
-/// Metadata of a regular, readable file. Other files are not opened: a fifo would wait for its
-/// writer.
-///
-/// # Errors
-/// The file does not exist, may not be read, or is not a regular file.
-pub fn regular_file(path: &Path) -> io::Result<fs::Metadata> {
-    let data = fs::metadata(path)?;
-    if data.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if !data.is_file() {
-        return Err(not_regular());
-    }
-    fs::File::open(path)?.metadata()
 }
 
 #[cfg(test)]

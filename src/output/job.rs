@@ -13,7 +13,8 @@ use std::{fs, io};
 use rustix::fs::OFlags;
 
 use super::draft::{self, Existing};
-use super::error::{FileError, OutputError, at, not_regular};
+use super::error::{FileError, OutputError, at};
+use crate::deck::not_regular;
 
 /// The files of a job.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -39,7 +39,7 @@ pub use canvas::Window;
 pub use console::Verbosity;
 pub use draft::{Existing, write_whole};
 pub use echo::{ModelEcho, deck_line, frames, program_lines, solver};
-pub use error::{FileError, NameError, OutputError, not_regular, reason, regular_file};
+pub use error::{FileError, NameError, OutputError, reason};
 pub use format::scientific;
 pub use frames::{DEFAULT_FRAMES, FrameSchedule};
 pub use job::{Claim, Earlier, JobFiles, is_checkpoint};

@@ -2,7 +2,7 @@
 //! brought to the disk and then renamed, so that there is always a whole one. docs/restart.md.
 
 use std::fs::File;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::{error, fmt, fs};
 
@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::draft::{Draft, Existing};
-use super::error::{FileError, at, regular_file};
+use super::error::{FileError, at};
+use crate::deck::open_regular;
 use crate::diagnostics::EarlierDeck;
 
 /// First bytes of the file.
@@ -112,9 +113,10 @@ impl Checkpoint {
     /// # Errors
     /// There is none, it is not whole, or it is of another program.
     pub fn read(path: &Path, program: &str) -> Result<Self, CheckpointError> {
-        let bytes = regular_file(path).and_then(|_| fs::read(path));
-        let bytes = bytes.map_err(FileError::new("read", path));
-        let bytes = bytes.map_err(CheckpointError::File)?;
+        let mut bytes = Vec::new();
+        open_regular(path)
+            .and_then(|mut file| file.read_to_end(&mut bytes))
+            .map_err(|error| CheckpointError::File(FileError::new("read", path)(error)))?;
         let content = || CheckpointError::Content(path.to_owned());
         let rest = bytes.strip_prefix(MAGIC).ok_or_else(content)?;
         let (sum, body) = rest.split_at_checked(SUM).ok_or_else(content)?;

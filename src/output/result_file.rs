@@ -9,7 +9,7 @@ use hdf5::{File, FileBuilder};
 
 use super::checks::{self, Checks};
 use super::column::GrowingColumns;
-use super::error::{at, io_error, regular_file};
+use super::error::{at, io_error};
 use super::fields;
 use super::frames::Frame;
 use super::history::History;
@@ -17,6 +17,7 @@ use super::local;
 use super::run_record::{RecordWriter, RunRecord, run_id};
 use super::space::Space;
 use crate::archive::Archive;
+use crate::deck::open_regular;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
@@ -135,7 +136,7 @@ impl<'m> ResultFile<'m> {
         let Some((earlier, id)) = earlier else {
             return Ok(());
         };
-        regular_file(earlier).map_err(at(earlier))?;
+        open_regular(earlier).map_err(at(earlier))?;
         let [fields, history, checks] = &written;
         let file = File::open(earlier).map_err(io_error).map_err(at(earlier))?;
         if run_id(&file).as_deref() != Some(id) {

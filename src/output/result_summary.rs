@@ -8,11 +8,12 @@ use thiserror::Error;
 
 use super::checks::{self, CHECKS, Check};
 use super::column::ROWS;
-use super::error::{FileError, regular_file};
+use super::error::FileError;
 use super::format::{bytes, counted, general, label, scientific, wrap};
 use super::model_group::BodyTimes;
 use super::run_record::UNFINISHED;
 use super::warnings::{BALANCE, Findings, Losses, Touches, hourglass_part, never_closed, part};
+use crate::deck::open_regular;
 use crate::dynamics::{Energy, Touch};
 use crate::linear::{larger, largest};
 use crate::model::ContactFormulation;
@@ -86,7 +87,8 @@ pub struct ResultSummary {
 impl ResultSummary {
     /// Reads a result file.
     pub fn read(path: &Path) -> Result<Self, SummaryError> {
-        let data = regular_file(path).map_err(FileError::new("read", path))?;
+        let data = open_regular(path).and_then(|file| file.metadata());
+        let data = data.map_err(FileError::new("read", path))?;
         let content = |source| SummaryError::Content {
             path: path.to_owned(),
             source,

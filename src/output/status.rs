@@ -9,8 +9,9 @@ use sha2::{Digest, Sha256};
 
 use super::console::{closed, sticking};
 use super::draft::{Draft, Existing};
-use super::error::{at, regular_file};
+use super::error::at;
 use super::format::{scientific, signed};
+use crate::deck::open_regular;
 use crate::dynamics::IncrementReport;
 use crate::model::Model;
 
@@ -79,8 +80,7 @@ impl StatusFile {
     /// The earlier file has another text; those of the file system.
     pub fn go_on(path: &Path, model: &Model, (length, sum): Written) -> io::Result<Self> {
         let mut text = Vec::new();
-        let read =
-            regular_file(path).and_then(|_| File::open(path)?.take(length).read_to_end(&mut text));
+        let read = open_regular(path).and_then(|file| file.take(length).read_to_end(&mut text));
         read.map_err(at(path))?;
         if text.len() as u64 != length || Sha256::digest(&text).as_slice() != sum {
             let other = "it is not the status file of the run that the checkpoint is of";

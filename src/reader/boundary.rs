@@ -132,14 +132,8 @@ impl Supports {
 
     /// Reads a card of step `step`; 0 for model data.
     pub fn card(&mut self, card: &Card, step: usize, targets: Targets, cx: &mut Context) {
-        let Ok(amplitude) = targets.amplitudes.of(card, cx) else {
+        let Some(quantity) = card_motion(card, targets, cx) else {
             return;
-        };
-        let quantity = match card.choice("TYPE") {
-            _ if card.has("FIXED") => CardMotion::Fixed,
-            Some("VELOCITY") => CardMotion::Rate(Rate::Velocity, amplitude),
-            Some("ACCELERATION") => CardMotion::Rate(Rate::Acceleration, amplitude),
-            _ => CardMotion::Displacement(amplitude),
         };
         for row in card.rows.iter() {
             self.row(row, quantity, step, targets, cx);
@@ -209,6 +203,19 @@ impl Supports {
                 .help("the later one holds");
         }
     }
+}
+
+/// What a card prescribes; with FIXED neither amplitude nor type are used.
+fn card_motion(card: &Card, targets: Targets, cx: &mut Context) -> Option<CardMotion> {
+    if card.has("FIXED") {
+        return Some(CardMotion::Fixed);
+    }
+    let amplitude = targets.amplitudes.of(card, cx).ok()?;
+    Some(match card.choice("TYPE") {
+        Some("VELOCITY") => CardMotion::Rate(Rate::Velocity, amplitude),
+        Some("ACCELERATION") => CardMotion::Rate(Rate::Acceleration, amplitude),
+        _ => CardMotion::Displacement(amplitude),
+    })
 }
 
 /// Only the reference node of a rigid body turns.
@@ -397,11 +404,8 @@ pub(crate) fn initial_velocity(
 
 /// Warns about initial velocities before a static step, which is at rest.
 pub(crate) fn check_start(outline: &Outline, first: Option<&Step>, cx: &mut Context) {
-    let is_velocity = |card: &&Card| card.choice("TYPE") == Some("VELOCITY");
-    let mut cards = outline.model_cards("INITIAL CONDITIONS").into_iter();
-    if let (Some(card), Some(Procedure::Static)) =
-        (cards.find(is_velocity), first.map(|s| s.procedure))
-    {
+    let cards = outline.model_cards("INITIAL CONDITIONS");
+    if let (Some(card), Some(Procedure::Static)) = (cards.first(), first.map(|s| s.procedure)) {
         let message = "these velocities have no effect: the first step is static";
         cx.d.warning_once(Code::IgnoredParameter, card.span, message)
             .help("give them to a model whose first step is dynamic");

@@ -10,10 +10,12 @@ use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
-    Heat, Interaction, Model, Reach, Surface, SurfaceKind, Wear,
+    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Equation, Face, Friction, FrictionCurve,
+    FrictionLaw, Heat, Interaction, Mesh, Model, Reach, RigidProfile, Segment, Surface,
+    SurfaceKind, Wear,
 };
-use std::collections::{HashMap, HashSet};
+use crate::vectors::cross;
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Reads the contacts with their interactions.
 pub(crate) fn read(
@@ -205,6 +207,18 @@ pub(super) fn keep_arcs_for_discs(model: &mut Model) {
     }
 }
 
+/// Whether a profile is closed and its body lies outside, on the left of its segments.
+fn is_hole(profile: &RigidProfile, mesh: &Mesh) -> bool {
+    let ends = |segment: &Segment| segment.map(|node| mesh.coordinates[node]);
+    let doubled_area: f64 = (profile.segments.iter())
+        .map(ends)
+        .map(|[a, b]| cross(a, b))
+        .sum();
+    let first = profile.segments.first().map(|segment| segment[0]);
+    let last = profile.segments.last().map(|segment| segment[1]);
+    first == last && doubled_area < 0.0
+}
+
 /// Reports rigid surfaces that are slaves and no discs.
 pub(super) fn check_discs(model: &Model, cx: &mut Context) {
     for contact in &model.contacts {
@@ -212,11 +226,17 @@ pub(super) fn check_discs(model: &Model, cx: &mut Context) {
             continue;
         };
         let name = &model.surfaces[contact.slave].name;
-        let (message, help) = if profile.centre.is_none() {
+        let (message, help) = if is_hole(profile, &model.mesh) {
+            (
+                format!("the rigid surface {name} cannot be slave: it is a hole"),
+                "its obstacle lies outside, on the right of the way from START: a disc is a full circle whose CIRCL \
+                 rows go clockwise",
+            )
+        } else if profile.centre.is_none() {
             (
                 format!("the rigid surface {name} cannot be slave"),
                 "a rigid surface is a master: write the other surface first; only a full circle of \
-                 CIRCL rows can be slave",
+                 CIRCL rows, which go clockwise, can be slave",
             )
         } else if contact.adjust.is_some() {
             (
@@ -272,13 +292,13 @@ fn friction(block: &CardBlock, cx: &mut Context) -> Option<Friction> {
 /// Warns that the data of a pressure-overclosure law have no effect, as contact is exact; LINEAR
 /// has a warning of its own.
 fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
-    if let (Some(row), None | Some("HARD")) =
-        (card.rows.first(), card.choice("PRESSURE-OVERCLOSURE"))
-    {
-        let message = "this data line has no effect";
-        cx.d.warning_once(Code::IgnoredParameter, row.span(), message)
-            .help("contact is enforced exactly: it needs no numbers");
+    let Some(row) = card.rows.first() else { return };
+    if card.choice("PRESSURE-OVERCLOSURE") == Some("LINEAR") {
+        return row.at_most(3, cx.d);
     }
+    let message = "this data line has no effect";
+    cx.d.warning_once(Code::IgnoredParameter, row.span(), message)
+        .help("contact is enforced exactly: it needs no numbers");
 }
 
 /// `[thickness]` under `*SURFACE INTERACTION`; 1 is the default of other codes.
@@ -289,10 +309,6 @@ fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
     if thickness.is_some_and(|thickness| thickness != 1.0) {
         let help = "the bodies touch over the thickness of their sections";
         row.without_effect(0, "this thickness has no effect", help, cx.d);
-    }
-    if let Some(extra) = head.rows.get(1) {
-        let message = "*SURFACE INTERACTION takes one data line at most";
-        cx.error(Code::StrayData, extra.span(), message);
     }
 }
 
@@ -335,10 +351,6 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
         return None;
     };
     if card.has("EXPONENTIAL DECAY") {
-        if let Some(extra) = card.rows.get(1) {
-            let message = "*FRICTION, EXPONENTIAL DECAY has one data line";
-            cx.error(Code::StrayData, extra.span(), message);
-        }
         row.at_most(3, cx.d);
         let at_rest = not_negative(row, 0, "the coefficient of friction at rest", cx);
         let sliding = not_negative(row, 1, "the coefficient of sliding friction", cx);
@@ -538,7 +550,7 @@ fn general(
     let surface = surfaces.all.len();
     surfaces.all.push(Surface {
         name: ALL_EXTERIOR.to_string(),
-        kind: SurfaceKind::Faces(exterior(mesh_index)),
+        kind: SurfaceKind::Faces(chained(&mesh_index.mesh.exterior_faces(), &mesh_index.mesh)),
     });
     Some(Contact {
         slave: surface,
@@ -613,11 +625,53 @@ fn assigned_in(
     interactions.find(name, cx).cloned()
 }
 
-/// All faces that belong to one element only, chain by chain along the boundaries.
-fn exterior(mesh_index: &MeshIndex) -> Vec<Face> {
-    let mesh = &mesh_index.mesh;
-    let mut free = mesh.exterior_faces();
-    free.retain(|face| !mesh_index.cut_faces.contains(face));
+/// Leaves out of general contact the faces that equations join to others: those of a pre-tension section.
+pub(super) fn leave_out_joined(model: &mut Model) {
+    let mesh = &model.mesh;
+    let partners = joined_nodes(&model.equations, mesh);
+    let is_partner = |a: usize, b: usize| partners.contains(&[a.min(b), a.max(b)]);
+    let own: BTreeSet<usize> = partners.iter().flatten().copied().collect();
+    let all = mesh.exterior_faces();
+    let mut may_be = all.clone();
+    may_be.retain(|face| face.nodes(mesh).iter().all(|node| own.contains(node)));
+    let is_joined = |face: &Face| {
+        may_be.iter().any(|other| {
+            let nodes = other.nodes(mesh);
+            let mut own = face.nodes(mesh).into_iter();
+            other != face && own.all(|node| nodes.iter().any(|&other| is_partner(node, other)))
+        })
+    };
+    let joined: HashSet<Face> = may_be.iter().copied().filter(is_joined).collect();
+    let mut surfaces = model.surfaces.iter_mut();
+    let general = surfaces.find(|surface| surface.name == ALL_EXTERIOR);
+    if let (Some(surface), false) = (general, joined.is_empty()) {
+        let rest = all.into_iter().filter(|face| !joined.contains(face));
+        let rest: Vec<Face> = rest.collect();
+        surface.kind = SurfaceKind::Faces(chained(&rest, mesh));
+    }
+}
+
+/// Pairs of nodes at one place that equations of their own join in both directions, the smaller index first: such an
+/// equation has a third node at most, as the one of a pre-tension section.
+fn joined_nodes(equations: &[Equation], mesh: &Mesh) -> BTreeSet<[usize; 2]> {
+    let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+    for equation in equations {
+        let nodes: BTreeSet<usize> = equation.dofs().map(|dof| dof / 2).collect();
+        let of_mesh = nodes.iter().filter(|&&node| node < mesh.node_count());
+        let nodes: Vec<usize> = of_mesh.copied().collect();
+        for (i, &a) in nodes.iter().enumerate().filter(|_| nodes.len() <= 3) {
+            let same = |b: &&usize| mesh.coordinates[**b] == mesh.coordinates[a];
+            for &b in nodes[i + 1..].iter().filter(same) {
+                *counts.entry([a, b]).or_default() += 1;
+            }
+        }
+    }
+    let both = counts.into_iter().filter(|(_, count)| *count >= 2);
+    both.map(|(pair, _)| pair).collect()
+}
+
+/// Faces chain by chain along the boundaries.
+fn chained(free: &[Face], mesh: &Mesh) -> Vec<Face> {
     let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, face) in free.iter().enumerate() {
         starts.entry(face.ends(mesh)[0]).or_default().push(i);

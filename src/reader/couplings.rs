@@ -150,7 +150,7 @@ fn coupling(
 
 /// Checks that `first[, last]` stand for both directions of the plane; none do.
 fn takes_both([first, last]: [Option<Text>; 2], row: Line, cx: &mut Context) {
-    let Some(first) = first else { return };
+    let Some(first) = first.or(last) else { return };
     let mut number = |field: Text| match direction(field, cx)? {
         Direction::Plane(axis) => Some(axis + 1),
         Direction::OutOfPlane => Some(3),

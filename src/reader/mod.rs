@@ -158,6 +158,7 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: bodies,
         restarts: steps.restarts,
     };
+    contact::leave_out_joined(&mut model);
     formulation::restrict(&mut model, cx);
     formulation::choose(&mut model, cx);
     contact::keep_arcs_for_discs(&mut model);

@@ -94,6 +94,10 @@ impl MeshReading {
         // a normal of shells may follow an empty z; after a z, a fifth field is a decimal comma
         let has_empty_z = fields.get(3).is_some_and(|z| z.is_empty());
         row.at_most(if has_empty_z { 7 } else { 4 }, cx.d);
+        if has_empty_z {
+            let help = "the normals of plane bodies are those of their faces";
+            row.without_effect(4, "this normal has no effect", help, cx.d);
+        }
         let number = row.required(0, "the node number", cx.d)?;
         let label = self.mesh_index.nodes.label(number, cx)?;
         let known = self.mesh_index.nodes.get(label);
@@ -246,7 +250,7 @@ impl MeshReading {
                     section: NO_SECTION,
                 });
             }
-            ElementKind::Line => {
+            ElementKind::Line(_) => {
                 self.other_lines.insert(label, span.line);
                 self.lines.push(LineElement { label, nodes, span });
             }
@@ -433,8 +437,8 @@ fn element_fields<'a>(
 pub(super) enum ElementKind {
     /// A plane element.
     Plane(ElementType),
-    /// Two nodes that name a side of a plane element.
-    Line,
+    /// Two nodes that name a side of a plane element, or three with the one in its middle.
+    Line(usize),
     /// A node with mass or inertia.
     PointElement(PointKind),
     /// A spring or dashpot.
@@ -446,7 +450,7 @@ impl ElementKind {
     pub fn nodes(self) -> usize {
         match self {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
-            ElementKind::Line => 2,
+            ElementKind::Line(nodes) => nodes,
             ElementKind::PointElement(_) => 1,
             ElementKind::Connector(kind) => kind.nodes(),
         }
@@ -456,10 +460,9 @@ impl ElementKind {
 /// The kind of elements with this name.
 pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> {
     let folded = name.name_key();
-    if ["T2D2", "T3D2", "B21", "B31"].contains(&folded.as_str()) {
-        return Some(ElementKind::Line);
-    }
     match folded.as_str() {
+        "T2D2" | "T3D2" | "B21" | "B31" => return Some(ElementKind::Line(2)),
+        "T2D3" | "T3D3" | "B22" | "B32" => return Some(ElementKind::Line(3)),
         "MASS" => return Some(ElementKind::PointElement(PointKind::Mass)),
         "ROTARYI" => return Some(ElementKind::PointElement(PointKind::RotaryInertia)),
         _ => {}
@@ -504,7 +507,9 @@ fn reason(folded: &str) -> Option<&'static str> {
             "write CAX3, CAX4, CAX4H, CAX4I, CAX4R, CAX6, CAX8, CAX8R, CAX8H or CAX8RH: other formulations are not supported",
         )
     } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
-        Some("line elements only name sides of plane elements: use T3D2 with two nodes")
+        Some(
+            "line elements only name sides of plane elements: use T3D2 with two nodes, T3D3 with three",
+        )
     } else if starts(&["C3D", "S3", "S4", "S6", "S8", "M3D", "R3D"]) {
         Some("the program is two-dimensional: use CPS, CPE and CAX elements")
     } else {
@@ -574,8 +579,10 @@ fn report_strays(strays: &[&LineElement], cx: &mut Context) {
         1 => format!("line element {label} is no side of a plane element"),
         n => format!("{n} line elements are no sides of plane elements, the first is {label}"),
     };
-    cx.warning(Code::LineElement, first.span, message)
-        .help("left out: line elements only name sides of plane elements");
+    cx.error(Code::LineElement, first.span, message).help(
+        "line elements only name sides of plane elements: trusses and beams cannot be used, and other lines of a \
+         mesh generator can go",
+    );
 }
 
 /// Notes that a mesh generator's triangles and quadrilaterals are in plane stress.

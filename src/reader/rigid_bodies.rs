@@ -237,6 +237,7 @@ pub(super) fn point_masses(
             let Some(row) = card.rows.first() else {
                 continue;
             };
+            row.at_most(column + 1, cx.d);
             let value = row.real(column, what, cx.d);
             if let Some(value) = value.filter(|value| *value <= 0.0) {
                 let message = format!("{what} must be positive, found {}", shown(value));
@@ -258,8 +259,12 @@ pub(super) fn point_masses(
                 let message = format!("{} holds no element of TYPE={element_type}", field.text);
                 cx.error(Code::RigidSurface, field.span, message);
             }
-            own.into_iter()
-                .for_each(|point| values[point] = Some(value));
+            let before = own.iter().map(|&point| values[point].replace(value));
+            if before.flatten().count() > 0 {
+                let message = format!("elements of {} have {what} already", field.text);
+                cx.error(Code::RepeatedCard, card.span, message)
+                    .help("give it once for each element");
+            }
         }
     }
     for (point, &value) in points.iter().zip(&values) {

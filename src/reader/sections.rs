@@ -56,10 +56,6 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
     let thickness = row.and_then(|row| row.get(0)).map_or(Some(1.0), |field| {
         field.real_that(|t| t > 0.0, rule, Code::MaterialRange, cx.d)
     });
-    if let Some(extra) = card.rows.get(1) {
-        let message = "*SOLID SECTION has one data line, the thickness";
-        cx.error(Code::StrayData, extra.span(), message);
-    }
     Some(Section {
         material: material?,
         thickness: thickness?,
@@ -90,12 +86,19 @@ impl Properties {
             _ => {}
         }
         let is_ring = |&element: &usize| mesh_index.mesh.elements[element].element_type.is_ring();
-        if let Some(row) = card.rows.first().filter(|_| elements.iter().any(is_ring)) {
+        let has_rings = elements.iter().any(is_ring);
+        if let Some(row) = card.rows.first().filter(|_| has_rings) {
             let help = "bodies of revolution go once around the axis";
             row.without_effect(0, "this thickness has no effect", help, cx.d);
         }
         let index = self.sections.len();
-        self.sections.extend(section);
+        self.sections.extend(section.map(|section| match has_rings {
+            true => Section {
+                thickness: 1.0,
+                ..section
+            },
+            false => section,
+        }));
         let mut taken = Vec::new();
         for &element in elements.iter() {
             match &mut mesh_index.mesh.elements[element].section {

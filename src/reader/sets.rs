@@ -294,11 +294,19 @@ impl<'a> SetFamily<'a> {
 
     /// Registers the names of all cards.
     fn define(&mut self, cards: &[&'a Card], parameter: &str, cx: &mut Context) {
+        // those of the job that the deck goes on from, which stand before all that it adds
+        let mut of_earlier = None;
         for card in cards {
             let text = card.required(parameter, cx.d);
             match text.and_then(|text| Some((self.names.defined(text, cx)?, text.span))) {
                 Some((name, span)) => {
+                    let known = self.drafts.len();
                     let index = self.open(name, span);
+                    if card.added && index < *of_earlier.get_or_insert(known) {
+                        let message = "a set of the earlier job cannot have other members";
+                        cx.error(Code::RepeatedName, span, message)
+                            .help("give the set of this deck another name");
+                    }
                     self.cards.push((index, card));
                 }
                 None => self.names.spoil_unknown(),

@@ -317,9 +317,6 @@ fn increments(
         return None;
     };
     row.at_most(4, cx.d);
-    if let Some(extra) = card.rows.get(1) {
-        cx.error(Code::StrayData, extra.span(), "*DYNAMIC has one data line");
-    }
     let tolerance = truncation_error(card, (direct, procedure), has_contacts, cx)?;
     let first = first_increment(row, guide, cx);
     let period = row.real(1, "the duration of the step", cx.d);
@@ -432,9 +429,6 @@ fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
         });
     };
     row.at_most(4, cx.d);
-    if let Some(extra) = card.rows.get(1) {
-        cx.error(Code::StrayData, extra.span(), "*STATIC has one data line");
-    }
     let period = row.real_or(1, 1.0, cx.d);
     let first = row.real_or(0, period.unwrap_or(1.0), cx.d);
     let (dt, period) = (first?, period?);

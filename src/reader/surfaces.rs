@@ -447,14 +447,14 @@ impl Profile {
     }
 }
 
-/// The point in the fields `index` and the next, of `count` fields.
+/// The point in the fields `index` and the next, of `count` fields, where the instance of the row has it.
 fn point(row: Line, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
     if index == 1 {
         row.at_most(count, cx.d);
     }
     let x = row.real(index, "a coordinate", cx.d);
     let y = row.real(index + 1, "a coordinate", cx.d);
-    Some([x?, y?])
+    Some(cx.placed([x?, y?], row))
 }
 
 fn fault(span: Span, message: &str, help: &str, cx: &mut Context) -> Option<()> {

@@ -58,6 +58,52 @@ fn an_assembly_is_the_flat_deck_of_its_instances() {
     assert_eq!(without_places(model), without_places(flat));
 }
 
+/// A block above a rigid floor with an arc, both in instances that are moved and turned, and without them.
+#[test]
+fn profiles_move_and_turn_with_their_instances() {
+    let rest = |block: &str, floor: &str| {
+        format!(
+            "*SOLID SECTION, ELSET={block}ALL, MATERIAL=M\n1.\n*RIGID BODY, ANALYTICAL SURFACE={floor}FLOOR, REF NODE={floor}REF\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*DENSITY\n1.\n*SURFACE INTERACTION, NAME=DRY\n\
+             *CONTACT PAIR, INTERACTION=DRY\n{block}SKIN, {floor}FLOOR\n*BOUNDARY\n{floor}REF, 1, 6\n\
+             *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.1\n*DSLOAD\n{block}SKIN, P, 1.\n*END STEP\n"
+        )
+    };
+    let block = "*ELEMENT, TYPE=CPE4, ELSET=ALL\n1, 1, 2, 3, 4\n*SURFACE, NAME=SKIN\nALL\n";
+    let parts = format!(
+        "*PART, NAME=BLOCK\n*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n{block}\
+         *SOLID SECTION, ELSET=ALL, MATERIAL=M\n1.\n*END PART\n\
+         *PART, NAME=TOOL\n*NODE, NSET=REF\n1, 0., -3.\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\n\
+         START, -4., -1.\nLINE, 2., -1.\nCIRCL, 3., 0., 2., 0.\n*END PART\n"
+    );
+    let turn = "1., 2., 0.\n0., 0., 0., 0., 0., 1., 90.\n";
+    let instances = format!(
+        "*ASSEMBLY, NAME=A\n*INSTANCE, NAME=B, PART=BLOCK\n{turn}*END INSTANCE\n\
+         *INSTANCE, NAME=T, PART=TOOL\n{turn}*END INSTANCE\n*END ASSEMBLY\n"
+    );
+    let section = "*SOLID SECTION, ELSET=B.ALL, MATERIAL=M\n1.\n";
+    let (moved, messages) =
+        read(&format!("{parts}{instances}{}", rest("B.", "T.")).replace(section, ""));
+    let moved = moved.unwrap_or_else(|| panic!("{messages}"));
+    // (x, y) is at (-y - 2, x + 1)
+    let flat = format!(
+        "*NODE\n1, -2., 1.\n2, -2., 2.\n3, -3., 2.\n4, -3., 1.\n{block}*NODE, NSET=REF\n5, 1., 1.\n\
+         *SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, -1., -3.\nLINE, -1., 3.\nCIRCL, -2., 4., -2., 3.\n{}",
+        rest("", "")
+    );
+    let (flat, messages) = read(&flat);
+    let flat = flat.unwrap_or_else(|| panic!("{messages}"));
+    let near = |a: &[[f64; 2]], b: &[[f64; 2]]| {
+        let mut both = a.iter().flatten().zip(b.iter().flatten());
+        a.len() == b.len() && both.all(|(a, b)| (a - b).abs() < 1e-14)
+    };
+    let [a, b] = [&moved, &flat].map(|model| &model.mesh.coordinates[..]);
+    assert!(near(a, b), "{a:?}\n{b:?}");
+    let kinds =
+        |model: &Model| -> Vec<_> { model.surfaces.iter().map(|s| s.kind.clone()).collect() };
+    assert_eq!(kinds(&moved), kinds(&flat));
+}
+
 #[test]
 fn nodes_and_elements_of_instances_are_called_by_both_names() {
     let (model, messages) = read(BLOCKS);

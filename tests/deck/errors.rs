@@ -208,7 +208,11 @@ fn faulty(code: Code) -> Source {
         Adjusted => shared("DRY, TYPE", "DRY, ADJUST=0.2, TYPE"),
         FacingAway => shared("EBASE, S3", "EBASE, S1"),
         Tie => shared(PAIR, "*TIE, POSITION TOLERANCE=0.\nSBOT, STOP\n"),
-        PreTension => model("*PRE-TENSION SECTION, NODE=1, SURFACE=NONE"),
+        // the surface ends within the body
+        PreTension => shared(
+            "*BOUNDARY",
+            "*NODE\n900, 0., 0.\n*SURFACE, NAME=CUT\n3, S3\n*PRE-TENSION SECTION, NODE=900, SURFACE=CUT\n*BOUNDARY",
+        ),
         Interference => shared(
             "*DLOAD",
             "*CONTACT INTERFERENCE, SHRINK\nSTOP, STOP\n*DLOAD",
@@ -497,6 +501,35 @@ fn rigid_surfaces_that_cannot_be() {
         text.split("error[").skip(1).collect::<String>()
     });
     insta::assert_snapshot!(texts.join("\n"));
+}
+
+#[test]
+fn a_circle_drawn_the_other_way_round_is_a_hole() {
+    let circle = |points: [&str; 4]| {
+        let rows = points
+            .map(|point| format!("CIRCL, {point}, 0., -2.\n"))
+            .concat();
+        let start = points[3];
+        rigid(
+            &format!("START, {start}\n{rows}"),
+            "",
+            "*BOUNDARY\n100, 1, 6\n",
+        )
+        .text()
+    };
+    let slave = |deck: String| Source::Text(deck.replace("SBOT, FLOOR", "FLOOR, SBOT"));
+    let (d, text) = messages(&slave(circle([
+        "0., -1.", "1., -2.", "0., -3.", "-1., -2.",
+    ])));
+    assert!(!d.has_errors(), "{text}");
+    let (_, text) = messages(&slave(circle([
+        "0., -3.", "1., -2.", "0., -1.", "-1., -2.",
+    ])));
+    assert!(
+        text.contains("[D407]: the rigid surface FLOOR cannot be slave: it is a hole"),
+        "{text}"
+    );
+    assert!(text.contains("clockwise"), "{text}");
 }
 
 #[test]

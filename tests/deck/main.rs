@@ -4,6 +4,7 @@ mod assembly;
 mod errors;
 mod flat;
 mod fuzz;
+mod left_out;
 mod model;
 mod owners;
 mod parameters;

@@ -21,10 +21,9 @@ do not edit by hand. `stickslip explain CODE` prints what a code means, its caus
 
 A message has a severity, a code, what is wrong, the line with a caret and, where there is something
 to do, help. Errors reject the deck; `--strict` makes errors of the warnings. `--lenient` makes
-warnings of unknown keywords and parameters, and reads 4-node elements with reduced integration as
-fully integrated ones. All errors that do not follow from others are reported in one run, at most 20
-of each severity and then their number. A message in an included file names the lines that include
-it. The exit code of a rejected deck is 2.
+warnings of unknown keywords and parameters. All errors that do not follow from others are reported
+in one run, at most 20 of each severity and then their number. A message in an included file names
+the lines that include it. The exit code of a rejected deck is 2.
 
 D1 is about files, lines and fields, D2 about keywords and where they stand, D3 about the mesh, sets
 and surfaces, D4 about materials, sections and contact, D5 about supports, loads, steps and output.

@@ -1181,13 +1181,27 @@ fn line_elements_name_sides_of_plane_elements() {
 }
 
 #[test]
-fn line_elements_that_are_no_sides_are_left_out() {
-    let (model, messages) = square(
-        "*MATERIAL",
-        "*ELEMENT, TYPE=B31, ELSET=RIM\n8, 1, 3\n9, 3, 4\n*SURFACE, NAME=S\nRIM\n*MATERIAL",
-    );
-    assert!(messages.contains("line element 8 is no side"), "{messages}");
-    assert_eq!(faces_of(&model, 1), [2]);
+fn line_elements_of_three_nodes_name_sides_of_quadratic_elements() {
+    let quadratic = "*NODE\n12, .5, 0.\n23, 1., .5\n34, .5, 1.\n41, 0., .5\n\
+                     *ELEMENT, TYPE=CPS8, ELSET=BODY\n7, 1, 2, 3, 4, 12, 23, 34, 41\n\
+                     *ELEMENT, TYPE=T3D3, ELSET=SKIN\n8, 2, 23, 3\n9, 3, 4, 34\n*SURFACE, NAME=S\nSKIN";
+    let (model, messages) = square("*ELEMENT, TYPE=CPS4, ELSET=BODY\n7, 1, 2, 3, 4", quadratic);
+    let surface = model.surfaces.iter().position(|s| s.name == "S");
+    assert_eq!(faces_of(&model, surface.expect("S")), [1, 2], "{messages}");
+}
+
+/// The outline of the outside of a ring that is not closed is in contact with a floor: that joins no nodes of the ring.
+#[test]
+fn contact_with_another_body_joins_no_nodes() {
+    let crack = "*NODE\n5, 1., 0.\n6, 2., 0.\n7, 2., 1.\n8, 1., 1.\n*ELEMENT, TYPE=CPS4, ELSET=BODY\n8, 5, 6, 7, 8\n\
+                 *SURFACE, NAME=SKIN\nBODY\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, -9., -1.\nLINE, 9., -1.\n\
+                 *NODE, NSET=REF\n900, 0., -2.\n*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=900\n\
+                 *BOUNDARY\n900, 1, 6\n*SURFACE INTERACTION, NAME=DRY\n";
+    for (pair, told) in [("SKIN, FLOOR", true), ("SKIN", false)] {
+        let pair = format!("{crack}*CONTACT PAIR, INTERACTION=DRY\n{pair}\n*MATERIAL");
+        let (_, messages) = square("*MATERIAL", &pair);
+        assert_eq!(messages.contains("[D319]"), told, "{messages}");
+    }
 }
 
 /// A deck with two strips of square elements, a gap apart, and some contact between them.

@@ -121,3 +121,18 @@ fn values_from_outside_that_cannot_be() {
         assert_eq!(codes[0], Code::BadExpression, "{setting}: {text}");
     }
 }
+
+#[test]
+fn values_make_no_endless_lines() {
+    let define = |text: &str| format!("*PARAMETER\na = '{}'\n*NODE, NSET=ALL", text);
+    let (codes, text) = messages(&[("*NODE, NSET=ALL", &define(&"1,".repeat(129)))], &[]);
+    assert!(codes.contains(&Code::BadExpression), "{text}");
+    assert!(text.contains("a text of more than 256 bytes"), "{text}");
+    let line = format!("2, {}", "<a>".repeat(20_000));
+    let changes = [
+        ("*NODE, NSET=ALL", &*define(&"1,".repeat(128))),
+        ("2, 1., 0.", &line),
+    ];
+    let (codes, text) = messages(&changes, &[]);
+    assert!(codes.contains(&Code::EndlessLine), "{text}");
+}

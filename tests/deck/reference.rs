@@ -124,6 +124,10 @@ fn what_is_neither_keyword_nor_code_gets_a_suggestion() {
         ("*BONDARY", "did you mean BOUNDARY?"),
         ("D999", "D999 is neither"),
         ("D103 NONSENSE", "error: NONSENSE is neither"),
+        ("bolts", "keywords about it: *PRE-TENSION SECTION"),
+        ("gravity", "keywords about it: *DENSITY, *DLOAD"),
+        ("Preload", "*PRE-TENSION SECTION"),
+        ("thermal", "keywords about it: *TEMPERATURE"),
         (
             "D103 CONTCT PAIR",
             "CONTCT PAIR is neither a keyword nor the code of a message; did you mean CONTACT PAIR?",
@@ -157,7 +161,7 @@ fn names_are_unique() {
 }
 
 /// The shared deck with these lines where cards of `scope` stand, unless it has them.
-fn deck_with(lines: &str, scope: Scope) -> String {
+pub(crate) fn deck_with(lines: &str, scope: Scope) -> String {
     let put = |before: &str, first: &str| {
         assert!(SHARED.contains(before), "{before}");
         SHARED.replacen(before, &format!("{first}{lines}\n{before}"), 1)
@@ -180,7 +184,7 @@ fn deck_with(lines: &str, scope: Scope) -> String {
 }
 
 /// Where the first keyword of these lines may stand.
-fn scope_of(lines: &str) -> Scope {
+pub(crate) fn scope_of(lines: &str) -> Scope {
     let name = lines.split([',', '\n']).next().unwrap_or_default();
     let found = find_keyword(name.trim_start_matches('*'));
     found.expect("an example begins with a keyword").scope

@@ -45,6 +45,12 @@ fn messages_have_codes_and_ranges() {
         place["end"],
         serde_json::json!({"line": line, "column": 10})
     );
+    // a name that the result file cannot have
+    let (code, answer) = check(&SQUARE.replace("FOOT", "\"a/b\""), &[]);
+    assert_eq!(
+        (code, &answer["diagnostics"][0]["code"]),
+        (Some(2), &"D113".into())
+    );
     let (code, answer) = check(SQUARE, &[]);
     assert_eq!((code, &answer["errors"]), (Some(0), &Value::from(0)));
     let (code, answer) = check(SQUARE, &["--set", "e=1"]);

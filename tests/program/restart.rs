@@ -380,6 +380,15 @@ fn a_deck_goes_on_from_the_end_of_another_job_in_the_same_bits() {
         2,
         "*NODE would change the model of the earlier job",
     );
+    write(
+        "more.inp",
+        &format!("*RESTART, READ\n*NSET, NSET=A_T\n1\n*ELSET, ELSET=A\n1\n{THIRD}"),
+    );
+    refused(
+        &["more.inp", "--oldjob", "one"],
+        2,
+        "a set of the earlier job cannot have other members",
+    );
     // in the middle of a step: the rest of it comes first
     write(
         "two.inp",

@@ -115,6 +115,13 @@ pub struct Value {
     pub text: &'static str,
 }
 
+impl Value {
+    /// Whether it is the default, or another word for it.
+    pub fn is_default(&self) -> bool {
+        self.text.ends_with("(default)") || self.text.starts_with("the same")
+    }
+}
+
 /// A parameter of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Parameter {

@@ -270,17 +270,16 @@ fn floor(x: f64) -> f64 {
     if cut > x { cut - 1.0 } else { cut }
 }
 
-/// Sets of nodes that contacts, equations, hinges and rigid bodies act on.
-struct Joined(Vec<BTreeSet<usize>>);
+/// What joins two nodes: contacts one of each side; equations, hinges and rigid bodies any of theirs.
+struct Joined(Vec<[BTreeSet<usize>; 2]>);
 
 impl Joined {
     fn new(model: &Model) -> Joined {
         let of_contact = model.contacts.iter().map(|contact| {
-            let sides = [contact.slave, contact.master].map(|side| &model.surfaces[side]);
-            sides
-                .iter()
-                .flat_map(|side| side.nodes(&model.mesh))
-                .collect()
+            [contact.slave, contact.master].map(|side| {
+                let nodes = model.surfaces[side].nodes(&model.mesh);
+                nodes.into_iter().collect()
+            })
         });
         let dofs = model.equations.iter().flat_map(Equation::dofs);
         let of_equations: BTreeSet<usize> = dofs.map(|dof| dof / 2).collect();
@@ -288,12 +287,15 @@ impl Joined {
         let bodies = model.rigid_bodies.iter();
         let of_bodies =
             bodies.map(|body| body.nodes.iter().copied().chain([body.reference]).collect());
-        let all = of_contact.chain([of_equations]).chain(of_hinges);
-        Joined(all.chain(of_bodies).collect())
+        let alike = [of_equations].into_iter().chain(of_hinges).chain(of_bodies);
+        let alike = alike.map(|set: BTreeSet<usize>| [set.clone(), set]);
+        Joined(of_contact.chain(alike).collect())
     }
 
-    fn contains(&self, pair: [usize; 2]) -> bool {
-        let holds = |set: &BTreeSet<usize>| pair.iter().all(|node| set.contains(node));
+    fn contains(&self, [p, q]: [usize; 2]) -> bool {
+        let holds = |[a, b]: &[BTreeSet<usize>; 2]| {
+            (a.contains(&p) && b.contains(&q)) || (a.contains(&q) && b.contains(&p))
+        };
         self.0.iter().any(holds)
     }
 }

@@ -147,10 +147,30 @@ pub(crate) fn braked_flight(model: &Model, places: &[MaterialPlaces], cx: &mut C
     }
     let bodies = Bodies::new(&model.mesh);
     let is_held = held_in_all_steps(model, &bodies);
-    let elements = model.mesh.elements.iter().zip(&bodies.of_element);
+    let rigid: BTreeSet<usize> = (model.rigid_bodies.iter())
+        .flat_map(|body| body.elements.iter().copied())
+        .collect();
     let mut braked = vec![BTreeSet::new(); model.materials.len()];
-    for (element, &body) in elements.filter(|(_, body)| !is_held[**body]) {
-        braked[model.sections[element.section].material].insert(body);
+    let mut has_rigid = vec![false; model.materials.len()];
+    for (index, element) in model.mesh.elements.iter().enumerate() {
+        let (body, material) = (
+            bodies.of_element[index],
+            model.sections[element.section].material,
+        );
+        if rigid.contains(&index) {
+            has_rigid[material] = true;
+        } else if !is_held[body] {
+            braked[material].insert(body);
+        }
+    }
+    for (index, material) in model.materials.iter().enumerate() {
+        if material.damping.alpha > 0.0 && has_rigid[index] {
+            let name = &material.name;
+            let message =
+                format!("ALPHA of material {name} has no effect on elements of rigid bodies");
+            cx.warning(Code::IgnoredParameter, places[index].damping, message)
+                .help("*DASHPOT brakes a rigid body at its nodes");
+        }
     }
     for ((material, braked), places) in model.materials.iter().zip(&braked).zip(places) {
         let count = braked.len();
