@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::io::{self, ErrorKind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::args::{
     CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs, VERSION,
