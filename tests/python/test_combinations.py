@@ -4,9 +4,9 @@ from itertools import combinations
 from pathlib import Path
 
 import pytest
-from lab.combinations import SEED, SHORT, decks_of, judge_all
+from lab.combinations import SEED, SHORT, decks_of, judge, judge_all
 from lab.covering import Covering, pairs_of
-from lab.levels import FACTORS, allows
+from lab.levels import FACTORS, SIMPLEST, allows
 from lab.scene import Scene
 from lab.single import SINGLE
 from stickslip import program
@@ -54,3 +54,9 @@ def test_decks_are_small_and_the_same_each_time() -> None:
         scene = Scene(choice)
         assert scene.deck() == Scene(choice).deck()
         assert sum(len(body.mesh.elements) for body in scene.bodies) <= 150
+
+
+@pytest.mark.parametrize("family", ["CPE4I", "CPE8RH"])
+def test_certificate_of_a_body_at_rest_divides_no_round_off(family: str) -> None:
+    choice = {**SIMPLEST, "family": family, "procedure": "dynamic", "sequence": "rest"}
+    assert judge("rest", choice, program.binary(), "certificate").failures == {}
