@@ -298,7 +298,8 @@ fn friction_may_follow_a_table_and_have_a_limit() {
     let expected = expected.map(|(rate, by_friction)| Some(Wear { rate, by_friction }));
     assert_eq!(wear, expected);
     let heat = [0, 1].map(|i| model.contacts[i].interaction.heat);
-    assert_eq!(heat, [Some(0.9 * 0.5), None]);
+    let (part, to_slave) = (0.9, 0.5);
+    assert_eq!(heat, [Some(Heat { part, to_slave }), None]);
     let without = deck.replacen("TAUMAX=4.", "TAUMAX=0", 1);
     assert!(
         !read(&without).0.contacts[0]

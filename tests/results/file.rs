@@ -286,7 +286,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 83] = [
+const PER_INCREMENT: [&str; 85] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",

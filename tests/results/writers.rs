@@ -207,6 +207,7 @@ pub fn report(k: usize) -> IncrementReport {
         nodal: nodal(k, ramp(4.0), ramp(5.0)),
         elements: vec![ElementResult::default(); 3].into(),
         contact_energy: None,
+        surface_work_difference: 0.0,
         energy: Energy {
             kinetic: cosine * cosine,
             strain: sine * sine,
