@@ -1,11 +1,11 @@
 //! `*BOUNDARY`: prescribed displacements, velocities and accelerations; `*INITIAL CONDITIONS,
 //! TYPE=VELOCITY`.
 
+use super::actions::{Action, Actions};
 use super::amplitudes::Amplitudes;
 use super::context::Context;
 use super::mesh_index::MeshIndex;
 use super::outline::Outline;
-use super::owners::{Action, Actions};
 use super::rigid_bodies::{self, Rigid};
 use super::sets::Sets;
 use crate::deck::{Card, Line, Text};
@@ -176,7 +176,8 @@ impl Supports {
                 let dof = 2 * node + direction;
                 self.hold(dof, held, cx);
                 if !motion.is_still() {
-                    self.actions.enter(dof, Action::Motion, span, targets);
+                    self.actions
+                        .enter(dof, Action::Motion, span, targets.has_element);
                 }
             }
             if prescribed.turns {
@@ -388,7 +389,7 @@ pub(crate) fn initial_velocity(
                     *entry = value;
                     places.insert(dof, span);
                     if value != 0.0 {
-                        actions.enter(dof, Action::Velocity, span, targets);
+                        actions.enter(dof, Action::Velocity, span, targets.has_element);
                     }
                 }
             }

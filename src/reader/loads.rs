@@ -1,9 +1,9 @@
 //! `*CLOAD`, `*DLOAD` and `*DSLOAD`, and loads as they are carried from step to step.
 
+use super::actions::{Action, Actions};
 use super::boundary::{Targets, row_dofs};
 use super::context::Context;
 use super::mesh_index::PointKind;
-use super::owners::{Action, Actions};
 use super::surfaces::{Surfaces, side_count};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
@@ -144,7 +144,7 @@ impl LoadHistories {
             let at = PointLoad { dof };
             if force != 0.0 {
                 let span = row.span();
-                (self.actions).enter(dof, Action::Load, span, source.targets);
+                (self.actions).enter(dof, Action::Load, span, source.targets.has_element);
             }
             self.points
                 .add(dof, at, force, source.amplitude, source.context);

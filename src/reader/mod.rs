@@ -4,6 +4,7 @@
 //! the order of a deck never matters; names that a card with an error defines are marked, so
 //! that they are not reported as undefined where they are used.
 
+mod actions;
 mod amplitudes;
 mod boundary;
 mod checks;
@@ -26,6 +27,7 @@ mod output;
 mod owners;
 mod pretension;
 mod rigid_bodies;
+mod rigid_motion;
 mod sections;
 mod sets;
 mod steps;
@@ -129,12 +131,12 @@ fn read(cx: &mut Context) -> Model {
     let mut velocity = boundary::initial_velocity(&outline, targets, at_start, cx);
     let all = &mut steps.all;
     let known = (&mesh_index, &steps.supports);
-    let bodies = rigid_bodies::complete(&rigid_bodies, known, all, &mut velocity, cx);
+    let bodies = rigid_motion::complete(&rigid_bodies, known, all, &mut velocity, cx);
     let of_steps = (&steps.supports, steps.all.as_slice());
     let equations = equations::read(&outline, targets, (constraints, of_steps), cx);
     let actions = [&steps.supports.actions, &steps.forces, &velocity.actions];
     owners::check_actions(actions, targets, (&connectors, &equations, &cuts), cx);
-    rigid_bodies::check(&rigid_bodies, &bodies, mesh, (&steps.all, &equations), cx);
+    rigid_motion::check(&rigid_bodies, &bodies, mesh, (&steps.all, &equations), cx);
     boundary::check_start(&outline, steps.all.first(), cx);
     equations::check_velocities(&equations, &velocity.values, &steps.at_start, targets, cx);
     let equations = equations.into_iter().map(|(equation, _)| equation);

@@ -2,6 +2,7 @@
 //! that decide the same one, and loads, supports and velocities of displacements that nothing has, are errors that name
 //! both.
 
+use super::actions::{Action, Actions};
 use super::boundary::Targets;
 use super::context::Context;
 use super::couplings::Link;
@@ -186,28 +187,6 @@ fn report_shared(node: usize, [other, own]: [Owner; 2], mesh_index: &MeshIndex, 
     own.contradicts(other, message, cx).help(help);
 }
 
-/// What acts on a displacement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Action {
-    Load,
-    Motion,
-    Velocity,
-}
-
-/// Dofs of nodes without element that something other than zero acts on, with the places of the rows.
-#[derive(Default)]
-pub(crate) struct Actions(Vec<(usize, Action, Span)>);
-
-impl Actions {
-    /// Enters what acts on a dof.
-    pub fn enter(&mut self, dof: usize, action: Action, span: Span, targets: Targets) {
-        let is_of_element = targets.has_element.get(dof / 2) != Some(&false);
-        if !is_of_element {
-            self.0.push((dof, action, span));
-        }
-    }
-}
-
 /// Reports what acts on displacements that nothing has: neither elements, nor bodies, springs, dashpots and equations.
 pub(crate) fn check_actions(
     actions: [&Actions; 3],
@@ -215,7 +194,7 @@ pub(crate) fn check_actions(
     (connectors, equations, cuts): (&[Connector], &[(Equation, Owner)], &[Cut]),
     cx: &mut Context,
 ) {
-    let all = || actions.into_iter().flat_map(|actions| &actions.0);
+    let all = || actions.into_iter().flat_map(|actions| &actions.all);
     // what a faulty card should have given may be missing
     if cx.d.has_errors() || all().next().is_none() {
         return;

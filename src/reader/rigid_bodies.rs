@@ -1,47 +1,41 @@
 //! `*RIGID BODY`: rigid surfaces, rigid elements and nodes move with their reference nodes, and turn by an angle
 //! where it is prescribed or they have mass.
 
-use super::boundary::{InitialVelocity, Supports};
 use super::context::Context;
 use super::mesh_index::{MeshIndex, PointElement, PointKind};
 use super::outline::Outline;
-use super::owners::Owner;
 use super::sets::Sets;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Text};
 use crate::diagnostics::{Code, Span, shown};
-use crate::model::{
-    ContactMass, Equation, LandingRule, Mesh, Procedure, Rate, RigidBody, RigidPart, Step, Support,
-    SupportMotion, SurfaceKind, TurningInertia,
-};
-use crate::vectors::difference;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::model::{Mesh, RigidPart, SurfaceKind};
+use std::collections::BTreeSet;
 
 /// Rigid surfaces, elements and nodes, and the node that they move with.
 #[derive(Default)]
 pub(crate) struct Rigid {
     /// What the cards make it of; nothing of coupled nodes.
-    parts: Vec<RigidPart>,
+    pub(super) parts: Vec<RigidPart>,
     /// Name of its first part.
-    name: String,
+    pub(super) name: String,
     /// Its nodes, increasing.
-    nodes: Vec<usize>,
+    pub(super) nodes: Vec<usize>,
     /// Its elements, increasing.
-    elements: Vec<usize>,
+    pub(super) elements: Vec<usize>,
     /// Reference node.
-    reference: usize,
+    pub(super) reference: usize,
     /// Number of the reference node in the deck.
-    label: String,
+    pub(super) label: String,
     /// Masses at its nodes.
-    masses: Vec<(usize, f64)>,
+    pub(super) masses: Vec<(usize, f64)>,
     /// Rotary inertia at its nodes.
-    rotary_inertia: f64,
+    pub(super) rotary_inertia: f64,
     /// Whether it is made of coupled nodes.
-    is_coupling: bool,
+    pub(super) is_coupling: bool,
     /// Its nodes of elements that deform, whose mass it has.
-    carried: Vec<usize>,
+    pub(super) carried: Vec<usize>,
     /// Place of `*RIGID BODY`, or of what couples its nodes.
-    span: Span,
+    pub(super) span: Span,
 }
 
 impl Rigid {
@@ -117,23 +111,13 @@ impl Rigid {
         }
     }
 
-    /// Whether it moves in a step where nothing is prescribed: it has mass, its own or that of its nodes, or it is free
-    /// in a static step, which needs none.
-    fn moves_freely(&self, step: &Step) -> bool {
-        let is_free = |direction: &usize| motion_of(step, 2 * self.reference + direction).is_none();
-        self.has_mass()
-            || self.is_coupling
-            || !self.carried.is_empty()
-            || (step.procedure == Procedure::Static && [0, 1].iter().any(is_free))
-    }
-
     /// Whether it has mass.
-    fn has_mass(&self) -> bool {
+    pub(super) fn has_mass(&self) -> bool {
         !self.elements.is_empty() || !self.masses.is_empty()
     }
 
     /// Whether it has a moment of inertia about its centre of mass: masses at two places.
-    fn has_inertia(&self, mesh: &Mesh) -> bool {
+    pub(super) fn has_inertia(&self, mesh: &Mesh) -> bool {
         let masses = self.masses.iter().map(|(node, _)| node);
         let mut places = masses
             .chain(&self.carried)
@@ -387,7 +371,7 @@ pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<
 }
 
 /// Dof of the angle of the rigid body with this number, among all, in a mesh.
-fn angle_dof(number: usize, mesh: &Mesh) -> usize {
+pub(super) fn angle_dof(number: usize, mesh: &Mesh) -> usize {
     2 * (mesh.node_count() + 2 * number + 1)
 }
 
@@ -425,385 +409,8 @@ pub(super) fn find_carried(all: &mut [Rigid], mesh: &Mesh) {
     for rigid in all {
         rigid.carried = rigid.nodes.clone();
         rigid.carried.retain(|&node| deforms[node]);
-    }
-}
-
-/// How a rigid body moves in all steps.
-#[derive(Clone, Copy, PartialEq)]
-enum BodyMotion {
-    /// By the supports of its nodes, which are those of the reference node.
-    Translates,
-    /// It has an angle of its own, with this number.
-    Turns(usize),
-}
-
-/// Gives steps and initial velocities the motion of the rigid bodies; the bodies as the model holds them. `supports` and the
-/// velocities know the places of what is prescribed and given.
-pub(crate) fn complete(
-    rigid_bodies: &[Rigid],
-    (mesh_index, supports): (&MeshIndex, &Supports),
-    steps: &mut [Step],
-    InitialVelocity {
-        values: velocity,
-        places,
-        ..
-    }: &mut InitialVelocity,
-    cx: &mut Context,
-) -> Vec<RigidBody> {
-    let mesh = &mesh_index.mesh;
-    let mut count = 0;
-    let motions = rigid_bodies.iter().enumerate().map(|(number, rigid)| {
-        let turns = turns(rigid, angle_dof(number, mesh), steps, velocity);
-        count += usize::from(turns);
-        match turns {
-            true => BodyMotion::Turns(count - 1),
-            false => BodyMotion::Translates,
-        }
-    });
-    let motions: Vec<BodyMotion> = motions.collect();
-    let all = rigid_bodies.iter().zip(&motions).enumerate();
-    for (number, (rigid, motion)) in all {
-        let angle = angle_dof(number, mesh);
-        match motion {
-            BodyMotion::Translates => report_moments(rigid, angle, steps, cx),
-            BodyMotion::Turns(_) => {
-                complete_turning(rigid, angle, (mesh_index, supports), steps, cx);
-                report_own_velocities(rigid, angle, mesh_index, (velocity, places), cx);
-            }
+        if !rigid.carried.is_empty() && deforms[rigid.reference] {
+            rigid.carried.push(rigid.reference);
         }
     }
-    for (index, step) in steps.iter_mut().enumerate() {
-        follow(
-            rigid_bodies,
-            &motions,
-            (mesh_index, supports),
-            index + 1,
-            &mut step.supports,
-            cx,
-        );
-        let renumbered = |dof: usize| renumbered(dof, &motions, mesh);
-        let supports = step.supports.iter().filter_map(|support| {
-            let dof = renumbered(support.dof)?;
-            Some(Support { dof, ..*support })
-        });
-        step.supports = supports.collect();
-        for load in &mut step.point_loads {
-            load.at.dof = renumbered(load.at.dof).unwrap_or(load.at.dof);
-        }
-    }
-    let nodes = mesh.dof_count();
-    let angles = velocity.split_off(nodes.min(velocity.len()));
-    for (number, motion) in motions.iter().enumerate() {
-        if let BodyMotion::Turns(_) = motion {
-            let omega = angles.get(angle_dof(number, mesh) - nodes);
-            velocity.extend([0.0, 0.0, omega.copied().unwrap_or(0.0), 0.0]);
-        }
-    }
-    let body = |(rigid, motion): (&Rigid, &BodyMotion)| RigidBody {
-        name: rigid.name.clone(),
-        parts: rigid.parts.clone(),
-        reference: rigid.reference,
-        nodes: rigid.nodes.clone(),
-        elements: rigid.elements.clone(),
-        is_coupling: rigid.is_coupling,
-        turning: match *motion {
-            BodyMotion::Translates => None,
-            BodyMotion::Turns(number) => Some(TurningInertia {
-                number,
-                masses: rigid.masses.clone(),
-                rotary_inertia: rigid.rotary_inertia,
-            }),
-        },
-    };
-    rigid_bodies.iter().zip(&motions).map(body).collect()
-}
-
-/// Reports equations at nodes of bodies that turn, and that landing return and redistributed mass leave these bodies
-/// out; bodies of revolution move along their axis alone.
-pub(crate) fn check(
-    rigid_bodies: &[Rigid],
-    bodies: &[RigidBody],
-    mesh: &Mesh,
-    (steps, equations): (&[Step], &[(Equation, Owner)]),
-    cx: &mut Context,
-) {
-    for (rigid, body) in rigid_bodies.iter().zip(bodies) {
-        let Some(turning) = &body.turning else {
-            continue;
-        };
-        let has =
-            |dof: usize| dof / 2 == body.reference || body.nodes.binary_search(&(dof / 2)).is_ok();
-        if let Some((_, owner)) = equations.iter().find(|(e, _)| e.dofs().any(has)) {
-            let own = match owner {
-                Owner::Equation(_) => "this equation".to_owned(),
-                owner => owner.title(),
-            };
-            let message = format!("{own} has a node of {}, which moves freely", rigid.title());
-            owner.contradicts(Owner::Body(rigid), message, cx).help(
-                "equations are linear: join the node to the body by TIE NSET= of *RIGID BODY or by *MPC, or prescribe \
-                 directions 1, 2 and 6 of the reference node",
-            );
-        }
-        let angle = angle_dof(turning.number, mesh);
-        let is_held = |step: &&Step| motion_of(step, angle).is_some_and(SupportMotion::is_still);
-        if mesh.is_axisymmetric() {
-            let is_driven = |step: &Step| motion_of(step, 2 * body.reference).is_some();
-            let fault = match steps.iter().all(|step| is_held(&step)) {
-                false => Some(("turns", "its rotation, direction 6")),
-                true if !steps.iter().all(is_driven) => {
-                    Some(("moves freely across the axis", "direction 1"))
-                }
-                true => None,
-            };
-            if let Some((fault, what)) = fault {
-                let message = format!("{} {fault} in a model of bodies of revolution", rigid.name);
-                cx.error(Code::Revolution, rigid.span, message)
-                    .help(format!("hold {what} of its reference node"));
-            }
-        }
-        let returns = |step: &&Step| step.settings.landing == LandingRule::Return;
-        let turns = !steps.iter().filter(returns).all(|step| is_held(&step));
-        let redistributes =
-            (steps.iter()).any(|step| step.settings.contact_mass == ContactMass::Redistributed);
-        let options = [
-            (turns, "turns, and LANDING=RETURN"),
-            (redistributes, "is rigid, and CONTACT MASS=REDISTRIBUTED"),
-        ];
-        for (_, option) in options.into_iter().filter(|(is_asked, _)| *is_asked) {
-            let message = format!("{} {option} leaves it out", rigid.name);
-            cx.warning(Code::RigidSurface, rigid.span, message)
-                .help("it holds for contacts between bodies that deform");
-        }
-    }
-}
-
-/// The dof with the number that the angle of a body has among those that turn; none of a body that does not.
-fn renumbered(dof: usize, motions: &[BodyMotion], mesh: &Mesh) -> Option<usize> {
-    match dof.checked_sub(angle_dof(0, mesh)) {
-        None => Some(dof),
-        Some(number) => match motions.get(number / 4)? {
-            BodyMotion::Turns(number) => Some(angle_dof(*number, mesh)),
-            BodyMotion::Translates => None,
-        },
-    }
-}
-
-/// The motion of a dof in a step, if it is prescribed.
-fn motion_of(step: &Step, dof: usize) -> Option<SupportMotion> {
-    let found = step
-        .supports
-        .binary_search_by_key(&dof, |support| support.dof);
-    found.ok().map(|index| step.supports[index].motion)
-}
-
-/// Whether a body turns: its angle moves in some step, or it moves freely in some direction of some step.
-fn turns(rigid: &Rigid, angle: usize, steps: &[Step], velocity: &[f64]) -> bool {
-    let translations = [0, 1].map(|i| 2 * rigid.reference + i);
-    velocity.get(angle).is_some_and(|omega| *omega != 0.0)
-        || steps.iter().any(|step| match motion_of(step, angle) {
-            Some(motion) if !motion.is_still() => true,
-            of_angle => {
-                let is_free = |dof: &usize| motion_of(step, *dof).is_none();
-                rigid.moves_freely(step) && (of_angle.is_none() || translations.iter().any(is_free))
-            }
-        })
-}
-
-/// Reports moments on a body that does not turn.
-fn report_moments(rigid: &Rigid, angle: usize, steps: &[Step], cx: &mut Context) {
-    let mut loads = steps.iter().flat_map(|step| &step.point_loads);
-    if loads.any(|load| load.at.dof == angle) {
-        let message = format!("{} takes a moment and does not turn", rigid.name);
-        cx.error(Code::RigidSurface, rigid.span, message).help(
-            "a body turns by a moment if it has mass and direction 6 of its reference node is free",
-        );
-    }
-}
-
-/// Largest difference of a node's velocity from that of its body, beside the largest velocity.
-const SAME_VELOCITY: f64 = 1e-9;
-
-/// Reports velocities of nodes of a body that are not those of its reference node and angle.
-fn report_own_velocities(
-    rigid: &Rigid,
-    angle: usize,
-    mesh_index: &MeshIndex,
-    (velocity, places): (&[f64], &BTreeMap<usize, Span>),
-    cx: &mut Context,
-) {
-    let x = &mesh_index.mesh.coordinates;
-    let of = |dof: usize| velocity.get(dof).copied().unwrap_or(0.0);
-    let (reference, omega) = (rigid.reference, of(angle));
-    let largest = velocity.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-    let differs = |node: &&usize| {
-        let [rx, ry] = difference(x[reference], x[**node]);
-        let turn = [-omega * ry, omega * rx];
-        (0..2).any(|i| {
-            let own = of(2 * **node + i);
-            let expected = of(2 * reference + i) + turn[i];
-            own != 0.0 && (own - expected).abs() > SAME_VELOCITY * largest
-        })
-    };
-    if let Some(&node) = rigid.nodes.iter().find(differs) {
-        let message = format!(
-            "node {} of {} starts with another velocity than the body",
-            mesh_index.node_name(node),
-            rigid.name
-        );
-        let place = (0..2).find_map(|i| places.get(&(2 * node + i)));
-        let mut error = cx.error(Code::RigidSurface, rigid.span, message);
-        if let Some(&place) = place {
-            error = error.other("the row of *INITIAL CONDITIONS", place);
-        }
-        error.help(
-            "*INITIAL CONDITIONS gives the velocity of a rigid body at its reference node, directions 1, 2 and 6",
-        );
-    }
-}
-
-/// Completes the supports of a body that turns: without mass it is held where nothing is said.
-fn complete_turning(
-    rigid: &Rigid,
-    angle: usize,
-    (mesh_index, supports): (&MeshIndex, &Supports),
-    steps: &mut [Step],
-    cx: &mut Context,
-) {
-    let reference = rigid.reference;
-    // a mass beside a held reference node, or a spring there, resists the rotation of coupled nodes
-    let is_sprung = || (mesh_index.connectors.iter()).any(|own| own.nodes.contains(&reference));
-    let is_free = |step: &Step| (0..2).all(|i| motion_of(step, 2 * reference + i).is_none());
-    let rides = |step: &Step| !rigid.carried.is_empty() && is_free(step) && !is_sprung();
-    let own: BTreeSet<usize> = rigid.nodes.iter().copied().collect();
-    if rigid.is_coupling && !report_empty_coupling(rigid, &own, mesh_index, cx) {
-        return;
-    }
-    for (index, step) in steps.iter_mut().enumerate() {
-        if let Some(held) = step.supports.iter().find(|s| own.contains(&(s.dof / 2))) {
-            return report_other_motion(rigid, held.dof, (mesh_index, supports), cx);
-        }
-        let turns_freely = motion_of(step, angle).is_none();
-        let has_mass = match rigid.carried.is_empty() {
-            true => rigid.has_mass(),
-            false => rides(step),
-        };
-        let needs_inertia = has_mass && step.procedure != Procedure::Static;
-        if needs_inertia && turns_freely && !rigid.has_inertia(&mesh_index.mesh) {
-            let message = format!("{} may turn and has no rotary inertia", rigid.name);
-            cx.error(Code::RigidSurface, rigid.span, message).help(
-                "add *ELEMENT, TYPE=ROTARYI and *ROTARY INERTIA, or hold direction 6 of its reference node",
-            );
-            return;
-        }
-        if rigid.moves_freely(step) {
-            continue;
-        }
-        for direction in 0..2 {
-            if motion_of(step, 2 * rigid.reference + direction).is_none() {
-                return report_free(rigid, direction, index + 1, cx);
-            }
-        }
-        if let Err(at) = step
-            .supports
-            .binary_search_by_key(&angle, |support| support.dof)
-        {
-            let motion = SupportMotion::Rate {
-                rate: Rate::Velocity,
-                value: 0.0,
-                amplitude: None,
-            };
-            step.supports.insert(at, Support { dof: angle, motion });
-        }
-    }
-}
-
-/// Whether a coupling can move freely: reports one without a node of an element, or without an arm.
-fn report_empty_coupling(
-    rigid: &Rigid,
-    own: &BTreeSet<usize>,
-    mesh_index: &MeshIndex,
-    cx: &mut Context,
-) -> bool {
-    let mesh = &mesh_index.mesh;
-    let x = &mesh.coordinates;
-    let mut of_elements = mesh.elements.iter().flat_map(|element| &element.nodes);
-    let (message, help) = if !of_elements.any(|node| own.contains(node)) {
-        (
-            format!("no node of {} belongs to an element", rigid.name),
-            "couple nodes of a body",
-        )
-    } else if own.iter().all(|&node| x[node] == x[rigid.reference]) {
-        (
-            format!(
-                "all nodes of {} are at the place of its reference node",
-                rigid.name
-            ),
-            "join two nodes at one place by *MPC of the type PIN",
-        )
-    } else {
-        return true;
-    };
-    cx.error(Code::Coupling, rigid.span, message).help(help);
-    false
-}
-
-/// Adds the supports of the nodes of rigid bodies that do not turn to those of a step: they move as their reference
-/// nodes.
-fn follow(
-    rigid_bodies: &[Rigid],
-    of_bodies: &[BodyMotion],
-    (mesh_index, places): (&MeshIndex, &Supports),
-    step: usize,
-    supports: &mut Vec<Support>,
-    cx: &mut Context,
-) {
-    let mut motions: BTreeMap<usize, SupportMotion> = BTreeMap::new();
-    motions.extend(supports.iter().map(|support| (support.dof, support.motion)));
-    let all = rigid_bodies.iter().zip(of_bodies);
-    for (rigid, _) in all.filter(|(_, motion)| **motion == BodyMotion::Translates) {
-        for direction in 0..2 {
-            let Some(&motion) = motions.get(&(2 * rigid.reference + direction)) else {
-                report_free(rigid, direction, step, cx);
-                continue;
-            };
-            for &node in &rigid.nodes {
-                let dof = 2 * node + direction;
-                let other = motions.insert(dof, motion);
-                if other.is_some_and(|other| other != motion) {
-                    return report_other_motion(rigid, dof, (mesh_index, places), cx);
-                }
-            }
-        }
-    }
-    let all = motions.into_iter();
-    *supports = all.map(|(dof, motion)| Support { dof, motion }).collect();
-}
-
-fn report_other_motion(
-    rigid: &Rigid,
-    dof: usize,
-    (mesh_index, supports): (&MeshIndex, &Supports),
-    cx: &mut Context,
-) {
-    let node = mesh_index.node_name(dof / 2);
-    let message = format!(
-        "node {node} of {} is prescribed otherwise than the reference node {}",
-        rigid.name, rigid.label
-    );
-    let mut error = cx.error(Code::RigidSurface, rigid.span, message);
-    if let Some(place) = supports.place(dof) {
-        error = error.other("the row of *BOUNDARY", place);
-    }
-    error.help("a rigid body moves as its reference node, which *BOUNDARY prescribes");
-}
-
-fn report_free(rigid: &Rigid, direction: usize, step: usize, cx: &mut Context) {
-    let message = format!(
-        "the reference node {} of {} is free in direction {} in step {step}",
-        rigid.label,
-        rigid.name,
-        direction + 1
-    );
-    cx.error(Code::RigidSurface, rigid.span, message)
-        .help("prescribe its directions 1 and 2 with *BOUNDARY, or give the body mass");
 }

@@ -1,5 +1,6 @@
 //! `*STEP`, `*STATIC`, `*DYNAMIC` and `*STICKSLIP`; the state of supports, loads and settings from step to step.
 
+use super::actions::Actions;
 use super::boundary::{Supports, Targets};
 use super::contact_changes::ContactHistory;
 use super::context::Context;
@@ -7,7 +8,6 @@ use super::interference::{Interferences, Pairs};
 use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests};
-use super::owners::Actions;
 use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};

@@ -66,8 +66,9 @@ struct Outcome {
 struct Folder(PathBuf);
 
 impl Folder {
-    fn new() -> Folder {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("left_out");
+    /// The folder of a test.
+    fn new(test: &str) -> Folder {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
         std::fs::create_dir_all(folder.join("parts")).expect("a folder");
         for file in std::fs::read_dir("tests/decks/parts").expect("a folder") {
             let file = file.expect("a file");
@@ -193,7 +194,7 @@ fn with_fields(place: &Place) -> Vec<(String, Vec<String>)> {
 
 #[test]
 fn rows_and_fields() {
-    let folder = Folder::new();
+    let folder = Folder::new("rows_and_fields");
     let mut places: Vec<Place> = (keywords().filter(|keyword| keyword.status == Status::Read))
         .map(Place::of_example)
         .collect();
@@ -237,7 +238,7 @@ fn changed(line: &str) -> String {
 
 #[test]
 fn cards_given_twice() {
-    let folder = Folder::new();
+    let folder = Folder::new("cards_given_twice");
     let mut left_out = Vec::new();
     for keyword in keywords().filter(|keyword| keyword.status == Status::Read) {
         let place = Place::of_example(keyword);
@@ -295,7 +296,7 @@ fn strange(parameter: &Parameter, valid: &[String]) -> Vec<String> {
 
 #[test]
 fn parameters_alone_and_beside_each_other() {
-    let folder = Folder::new();
+    let folder = Folder::new("parameters_alone_and_beside_each_other");
     let mut left_out = Vec::new();
     for keyword in keywords().filter(|keyword| keyword.status == Status::Read) {
         let place = Place::of_example(keyword);

@@ -173,7 +173,7 @@ impl Impulses {
     }
 
     /// Impulses P0 = dt Pn of the constraints of bodies that turn that stuck in the last pass and neither land nor open,
-    /// zero of all others, eq. (11.5); none where no body turns.
+    /// zero of all others, eq. (11.7); none where no body turns.
     fn held(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
         let turning = &problem.unknowns.turning;
         let of_pair = |constraint: &Constraint| {
@@ -298,7 +298,7 @@ fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
     !nodes.any(|node| problem.redistribution.is_massless(node))
 }
 
-/// The velocity that impulses of contact see in the place of V0: what agrees with the hinges, eq. (11.9). The rest of V0
+/// The velocity that impulses of contact see in the place of V0: what agrees with the hinges, eq. (11.11). The rest of V0
 /// does no work with them, so that they bring no energy in.
 fn agreeing<'a>(
     problem: &StepProblem,
@@ -381,7 +381,7 @@ fn impulses(
     Ok(closed)
 }
 
-/// The impulses of constraints of which some hold P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.5): V0 - M^-1 Bn^T P0 is
+/// The impulses of constraints of which some hold P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.7): V0 - M^-1 Bn^T P0 is
 /// the velocity without them. Where one would pull with all of P0 its pair holds nothing.
 fn held_impulses(
     constraints: &[Constraint],

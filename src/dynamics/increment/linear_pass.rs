@@ -103,7 +103,7 @@ pub(super) fn k_star<'w>(problem: &StepProblem, workspace: &'w mut Workspace) ->
 /// Writes d_p with the motion that closes the gaps of the hinges; gives the forces that make it.
 ///
 /// ```text
-/// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.8)
+/// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.10)
 /// ```
 pub(super) fn close_hinges(
     problem: &StepProblem,

@@ -16,7 +16,7 @@ pub(crate) struct RigidImpulse {
 /// by an impulse that does no work in any motion of the model; the accelerations `a` lead to them:
 ///
 /// ```text
-/// V = Vr + T M^-1 T^T M (V1 - Vr),  A += (V - V1)/dt      eq. (11.12)
+/// V = Vr + T M^-1 T^T M (V1 - Vr),  A += (V - V1)/dt      eq. (11.5)
 /// ```
 ///
 /// V1 = V0+ + dt A, Vr any rigid motion with what is prescribed, T the rows (11.3) of the end. With hinges V1 stays.

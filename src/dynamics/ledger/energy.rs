@@ -231,7 +231,7 @@ impl Ledger {
         let [load, internal, inertia, contact] =
             [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
         let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
-        // V1.J of supports, and what velocities that leave rigid motions have, eq. (11.12)
+        // V1.J of supports, and what velocities that leave rigid motions have, eq. (11.5)
         let RigidImpulse { force, loss } = &solved.rigid;
         if !force.is_empty() {
             let mut force = force.clone();

@@ -155,7 +155,7 @@ impl EndForces {
     }
 
     /// Makes loads of the forces of contacts that do not act any more, and of supports that the next step has not; gives
-    /// them (dof, force), eq. (12.13).
+    /// them (dof, force), eq. (12.9).
     pub fn release(
         &mut self,
         removed: &[usize],

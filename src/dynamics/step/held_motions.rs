@@ -71,7 +71,7 @@ impl HeldMotions {
         self.0.is_empty()
     }
 
-    /// P of eq. (12.10) over all pins: the part of their motions that is held.
+    /// P of eq. (12.11) over all pins: the part of their motions that is held.
     pub fn projection(&self, pins: &Pins) -> DMatrix<f64> {
         let of_bodies = pins.of_bodies();
         let m = of_bodies.last().map_or(0, |own| own.end);

@@ -10,7 +10,7 @@ use crate::model::Hinge;
 /// bodies between heavy ones are far above.
 const INDEPENDENT: f64 = 1e-12;
 
-/// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.6), first along x, then along y of each.
+/// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x, then along y of each.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Hinges {
     /// Dofs of every row.
@@ -60,7 +60,7 @@ impl Hinges {
     /// What makes solutions with a matrix keep the gaps, from its solver and T and R of its iterate:
     ///
     /// ```text
-    /// W = A^-1 - V S^-1 Y^T,  V = A^-1 T_m^T C^T,  Y = A^-1 T_1^T C^T,  S = C T_1 V      eq. (11.7)
+    /// W = A^-1 - V S^-1 Y^T,  V = A^-1 T_m^T C^T,  Y = A^-1 T_1^T C^T,  S = C T_1 V      eq. (11.9)
     /// ```
     ///
     /// # Errors

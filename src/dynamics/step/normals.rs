@@ -41,7 +41,7 @@ impl Normals {
     /// Orthogonal motions that pairs without friction let free.
     ///
     /// ```text
-    /// sum_j (Gn_j z)² <= (1/4)² sum_j |Gn_j Z0|²      eq. (12.9)
+    /// sum_j (Gn_j z)² <= (1/4)² sum_j |Gn_j Z0|²      eq. (12.10)
     /// ```
     pub fn free(&self) -> Vec<DVector<f64>> {
         let Some(first) = self.0.first() else {
@@ -68,7 +68,7 @@ impl Normals {
     /// the angle between neighbours.
     ///
     /// ```text
-    /// f_e = sum_j Pn_j |Gt_j z| sin(beta_j)/2      eq. (12.11)
+    /// f_e = sum_j Pn_j |Gt_j z| sin(beta_j)/2      eq. (12.12)
     /// ```
     pub fn resolution(&self, m: &DVector<f64>) -> f64 {
         let of_pair =
@@ -79,7 +79,7 @@ impl Normals {
     /// Stiffness against a motion that facets may make, whose normals change by the angle between neighbours in a length.
     ///
     /// ```text
-    /// k_e = sum_j Pn_j (Gt_j z)² sin(beta_j)/l_j      eq. (12.12)
+    /// k_e = sum_j Pn_j (Gt_j z)² sin(beta_j)/l_j      eq. (12.13)
     /// ```
     pub fn stiffness(&self, m: &DVector<f64>) -> f64 {
         let of_pair = |normal: &Normal| {

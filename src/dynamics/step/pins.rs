@@ -612,7 +612,7 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
 pub(crate) struct SoftPins {
     /// a' of each along what is free.
     pub soft: Vec<f64>,
-    /// A' of eq. (12.10).
+    /// A' of eq. (12.11).
     all: DMatrix<f64>,
 }
 
@@ -676,7 +676,7 @@ pub(crate) fn soften(
     let g = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
     let diagonal = |of: &[f64]| DMatrix::from_diagonal(&DVector::from_column_slice(of));
     let moves = DMatrix::identity(m, m) - &held;
-    // A' = (1 - P)^T a' (1 - P) + P^T a P, eq. (12.10)
+    // A' = (1 - P)^T a' (1 - P) + P^T a P, eq. (12.11)
     let all = moves.tr_mul(&diagonal(&soft)) * &moves + held.tr_mul(&diagonal(a)) * &held;
     let b = &all - diagonal(a);
     let c = (DMatrix::identity(m, m) + &b * g).lu().solve(&b);

@@ -433,7 +433,7 @@ impl<'m> Turning<'m> {
     /// `own`, those of eq. (4.1), in an increment `d` from `u0`:
     ///
     /// ```text
-    /// A += A_p + (A_s/L) J r_m      eq. (11.11)
+    /// A += A_p + (A_s/L) J r_m      eq. (11.4)
     /// ```
     pub fn carry(
         &self,
@@ -493,7 +493,7 @@ impl<'m> Turning<'m> {
     /// displacements `u0` to `u`, by the dof of the angle:
     ///
     /// ```text
-    /// K_ss += sum f.r_1/(L² (1 + c²/4))      eq. (11.10)
+    /// K_ss += sum f.r_1/(L² (1 + c²/4))      eq. (11.12)
     /// ```
     pub fn geometric_stiffness(
         &self,
@@ -511,7 +511,7 @@ impl<'m> Turning<'m> {
     }
 
     /// Makes moments M on the angles the forces on s = L c that do the work M dtheta in the increment `d`:
-    /// (M/L) dtheta/c, eq. (11.4); in a static step M/L.
+    /// (M/L) dtheta/c, eq. (11.6); in a static step M/L.
     pub fn scale_moments(&self, d: &[f64], force: &mut [f64]) {
         for body in self.bodies {
             let half = d[body.spin] / body.length / 2.0;

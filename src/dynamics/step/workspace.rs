@@ -224,7 +224,7 @@ impl<'m> Workspace<'m> {
     /// Makes the velocities at the start of a motion those of bodies with hinges: impulses of the hinges act there once.
     ///
     /// ```text
-    /// V <- V - M^-1 C^T (C M^-1 C^T)^-1 C V      eq. (11.9)
+    /// V <- V - M^-1 C^T (C M^-1 C^T)^-1 C V      eq. (11.11)
     /// ```
     ///
     /// # Errors

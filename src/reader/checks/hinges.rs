@@ -11,7 +11,7 @@ use crate::vectors::{difference, length};
 /// the run takes for an eigenvalue of zero.
 const FOLLOWS: f64 = 1e-6;
 
-/// Reports hinges whose rows of C in (11.6) follow from those before and the supports of a step, with which the step would
+/// Reports hinges whose rows of C in (11.8) follow from those before and the supports of a step, with which the step would
 /// stop; `spans` are the places of the hinges.
 pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
     for (number, step) in model.steps.iter().enumerate() {
