@@ -48,7 +48,7 @@ pub(super) fn read(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec
 /// Reports nodes of springs and dashpots that nothing gives a mass in a dynamic step: those of no element, no rigid
 /// body and no equation, which are not held in both directions.
 pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Context) {
-    let mut has_mass = vec![false; model.mesh.node_count()];
+    let mut has_mass = vec![false; model.mesh.dof_count()];
     let of_elements = model
         .mesh
         .elements
@@ -57,30 +57,30 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
     let bodies = model.rigid_bodies.iter();
     let bodies = bodies.flat_map(|body| body.nodes.iter().copied().chain([body.reference]));
     for node in of_elements.copied().chain(bodies) {
-        has_mass[node] = true;
+        has_mass[2 * node..2 * node + 2].fill(true);
     }
-    // what a node with mass follows has its mass, and what follows one
+    // what a displacement with mass follows has its mass, and what follows one
     for Equation { dof, terms } in &model.equations {
-        if has_mass[dof / 2] {
-            terms.iter().for_each(|term| has_mass[term.0 / 2] = true);
+        if has_mass[*dof] {
+            terms.iter().for_each(|term| has_mass[term.0] = true);
         }
     }
     for Equation { dof, terms } in &model.equations {
-        has_mass[dof / 2] |= terms.iter().any(|term| has_mass[term.0 / 2]);
+        has_mass[*dof] |= terms.iter().any(|term| has_mass[term.0]);
     }
-    let dynamic = |step: &&Step| step.procedure != Procedure::Static;
-    let is_held = |node: usize| {
-        model.steps.iter().filter(dynamic).all(|step| {
-            let held = |dof: usize| {
-                step.supports
-                    .binary_search_by_key(&dof, |support| support.dof)
-            };
-            (0..2).all(|i| held(2 * node + i).is_ok())
-        })
+    let is_held = |dof: usize| {
+        let mut dynamic = model
+            .steps
+            .iter()
+            .filter(|step| step.procedure != Procedure::Static);
+        let held = |step: &Step| step.supports.binary_search_by_key(&dof, |s| s.dof);
+        dynamic.all(|step| held(step).is_ok())
     };
+    let is_light =
+        |node: usize| (2 * node..2 * node + 2).any(|dof| !has_mass[dof] && !is_held(dof));
     for (connector, element) in model.connectors.iter().zip(elements) {
         let mut nodes = connector.nodes.iter();
-        if let Some(&node) = nodes.find(|&&node| !has_mass[node] && !is_held(node)) {
+        if let Some(&node) = nodes.find(|&&node| is_light(node)) {
             let (name, label) = (model.node_name(node), connector.label);
             let message =
                 format!("node {name} of element {label} has no mass: nothing else is there");

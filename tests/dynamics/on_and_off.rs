@@ -75,7 +75,8 @@ fn a_motion_that_decays_until_it_underflows_ends() {
          *SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n*BOUNDARY\n1, 1, 2\n6, 1, 2\n\
          *STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\n3, 1, 1, .2\n4, 1, 1, .2\n*END STEP\n\
          *STEP, NLGEOM, INC=1000\n*DYNAMIC, APPLICATION=QUASI-STATIC\n1.E-3, 60., 1.E-10, 1.\n\
-         *BOUNDARY, OP=NEW\n1, 1, 2\n6, 1, 2\n*END STEP\n",
+         *BOUNDARY, OP=NEW\n1, 1, 2\n6, 1, 2\n*END STEP\n\
+         *STEP, NLGEOM, INC=1000\n*DYNAMIC, APPLICATION=QUASI-STATIC\n1.E-3, 60., 1.E-10, 1.\n*END STEP\n",
     ));
     assert_eq!(summary.cutbacks, 0);
     assert!(left(&keep) < 1e-100, "{:e}", left(&keep));
