@@ -2,7 +2,8 @@
 """Loads that are put on and taken off: every body ends where it began.
 
 A cantilever of every element is bent by a load that grows and goes back to zero, in every procedure,
-with increments of three lengths. The run must end with exit code 0, every check of the program must
+with increments of three lengths; then a cantilever of three elements by loads on a node that its end
+hangs on by every joint. The run must end with exit code 0, every check of the program must
 hold, and the displacements of the end must be zero beside the largest of the run.
 
 A line for each failure, then how many of the runs have failed. The exit code is 1 when one has.
@@ -37,8 +38,40 @@ LOADS = {
     "gravity": ("*DLOAD{}\nBODY, GRAV, {}, 0., -1.", 0.3),
     "motion": ("*BOUNDARY{}\nTIP, 2, 2, {}", 0.15),
     "contact": ("*BOUNDARY{}\nDRIVEN, 2, 2, {}", -0.1),
+    "push": ("*CLOAD{}\nREF, 2, {}", -0.6),
+    "shift": ("*BOUNDARY{}\nREF, 2, 2, {}", 0.15),
+    "turn": ("*BOUNDARY{}\nREF, 6, 6, {}", 0.1),
 }
 """Card of each load, with places for its amplitude and its value, and the largest value."""
+
+PLAIN = ("force", "moment", "pressure", "gravity", "motion", "contact")
+"""Loads of cantilevers without a joint; a moment needs a coupling."""
+
+JOINTS = {
+    "kinematic": (
+        "*COUPLING, CONSTRAINT NAME=GRIP, REF NODE=REF, SURFACE=RIGHT\n*KINEMATIC",
+        ("push", "moment", "shift", "turn"),
+    ),
+    "distributing": (
+        "*COUPLING, CONSTRAINT NAME=GRIP, REF NODE=REF, SURFACE=RIGHT\n*DISTRIBUTING",
+        ("push", "shift"),
+    ),
+    "rigid": ("*RIGID BODY, REF NODE=REF, ELSET=END", ("push", "moment", "shift", "turn")),
+    "equation": (
+        "*EQUATION\n2\nTIP, 1, 1., REF, 1, -1.\n2\nTIP, 2, 1., REF, 2, -1.",
+        ("push", "shift"),
+    ),
+    "pin": ("*MPC\nTIE, TIP, REF", ("push", "shift")),
+    "tie": (
+        "*TIE, NAME=BOND\nNEAR, RIGHT\n"
+        "*COUPLING, CONSTRAINT NAME=GRIP, REF NODE=REF, SURFACE=FAR\n*KINEMATIC",
+        ("push", "moment", "shift", "turn"),
+    ),
+}
+"""Cards of each joint between the end and the node REF, and the loads that it carries."""
+
+JOINED = ("CPE3", "CPE4I", "CPE8R")
+"""Elements of cantilevers with a joint."""
 
 STATIC = {"coarse": 1.0, "medium": 0.25, "fine": 0.05}
 """Largest increment of static steps of length 1: one puts the load on, one takes it off, one does
@@ -76,20 +109,32 @@ class Case:
     procedure: str
     load: str
     size: str
+    joint: str = "none"
 
     @property
     def name(self) -> str:
         """Name of its deck."""
-        return "_".join((self.element, self.procedure, self.load, self.size)).replace("-", "")
+        parts = [self.element, self.procedure, self.load, self.size]
+        if self.joint != "none":
+            parts.append(self.joint)
+        return "_".join(parts).replace("-", "")
 
 
 def cases(
-    elements: Sequence[str], procedures: Sequence[str], loads: Sequence[str], sizes: Sequence[str]
+    elements: Sequence[str],
+    procedures: Sequence[str],
+    loads: Sequence[str],
+    sizes: Sequence[str],
+    joints: Sequence[str],
 ) -> Iterator[Case]:
     """All cases; a ring takes no moment in its plane."""
-    for element, procedure, load, size in product(elements, procedures, loads, sizes):
-        if not (element.startswith("CAX") and load == "moment"):
-            yield Case(element, procedure, load, size)
+    for joint in joints:
+        allowed = JOINTS[joint][1] if joint in JOINTS else PLAIN
+        for element, procedure, load, size in product(elements, procedures, loads, sizes):
+            if load not in allowed or (joint in JOINTS and element not in JOINED):
+                continue
+            if not (element.startswith("CAX") and load == "moment"):
+                yield Case(element, procedure, load, size, joint)
 
 
 class Mesh:
@@ -173,11 +218,22 @@ def deck(case: Case, scale: float) -> str:
         body.surface("RIGHT", 0, right),
         "*BOUNDARY\nHELD, 1, 2",
     ]
-    if case.load == "moment":
+    joint = case.joint
+    if joint == "none" and case.load == "moment":
+        joint = "kinematic"
+    if joint == "tie":
+        block = Mesh(case.element, 1001, (right, 0.0), (0.5, HEIGHT), (1, 2 * COUNT[1] - 1))
         cards += [
-            f"*NODE, NSET=REF\n9001, {right + 0.5!r}, 0.6",
-            "*COUPLING, CONSTRAINT NAME=GRIP, REF NODE=REF, SURFACE=RIGHT\n*KINEMATIC",
+            block.text("BLOCK"),
+            block.surface("NEAR", 0, right),
+            block.surface("FAR", 0, right + 0.5),
         ]
+    if joint == "rigid":
+        last = body.elements[-len(body.elements) // COUNT[0] :]
+        labels = range(1 + len(body.elements) - len(last), 1 + len(body.elements))
+        cards.append("\n".join(["*ELSET, ELSET=END", *map(str, labels)]))
+    if joint in JOINTS:
+        cards += [f"*NODE, NSET=REF\n9001, {right + 0.5!r}, 0.6", JOINTS[joint][0]]
     if case.load == "contact":
         bottom = HEIGHT + GAP * scale
         punch = Mesh(case.element, 1001, (right - 1.3, bottom), (1.0, 0.5), (1, 1))
@@ -248,7 +304,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    levels = {"element": ELEMENTS, "procedure": PROCEDURES, "load": LOADS, "size": STATIC}
+    levels = {
+        "element": ELEMENTS,
+        "procedure": PROCEDURES,
+        "load": LOADS,
+        "size": STATIC,
+        "joint": ("none", *JOINTS),
+    }
     for name, values in levels.items():
         parser.add_argument(f"--{name}", action="append", choices=tuple(values))
     parser.add_argument("--every", type=int, default=1, help="runs one of so many")

@@ -4,8 +4,8 @@ from test_scripts import script
 
 
 def test_loads_that_go_back_to_zero_leave_nothing() -> None:
-    """Every element, procedure, load and length of increments at least once."""
-    script("lab/loads_on_off.py", "--every", 44, "--certify")
+    """Every element, procedure, load, length of increments and joint at least once."""
+    script("lab/loads_on_off.py", "--every", 58, "--certify")
 
 
 def test_loads_that_are_small_are_taken_off_too() -> None:
