@@ -458,7 +458,7 @@ class Frames:
         residual = inertia + internal - force - frame["RF"]
         told = self._start_is_told(frame, increment)
         if not told[self.impelled].all():
-            check.skip("bodies with rigid parts are left out where no frame tells the start of an increment")
+            check.skip("bodies with rigid parts are left out between frames far apart")
         for block in self.elements.blocks:
             unknown = ~told[block.nodes].all(axis=1)
             told[block.nodes[unknown]] = False
