@@ -60,3 +60,10 @@ def test_decks_are_small_and_the_same_each_time() -> None:
 def test_certificate_of_a_body_at_rest_divides_no_round_off(family: str) -> None:
     choice = {**SIMPLEST, "family": family, "procedure": "dynamic", "sequence": "rest"}
     assert judge("rest", choice, program.binary(), "certificate").failures == {}
+
+
+@pytest.mark.parametrize("family", ["CPE4I", "CPS4I", "CAX4I"])
+@pytest.mark.parametrize("procedure", ["static direct", "dynamic"])
+def test_certificate_adds_enhanced_strains_of_rubber_as_logarithms(family: str, procedure: str) -> None:
+    choice = {**SIMPLEST, "family": family, "material": "mooney", "procedure": procedure}
+    assert judge("rubber", choice, program.binary(), "certificate").failures == {}

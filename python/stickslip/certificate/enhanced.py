@@ -5,7 +5,16 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.certificate.elements import CORNERS, EPS, LAST_STEP, PATH, PATH_WEIGHTS, REST, Block
+from stickslip.certificate.elements import (
+    CORNERS,
+    EPS,
+    LAST_STEP,
+    PATH,
+    PATH_WEIGHTS,
+    REST,
+    SAINT_VENANT_KIRCHHOFF,
+    Block,
+)
 from stickslip.result import Array
 
 PATTERN = np.array([1.0, -1.0, 1.0, -1.0])
@@ -34,8 +43,48 @@ def patterns(weight: Array, gradient: Array) -> tuple[Array, Array, Array]:
     return gamma, slope, strains / size[:, None, :, None, None]
 
 
+class Beside:
+    """Strains beside the mean of each element, in the measure in which the energy of its law is convex, eq. (2.28)."""
+
+    def __init__(self, strain: Array, part: Array, law: int) -> None:
+        self.part = part
+        self.mean = self._mean_of(strain)
+        one = np.eye(strain.shape[-1])
+        self.inverse = np.zeros_like(self.mean)
+        """k P"""
+        if law != SAINT_VENANT_KIRCHHOFF:
+            self.inverse = np.linalg.inv(one + 2.0 * self.mean)
+
+    def _mean_of(self, strain: Array) -> Array:
+        return np.einsum("eg,egij->eij", self.part, strain)[:, None]
+
+    def strain(self, linear: Array) -> Array:
+        """E_g of E + M alpha."""
+        a = linear - self.mean
+        return linear + a @ self.inverse @ a
+
+    def on_modes(self, linear: Array, stress: Array) -> Array:
+        """S + Z, which does work on E + M alpha."""
+        return stress + self._beside(linear, stress)[0]
+
+    def on_displacements(self, linear: Array, stress: Array) -> Array:
+        """S + Z less the mean of Z + Y, which does work on E."""
+        z, y = self._beside(linear, stress)
+        return stress + z - self._mean_of(z + y)
+
+    def _beside(self, linear: Array, stress: Array) -> tuple[Array, Array]:
+        """Z and Y."""
+        turned = self.inverse @ (linear - self.mean)
+        half = turned @ stress
+        return half + half.swapaxes(2, 3), 2.0 * half @ turned.swapaxes(2, 3)
+
+
 class EnhancedBlock(Block):
     """Elements whose stored energy is least in four strains of their own."""
+
+    def beside(self, e: Array, law: int) -> Beside:
+        """The measure of a law at strains of the displacements."""
+        return Beside(e, self.weight / self.weight.sum(axis=1, keepdims=True), law)
 
     @cached_property
     def modes(self) -> tuple[Array, Array, Array]:
@@ -49,13 +98,15 @@ class EnhancedBlock(Block):
         half = 0.5 * (q**2).sum(axis=1)[:, None, None, None]
         return self.strain(self.displacement_gradient(u)) - half * np.einsum("egi,egj->egij", slope, slope)
 
-    def own(self, e: Array, stress: Callable[[Array], Array]) -> Array:
-        """Strains with the element's own, so that the stress does no work on these, eq. (2.28)."""
+    def own(self, e: Array, stress: Callable[[Array], Array], law: int) -> Array:
+        """E + M alpha, so that the stress does no work on the element's own strains, eq. (2.28)."""
         _, _, modes = self.modes
+        beside = self.beside(e, law)
         alpha = np.zeros((len(e), 4))
 
         def slope(alpha: Array) -> Array:
-            s = stress(e + np.einsum("em,egmij->egij", alpha, modes))
+            linear = e + np.einsum("em,egmij->egij", alpha, modes)
+            s = beside.on_modes(linear, stress(beside.strain(linear)))
             return np.einsum("eg,egmij,egij->em", self.weight, modes, s)
 
         found = slope(alpha)
@@ -78,14 +129,19 @@ class EnhancedBlock(Block):
 
     def least(self, e: Array) -> Array:
         """Strains of the material at those of the displacements."""
-        return self.own(e, self.stress)
+        return self.beside(e, self.law).strain(self.own(e, self.stress, self.law))
+
+    def conjugate(self, e: Array) -> Array:
+        """The stress that does work on the strains of the displacements, at these."""
+        beside, linear = self.beside(e, self.law), self.own(e, self.stress, self.law)
+        return beside.on_displacements(linear, self.stress(beside.strain(linear)))
 
     def energy(self, u: Array) -> Array:
         """Strain energy of each element."""
         return (self.weight * self.energy_density(self.least(self.compatible(u)))).sum(axis=1)
 
     def stress_of(self, u: Array) -> Array:
-        """S at the displacements."""
+        """S of the material at the displacements."""
         return self.stress(self.least(self.compatible(u)))
 
     def thickness_strain(self, u: Array) -> Array:
@@ -95,12 +151,14 @@ class EnhancedBlock(Block):
     def condensed_gradient(self, u0: Array, u1: Array) -> Array:
         """S_m of eq. (2.29); Phi(E1) - Phi(E0) is the integral of S along a way."""
         c0, c1 = self.compatible(u0), self.compatible(u1)
-        e0, e1, middle = self.least(c0), self.least(c1), self.least(0.5 * (c0 + c1))
-        stress = self.stress(middle)
+        middle = 0.5 * (c0 + c1)
+        e0, e1 = self.least(c0), self.least(c1)
+        of_material, stress = self.stress(self.least(middle)), self.conjugate(middle)
         change, own = c1 - c0, e1 - e0
-        f = -np.einsum("eg,egij,egij->e", self.weight, stress, change - own)
+        f = np.einsum("eg,egij,egij->e", self.weight, of_material - stress, change)
+        f -= np.einsum("eg,egij,egij->e", self.weight, of_material, change - own)
         for place, weight in zip(PATH, PATH_WEIGHTS):
-            off = self.stress(0.5 * (e0 + e1) + 0.5 * place * own) - stress
+            off = self.stress(0.5 * (e0 + e1) + 0.5 * place * own) - of_material
             f += 0.5 * weight * np.einsum("eg,egij,egij->e", self.weight, off, own)
         square, size = (np.einsum("eg,egij,egij->e", self.weight, c, c) for c in (change, c1))
         ratio = np.divide(f, square, out=np.zeros_like(f), where=square > REST**2 * size)
@@ -111,13 +169,13 @@ class EnhancedBlock(Block):
         if halfway:
             self._add_at(total, self.condensed_gradient(u0, u1), 0.5 * (u0 + u1))
         else:
-            self._add_at(total, self.stress_of(u1), u1)
+            self._add_at(total, self.conjugate(self.compatible(u1)), u1)
 
     def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
         """Adds F_d of eq. (4.16)."""
         if dt != 0.0 and self.beta != 0.0:
             c0, c1 = self.compatible(u0), self.compatible(u1)
-            end = self.own(c1, lambda e: self.viscous(c0, e, dt))
+            end = self.own(c1, lambda e: self.viscous(c0, e, dt), SAINT_VENANT_KIRCHHOFF)
             self._add_at(total, self.viscous(c0, end, dt), 0.5 * (u0 + u1))
         if dt != 0.0 and self.alpha != 0.0:
             self.add_mass(total, (self.alpha / dt) * (u1 - u0))

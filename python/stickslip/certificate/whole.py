@@ -12,12 +12,14 @@ from stickslip.certificate.elements import (
     PATH,
     PATH_WEIGHTS,
     REST,
+    SAINT_VENANT_KIRCHHOFF,
     _cofactor,
     _determinant,
     _identity,
     _mean,
     _trace,
 )
+from stickslip.certificate.enhanced import Beside
 from stickslip.certificate.rings import RingBlock, Strain, _work
 from stickslip.result import Array
 
@@ -39,6 +41,24 @@ def _times(a: Strain, factor: float) -> Strain:
     return factor * a[0], factor * a[1]
 
 
+def _whole(section: Array, around: Array) -> Array:
+    """Tensors [E, G, 3, 3] of those of the section and the component 33."""
+    whole = np.zeros((*around.shape, 3, 3))
+    whole[..., :2, :2], whole[..., 2, 2] = section, around
+    return whole
+
+
+def _parts(whole: Array) -> Strain:
+    """The section of tensors [E, G, 3, 3] and their component 33."""
+    return whole[..., :2, :2], whole[..., 2, 2]
+
+
+def _strain(whole: Array) -> Strain:
+    """The same of strains, of which 2 E_33 is kept."""
+    section, around = _parts(whole)
+    return section, 2.0 * around
+
+
 class CondensedBlock(RingBlock):
     """Elements whose stress is the discrete gradient of a potential of all their points, eq. (2.29)."""
 
@@ -58,10 +78,13 @@ class CondensedBlock(RingBlock):
         """Strain energy of each element."""
         return (self.weight * self.density_of(self.of_material(self.compatible(u)))).sum(axis=1)
 
-    def stress_of(self, u: Array) -> Strain:
-        """S at the displacements, the one that does work on their strains."""
-        strain = self.compatible(u)
+    def conjugate(self, strain: Strain) -> Strain:
+        """S that does work on the strains of the displacements, at these."""
         return self.on_displacements(strain, self.stress_at(self.of_material(strain)))
+
+    def stress_of(self, u: Array) -> Strain:
+        """S of the output at the displacements."""
+        return self.conjugate(self.compatible(u))
 
     def _sum(self, stress: Strain, change: Strain) -> Array:
         return (self.weight * _work(stress, change)).sum(axis=1)
@@ -89,18 +112,17 @@ class CondensedBlock(RingBlock):
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
         """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
         if not halfway:
-            self._add_at(total, self.stress_of(u1), u1)
+            self._add_at(total, self.conjugate(self.compatible(u1)), u1)
             return
         c0, c1 = self.compatible(u0), self.compatible(u1)
         middle = _times(_plus(c0, c1), 0.5)
-        e0, e1, mid = self.of_material(c0), self.of_material(c1), self.of_material(middle)
+        e0, e1 = self.of_material(c0), self.of_material(c1)
         own = _plus(e1, e0, -1.0)
         work = np.zeros(len(self.elements))
         for place, weight in zip(PATH, PATH_WEIGHTS):
             at = _plus(_times(_plus(e0, e1), 0.5), own, 0.5 * place)
             work += 0.5 * weight * self._sum(self.stress_at(at), own)
-        stress = self.on_displacements(middle, self.stress_at(mid))
-        stress = self.doing(stress, _plus(c1, c0, -1.0), work, REST**2 * self._square(c1))
+        stress = self.doing(self.conjugate(middle), _plus(c1, c0, -1.0), work, REST**2 * self._square(c1))
         self._add_at(total, stress, 0.5 * (u0 + u1))
 
     def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
@@ -215,17 +237,24 @@ class EnhancedRingBlock(CondensedBlock):
         half = 0.5 * (q**2).sum(axis=1)[:, None, None, None]
         return e - half * np.einsum("egi,egj->egij", slope, slope), z
 
-    def own(self, strain: Strain, stress) -> Strain:  # noqa: ANN001
-        """Strains with the element's own, so that the stress does no work on these, eq. (2.28)."""
-        modes = self.patterns
+    def beside(self, strain: Strain, law: int) -> Beside:
+        """The measure of a law at strains of the displacements."""
+        part = self.weight / self.weight.sum(axis=1, keepdims=True)
+        return Beside(_whole(strain[0], 0.5 * strain[1]), part, law)
+
+    def own(self, strain: Strain, stress, law: int) -> Array:  # noqa: ANN001
+        """E + M alpha, so that the stress does no work on the element's own strains, eq. (2.28)."""
+        modes, beside = self.patterns, self.beside(strain, law)
         alpha = np.zeros((len(self.elements), 5))
 
-        def at(alpha: Array) -> Strain:
+        def at(alpha: Array) -> Array:
             section = np.einsum("em,egmij->egij", alpha, modes.section)
-            return strain[0] + section, strain[1] + np.einsum("em,egm->eg", alpha, modes.around)
+            around = strain[1] + np.einsum("em,egm->eg", alpha, modes.around)
+            return _whole(strain[0] + section, 0.5 * around)
 
         def slope(alpha: Array) -> Array:
-            s, around = stress(at(alpha))
+            linear = at(alpha)
+            s, around = _parts(beside.on_modes(linear, _whole(*stress(_strain(beside.strain(linear))))))
             work = np.einsum("egmij,egij->egm", modes.section, s) + 0.5 * modes.around * around[..., None]
             return np.einsum("eg,egm->em", self.weight, work)
 
@@ -248,16 +277,22 @@ class EnhancedRingBlock(CondensedBlock):
 
     def of_material(self, strain: Strain) -> Strain:
         """Strains at which the energy is least."""
-        return self.own(strain, self.stress_at)
+        return _strain(self.beside(strain, self.law).strain(self.own(strain, self.stress_at, self.law)))
 
-    def on_displacements(self, strain: Strain, stress: Strain) -> Strain:
-        """The stress of the material."""
-        return stress
+    def conjugate(self, strain: Strain) -> Strain:
+        """S + Z less the mean of Z + Y."""
+        beside, linear = self.beside(strain, self.law), self.own(strain, self.stress_at, self.law)
+        stress = _whole(*self.stress_at(_strain(beside.strain(linear))))
+        return _parts(beside.on_displacements(linear, stress))
+
+    def stress_of(self, u: Array) -> Strain:
+        """S of the material."""
+        return self.stress_at(self.of_material(self.compatible(u)))
 
     def viscous_of(self, c0: Strain, c1: Strain, dt: float) -> Strain:
         """Viscous stress on the strains of the displacements."""
-        end = self.own(c1, lambda e: self.viscous_stress(c0, e, dt))
-        return self.viscous_stress(c0, end, dt)
+        end = self.own(c1, lambda e: self.viscous_stress(c0, e, dt), SAINT_VENANT_KIRCHHOFF)
+        return self.viscous_stress(c0, _strain(end), dt)
 
     def _add_at(self, total: Array, stress: Strain, u: Array) -> None:
         """As that of rings, less (grad h . S grad h) gamma q."""
