@@ -506,7 +506,10 @@ def pyvista_(trial: Trial) -> str | None:
 def report(trial: Trial) -> str | None:
     """Surfaces of the report page run along sides of `Result.outlines`."""
     page = collect_outline(trial.base.result, Packed(), Choice())
-    sides = {tuple(sorted(edge)) for edge in trial.result.boundary.tolist()}
+    # the nodes of an outline are counted among those that are drawn
+    boundary, rigid = trial.result.boundary, trial.result.rigid
+    drawn = np.unique(np.concatenate([boundary.ravel(), rigid.ravel()]))
+    sides = {tuple(sorted(edge)) for edge in np.searchsorted(drawn, boundary).tolist()}
     for surface in page["surfaces"]:
         ways = zip(surface["nodes"][:-1], surface["nodes"][1:])
         if any(tuple(sorted(way)) not in sides for way in ways):
