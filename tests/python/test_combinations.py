@@ -67,3 +67,9 @@ def test_certificate_of_a_body_at_rest_divides_no_round_off(family: str) -> None
 def test_certificate_adds_enhanced_strains_of_rubber_as_logarithms(family: str, procedure: str) -> None:
     choice = {**SIMPLEST, "family": family, "material": "mooney", "procedure": procedure}
     assert judge("rubber", choice, program.binary(), "certificate").failures == {}
+
+
+@pytest.mark.parametrize("procedure", ["static direct", "quasi-static"])
+def test_certificate_of_a_support_that_fades(procedure: str) -> None:
+    choice = {**SIMPLEST, "family": "CAX4", "procedure": procedure, "sequence": "released"}
+    assert judge("released", choice, program.binary(), "certificate").failures == {}

@@ -465,6 +465,7 @@ class Frames:
         told[self.constrained] = told[self.loaded] = False
         told[np.isin(self.elements.of_node, np.flatnonzero(self.flows))] = False
         told &= self.elements.of_node >= 0
+        self._take_fading(residual, frame, increment)
         residual = self._without_weight(residual, told)
         size = np.abs(residual).max(axis=1)
         largest = np.maximum(np.abs(internal), np.maximum(np.abs(inertia), np.abs(force)))
@@ -483,6 +484,17 @@ class Frames:
         check.add(size[nodes], FORCES * scale[body] + noise[body], place)
         if not len(nodes):
             check.skip("no node is free of supports and loads")
+
+    def _take_fading(self, residual: Array, frame: Frame, increment: Increment) -> None:
+        """Takes out the reactions of removed supports, which fade until the end of a static or quasi-static step."""
+        row, step = increment.row, self.step
+        is_end = row + 1 == len(step) or step[row + 1] != step[row]
+        if increment.step == 0 or is_end or increment.scheme not in (0, EULER):
+            return
+        free = frame["RF"][self.supported] == 0.0
+        if (residual[self.supported][free] != 0.0).any():
+            residual[self.supported] = np.where(free, 0.0, residual[self.supported])
+            self.checks["equilibrium"].skip("reactions of supports that a step removes fade until its end")
 
     def _without_weight(self, residual: Array, told: Flags) -> Array:
         """Takes out the body forces: the accelerations of their patterns that fit best."""
