@@ -30,7 +30,7 @@ from lab.oracles import ALWAYS, FORMS, READERS, Trial, Untold, runs
 from lab.scene import Scene
 from lab.single import SINGLE
 
-SHORT = 64
+SHORT = 40
 """Decks of the short part: the first of the array, which hold most pairs."""
 
 SEED = 1
