@@ -464,9 +464,15 @@ pub(super) fn set_of<'m>(elements: &[usize], model: &'m Model) -> Option<&'m str
     Some(&found.name)
 }
 
-/// A field that names elements: nothing for all of them, a set, or `None` where they make none.
+/// A field that names elements of bodies: nothing for all of them, a set, or `None` where they make none. Nothing names point
+/// masses too, whose weights are forces in the flat deck.
 pub(super) fn elements_field(elements: &[usize], model: &Model) -> Option<String> {
-    match elements.len() == model.mesh.elements.len() {
+    let mut turning = model
+        .rigid_bodies
+        .iter()
+        .filter_map(|body| body.turning.as_ref());
+    let has_masses = turning.any(|turning| !turning.masses.is_empty());
+    match elements.len() == model.mesh.elements.len() && !has_masses {
         true => Some(String::new()),
         false => set_of(elements, model).map(name),
     }

@@ -420,6 +420,9 @@ fn rigid_bodies_that_turn() {
     round_trip(read(&still.replacen("*DLOAD", driven, 1)));
     let loaded = "*CLOAD\n100, 6, 5.\n*DLOAD";
     round_trip(read(&deck.replacen("*DLOAD", loaded, 1)));
+    // the weight of the point mass is a force, which gravity on all elements must not add once more
+    let heavy = "*DLOAD\n, GRAV, 9.81, 0., -1.\n*DLOAD";
+    round_trip(read(&deck.replacen("*DLOAD", heavy, 1)));
 }
 
 #[test]
