@@ -249,7 +249,7 @@ fn refuse_others(files: &JobFiles, earlier: Earlier) -> Result<(), OutputError> 
     for path in files.existing() {
         let is_replaced = *path != files.log || earlier != Earlier::Continued;
         let data = fs::symlink_metadata(path).map_err(FileError::new("read", path))?;
-        if !data.is_file() && !(data.is_symlink() && is_replaced) {
+        if !(data.is_file() || data.is_symlink() && is_replaced) {
             return Err(FileError::new("write", path)(not_regular()).into());
         }
     }

@@ -7,7 +7,7 @@ use stickslip::dynamics::IncrementReport;
 use stickslip::model::Model;
 use stickslip::{deck, reader};
 
-use crate::blocks::{Keep, run_to_end};
+use crate::blocks::run_to_end;
 
 /// The model of a deck, or the messages.
 fn try_read(text: &str) -> Result<Model, String> {
