@@ -160,9 +160,9 @@ fn every_pair_at_one_node_works_or_is_an_error_that_names_both() {
         })
         .collect();
     for node in ["3", "90"] {
-        for a in 0..FEATURES.len() {
-            for b in a + 1..FEATURES.len() {
-                let names = format!("{} and {} at {node}", FEATURES[a].0, FEATURES[b].0);
+        for (a, first) in FEATURES.iter().enumerate() {
+            for (b, second) in FEATURES.iter().enumerate().skip(a + 1) {
+                let names = format!("{} and {} at {node}", first.0, second.0);
                 let model = match meet(&[a, b], node) {
                     Ok(model) => model,
                     Err(errors) => {
@@ -238,8 +238,8 @@ fn cards_with_one_reference_node_make_one_body() {
     for &node in &body.nodes {
         let [rx, ry] = [x[node][0] - 1.0, x[node][1] - 1.0];
         let expected = [cos * rx - sin * ry - rx, sin * rx + cos * ry - ry];
-        for i in 0..2 {
-            assert!((last.state.u[2 * node + i] - expected[i]).abs() < 1e-14);
+        for (i, expected) in expected.into_iter().enumerate() {
+            assert!((last.state.u[2 * node + i] - expected).abs() < 1e-14);
         }
     }
 }
