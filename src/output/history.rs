@@ -662,7 +662,7 @@ const LARGEST_ELASTIC: Meaning = (
 
 #[rustfmt::skip]
 const CONTACT: [DatasetEntry<ContactResultant>; 27] = [
-    ("force", "force", "contact force on the slave surface, or on the first body of each pair where a surface touches itself", Vector(|c| c.force)),
+    ("force", "force", "contact force on the slave surface", Vector(|c| c.force)),
     ("moment", "force*length", "moment of the force about the origin", Real(|c| c.moment)),
     ("normal", "force", "sum of the normal forces Pn", Real(|c| c.normal)),
     ("tangential", "force", "sum of the tangential forces Pt", Real(|c| c.tangential)),

@@ -136,45 +136,48 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
 /// The law of friction of a contact in every step.
 fn write_friction(at: &Group, model: &Model, contact: usize) -> hdf5::Result<()> {
     let own = &model.contacts[contact].interaction.friction;
-    let (mut decays, mut limits, mut ramps, mut rows) = (vec![], vec![], vec![], vec![]);
+    let (mut coefficients, mut decays, mut rows) = (vec![], vec![], vec![]);
+    let (mut limits, mut ramps) = (vec![], vec![]);
     for (number, step) in model.steps.iter().enumerate() {
         let mut changes = step.contacts.friction.iter();
         let change = changes.find(|change| change.contact == contact);
         let friction = change.map_or(own, |change| &change.friction);
-        decays.push(match &friction.law {
+        let (of_step, decay) = match &friction.law {
             FrictionLaw::Decay {
                 at_rest,
                 sliding,
                 decay,
-            } => [*at_rest, *sliding, *decay],
-            FrictionLaw::Rough => [friction.at_rest(0.0), friction.at_rest(0.0), 0.0],
+            } => ([*at_rest, *sliding], *decay),
+            FrictionLaw::Rough => ([friction.at_rest(0.0); 2], 0.0),
             FrictionLaw::Table(curves) => {
                 for curve in curves {
                     let of_point =
-                        |&[rate, mu]: &[f64; 2]| [(number + 1) as f64, curve.pressure, rate, mu];
+                        |&[rate, mu]: &[f64; 2]| (number as i64 + 1, [curve.pressure, rate, mu]);
                     rows.extend(curve.points.iter().map(of_point));
                 }
-                [f64::NAN; 3]
+                ([f64::NAN; 2], f64::NAN)
             }
-        });
+        };
+        coefficients.push(of_step);
+        decays.push(decay);
         limits.push(friction.shear_limit);
         ramps.push(u8::from(change.is_some_and(|change| change.from.is_some())));
     }
     let steps = model.steps.len();
     constant(
         at,
-        "friction_decay",
-        &[steps, 3],
-        decays.as_flattened(),
-        FRICTION_DECAY,
+        "friction_coefficients",
+        &[steps, 2],
+        coefficients.as_flattened(),
+        FRICTION_COEFFICIENTS,
     )?;
-    constant(
-        at,
-        "friction_rows",
-        &[rows.len(), 4],
-        rows.as_flattened(),
-        FRICTION_ROWS,
-    )?;
+    constant(at, "friction_decay", &[steps], &decays, FRICTION_DECAY)?;
+    let (of_step, points): (Vec<i64>, Vec<[f64; 3]>) = rows.into_iter().unzip();
+    constant(at, "table_steps", &[of_step.len()], &of_step, TABLE_STEPS)?;
+    for (column, (name, meaning)) in TABLE.into_iter().enumerate() {
+        let values: Vec<f64> = points.iter().map(|point| point[column]).collect();
+        constant(at, name, &[values.len()], &values, meaning)?;
+    }
     constant(at, "shear_limit", &[steps], &limits, SHEAR_LIMIT)?;
     constant(at, "friction_ramps", &[steps], &ramps, FRICTION_RAMPS)
 }
@@ -361,14 +364,30 @@ const ACTS: Meaning = (
     "1",
     "whether the contact acts in each step: 1, or 0 where it is removed",
 );
+const FRICTION_COEFFICIENTS: Meaning = (
+    "1",
+    "of every step the coefficient of friction at rest and that of fast slip; NaN of a table",
+);
 const FRICTION_DECAY: Meaning = (
-    "1",
-    "of every step the coefficient of friction at rest, that of fast slip, and the decay (time/length) from the one to the other; NaN of a table",
+    "time/length",
+    "of every step the decay from the coefficient at rest to that of fast slip; NaN of a table",
 );
-const FRICTION_ROWS: Meaning = (
-    "1",
-    "rows of tables of friction: step, pressure (force/length^2), slip rate (length/time), coefficient",
-);
+const TABLE_STEPS: Meaning = ("1", "step of every row of the tables of friction, from 1");
+/// Columns of the tables of friction.
+const TABLE: [(&str, Meaning); 3] = [
+    (
+        "table_pressures",
+        ("force/length^2", "pressure of every row of the tables of friction"),
+    ),
+    (
+        "table_slip_rates",
+        ("length/time", "slip rate of every row of the tables of friction"),
+    ),
+    (
+        "table_coefficients",
+        ("1", "coefficient of friction of every row of the tables of friction"),
+    ),
+];
 const SHEAR_LIMIT: Meaning = (
     "force/length^2",
     "largest shear stress of friction in every step; infinite without",

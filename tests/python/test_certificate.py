@@ -103,7 +103,7 @@ def less_friction(file: h5py.File) -> None:
 
 def less_of_the_law(file: h5py.File) -> None:
     """A law of less friction than the forces have: what a run with a wrong coefficient writes."""
-    file[f"model/contacts/{CONTACT}/friction_decay"][:, :2] *= 0.9
+    file[f"model/contacts/{CONTACT}/friction_coefficients"][...] *= 0.9
 
 
 SPOILED: dict[str, tuple[Spoil, str]] = {
@@ -379,7 +379,9 @@ def test_rigid_parts_of_bodies_hold(job: Job, mass: str) -> None:
     with h5py.File(path) as file:
         assert file["model/bodies/mass"][0] == pytest.approx(5.0 if mass else 2.0)
     told = {check.name for check in certificate.checks if check.is_told}
-    assert ("kinetic energy" in told) == (not mass)
+    assert {"strain energy", "equilibrium", "balance"} <= told
+    # V of the nodes between both parts leaves the rigid motion by second order in dt
+    assert "kinetic energy" not in told
 
 
 def test_command_line(result: Path, tmp_path: Path) -> None:

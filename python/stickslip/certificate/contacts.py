@@ -148,11 +148,14 @@ def _laws(result: Result, at: str) -> tuple[Law, ...]:
     """Friction of a contact in all steps."""
     if f"{at}/friction_decay" not in result.file:
         return ()
-    parts = ("friction_decay", "friction_rows", "shear_limit", "friction_ramps")
-    decays, rows, limits, ramps = (result.read(f"{at}/{part}") for part in parts)
-    rows = rows.reshape(-1, 4)
+    parts = ("friction_coefficients", "friction_decay", "shear_limit", "friction_ramps")
+    coefficients, decay, limits, ramps = (result.read(f"{at}/{part}") for part in parts)
+    decays = np.column_stack((coefficients, decay))
+    columns = ("table_steps", "table_pressures", "table_slip_rates", "table_coefficients")
+    of_step, *points = (result.read(f"{at}/{column}") for column in columns)
+    rows = np.column_stack(points)
     return tuple(
-        Law(decay, rows[rows[:, 0] == step + 1][:, 1:], float(limit), bool(ramp))
+        Law(decay, rows[of_step == step + 1], float(limit), bool(ramp))
         for step, (decay, limit, ramp) in enumerate(zip(decays, limits, ramps, strict=True))
     )
 

@@ -12,7 +12,7 @@ use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
 use super::rigid_predictor::rigid_predictor;
-use super::rigid_velocity::{RigidImpulse, make_rigid};
+use super::rigid_velocity::carry_nodes;
 use super::trace::{Failed, Trace};
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
@@ -86,8 +86,6 @@ pub(crate) struct Solved {
     pub passes: Vec<PassReport>,
     /// What is given back once it has converged.
     pub returned: Returned,
-    /// Impulse that makes velocities of its end those of rigid motions.
-    pub rigid: RigidImpulse,
     /// Motions that are held in it.
     pub held: HeldMotions,
     /// Whether K* held the closed pairs.
@@ -643,22 +641,11 @@ impl<'m> Attempt<'_, 'm> {
         let integration = &self.problem.integration;
         let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
-        let mut a = equilibrium.acceleration.clone();
-        let rigid = match self.problem.integration.has_rates {
-            true => {
-                let increment = (&v0p[..], self.interval.dt);
-                make_rigid(
-                    self.problem,
-                    self.workspace,
-                    increment,
-                    (&u, &mut v, &mut a),
-                )?
-            }
-            false => {
-                v.fill(0.0);
-                RigidImpulse::default()
-            }
-        };
+        let a = equilibrium.acceleration.clone();
+        match self.problem.integration.has_rates {
+            true => carry_nodes(self.problem, (&v0p, self.interval.dt), (&u, &a), &mut v),
+            false => v.fill(0.0),
+        }
         let Updated {
             variables: internal,
             dissipated,
@@ -684,7 +671,6 @@ impl<'m> Attempt<'_, 'm> {
             tangent,
             passes: Vec::new(),
             returned: Returned::default(),
-            rigid,
             held,
             holds_pairs: false,
         })

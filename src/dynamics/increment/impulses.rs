@@ -10,10 +10,11 @@ use smallvec::{SmallVec, smallvec};
 
 use super::contact_forces::ContactForces;
 use super::contact_system::{ContactSystem, Guess, Response};
+use super::rigid_velocity::agreeing;
 use crate::contact::tolerances::SOLVED_GAP;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey, Rows};
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace, sum};
+use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace};
 use crate::lcp::ContactState;
 use crate::linear::larger;
 
@@ -36,6 +37,8 @@ pub(crate) struct Impulses {
     of_iterate: Vec<Constraint>,
     /// Whether the impulses are those of the rows of the iterate, as an increment may end with.
     are_exact: bool,
+    /// What they see of V0, eq. (11.5) and eq. (11.11); none where that is V0.
+    seen: Option<Vec<f64>>,
     /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
     resultant: Vec<f64>,
     /// The pairs that stuck in the last pass, with their normal forces; increasing.
@@ -76,6 +79,11 @@ impl Impulses {
         &self.resultant
     }
 
+    /// What they see of the velocity V0 of the start.
+    pub fn seen<'a>(&'a self, v0: &'a [f64]) -> &'a [f64] {
+        self.seen.as_deref().unwrap_or(v0)
+    }
+
     /// Whether a pair touches at the start because an impact ended the subincrement before.
     pub fn touches(&self, key: ConstraintKey) -> bool {
         self.touching.binary_search(&key).is_ok()
@@ -108,14 +116,21 @@ impl Impulses {
         let strikes = |c: &&Constraint| self.strikes(c) && has_mass(problem, c);
         struck.extend(constraints.iter().filter(strikes).map(rows));
         self.of_iterate = struck;
+        if self.seen.is_none()
+            && !self.of_iterate.is_empty()
+            && let Cow::Owned(seen) = agreeing(problem, workspace, start)?
+        {
+            self.seen = Some(seen);
+        }
+        let v0 = self.seen.as_deref().unwrap_or(&start.v);
         let steady = Steady {
             problem,
             inertia: workspace.stiffness.inertia.as_slice(),
             before,
-            v0: &start.v,
+            v0,
         };
         let [steady_part, exact_part] = steady.tolerances();
-        let held = self.held(problem, &start.v, dt);
+        let held = self.held(problem, v0, dt);
         let part = match held.iter().any(|impulse| *impulse > 0.0) {
             true => f64::INFINITY,
             false => self.part_of_change(&steady),
@@ -125,14 +140,10 @@ impl Impulses {
             return Ok(());
         }
         self.are_exact = true;
-        let v0 = match self.of_iterate.is_empty() {
-            true => Cow::Borrowed(start.v.as_slice()),
-            false => agreeing(problem, workspace, start)?,
-        };
         let system = mass_system(problem, workspace);
-        let states = (self.of_iterate.iter()).map(|c| self.state(c, &start.v, dt));
+        let states = (self.of_iterate.iter()).map(|c| self.state(c, v0, dt));
         let states = states.collect();
-        let closed = held_impulses(&self.of_iterate, held, states, &v0, dt, system)?;
+        let closed = held_impulses(&self.of_iterate, held, states, v0, dt, system)?;
         self.forces.relinearize(&mut self.of_iterate);
         self.forces.closed = closed;
         match self.forces.closed.is_empty() {
@@ -296,24 +307,6 @@ impl Impulses {
 fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
     let mut nodes = constraint.nodes();
     !nodes.any(|node| problem.redistribution.is_massless(node))
-}
-
-/// The velocity that impulses of contact see in the place of V0: what agrees with the hinges, eq. (11.11). The rest of V0
-/// does no work with them, so that they bring no energy in.
-fn agreeing<'a>(
-    problem: &StepProblem,
-    workspace: &mut Workspace,
-    start: &'a State,
-) -> Result<Cow<'a, [f64]>, Cause> {
-    if problem.hinges.are_none() {
-        return Ok(Cow::Borrowed(&start.v));
-    }
-    let mut mass = workspace.m();
-    if !mass.is_factorized() {
-        mass.factorize()?;
-    }
-    let (_, change) = mass.close(&problem.hinges.gaps(&start.v))?;
-    Ok(Cow::Owned(sum(&start.v, &change)))
 }
 
 /// M with its complementarity problems.

@@ -21,5 +21,4 @@ pub(crate) use contact_forces::ContactForces;
 pub(crate) use contact_states::ContactStates;
 pub(crate) use contact_system::ContactSystem;
 pub(crate) use returned::{PairReturn, Release};
-pub(crate) use rigid_velocity::RigidImpulse;
 pub(crate) use trace::Failed;

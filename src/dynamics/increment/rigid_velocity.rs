@@ -1,55 +1,57 @@
-//! Velocities at the end of an increment of bodies that turn: those of a rigid motion. Section 11 of docs/theory.md.
+//! Velocities of bodies that turn: those of their nodes at the end of an increment, and what impulses see of those at its
+//! start. Section 11 of docs/theory.md.
 
-use crate::dynamics::results::Cause;
-use crate::dynamics::step::{StepProblem, Workspace, difference, dot, sum};
+use std::borrow::Cow;
 
-/// What makes the velocities at the end of an increment those of rigid motions.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct RigidImpulse {
-    /// Mean force J/dt of its impulse J = M (V - V1) over all dofs; empty where no body may leave a rigid motion.
-    pub force: Vec<f64>,
-    /// Kinetic energy (V - V1).M (V - V1)/2 that it takes.
-    pub loss: f64,
-}
+use crate::dynamics::results::{Cause, State};
+use crate::dynamics::step::{StepProblem, Workspace, difference, sum};
 
-/// Makes the velocities `v` at the displacements `u` of the end of an increment those of bodies that turn as rigid ones,
-/// by an impulse that does no work in any motion of the model; the accelerations `a` lead to them:
-///
-/// ```text
-/// V = Vr + T M^-1 T^T M (V1 - Vr),  A += (V - V1)/dt      eq. (11.5)
-/// ```
-///
-/// V1 = V0+ + dt A, Vr any rigid motion with what is prescribed, T the rows (11.3) of the end. With hinges V1 stays.
-pub(super) fn make_rigid(
+/// Gives the nodes of bodies that turn the velocities V1 = V0+ + dt A that go with their accelerations, eq. (11.4), and those
+/// without mass of elements the ones of their body at the displacements `u`.
+pub(super) fn carry_nodes(
     problem: &StepProblem,
-    workspace: &mut Workspace,
     (v0p, dt): (&[f64], f64),
-    (u, v, a): (&[f64], &mut Vec<f64>, &mut [f64]),
-) -> Result<RigidImpulse, Cause> {
-    let turning = &problem.unknowns.turning;
-    if turning.is_empty() {
-        return Ok(RigidImpulse::default());
-    }
-    for [dof, ..] in turning.followers() {
+    (u, a): (&[f64], &[f64]),
+    v: &mut [f64],
+) {
+    for [dof, ..] in problem.unknowns.turning.followers() {
         v[dof] = v0p[dof] + dt * a[dof];
     }
     problem.unknowns.move_bodies(u, v);
-    if !turning.carry_elements() || !problem.hinges.are_none() {
-        return Ok(RigidImpulse::default());
+}
+
+/// The velocity that impulses of contact see in the place of V0, that of a motion of the model:
+///
+/// ```text
+/// V = Vr + T_0 (T_0^T M T_0)^-1 T_0^T M (V0 - Vr)      eq. (11.5)
+/// ```
+///
+/// Vr being any motion of the model with what is prescribed, T_0 the rows (11.3) of the start. The rest of V0 does no work
+/// with impulses, (V0 - V).M V = 0, so that they bring no energy in.
+pub(super) fn agreeing<'a>(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    start: &'a State,
+) -> Result<Cow<'a, [f64]>, Cause> {
+    let (turning, hinges) = (&problem.unknowns.turning, &problem.hinges);
+    if !turning.carry_elements() && hinges.are_none() {
+        return Ok(Cow::Borrowed(&start.v));
     }
-    let mut rigid = v.clone();
-    turning.move_with_poles(u, &mut rigid);
-    workspace.stiffness.start(problem, u);
     let mut mass = workspace.m();
-    mass.factorize()?;
-    let response = mass.respond(&problem.mass.times(&difference(v, &rigid)))?;
-    let end = sum(&rigid, &response);
-    let change = difference(&end, v);
-    *v = end;
-    a.iter_mut().zip(&change).for_each(|(a, c)| *a += c / dt);
-    let impulse = problem.mass.times(&change);
-    Ok(RigidImpulse {
-        loss: dot(&change, &impulse) / 2.0,
-        force: impulse.iter().map(|j| j / dt).collect(),
-    })
+    if !mass.is_factorized() {
+        mass.factorize()?;
+    }
+    let mut motion = start.v.clone();
+    if turning.carry_elements() {
+        problem.unknowns.move_with_poles(&start.u, &mut motion);
+    }
+    if !hinges.are_none() {
+        let (_, change) = mass.close(&hinges.gaps(&motion))?;
+        motion = sum(&motion, &change);
+    }
+    if turning.carry_elements() {
+        let rest = problem.mass.times(&difference(&start.v, &motion));
+        motion = sum(&motion, &mass.respond(&rest)?);
+    }
+    Ok(Cow::Owned(motion))
 }

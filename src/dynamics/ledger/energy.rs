@@ -10,7 +10,7 @@ use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
 use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::increment::{ContactStates, RigidImpulse, Solved};
+use crate::dynamics::increment::{ContactStates, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, difference, dot, sum};
 use crate::elements::{ElementResult, Motion, TangentPart};
@@ -172,13 +172,14 @@ impl Ledger {
             ..
         } = &solved.equilibrium;
         let turning = &problem.unknowns.turning;
-        // -Phi.(Bn V) - Psi.(Bt V), V = (V0 + V0+)/2, eq. (9.4); at supports V0.(M (V0+ - V0) - B^T Phi)
-        // of eq. (9.1), with what equations pass on to them
+        // -Phi.(Bn V) - Psi.(Bt V), V = V0 + (V0+ - V0)/2 with what impulses see of V0, eq. (9.4); at supports
+        // V0.(M (V0+ - V0) - B^T Phi) of eq. (9.1), with what equations pass on to them
         if v0p != &start.v {
             let impulse = solved.contact.impulses.resultant();
-            let change = problem.mass.times(&difference(v0p, &start.v));
-            self.energy.impact_loss -= dot(&sum(&start.v, v0p), impulse) / 2.0;
-            let mut reaction = difference(&change, impulse);
+            let change = difference(v0p, &start.v);
+            let seen = solved.contact.impulses.seen(&start.v);
+            self.energy.impact_loss -= dot(seen, impulse) + dot(&change, impulse) / 2.0;
+            let mut reaction = difference(&problem.mass.times(&change), impulse);
             let nothing = vec![0.0; d.len()];
             turning.hand_over([&start.u, &nothing], false, &mut reaction);
             let reaction = problem.unknowns.passed_on(&reaction);
@@ -231,16 +232,6 @@ impl Ledger {
         let [load, internal, inertia, contact] =
             [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
         let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
-        // V1.J of supports, and what velocities that leave rigid motions have, eq. (11.5)
-        let RigidImpulse { force, loss } = &solved.rigid;
-        if !force.is_empty() {
-            let mut force = force.clone();
-            let nothing = vec![0.0; d.len()];
-            turning.hand_over([&end.u, &nothing], true, &mut force);
-            let force = problem.unknowns.passed_on(&force);
-            e.external_work += prescribed().map(|p| dt * end.v[p] * force[p]).sum::<f64>();
-            e.numerical_dissipation += loss;
-        }
         // (d - dt V_mid).M A of what is free, eq. (4.27)
         if problem.integration.backward_euler {
             let beyond = |dof: usize| d[dof] - dt * (v0p[dof] + end.v[dof]) / 2.0;

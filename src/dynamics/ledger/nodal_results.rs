@@ -41,7 +41,6 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
     let missing = |p: usize| inertia[p] + internal[p] - load[p] - contact_force[p];
     let mut missing: Vec<f64> = (0..dofs).map(missing).collect();
-    (missing.iter_mut().zip(&solved.rigid.force)).for_each(|(missing, force)| *missing += force);
     let tie_force = tie_forces(problem.model, |dof| missing[dof]);
     let turning = &problem.unknowns.turning;
     turning.hand_over([&solved.end.u, &solved.d], false, &mut missing);

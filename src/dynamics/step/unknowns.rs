@@ -154,6 +154,13 @@ impl<'m> Unknowns<'m> {
         self.turning.move_with(u, v, |dof| self.is_prescribed(dof));
     }
 
+    /// Gives all nodes of bodies that turn the velocities of their poles at displacements `u`, and the dofs of equations those
+    /// that follow.
+    pub fn move_with_poles(&self, u: &[f64], v: &mut [f64]) {
+        self.turning.move_with_poles(u, v);
+        self.follow(v);
+    }
+
     /// Gives supports their velocity at the start of the analysis, and bodies that turn and the dofs of equations the
     /// one that follows.
     pub fn prescribe_velocity(&self, at: TimePoint, u: &[f64], v: &mut [f64]) {
