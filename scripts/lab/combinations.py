@@ -47,7 +47,7 @@ class Verdict:
     failures: dict[str, str] = field(default_factory=dict)
     """What is wrong, by oracle."""
     known: dict[str, str] = field(default_factory=dict)
-    """Failures that are documented, with the reason."""
+    """Failures that are documented, with what is wrong and the reason."""
     told: list[str] = field(default_factory=list)
     """Oracles that had something to say."""
     seconds: float = 0.0
@@ -86,8 +86,10 @@ def judge(name: str, choice: Choice, program: Path, only: str | None = None) -> 
                 said = one_line(error) or type(error).__name__
             verdict.told.append(oracle)
             if said:
-                reason = known(oracle, choice, said)
-                (verdict.known if reason else verdict.failures)[oracle] = reason or said
+                if reason := known(oracle, choice, said):
+                    verdict.known[oracle] = f"{said} ({reason})"
+                else:
+                    verdict.failures[oracle] = said
     verdict.seconds = time.monotonic() - start
     return verdict
 

@@ -357,12 +357,6 @@ KNOWN: list[Known] = [
     ),
     Known(
         "certificate",
-        "the mean gaps of a pair in both orders that the certificate computes are up to 3e-4 of an edge off: not explained",
-        {"contact": ["both orders s2s"]},
-        "fails: gap",
-    ),
-    Known(
-        "certificate",
         "the file does not say which faces a surface of nodes stands for: corners of the other body cross edges between them",
         {"contact": ["node surface"]},
         "fails: crossing",

@@ -73,3 +73,10 @@ def test_certificate_adds_enhanced_strains_of_rubber_as_logarithms(family: str, 
 def test_certificate_of_a_support_that_fades(procedure: str) -> None:
     choice = {**SIMPLEST, "family": "CAX4", "procedure": procedure, "sequence": "released"}
     assert judge("released", choice, program.binary(), "certificate").failures == {}
+
+
+@pytest.mark.parametrize("family", ["CPE4R", "CPE8"])
+@pytest.mark.parametrize("procedure", ["static direct", "dynamic"])
+def test_certificate_of_two_contacts_from_surface_to_surface_in_both_orders(family: str, procedure: str) -> None:
+    choice = {**SIMPLEST, "family": family, "procedure": procedure, "contact": "both orders s2s", "interaction": "wear"}
+    assert judge("both orders", choice, program.binary(), "certificate").failures == {}

@@ -592,8 +592,9 @@ class Frames:
         start = increment.start
         x0 = x1 if start is None else self.result.coordinates + start
         told = start is not None and bool(self._start_is_told(frame, increment).all())
-        force, status, gaps = frame["CONTACT_FORCE"], frame["CONTACT_STATUS"], frame["GAP"]
+        status, gaps = frame["CONTACT_STATUS"], frame["GAP"]
         noise = 16 * EPS * np.abs(x1).max() / self._edge
+        all_found: list[tuple[Contact, Means, list[Mean]]] = []
         for contact in contacts:
             if not contact.has_means:
                 continue
@@ -604,6 +605,10 @@ class Frames:
                 continue
             asked = contact.slaves[np.isfinite(gaps[contact.slaves])]
             found = list(means.means(x0, x1, asked, told and increment.scheme == 1))
+            all_found.append((contact, means, found))
+        for contact, means, found in all_found:
+            # of nodes that are master too the file tells one gap and one state for both, eq. (9.16)
+            of_master = _at_masters([(other, more) for _, other, more in all_found if other is not means])
             closed = []
             least: dict[int, Mean] = {}
             for mean in found:
@@ -612,15 +617,20 @@ class Frames:
             for node, mean in least.items():
                 label = self.result.node_labels[node]
                 at = f"mean at node {label}, t = {frame.time:g}"
-                if node not in means.corners and gaps[node] <= NEAR * self._edge:
-                    stored = abs(mean.gap - gaps[node]) / self._edge
+                on_master = of_master.get(node, AtMaster())
+                is_corner = node in means.corners or on_master.is_corner
+                nearest = min(mean.gap, on_master.gap)
+                if not is_corner and gaps[node] <= NEAR * self._edge and (told or not on_master.whole):
+                    stored = abs(nearest - gaps[node]) / self._edge
                     self.checks["gap"].add(stored, TOUCH + noise, f"GAP, {at}")
                 # what is left at the ends of masters, eq. (7.9)
                 is_exact = told and not mean.moved and node not in means.corners
                 bound = GAP if is_exact else LEFT
                 self.checks["gap"].add(-mean.gap / self._edge, bound + noise, at)
-                if status[node] >= STICK and node not in means.corners:
-                    self.checks["gap"].add(mean.gap / self._edge, bound + noise, at)
+                if status[node] >= STICK and not is_corner:
+                    open_by = min(mean.gap, on_master.least)
+                    bound = LEFT if on_master.moved else bound
+                    self.checks["gap"].add(open_by / self._edge, bound + noise, at)
             for mean in found:
                 is_near = abs(mean.gap) <= (GAP + noise if not mean.moved else LEFT) * self._edge
                 if status[mean.node] >= STICK and (is_near or mean is least[mean.node]):
@@ -777,6 +787,41 @@ class Frames:
     def _edge(self) -> float:
         """The length by which gaps are measured."""
         return self.result.edge_length
+
+
+@dataclass
+class AtMaster:
+    """The means that act on a master node."""
+
+    weighted: float = 0.0
+    """Sum of their gaps by the parts of their normal forces that the node takes."""
+    whole: float = 0.0
+    """Sum of these parts."""
+    least: float = np.inf
+    moved: bool = False
+    is_corner: bool = False
+    """Whether it is a corner, which is held by itself too."""
+
+    @property
+    def gap(self) -> float:
+        """Their mean gap, eq. (9.16)."""
+        return self.weighted / self.whole if self.whole > 0.0 else np.inf
+
+
+def _at_masters(found: list[tuple[Means, list[Mean]]]) -> dict[int, AtMaster]:
+    """What means have at their master nodes."""
+    at: dict[int, AtMaster] = {}
+    for means, some in found:
+        for mean in some:
+            for node, part in means.master_parts(mean).items():
+                own = at.setdefault(node, AtMaster())
+                own.weighted += part * mean.gap
+                own.whole += part
+                own.least = min(own.least, mean.gap)
+                own.moved |= mean.moved
+        for node in means.master_corners:
+            at.setdefault(node, AtMaster()).is_corner = True
+    return at
 
 
 def _whole_bodies(elements: Elements, constrained: Integers) -> Flags:

@@ -49,6 +49,8 @@ class Point:
     slip: float
     rows: tuple[Array, Array]
     """What a unit normal and a unit tangential force are there."""
+    on_end: Array
+    """What the unit normal force is on the end of the segment."""
 
 
 @dataclass
@@ -237,11 +239,17 @@ class Means:
         if not halfway:
             x0, x1 = self.at[0], self.at[1]
             d = s[1] - s[0] - (1.0 - xi[1]) * (x1[1][j] - x0[1][j]) - xi[1] * (x1[2][j] - x0[2][j])
-            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (_turned(t[1]), t[1]))
-        mean = (e[0] + e[1]) / 2.0
-        slip = (length[0] + length[1]) / 2.0 * (xi[1] - xi[0])
-        normal = _turned(mean) * (1.0 / length[0] + 1.0 / length[1]) / 2.0
-        tangential = mean * (length[0] + length[1]) / 4.0 * (1.0 / length[0] ** 2 + 1.0 / length[1] ** 2)
+            normal = _turned(t[1])
+            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (normal, t[1]), -xi[1] * normal)
+        mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
+        long, square = (length[0] + length[1]) / 2.0, (length[0] * length[1]) ** 2
+        slip = long * (xi[1] - xi[0])
+        alpha = (1.0 / length[0] + 1.0 / length[1]) / 2.0
+        beta = -(gaps[0] * length[0] + gaps[1] * length[1]) / 4.0 / (length[0] * length[1] * long)
+        gamma = long * (1.0 / length[0] ** 2 + 1.0 / length[1] ** 2) / 2.0
+        delta = -long * float(r[0] @ e[0] + r[1] @ e[1]) / 2.0 / square
+        normal, tangential = alpha * _turned(mean), gamma * mean
+        on_end = alpha * np.array([-arm[1], arm[0]]) + 2.0 * beta * mean
         if i != j:
             before, most = max(gaps[0], 0.0), TILT
             if i is not None:
@@ -250,10 +258,21 @@ class Means:
                 most = max(TILT, 2.0 * abs(_cross(tangents[i], tangents[j])))
             rise = gaps[0] - before
             if abs(rise) <= most * abs(slip):
-                normal = normal + (rise / slip if rise else 0.0) * tangential
+                kappa = rise / slip if rise else 0.0
             else:
-                normal = normal + most**2 * slip / rise * tangential
-        return Point(face, eta, weight, j, i, gaps[1], slip, (normal, tangential))
+                kappa = most**2 * slip / rise
+            normal = normal + kappa * tangential
+            on_end = on_end + kappa * (gamma * arm + 2.0 * delta * mean)
+        return Point(face, eta, weight, j, i, gaps[1], slip, (normal, tangential), on_end)
+
+    def master_parts(self, mean: Mean) -> dict[int, float]:
+        """The parts |Bn_jm| of the normal force of a mean that its master nodes take, eq. (9.16)."""
+        rows: dict[int, Array] = {}
+        for weight, q in mean.points:
+            for end, row in zip(self.segments[q.segment], (-q.rows[0] - q.on_end, q.on_end)):
+                for node, share in self.vertex(int(end)):
+                    rows[node] = rows.get(node, np.zeros(2)) + weight * share * row
+        return {node: float(np.linalg.norm(row)) for node, row in rows.items()}
 
     def forces(self, means: list[Mean], force: Array) -> tuple[Array, Array, float]:
         """Normal and tangential forces [J, 2] of means whose nodal forces on the slave are given, whether each is told
