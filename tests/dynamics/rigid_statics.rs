@@ -114,6 +114,25 @@ fn a_rigid_block_rests_on_an_elastic_one_before_and_after_a_dynamic_step() {
     }
 }
 
+/// A rigid block is pressed into an elastic floor and turned by an angle whose rate changes: it ends where contact has
+/// held it, though its increments begin with the motion of the one before.
+#[test]
+fn a_prescribed_angle_changes_its_rate() {
+    let motion = "*BOUNDARY\n5, 1, 1\n5, 2, 2, -0.02\n*BOUNDARY, AMPLITUDE=A\n5, 6, 6, 0.05\n";
+    let text = format!(
+        "{}{MATERIAL}{}*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.7\n\
+         *STEP, NLGEOM\n*STATIC, DIRECT\n0.25, 1.\n{motion}*END STEP\n",
+        square(1, [0.1, 0.0], [0.1, 0.3], "B"),
+        on_elastic_floor("B", 0.0, "1000.")
+    );
+    let reports = run(&text);
+    assert!(contact_force(last(&reports), 1) > 1.0);
+    for report in &reports {
+        let gap = report.solver.violation.gap;
+        assert!(gap < 1e-12, "{gap:e} at {}", report.time);
+    }
+}
+
 /// A lever on a fixed point: the moments of a dead force and of a spring about it vanish in the end.
 #[test]
 fn a_lever_turns_until_its_spring_holds_it() {

@@ -490,7 +490,10 @@ impl<'m> Attempt<'_, 'm> {
             ..
         } = vectors;
         match pass {
-            0 => *d_p = (problem.unknowns).prescribed_increment(u, self.interval.end),
+            0 => {
+                let from = [&self.start.u[..], u];
+                *d_p = (problem.unknowns).prescribed_increment(from, self.interval.end);
+            }
             1 => d_p.fill(0.0),
             _ => return,
         }

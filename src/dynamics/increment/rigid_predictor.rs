@@ -72,7 +72,7 @@ fn motions(
     let body_of = problem.parts.of_nodes();
     let mut motions = vec![RigidMotion::default(); holds.len()];
     let mut rates = start.v.clone();
-    let prescribed = (problem.unknowns).prescribed_increment(&start.u, interval.end);
+    let prescribed = (problem.unknowns).prescribed_increment([&start.u; 2], interval.end);
     for (node, &body) in body_of.iter().enumerate() {
         let motion = &mut motions[body];
         let (m, x) = (problem.mass.shares[node], problem.position(&start.u, node));

@@ -353,6 +353,21 @@ impl<'m> Turning<'m> {
         }
     }
 
+    /// Makes increments s = L c from the iterate `u` those by which the increment from `u0` to `u` goes on to the same angles:
+    ///
+    /// ```text
+    /// tan(a + b) - tan a = tan b (1 + tan² a)/(1 - tan a tan b)
+    /// ```
+    ///
+    /// a and b being half the rotations before and after the iterate.
+    pub fn go_on(&self, [u0, u]: [&[f64]; 2], d: &mut [f64]) {
+        for body in self.bodies {
+            let before = ((body.angle(u) - body.angle(u0)) / 2.0).tan();
+            let more = d[body.spin] / body.length / 2.0;
+            d[body.spin] *= (1.0 + before * before) / (1.0 - before * more);
+        }
+    }
+
     /// Sets the displacements of all nodes to those of the poles and angles.
     pub fn place(&self, u: &mut [f64]) {
         for (body, pole) in self.with_poles() {
@@ -612,6 +627,25 @@ mod tests {
             for (unknown, dof) in rows.restrict(&force).iter().zip(leading) {
                 assert!((unknown - handed[dof]).abs() < 1e-13);
             }
+        }
+    }
+
+    #[test]
+    fn an_iterate_goes_on_to_the_same_angle() {
+        let bodies = body();
+        let turning = Turning::new(&bodies, false, |_| false);
+        let (u0, spin, l) = (start(&turning), bodies[0].spin, bodies[0].length);
+        let of_angle = |angle: f64| 2.0 * l * (angle / 2.0).tan();
+        for (before, more) in [(0.0, 0.7), (0.4, 0.3), (0.9, -1.3), (-0.5, 0.5)] {
+            let (mut u, mut d) = (u0.clone(), vec![0.0; DOFS]);
+            u[spin] += l * before;
+            d[spin] = of_angle(more);
+            turning.go_on([&u0, &u], &mut d);
+            let whole = of_angle(before) + d[spin];
+            assert!(
+                (whole - of_angle(before + more)).abs() < 1e-14,
+                "{before} {more}"
+            );
         }
     }
 

@@ -126,14 +126,16 @@ impl<'m> Unknowns<'m> {
         &self.constrained
     }
 
-    /// Displacement g(t) - u that is left of the motion of the supports; zero at free dofs.
-    pub fn prescribed_increment(&self, u: &[f64], end: TimePoint) -> Vec<f64> {
+    /// Displacement g(t) - u that is left of the motion of the supports in the iterate `u` of an increment from `u0`; zero
+    /// at free dofs.
+    pub fn prescribed_increment(&self, [u0, u]: [&[f64]; 2], end: TimePoint) -> Vec<f64> {
         let mut d = vec![0.0; u.len()];
         for (dof, prescribed, _) in self.supports.motion(end) {
             d[dof] = prescribed - u[dof];
         }
         self.turning.rotations(&mut d);
         self.turning.follow(u, &mut d);
+        self.turning.go_on([u0, u], &mut d);
         self.follow(&mut d);
         d
     }
