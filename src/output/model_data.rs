@@ -10,8 +10,8 @@ use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
 use crate::materials::{Law, Polynomial};
 use crate::model::{
-    ContactFormulation, Disc, ElementType, FrictionLaw, Heat, Material, Model, Procedure, Scheme,
-    Segment, Step, Surface, SurfaceKind, Variation,
+    Disc, ElementType, FrictionLaw, Heat, Material, Model, Procedure, Scheme, Segment, Step,
+    Surface, SurfaceKind, Variation,
 };
 
 /// Writes the datasets and groups into `/model`.
@@ -103,9 +103,7 @@ fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
         let at = group(at, &name)?;
         indices(&at, "slaves", model.slave_nodes(contact), SLAVES)?;
         write_segments(&at, "segments", model, contact.master, SEGMENTS)?;
-        if contact.formulation == ContactFormulation::SurfaceToSurface {
-            write_segments(&at, "slave_faces", model, contact.slave, SLAVE_FACES)?;
-        }
+        write_segments(&at, "slave_faces", model, contact.slave, SLAVE_FACES)?;
         constant(
             &at,
             "friction",
@@ -348,7 +346,7 @@ const SEGMENTS: Meaning = (
 );
 const SLAVE_FACES: Meaning = (
     "1",
-    "node indices of the slave faces, their body on the left of the way from the first to the second",
+    "node indices of the slave faces, their body on the left of the way from the first to the second; none of a surface of nodes",
 );
 const DISC_RADIUS: Meaning = ("length", "radius of the slave, a disc about its node");
 const DISC_ARM: Meaning = ("1", "index of the node that takes the turning of the disc");

@@ -99,10 +99,10 @@ class Contact:
     """Whether it acts in each step."""
     body: Integers
     """Body of each node, -1 for those of rigid surfaces [N]."""
+    faces: Integers
+    """Slave faces [F, 2], their body on the left; none of a surface of nodes."""
     has_means: bool = False
     """Whether it keeps means over faces out, and corners, in place of every slave node."""
-    faces: Integers | None = None
-    """Slave faces of means [F, 2], their body on the left."""
     disc: Disc | None = None
     """Set where the slave is a disc."""
     laws: tuple[Law, ...] = ()
@@ -134,12 +134,15 @@ def contacts(result: Result) -> list[Contact]:
             )
             disc = Disc(float(radius), int(arm), arcs, centres)
         kind = result.file[f"history/contact/{name}"].attrs["formulation"]
-        faces = None if kind == EXACT else result.read(f"{at}/{name}/slave_faces")
+        if f"{at}/{name}/slave_faces" in result.file:
+            faces = result.read(f"{at}/{name}/slave_faces")
+        else:  # a file of an older program
+            faces = result.boundary[np.isin(result.boundary, slaves).all(axis=1)]
         heat = float(result.read(f"{at}/{name}/heat")) if f"{at}/{name}/heat" in result.file else 0.0
         laws = _laws(result, f"{at}/{name}")
         has_means = kind != EXACT
         found.append(
-            Contact(name, slaves, segments, friction, acts, body, has_means, faces, disc, laws, heat)
+            Contact(name, slaves, segments, friction, acts, body, faces, has_means, disc, laws, heat)
         )
     return found
 

@@ -115,7 +115,7 @@ class Frames:
         self.means = {
             contact.name: Means(contact, contact.faces, result.coordinates, self.elements.middles(), is_axisymmetric(result))
             for contact in self.contacts
-            if contact.faces is not None and not np.array_equal(contact.faces, contact.segments)
+            if contact.has_means and not np.array_equal(contact.faces, contact.segments)
         }
         self.time = result.history["time"]
         self.step, self.dt = result.history["step"], result.history["dt"]

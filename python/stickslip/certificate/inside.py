@@ -66,7 +66,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             depth = max([depth, *(one.depth for one in found)])
             count += len(contact.slaves)
             if not contact.has_means:
-                crossed = max(crossed, _crossed(x, bodies, contact))
+                crossed = max(crossed, _crossed(x, contact))
         checks["penetration"].add(depth, limit + noise, place)
         row = np.flatnonzero(recorded[0] == frame.time)
         if len(row) and row[-1] > 0:
@@ -108,15 +108,13 @@ def _in_obstacles(
     return found
 
 
-def _crossed(x: Array, bodies: list[Outline], contact: Contact) -> float:
-    """How far edges of the slave surface cross master segments, eq. (10.6)."""
+def _crossed(x: Array, contact: Contact) -> float:
+    """How far faces of the slave surface cross master segments, eq. (10.6)."""
     masters = Profile(contact.segments[:, 0], contact.segments[:, 1])
+    own = contact.faces[np.isin(contact.faces, contact.slaves).all(axis=1)]
     worst = 0.0
-    for body in bodies:
-        both = np.isin(body.nodes, contact.slaves) & np.isin(body.after, contact.slaves)
-        nodes, after = body.nodes[both], body.after[both]
-        for first in range(0, len(nodes), EDGES):
-            some = slice(first, first + EDGES)
-            depth = crossings(x, Profile(nodes[some], after[some]), masters)
-            worst = max(worst, float(depth.max(initial=0.0)))
+    for first in range(0, len(own), EDGES):
+        nodes, after = own[first : first + EDGES].T
+        depth = crossings(x, Profile(nodes, after), masters)
+        worst = max(worst, float(depth.max(initial=0.0)))
     return worst
