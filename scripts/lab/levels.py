@@ -355,51 +355,6 @@ KNOWN: list[Known] = [
         {"family": RINGS, "connection": ["hinge"]},
         "error[D322]",
     ),
-    Known(
-        "certificate",
-        "the file does not say which faces a surface of nodes stands for: corners of the other body cross edges between them",
-        {"contact": ["node surface"]},
-        "fails: crossing",
-    ),
-    *(
-        Known(
-            oracle,
-            "sticking pairs of a disc on a block slip by 1.5e-7 of an edge in static increments: not explained",
-            {"procedure": STATIC, "connection": ["disc"]},
-            text,
-        )
-        for oracle, text in (("certificate", "fails: law"), ("own checks", "slip"))
-    ),
-    *(
-        Known(
-            oracle,
-            "the energy balance of this metal after its contact is removed is off by 4e-7: not explained",
-            {"material": ["kinematic metal"], "sequence": ["contact removed"], "procedure": ["quasi-static"]},
-            text,
-        )
-        for oracle, text in (
-            ("certificate", "fails: balance, law"),
-            ("own checks", "balance"),
-            ("balance", "balance"),
-        )
-    ),
-    Known(
-        "rests",
-        "impacts found at the start of a dynamic step move a body at rest by 2e-6 of its displacement: not explained",
-        {"procedure": ["events"], "contact": ["both orders s2s"]},
-    ),
-    Known(
-        "reordered",
-        "the impacts of a landing with return in both orders depend on the order of faces: not explained",
-        {"procedure": ["return"], "contact": ["both orders s2s"]},
-        "history/impacts",
-    ),
-    Known(
-        "turned",
-        "a ring on a spring mirrored along its axis has other increments from row 128 on: not explained",
-        {"procedure": ["automatic"]},
-        "history/step",
-    ),
 ]
 
 
