@@ -34,6 +34,14 @@ pub struct Step {
     pub frames: Frames,
 }
 
+impl Step {
+    /// The motion of a dof, if it is prescribed.
+    pub fn motion_of(&self, dof: usize) -> Option<SupportMotion> {
+        let place = (self.supports).binary_search_by_key(&dof, |support| support.dof);
+        place.ok().map(|index| self.supports[index].motion)
+    }
+}
+
 /// What is different of the contacts in a step, whether it or an earlier one has changed it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactChanges {

@@ -334,7 +334,7 @@ fn rigid_lines(model: &Model) -> Vec<String> {
         let x = 2 * body.reference;
         let dofs = [(x, 1), (x + 1, 2), (model.angle_of(turning), 6)];
         let free = |step: &Step| {
-            let is_free = |dof: usize| step.supports.binary_search_by_key(&dof, |s| s.dof).is_err();
+            let is_free = |dof: usize| step.motion_of(dof).is_none();
             let free = dofs.iter().filter(|(dof, _)| is_free(*dof));
             let names: Vec<String> = free.map(|(_, name)| name.to_string()).collect();
             match names.is_empty() {

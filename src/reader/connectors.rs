@@ -9,7 +9,7 @@ use super::outline::Outline;
 use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
 use crate::model::{
-    Connector, ConnectorDirection, ConnectorLaw, Equation, ForceCurve, Model, Procedure, Step,
+    Connector, ConnectorDirection, ConnectorLaw, Equation, ForceCurve, Model, Procedure,
 };
 
 fn keyword(law: ConnectorLaw) -> &'static str {
@@ -73,8 +73,7 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
             .steps
             .iter()
             .filter(|step| step.procedure != Procedure::Static);
-        let held = |step: &Step| step.supports.binary_search_by_key(&dof, |s| s.dof);
-        dynamic.all(|step| held(step).is_ok())
+        dynamic.all(|step| step.motion_of(dof).is_some())
     };
     let is_light =
         |node: usize| (2 * node..2 * node + 2).any(|dof| !has_mass[dof] && !is_held(dof));

@@ -9,7 +9,7 @@ use super::owners::{Constraints, Owner};
 use super::rigid_bodies::Rigid;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
-use crate::model::{Equation, Step, Support, SupportMotion};
+use crate::model::{Equation, Step, Support};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Terms on a data line; each takes three fields.
@@ -276,10 +276,7 @@ fn of_links<'a>(
     steps: &[Step],
     cx: &mut Context,
 ) {
-    let is_prescribed = |dof: usize| {
-        let mut supports = steps.iter().map(|step| &step.supports);
-        supports.any(|all| all.binary_search_by_key(&dof, |s| s.dof).is_ok())
-    };
+    let is_prescribed = |dof: usize| steps.iter().any(|step| step.motion_of(dof).is_some());
     for link in links {
         for direction in 0..2 {
             let at = |node: &usize| 2 * node + direction;
@@ -321,18 +318,13 @@ enum PrescribedDof {
 
 /// Whether a tied dof is prescribed, and in all steps as those of the same direction that it follows.
 fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> PrescribedDof {
-    let motion = |step: &Step, dof: usize| -> Option<SupportMotion> {
-        let supports = &step.supports;
-        let found = supports.binary_search_by_key(&dof, |support| support.dof);
-        found.ok().map(|index| supports[index].motion)
-    };
     let same_direction = || terms.iter().filter(|(to, _)| to % 2 == dof % 2);
-    if steps.iter().all(|step| motion(step, dof).is_none()) {
+    if steps.iter().all(|step| step.motion_of(dof).is_none()) {
         return PrescribedDof::Not;
     }
     let alike = steps.iter().all(|step| {
-        let own = motion(step, dof);
-        own.is_some() && same_direction().all(|(to, _)| motion(step, *to) == own)
+        let own = step.motion_of(dof);
+        own.is_some() && same_direction().all(|(to, _)| step.motion_of(*to) == own)
     });
     if alike {
         PrescribedDof::Alike

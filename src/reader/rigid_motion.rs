@@ -131,9 +131,9 @@ pub(crate) fn check(
             );
         }
         let angle = angle_dof(turning.number, mesh);
-        let is_held = |step: &&Step| motion_of(step, angle).is_some_and(SupportMotion::is_still);
+        let is_held = |step: &&Step| step.motion_of(angle).is_some_and(SupportMotion::is_still);
         if mesh.is_axisymmetric() {
-            let is_driven = |step: &Step| motion_of(step, 2 * body.reference).is_some();
+            let is_driven = |step: &Step| step.motion_of(2 * body.reference).is_some();
             let fault = match steps.iter().all(|step| is_held(&step)) {
                 false => Some(("turns", "its rotation, direction 6")),
                 true if !steps.iter().all(is_driven) => {
@@ -178,7 +178,7 @@ impl Rigid {
     /// Whether it moves in a step where nothing is prescribed: it has mass, its own or that of its nodes, or it is free
     /// in a static step, which needs none.
     fn moves_freely(&self, step: &Step) -> bool {
-        let is_free = |direction: &usize| motion_of(step, 2 * self.reference + direction).is_none();
+        let is_free = |direction: &usize| step.motion_of(2 * self.reference + direction).is_none();
         self.has_mass()
             || self.is_coupling
             || !self.carried.is_empty()
@@ -186,22 +186,14 @@ impl Rigid {
     }
 }
 
-/// The motion of a dof in a step, if it is prescribed.
-fn motion_of(step: &Step, dof: usize) -> Option<SupportMotion> {
-    let found = step
-        .supports
-        .binary_search_by_key(&dof, |support| support.dof);
-    found.ok().map(|index| step.supports[index].motion)
-}
-
 /// Whether a body turns: its angle moves in some step, or it moves freely in some direction of some step.
 fn turns(rigid: &Rigid, angle: usize, steps: &[Step], velocity: &[f64]) -> bool {
     let translations = [0, 1].map(|i| 2 * rigid.reference + i);
     velocity.get(angle).is_some_and(|omega| *omega != 0.0)
-        || steps.iter().any(|step| match motion_of(step, angle) {
+        || steps.iter().any(|step| match step.motion_of(angle) {
             Some(motion) if !motion.is_still() => true,
             of_angle => {
-                let is_free = |dof: &usize| motion_of(step, *dof).is_none();
+                let is_free = |dof: &usize| step.motion_of(*dof).is_none();
                 rigid.moves_freely(step) && (of_angle.is_none() || translations.iter().any(is_free))
             }
         })
@@ -270,7 +262,7 @@ fn complete_turning(
     let reference = rigid.reference;
     // a mass beside a held reference node, or a spring there, resists the rotation of coupled nodes
     let is_sprung = || (mesh_index.connectors.iter()).any(|own| own.nodes.contains(&reference));
-    let is_free = |step: &Step| (0..2).all(|i| motion_of(step, 2 * reference + i).is_none());
+    let is_free = |step: &Step| (0..2).all(|i| step.motion_of(2 * reference + i).is_none());
     let rides = |step: &Step| !rigid.carried.is_empty() && is_free(step) && !is_sprung();
     let own: BTreeSet<usize> = rigid.nodes.iter().copied().collect();
     if rigid.is_coupling && !report_empty_coupling(rigid, &own, mesh_index, cx) {
@@ -280,7 +272,7 @@ fn complete_turning(
         if let Some(held) = step.supports.iter().find(|s| own.contains(&(s.dof / 2))) {
             return report_other_motion(rigid, held.dof, (mesh_index, supports), cx);
         }
-        let turns_freely = motion_of(step, angle).is_none();
+        let turns_freely = step.motion_of(angle).is_none();
         let has_mass = match rigid.carried.is_empty() {
             true => rigid.has_mass(),
             false => rides(step),
@@ -297,7 +289,7 @@ fn complete_turning(
             continue;
         }
         for direction in 0..2 {
-            if motion_of(step, 2 * rigid.reference + direction).is_none() {
+            if step.motion_of(2 * rigid.reference + direction).is_none() {
                 return report_free(rigid, direction, index + 1, cx);
             }
         }

@@ -43,12 +43,7 @@ impl<'m> Unknowns<'m> {
     ) -> Self {
         let equations = model.equations.as_slice();
         let is_static = step.procedure == Procedure::Static;
-        let turning = Turning::new(bodies, is_static, |dof| {
-            let supports = &step.supports;
-            supports
-                .binary_search_by_key(&dof, |support| support.dof)
-                .is_ok()
-        });
+        let turning = Turning::new(bodies, is_static, |dof| step.motion_of(dof).is_some());
         let free = free_dofs(elements, equations, &turning, step, u.len());
         let dof: Vec<usize> = (0..u.len()).filter(|&dof| free[dof]).collect();
         let of_supports = step.supports.iter().map(|support| support.dof);
@@ -108,17 +103,13 @@ impl<'m> Unknowns<'m> {
 
     /// Whether a dof is prescribed.
     pub fn is_prescribed(&self, dof: usize) -> bool {
-        let supports = &self.supports.step.supports;
-        supports
-            .binary_search_by_key(&dof, |support| support.dof)
-            .is_ok()
+        self.supports.step.motion_of(dof).is_some()
     }
 
     /// Whether a dof stays where it is.
     pub fn is_held(&self, dof: usize) -> bool {
-        let supports = &self.supports.step.supports;
-        let found = supports.binary_search_by_key(&dof, |support| support.dof);
-        found.is_ok_and(|index| supports[index].motion.is_still())
+        let motion = self.supports.step.motion_of(dof);
+        motion.is_some_and(SupportMotion::is_still)
     }
 
     /// Supports, dofs of equations and nodes of bodies that turn, increasing: where forces of constraints act.
