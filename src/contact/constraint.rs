@@ -96,15 +96,14 @@ pub struct Constraint {
 
 impl Constraint {
     /// The constraint at the first nodes of its source, the slave node before the others, with its force rows
-    /// and derivative rows over their N dofs; its slip is Bt d.
+    /// and derivative rows over their N dofs; its slip is Bt d. Its gap has the overlaps `allowed` at start and end.
     #[inline]
     pub(super) fn of_nodes<const N: usize>(
         source: PairTarget,
         [force, derivative]: [RowPair<N>; 2],
-        (gap, scale): (f64, f64),
+        (gap, scale, allowed): (f64, f64, [f64; 2]),
         at: &Configurations,
     ) -> Self {
-        let shrinkage = source.allowed[0] - source.allowed[1];
         let dofs: [usize; N] = from_fn(|k| 2 * source.nodes[k / 2] + k % 2);
         // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
         let d = dofs.map(|dof| at.u[dof] - at.u0[dof]);
@@ -115,12 +114,12 @@ impl Constraint {
             slave_dofs: 2,
             force_rows: force.rows(),
             other_derivative_rows: (derivative != force).then(|| derivative.rows()),
-            gap: gap + source.allowed[1],
-            start_gap: gap - product(&force.normal) + source.allowed[0],
+            gap: gap + allowed[1],
+            start_gap: gap - product(&force.normal) + allowed[0],
             slip: product(&force.tangential),
             mu: 0.0,
             mu_varies: false,
-            shrinkage,
+            shrinkage: allowed[0] - allowed[1],
             scale,
             source,
         }

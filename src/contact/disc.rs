@@ -250,13 +250,13 @@ struct DiscRows {
 /// the disc.
 pub(super) fn constraint(source: PairTarget, round: &Round, at: &Configurations) -> Constraint {
     let rows = rows(&source, round, at);
-    let gap_and_scale = (rows.gap, rows.scale);
+    let gap = (rows.gap, rows.scale, source.allowed);
     let nodes = source.nodes;
     let in_rows = PairTarget {
         nodes: in_rows(nodes),
         ..source
     };
-    let mut all = Constraint::of_nodes(in_rows, [rows.force, rows.derivative], gap_and_scale, at);
+    let mut all = Constraint::of_nodes(in_rows, [rows.force, rows.derivative], gap, at);
     all.slave_dofs = 4;
     all.source.nodes = nodes;
     all

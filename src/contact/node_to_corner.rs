@@ -1,4 +1,4 @@
-//! Constraint of a slave node at a convex corner, from those of the two segments that meet there.
+//! Constraint of a slave node at a corner, from those of the two segments that meet there.
 //! Section 10 of docs/theory.md, Corner against corner.
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
@@ -15,7 +15,7 @@ use super::targets::PairTarget;
 /// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
 /// ```
 ///
-/// whose normal has the length 1. The weights are constant in a pass, so that rows and gap stay
+/// whose normal has the length 1. Both g_i and g_j have the overlap a that a fit allows, eq. (3.15). The weights are constant in a pass, so that rows and gap stay
 /// exact differences. With other weights than those of the increment before, a closed corner may begin with a small
 /// overlap; it keeps it, since work would be done on its way out.
 pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations) -> Constraint {
@@ -38,7 +38,8 @@ pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations
         both(before.derivative, behind.derivative),
     ];
     let gap = corner.blend(p.gap, q.gap) / m;
-    let mut constraint = Constraint::of_nodes(source, rows, (gap, p.length), at);
+    let allowed = source.allowed.map(|allowed| allowed / m);
+    let mut constraint = Constraint::of_nodes(source, rows, (gap, p.length, allowed), at);
     if at.form == RowForm::DiscreteGradient && constraint.start_gap < 0.0 {
         constraint.gap -= constraint.start_gap;
         constraint.start_gap = 0.0;
@@ -60,7 +61,8 @@ fn at_last_nodes([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
 mod tests {
     use super::*;
     use crate::contact::targets::ContactTarget;
-    use crate::contact::{RowForm, testing};
+    use crate::contact::{RowForm, project, testing};
+    use crate::vectors::dot;
 
     /// Corner of a roof, displaced, on which the node 0 has come to lie.
     const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
@@ -114,6 +116,41 @@ mod tests {
             let is_kept = form == RowForm::DiscreteGradient;
             assert_eq!(overlapping.start_gap >= 0.0, is_kept);
             assert_eq!((overlapping.gap - touching.gap).abs() < 1e-14, is_kept);
+        }
+    }
+
+    #[test]
+    fn a_fit_allows_the_same_overlap_behind_both_segments() {
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let corner = Corner {
+                next: 1,
+                weight: 0.3,
+            };
+            let target = ContactTarget {
+                corner: Some(corner),
+                ..ContactTarget::face(0)
+            };
+            // behind both segments by what is allowed: where their lines, moved by it, meet
+            let depths = [0.02, 0.01];
+            let [_, a, tip, c] = ROOF;
+            let [p, q] = [[a, tip], [tip, c]].map(|[a, b]| project(a, a, b).normal);
+            let place =
+                |depth: f64| [0, 1].map(|i| tip[i] - depth * (p[i] + q[i]) / (1.0 + dot(p, q)));
+            let [start, end] = depths.map(place);
+            let mut x = ROOF;
+            x[0] = start;
+            let mut u = [0.0; 8];
+            u[..2].copy_from_slice(&[0, 1].map(|i| end[i] - start[i]));
+            let source = PairTarget {
+                allowed: depths,
+                ..testing::pair(target, [0, 1, 2, 3])
+            };
+            let (x, u0, u) = (&x, &[0.0; 8], &u);
+            let constraint = Constraint::new(source, &Configurations { form, x, u0, u });
+            assert!(constraint.gap.abs() < 1e-15, "{form:?} {}", constraint.gap);
+            assert!(constraint.start_gap.abs() < 1e-15, "{form:?}");
+            let moved = constraint.normal_motion(u);
+            assert!((moved - constraint.shrinkage).abs() < 1e-15, "{form:?}");
         }
     }
 

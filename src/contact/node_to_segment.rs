@@ -38,8 +38,8 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     if kappa != 0.0 {
         force.normal = sum_of(1.0, &force.normal, kappa, &force.tangential);
     }
-    let gap_and_scale = (projection.gap, projection.length);
-    Constraint::of_nodes(source, [force, derivative], gap_and_scale, at)
+    let gap = (projection.gap, projection.length, source.allowed);
+    Constraint::of_nodes(source, [force, derivative], gap, at)
 }
 
 /// Gap of the constraint, and the length that it is relative to.
