@@ -63,6 +63,7 @@ pub fn find_targets(
         .map(|constraint| &constraint.source)
         .peekable();
     pairs.clear();
+    let mut corners = Corners::new();
     for listed in search.slaves() {
         let held_by = held.of_slave(listed.key);
         while (before.next_if(|pair| pair.key.slave < listed.key)).is_some() {}
@@ -81,10 +82,7 @@ pub fn find_targets(
             disc::find_targets(&listed, [start, now], pairs);
             continue;
         }
-        let held_by: SmallVec<[usize; 4]> = held_by
-            .iter()
-            .map(|pair| pair.source.target.segment)
-            .collect();
+        let held_by: ContactTargets = held_by.iter().map(|pair| pair.source.target).collect();
         let node = SlaveNode {
             surfaces: listed.surfaces,
             start,
@@ -103,10 +101,14 @@ pub fn find_targets(
             keep(&node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
         }
         for &target in if keeps { &own } else { &found } {
-            pairs.push(pair_target(&listed, target));
+            let pair = pair_target(&listed, target);
+            if node.meets_corner(&target) {
+                corners.push([pair.nodes[0], pair.nodes[2]]);
+            }
+            pairs.push(pair);
         }
     }
-    remove_twins(pairs);
+    remove_twins(&corners, pairs);
 }
 
 /// Writes those pairs that are means from surface to surface, between the same displacements, with increasing keys.
@@ -124,9 +126,18 @@ pub fn find_means(
 }
 
 /// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the
-/// weights of the iterate, and adds what is found beside them.
+/// weights of the iterate, vertices of hollows that it has left as their two segments, and adds what is found beside them.
 fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut ContactTargets) {
     targets.retain(|target| node.is_over(target, beyond));
+    for place in 0..targets.len() {
+        let target = targets[place];
+        if let Some(corner) = target.corner
+            && node.has_left_hollow(&target, found)
+        {
+            targets[place].corner = None;
+            targets.push(ContactTarget::face(corner.next));
+        }
+    }
     let kept = targets.len();
     for target in found {
         let mut old = targets[..kept].iter_mut();
@@ -136,6 +147,7 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
         }
     }
     targets.sort_by_key(|target| target.segment);
+    targets.dedup_by_key(|target| target.segment);
 }
 
 fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
@@ -157,14 +169,16 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
     }
 }
 
+/// Slave nodes with the corners that they meet, few.
+type Corners = SmallVec<[[usize; 2]; 8]>;
+
 /// Two nodes that are each other's corner are one pair.
-fn remove_twins(pairs: &mut Vec<PairTarget>) {
-    let with_corner = pairs.iter().filter(|pair| pair.target.corner.is_some());
-    let corners = with_corner.map(|pair| [pair.nodes[0], pair.nodes[2]]);
-    let corners: SmallVec<[[usize; 2]; 8]> = corners.collect();
+fn remove_twins(corners: &Corners, pairs: &mut Vec<PairTarget>) {
+    let is_twin =
+        |[s, v]: [usize; 2]| s > v && corners.contains(&[s, v]) && corners.contains(&[v, s]);
     pairs.retain(|pair| {
         let [s, _, v, _] = pair.nodes;
-        pair.target.corner.is_none() || s < v || !corners.contains(&[v, s])
+        pair.target.corner.is_none() || !is_twin([s, v])
     });
 }
 
@@ -214,6 +228,34 @@ mod tests {
         search.cover(&u);
         assert_eq!(slaves(&search, &[], SlaveChoice::Near), [2, 3, 4]);
         assert_eq!(slaves(&search, &[], SlaveChoice::Far), [5]);
+    }
+
+    #[test]
+    fn two_nodes_at_each_others_corner_are_one_pair_and_at_the_vertex_of_a_face_two() {
+        // faces of two bodies, from right to left below and from left to right above, that touch in their middle nodes
+        let pairs_of = |rise: f64| {
+            let lower = [[2.0, -rise], [1.0, 0.0], [0.0, -rise]];
+            let upper = [[0.0, rise], [1.0, 0.0], [2.0, rise]];
+            let x = [lower, upper].concat();
+            let faces = [[[0, 1], [1, 2]], [[3, 4], [4, 5]]];
+            let contact = |slave: usize, own: usize| {
+                ContactSurfaces::new(vec![slave], &faces[own], faces[1 - own].to_vec())
+            };
+            let contacts = [contact(1, 0), contact(4, 1)];
+            let u = [0.0; 12];
+            let mut search = Search::new(&contacts, &x);
+            search.cover(&u);
+            let held = (&ClosedPairs::default(), None);
+            let how = (RowForm::End, SlaveChoice::All);
+            let mut pairs = Vec::new();
+            find_targets(&search, [&u, &u], &[], held, how, &mut pairs);
+            pairs
+        };
+        for (rise, count) in [(0.0, 2), (4e-4, 2), (4e-3, 1), (0.5, 1)] {
+            let pairs = pairs_of(rise);
+            assert_eq!(pairs.len(), count, "{rise}");
+            assert!(pairs.iter().all(|pair| pair.target.corner.is_some()));
+        }
     }
 
     #[test]

@@ -370,9 +370,9 @@ impl SlaveNode<'_> {
     /// The segment of a run that the node is over, if it has slid there, across corners of gentle turn,
     /// from another that it was over at the start.
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
-        let held = self.held_by.iter().copied();
+        let is_within = |i: usize| (-SLID..=1.0 + SLID).contains(&self.xi(i));
         let slid_from = |i: usize| {
-            if (-SLID..=1.0 + SLID).contains(&self.xi(i)) {
+            if is_within(i) {
                 return None;
             }
             let gap = |j: usize| self.project(j).gap;
@@ -387,7 +387,12 @@ impl SlaveNode<'_> {
         };
         let was_behind = || run.iter().all(|&j| !self.was_in_front(j));
         let came = || was_behind().then(|| self.came_from(run)).flatten();
-        held.clone()
+        // a node that a corner held may be on either of its segments, in front of which it was
+        let is_left = |held: &&ContactTarget| {
+            !(held.segments()).any(|i| is_within(i) && self.was_in_front(i))
+        };
+        let left = self.held_by.iter().filter(is_left);
+        left.flat_map(ContactTarget::segments)
             .find_map(slid_from)
             .or_else(|| came().and_then(slid_from))
     }
@@ -514,22 +519,22 @@ impl SlaveNode<'_> {
             .or_else(|| after.and_then(|j| self.corner_between(i, j)))
     }
 
-    /// The corner between a segment and the next, if the node meets it: node against node.
+    /// The corner between a segment and the next, if the node meets it: node against node; or the vertex of a face.
     fn corner_between(&self, i: usize, j: usize) -> Option<ContactTarget> {
         let (p, q) = (self.project(i), self.project(j));
         // distance from the corner along the sum of both tangents, whose length is 2 at most
         let offset = (p.xi - 1.0) * p.length + q.xi * q.length;
         let length = p.length.min(q.length);
-        if offset.abs() > 2.0 * CORNER_TIP * length || self.corner_sine(i, j) <= STRAIGHT_SINE {
+        if offset.abs() > 2.0 * CORNER_TIP * length {
             return None;
         }
-        let node = self.surfaces.slaves[self.slave];
-        let [before, after] = self.surfaces.adjacent[self.slave]?;
-        let at = |n: usize| self.now.of(n);
-        let own = [[before, node], [node, after]].map(|[a, b]| project(at(a), at(a), at(b)).normal);
+        let turn = self.corner_sine(i, j);
         let corner = Corner {
             next: j,
-            weight: common_normal([p.normal, q.normal], own)?,
+            weight: match turn > STRAIGHT_SINE {
+                true => self.common_weight([p.normal, q.normal])?,
+                false => self.vertex_weight(turn, [(i, &p), (j, &q)])?,
+            },
         };
         if corner.weight == 0.0 {
             return self.was_in_front(i).then(|| ContactTarget::face(i));
@@ -543,6 +548,44 @@ impl SlaveNode<'_> {
             corner: Some(corner),
             from: None,
         })
+    }
+
+    /// Weight of the second normal at a corner, that of the common normal.
+    fn common_weight(&self, normals: [[f64; 2]; 2]) -> Option<f64> {
+        let [before, after] = self.surfaces.adjacent[self.slave]?;
+        let at = |n: usize| self.now.of(n);
+        let own = [[before, self.node()], [self.node(), after]];
+        let own = own.map(|[a, b]| project(at(a), at(a), at(b)).normal);
+        common_normal(normals, own)
+    }
+
+    /// The same at the vertex of a face or of a gentle hollow, where the gaps to both segments are the same: the normal of
+    /// either one would lean to its side, and round-off would choose it. None where the gaps differ, the hollow is deeper, or
+    /// the node was behind one of them.
+    fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {
+        let round_off = position_round_off(self.position());
+        let least = (CLOSED_GAP * p.length.min(q.length)).max(round_off);
+        let is_vertex = turn >= -GENTLE_SINE
+            && (p.gap - q.gap).abs() <= least
+            && [i, j].iter().all(|&i| self.was_in_front(i));
+        is_vertex.then_some(0.5)
+    }
+
+    /// Whether a target of an earlier pass is the vertex of a hollow, and not found any more: the node has left it towards one
+    /// of its segments, and the body lies behind both.
+    pub fn has_left_hollow(&self, target: &ContactTarget, found: &[ContactTarget]) -> bool {
+        let is_hollow = |corner: Corner| {
+            let is_same =
+                |other: &ContactTarget| other.segment == target.segment && other.corner.is_some();
+            self.corner_sine(target.segment, corner.next) < 0.0 && !found.iter().any(is_same)
+        };
+        target.corner.is_some_and(is_hollow)
+    }
+
+    /// Whether a target is a corner that turns, and no vertex of a face.
+    pub fn meets_corner(&self, target: &ContactTarget) -> bool {
+        let turns = |corner: Corner| self.corner_sine(target.segment, corner.next) > STRAIGHT_SINE;
+        target.corner.is_some_and(turns)
     }
 }
 
@@ -558,8 +601,8 @@ pub struct SlaveNode<'a> {
     pub now: Positions<'a>,
     /// Index of the slave node in its contact.
     pub slave: usize,
-    /// Segments of the pairs of the node that were closed at the start.
-    pub held_by: &'a [usize],
+    /// Targets of the pairs of the node that were closed at the start.
+    pub held_by: &'a [ContactTarget],
     /// Overlap that a fit allows it at the start and in the iterate (length): what its gaps are larger by, eq. (3.15).
     pub allowed: [f64; 2],
 }
@@ -754,7 +797,7 @@ pub(super) fn raised(
     [s, a, b]
 }
 
-/// A convex corner, between a segment and the next, as the target of a slave node.
+/// A convex corner or the vertex of a face, between a segment and the next, as the target of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Corner {
     /// The segment after the corner.

@@ -218,6 +218,33 @@ fn several_bodies_hold_a_node_at_once() {
     assert_eq!(targets(&wall), [0], "the back of a wall does not hold");
 }
 
+/// Between the two segments of a vertex neither one is nearer: the normal of one alone would lean to its side.
+#[test]
+fn a_node_at_a_vertex_of_a_face_meets_both_its_segments() {
+    // from right to left over a vertex at (0, 0), hollow where the ends are higher
+    let targets = |height: f64, x: f64| {
+        let face = [[1.0, height], [0.0, 0.0], [-1.0, height]];
+        targets_near(&[&face], false, [x, 0.1], [x, 0.0])
+    };
+    for height in [0.0, 1e-9, -1e-9, 1e-4, -1e-4, 4e-3] {
+        for x in [0.0, 1e-13, -1e-13] {
+            let [target] = targets(height, x)[..] else {
+                panic!("{height} {x}");
+            };
+            let corner = target.corner.map(|corner| (corner.next, corner.weight));
+            assert_eq!(
+                (target.segment, corner),
+                (0, Some((1, 0.5))),
+                "{height} {x}"
+            );
+        }
+    }
+    assert_eq!(segments(&targets(0.0, 1e-3)), [0], "beside the vertex");
+    assert_eq!(segments(&targets(4e-3, 2e-6)), [0], "nearer to the first");
+    assert_eq!(segments(&targets(4e-3, -2e-6)), [1], "nearer to the second");
+    assert_eq!(segments(&targets(0.02, 0.0)), [0, 1], "in a hollow corner");
+}
+
 #[test]
 fn a_mesh_that_starts_a_little_inside_is_held() {
     assert_eq!(beside_square([0.5, 0.999], [0.5, 0.998]), [2]);

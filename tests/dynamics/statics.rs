@@ -232,3 +232,103 @@ fn an_arch_under_a_block_that_contact_alone_holds_does_not_jump() {
         last.state.u[85]
     );
 }
+
+/// A block of two by two elements upon the nodes of a bed of four by two, or `deep` behind them; `side` -1 mirrors both
+/// about the axis y.
+fn on_matching_nodes(
+    side: f64,
+    [e, nu, mu]: [f64; 3],
+    (deep, pairs): (f64, &str),
+    steps: &str,
+) -> String {
+    let nodes = |first: usize, (columns, from): (usize, [f64; 2])| -> String {
+        let node = |k: usize| {
+            let (i, j) = (k % columns, k / columns);
+            let x = side * (from[0] + 0.5 * i as f64);
+            format!("{}, {x:?}, {:?}\n", first + k, from[1] + 0.5 * j as f64)
+        };
+        (0..3 * columns).map(node).collect()
+    };
+    let elements = |first: usize, (node, columns): (usize, usize)| -> String {
+        let element = |k: usize| {
+            let (i, j) = (k % (columns - 1), k / (columns - 1));
+            let a = node + i + columns * j;
+            let [a, b, c, d] = match side > 0.0 {
+                true => [a, a + 1, a + columns + 1, a + columns],
+                false => [a + 1, a, a + columns, a + columns + 1],
+            };
+            format!("{}, {a}, {b}, {c}, {d}\n", first + k)
+        };
+        (0..2 * (columns - 1)).map(element).collect()
+    };
+    format!(
+        "*NODE\n{}{}*ELEMENT, TYPE=CPS4, ELSET=BED\n{}*ELEMENT, TYPE=CPS4, ELSET=BLOCK\n{}\
+         *NSET, NSET=GROUND\n1, 2, 3, 4, 5\n*NSET, NSET=ROOF\n27, 28, 29\n\
+         *SURFACE, NAME=TOP\n5, S3\n6, S3\n7, S3\n8, S3\n*SURFACE, NAME=SOLE\n11, S1\n12, S1\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n{e:?}, {nu:?}\n*DENSITY\n1.\n\
+         *SOLID SECTION, ELSET=BED, MATERIAL=M\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=M\n\
+         *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n{mu:?}\n*CONTACT PAIR, INTERACTION=DRY\n{pairs}\
+         *BOUNDARY\nGROUND, 1, 2\n{steps}",
+        nodes(1, (5, [0.0, 0.0])),
+        nodes(21, (3, [0.5, 1.0 - deep])),
+        elements(1, (1, 5)),
+        elements(11, (21, 3)),
+    )
+}
+
+/// Asserts that a deck and its mirror image end alike.
+fn assert_mirrored(decks: [String; 2], what: &str) {
+    let [right, left] = decks.map(|deck| {
+        let (keep, failure) = run_deck(&deck);
+        assert_eq!(failure, None, "{what}");
+        keep.reports.last().expect("reports").state.u.clone()
+    });
+    let largest = right.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+    for (dof, (right, left)) in right.iter().zip(&left).enumerate() {
+        let mirrored = if dof % 2 == 0 { -left } else { *left };
+        let error = (right - mirrored).abs() / largest;
+        assert!(error < 1e-9, "{what} {dof}: {right} {mirrored}");
+    }
+}
+
+/// A node at a vertex of a face that hardly turns is on both of its segments: the normal of either one would lean to its
+/// side, and round-off would choose it in every pass.
+#[test]
+fn a_block_on_matching_nodes_is_pushed_alike_from_both_sides() {
+    let cases = [
+        [1e3, 0.3, 0.3],
+        [1e3, 0.1, 0.3],
+        [1e3, 0.2, 0.3],
+        [300.0, 0.3, 0.3],
+        [1e3, 0.3, 0.2],
+        [1e3, 0.3, 0.4],
+    ];
+    for case in cases {
+        let decks = [1.0, -1.0].map(|side| {
+            let steps = format!(
+                "*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*DLOAD\nBLOCK, GRAV, 9.81, 0., -1.\n*END STEP\n\
+                 *STEP, NLGEOM\n*STATIC\n0.25, 1.\n*CLOAD\nROOF, 1, {:?}\n*END STEP\n",
+                0.1 * side
+            );
+            on_matching_nodes(side, case, (0.0, "SOLE, TOP\n"), &steps)
+        });
+        assert_mirrored(decks, &format!("{case:?}"));
+    }
+}
+
+#[test]
+fn a_fit_on_matching_nodes_is_pressed_apart_alike_on_both_sides() {
+    for pairs in ["SOLE, TOP\n", "SOLE, TOP\nTOP, SOLE\n"] {
+        for procedure in ["*DYNAMIC, DIRECT\n0.005, 0.05", "*STATIC\n0.25, 1."] {
+            let decks = [1.0, -1.0].map(|side| {
+                let steps = format!(
+                    "ROOF, 2\n*STEP, NLGEOM\n{procedure}\n*CONTACT INTERFERENCE, SHRINK\nSOLE, TOP\n\
+                     *CLOAD\nROOF, 1, {:?}\n*END STEP\n",
+                    0.1 * side
+                );
+                on_matching_nodes(side, [1e3, 0.3, 0.3], (0.01, pairs), &steps)
+            });
+            assert_mirrored(decks, &format!("{procedure} {pairs}"));
+        }
+    }
+}
