@@ -347,15 +347,7 @@ class Known:
     """A part of what the oracle says."""
 
 
-KNOWN: list[Known] = [
-    Known(
-        "runs",
-        "the program asks that both nodes of a hinge of coupled faces are held across the axis, and says that the hinge "
-        "holds one of them already",
-        {"family": RINGS, "connection": ["hinge"]},
-        "error[D322]",
-    ),
-]
+KNOWN: list[Known] = []
 
 
 def known(oracle: str, choice: Mapping[str, str], said: str) -> str:

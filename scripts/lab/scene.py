@@ -602,8 +602,8 @@ class Scene:
             rows.append(("LOWER_BOTTOM_NODES", 1, 2))
         if self.contact in FLOORS or self.base == "rigid":
             rows += [(FLOOR, 1, 2), (FLOOR, 6, 6)]
-        if self.connection in TURNING and self.is_ring:
-            rows += [(REFERENCE, 1, 1), (REFERENCE, 6, 6)]
+        if self.connection in [*TURNING, "hinge"] and self.is_ring:
+            rows += [(number, held, held) for number in self.references for held in (1, 6)]
         elif self.connection == "disc" and (
             self.choice["procedure"] in SLOW or self.choice["sequence"] == "rest"
         ):

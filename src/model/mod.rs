@@ -123,6 +123,29 @@ impl Model {
         2 * (self.centre_of(body) + 1)
     }
 
+    /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that no step turns: a
+    /// hinge between them has nothing to hold there.
+    pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
+        let never_turns = |body: &TurningInertia| {
+            let angle = self.angle_of(body);
+            let is_still = |step: &Step| step.motion_of(angle).is_some_and(SupportMotion::is_still);
+            self.steps.iter().all(is_still)
+        };
+        let motion_of = |node: usize| {
+            let rides = |(body, _): &(&RigidBody, _)| {
+                body.reference == node || body.nodes.binary_search(&node).is_ok()
+            };
+            match self.turning_bodies().find(rides) {
+                None => step.motion_of(2 * node + axis),
+                Some((body, turning)) => step
+                    .motion_of(2 * body.reference + axis)
+                    .filter(|_| never_turns(turning)),
+            }
+        };
+        let [a, b] = nodes.map(motion_of);
+        a.is_some() && a == b
+    }
+
     /// Mass of an element: density x volume.
     pub fn element_mass(&self, element: &Element) -> f64 {
         let section = &self.sections[element.section];

@@ -275,6 +275,63 @@ fn velocities_that_contradict_a_hinge_are_made_to_agree() {
     assert!(balance < 1e-12 && gap < 1e-13, "{balance:e} {gap:e}");
 }
 
+/// Two rings of mass m and 2 m, held across their axis and in turning as bodies of revolution must be: of a force of 6
+/// on the first their hinge passes on 2/3, and all of it where the second is held along the axis too.
+#[test]
+fn a_hinge_acts_along_what_supports_leave_free() {
+    let ring = |first: usize, density: f64| {
+        let [a, b, c, d, reference] = [0, 1, 2, 3, 4].map(|k| first + k);
+        format!(
+            "*NODE\n{a}, 1., 0.\n{b}, 2., 0.\n{c}, 2., 1.\n{d}, 1., 1.\n{reference}, 1., 0.\n\
+             *ELEMENT, TYPE=CAX4, ELSET=E{first}\n{first}, {a}, {b}, {c}, {d}\n\
+             *MATERIAL, NAME=M{first}\n*ELASTIC\n1000., 0.3\n*DENSITY\n{density:?}\n\
+             *SOLID SECTION, ELSET=E{first}, MATERIAL=M{first}\n*RIGID BODY, ELSET=E{first}, REF NODE={reference}\n"
+        )
+    };
+    let rings = [ring(11, 1.0), ring(21, 2.0)].concat();
+    let cases = [
+        ("*DYNAMIC, DIRECT\n0.01, 0.1", "", 4.0, 1e-13),
+        // pins of motions that supports leave free have their round-off
+        ("*STATIC\n1., 1.", "25, 2\n", 6.0, 1e-9),
+    ];
+    for (procedure, held, passed_on, open) in cases {
+        let model = read(&format!(
+            "{rings}*MPC\nPIN, 12, 22\n*BOUNDARY\n15, 1\n15, 6\n25, 1\n25, 6\n{held}\
+             *STEP, NLGEOM\n{procedure}\n*CLOAD\n15, 2, 6.\n*END STEP\n"
+        ));
+        let (keep, _) = run_to_end(&model);
+        for report in keep.reports.iter().skip(1) {
+            let [across, along] = report.nodal.hinge_force[0];
+            assert_eq!(across, 0.0, "{procedure}");
+            assert!((along + passed_on).abs() < 1e-9, "{procedure} {along}");
+        }
+        let gap = faults(&model, &keep.reports)[1];
+        assert!(gap < open, "{procedure} {gap:e}");
+    }
+    let static_step =
+        |held: &str| format!("*STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\n{held}*END STEP\n");
+    let pinned = "*MPC\nPIN, 12, 21\n";
+    let moved_apart = static_step("15, 1, 1, 0.1\n15, 6\n25, 1\n25, 6\n");
+    let bars = [
+        bar(11, [0.0, 0.0], 0.0, "0., 0."),
+        bar(21, [1.0, 0.0], 0.0, "1., 0."),
+    ]
+    .concat();
+    let held_after_a_turn = [
+        static_step("15, 1, 2\n"),
+        static_step("15, 6\n25, 1, 2\n25, 6\n"),
+    ]
+    .concat();
+    for (deck, step) in [
+        (format!("{rings}*MPC\nPIN, 12, 22\n{moved_apart}"), 1),
+        (format!("{bars}{MATERIAL}{pinned}{held_after_a_turn}"), 2),
+    ] {
+        let message = try_read(&deck).expect_err("a hinge that follows from supports");
+        let told = format!("holds in step {step} what other hinges or supports hold already");
+        assert!(message.contains(&told), "{message}");
+    }
+}
+
 #[test]
 fn hinges_that_cannot_be_are_told() {
     let bars = format!(

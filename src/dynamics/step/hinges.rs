@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use super::rank_update::{RankUpdate, UpdateColumns};
 use crate::linear::{LinearError, Rotation, Transformation};
-use crate::model::Hinge;
+use crate::model::{Model, Step};
 
 /// Least eigenvalue of the compliances of hinges, each in units of its own, below which some of them say the same: light
 /// bodies between heavy ones are far above.
@@ -13,16 +13,28 @@ const INDEPENDENT: f64 = 1e-12;
 /// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x, then along y of each.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Hinges {
-    /// Dofs of every row.
-    rows: Vec<[usize; 2]>,
+    rows: Vec<Row>,
+}
+
+#[derive(Debug, Clone)]
+struct Row {
+    dofs: [usize; 2],
+    /// Whether supports prescribe the same motion for both: the row has no gap and no force.
+    is_held: bool,
 }
 
 impl Hinges {
-    /// Those of a model.
-    pub fn new(all: &[Hinge]) -> Self {
-        let rows = |hinge: &Hinge| [0, 1].map(|i| hinge.nodes.map(|node| 2 * node + i));
+    /// Those of a model in a step.
+    pub fn new(model: &Model, step: &Step) -> Self {
+        let row = |nodes: [usize; 2], axis: usize| Row {
+            dofs: nodes.map(|node| 2 * node + axis),
+            is_held: model.are_held_alike(step, nodes, axis),
+        };
+        let hinges = model.hinges.iter();
         Hinges {
-            rows: all.iter().flat_map(rows).collect(),
+            rows: hinges
+                .flat_map(|hinge| [0, 1].map(|axis| row(hinge.nodes, axis)))
+                .collect(),
         }
     }
 
@@ -41,19 +53,24 @@ impl Hinges {
         self.rows
             .iter()
             .step_by(2)
-            .map(|row| row.map(|dof| dof / 2))
+            .map(|row| row.dofs.map(|dof| dof / 2))
     }
 
     /// C u
     pub fn gaps(&self, u: &[f64]) -> Vec<f64> {
-        self.rows.iter().map(|&[a, b]| u[a] - u[b]).collect()
+        let gap = |row: &Row| match row.is_held {
+            true => 0.0,
+            false => u[row.dofs[0]] - u[row.dofs[1]],
+        };
+        self.rows.iter().map(gap).collect()
     }
 
     /// Adds C^T lambda to a force over all dofs.
     pub fn add_forces(&self, lambda: &[f64], force: &mut [f64]) {
-        for (&[a, b], lambda) in self.rows.iter().zip(lambda) {
-            force[a] += lambda;
-            force[b] -= lambda;
+        let rows = self.rows.iter().zip(lambda);
+        for (Row { dofs: [a, b], .. }, lambda) in rows.filter(|(row, _)| !row.is_held) {
+            force[*a] += lambda;
+            force[*b] -= lambda;
         }
     }
 
@@ -86,7 +103,10 @@ impl Hinges {
         let y = UpdateColumns::works(of_motions, (map, rotation));
         let gaps: Vec<Vec<f64>> = v.of_dofs.iter().map(|column| self.gaps(column)).collect();
         let m = self.rows.len();
-        let s = DMatrix::from_fn(m, m, |i, k| gaps[k][i]);
+        let s = DMatrix::from_fn(m, m, |i, k| match i == k && self.rows[i].is_held {
+            true => 1.0,
+            false => gaps[k][i],
+        });
         let inverse = self.inverse(s)?;
         Ok(RankUpdate::new([v, y], inverse))
     }

@@ -129,7 +129,7 @@ impl<'m> StepProblem<'m> {
             integration: Integration::new(step),
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
             unknowns,
-            hinges: Hinges::new(&model.hinges),
+            hinges: Hinges::new(model, step),
             loads: Loads::new(model, step, redistribution),
             fits: Fits::new(model, step, overlaps, |contact| {
                 discretization.contacts[contact].slaves.len()

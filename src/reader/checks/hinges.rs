@@ -12,13 +12,14 @@ use crate::vectors::{difference, length};
 const FOLLOWS: f64 = 1e-6;
 
 /// Reports hinges whose rows of C in (11.8) follow from those before and the supports of a step, with which the step would
-/// stop; `spans` are the places of the hinges.
+/// stop. Rows whose nodes supports hold alike have nothing to hold. `spans` are the places of the hinges.
 pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
     for (number, step) in model.steps.iter().enumerate() {
         let mut independent: Vec<DVector<f64>> = Vec::new();
         for (hinge, &span) in model.hinges.iter().zip(spans) {
-            let rows = [0, 1].map(|axis| row(model, step, hinge.nodes, axis));
-            for mut row in rows {
+            let acts = |axis: &usize| !model.are_held_alike(step, hinge.nodes, *axis);
+            for axis in (0..2).filter(acts) {
+                let mut row = row(model, step, hinge.nodes, axis);
                 let size = row.norm();
                 for other in &independent {
                     row -= other * other.dot(&row);
@@ -44,7 +45,7 @@ pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
 /// of all bodies; those that are prescribed have no part.
 fn row(model: &Model, step: &Step, nodes: [usize; 2], axis: usize) -> DVector<f64> {
     let mut row = DVector::zeros(3 * model.rigid_bodies.len());
-    let is_free = |dof: usize| step.supports.binary_search_by_key(&dof, |s| s.dof).is_err();
+    let is_free = |dof: usize| step.motion_of(dof).is_none();
     let x = &model.mesh.coordinates;
     for (node, sign) in nodes.into_iter().zip([1.0, -1.0]) {
         let has =
