@@ -29,6 +29,8 @@ struct Elongation {
 struct Between {
     /// Elongations at both.
     ends: [f64; 2],
+    /// l1 - l0, with the round-off of d.
+    change: f64,
     /// Vector g at each node with g.d = l1 - l0.
     gradient: [Vector2<f64>; 2],
     /// Derivative of l1 by the increment d at each node.
@@ -123,11 +125,14 @@ impl PlacedConnector {
         let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
         match (self.connector.direction, nodes) {
             (ConnectorDirection::Line, &[a, b]) => {
-                let r = self.reference + of(b) - of(a);
+                let w = of(b) - of(a);
+                let r = self.reference + w;
                 let l = r.norm();
                 let n = r / l;
+                // l - L = w.(R + r)/(L + l), whose round-off is that of w and not of l
+                let elongation = w.dot(&(self.reference + r)) / (self.reference.norm() + l);
                 Elongation {
-                    value: l - self.reference.norm(),
+                    value: elongation,
                     gradient: [-n, n],
                     line: Some((r, l)),
                 }
@@ -171,6 +176,7 @@ impl PlacedConnector {
         let [start, end] = [self.at(u0), self.at(u1)];
         let mut between = Between {
             ends: [start.value, end.value],
+            change: end.value - start.value,
             gradient: end.gradient,
             derivative: end.gradient,
             bend: [0.0; 2],
@@ -178,6 +184,14 @@ impl PlacedConnector {
         if let (Some((r0, l0)), Some((r1, l1))) = (start.line, end.line) {
             let n = (r0 + r1) / (l0 + l1);
             between.gradient = [-n, n];
+            let d = |node: usize| {
+                Vector2::new(
+                    u1[2 * node] - u0[2 * node],
+                    u1[2 * node + 1] - u0[2 * node + 1],
+                )
+            };
+            let both = self.nodes().iter().zip(&between.gradient);
+            between.change = both.map(|(&node, g)| g.dot(&d(node))).sum();
         }
         if self.connector.direction == ConnectorDirection::Angle {
             for (k, &node) in self.nodes.iter().enumerate() {
@@ -313,23 +327,23 @@ impl PlacedConnector {
     /// (2.22) (force time).
     pub(super) fn impulse(&self, [u0, u1]: Increment, dt: f64) -> ConnectorVector {
         let between = self.between(u0, u1);
-        let [l0, l1] = between.ends;
-        let force = self.connector.curve.at((l1 - l0) / dt);
+        let force = self.connector.curve.at(between.change / dt);
         self.vector(dt * force, &between.gradient)
     }
 
     /// Energy that a dashpot dissipates in an increment of length `dt`, times `dt`: (l1 - l0) F dt.
     pub(super) fn work(&self, [u0, u1]: Increment, dt: f64) -> f64 {
-        let [l0, l1] = self.between(u0, u1).ends;
-        (l1 - l0) * dt * self.connector.curve.at((l1 - l0) / dt)
+        let change = self.between(u0, u1).change;
+        change * dt * self.connector.curve.at(change / dt)
     }
 
     /// Damping matrix of a dashpot, dF/dv g g^T, the part of eq. (2.22) that is never indefinite
     /// (force time/length).
     pub(super) fn damping(&self, [u0, u1]: Increment, dt: f64) -> ConnectorMatrix {
-        let between = self.between(u0, u1);
-        let ([l0, l1], gradient) = (between.ends, between.gradient);
-        let slope = self.connector.curve.slope((l1 - l0) / dt).max(0.0);
+        let Between {
+            change, gradient, ..
+        } = self.between(u0, u1);
+        let slope = self.connector.curve.slope(change / dt).max(0.0);
         self.matrix(|a, b| slope * gradient[a] * gradient[b].transpose())
     }
 }
@@ -395,6 +409,33 @@ mod tests {
             assert!((dot(&d(), &dashpot.impulse([&U0, &U1], dt)) - work).abs() < 1e-14);
             assert_eq!(dashpot.energy(&U1), 0.0);
             assert!(dashpot.force(between()).iter().all(|f| *f == 0.0));
+        }
+    }
+
+    /// Of small displacements, and of small changes of large ones, forces keep their digits: the round-off of coordinates is
+    /// not theirs.
+    #[test]
+    fn forces_along_a_line_keep_their_digits() {
+        let [spring, dashpot] =
+            [ConnectorLaw::Spring, ConnectorLaw::Dashpot].map(|law| connectors(law).swap_remove(0));
+        for size in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
+            let small = U1.map(|u| size * u);
+            let pull = spring.force(Motion::at(&small, &[]))[2];
+            // F/(size F') of the linear part and the next term, which is of first order in the size
+            let r = [X[1][0] - X[0][0], X[1][1] - X[0][1]];
+            let l = r[0].hypot(r[1]);
+            let linear = 7.0 * (r[0] * (U1[2] - U1[0]) + r[1] * (U1[3] - U1[1])) / l * r[0] / l;
+            assert!(
+                (pull / size - linear).abs() < 20.0 * size + 1e-13,
+                "{size:e}"
+            );
+            let later: Vec<f64> = U0.iter().zip(U1).map(|(u0, u1)| u0 + size * u1).collect();
+            let d: Vec<f64> = later.iter().zip(U0).map(|(u1, u0)| u1 - u0).collect();
+            let force = dashpot.impulse([&U0, &later], 1.0);
+            let between = dashpot.between(&U0, &later);
+            let [from, to] = between.gradient.map(|g| [g.x, g.y]);
+            let change = dot(&d, &[from, to].concat());
+            assert!((force[2] - 7.0 * change * to[0]).abs() <= 1e-14 * force[2].abs());
         }
     }
 
