@@ -46,6 +46,10 @@ BOOKS = 1e-9
 IMPACTS = "history/impacts"
 """Landings of single pairs, as deviations name them."""
 
+CONTACTS = "history/contact/"
+ON_SLAVE = ("force", "moment", "impulse", "impulse_sum")
+"""What acts on the slave surface of a contact."""
+
 LIMIT = 60.0
 """Seconds that a run may take."""
 
@@ -202,6 +206,7 @@ def _has_answer(trial: Trial, seen: Seen, name: str) -> NDArray[np.bool_]:
     """Rows of a history or field that have one answer.
 
     Where pairs in both orders can carry the same force, only the sums of their impulses have: landings of pairs are left out.
+    Where a surface touches itself, the order of its faces decides which side is slave, and forces on bodies alone have a sign.
     Where all contact forces are round-off, it decides which pairs are closed.
     """
     if name == IMPACTS:
@@ -211,8 +216,10 @@ def _has_answer(trial: Trial, seen: Seen, name: str) -> NDArray[np.bool_]:
     group, _, own = name.rpartition("/")
     if own == "CONTACT_STATUS":
         force = seen.by_row("VTKHDF/PointData/CONTACT_FORCE")
-    elif group.startswith("history/contact/") and values.dtype.kind != "f":
+    elif group.startswith(CONTACTS) and (values.dtype.kind != "f" or own == "friction_coefficient"):
         force = seen[f"{group}/force"]
+    elif group == f"{CONTACTS}ALL_EXTERIOR" and own in ON_SLAVE:
+        return np.zeros(len(values), np.bool_)
     else:
         return np.ones(len(values), np.bool_)
     size = np.abs(force).reshape(len(force), -1).max(axis=1)

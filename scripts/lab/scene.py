@@ -526,7 +526,10 @@ class Scene:
             first += card("CONTACT INTERFERENCE, SHRINK", ("UPPER_BOTTOM", "LOWER_TOP"))
         if self.is_halved:
             half = _halved(procedure)
-            grows = procedure.duration == 1.0 or self.load in ("motion", "rotation")
+            is_rate = self.load in ("velocity", "acceleration")
+            grows = self.load in ("motion", "rotation") or (
+                procedure.duration == 1.0 and not is_rate
+            )
             first = self._loads(0.5 if grows and self.choice["amplitude"] == "none" else 1.0)
             return self._step(half, first) + self._step(half, self._loads(1.0))
         if sequence == "rest":
@@ -633,7 +636,7 @@ class Scene:
             "moment": [(grip, 6, 0.3 * down), (grip, 2, -down)],
         }
         text = (
-            card("BOUNDARY", (BOLT, 1, 1, OVERLAP * scale))
+            card("BOUNDARY", (BOLT, 1, 1, OVERLAP * (1.0 if self.zero_for_removed else scale)))
             if self.connection == "pre-tension"
             else ""
         )
