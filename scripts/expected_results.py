@@ -26,6 +26,9 @@ LEFT_OUT = re.compile(
 )
 """Work and errors of the solver, and numbers; impacts are compared by themselves."""
 
+AT_REST = 1e-12
+"""Speed of approach, relative to the largest speed, that is none."""
+
 POINTS = ("center", "position")
 DISPLACEMENTS = ("U",)
 VELOCITIES = ("V", "velocity")
@@ -486,9 +489,15 @@ def _impacts(old: Seen, new: Seen, change: Change, scales: dict[str, float]) -> 
         if first.keys() != second.keys():
             away[row] = np.inf
         elif first:
-            gaps = [np.abs(first[key] - second[key]) / size for key in first]
-            away[row] = float(np.max(gaps))
+            away[row] = max(_apart(first[key], second[key], size) for key in first)
     return {"history/impacts": away}
+
+
+def _apart(one: Array, other: Array, size: Array) -> float:
+    """Difference of two landings. Round-off decides when a pair lands that touches and does not approach."""
+    away = np.abs(one - other) / size
+    is_at_rest = max(abs(one[1]), abs(other[1])) <= AT_REST * size[1]
+    return float(away[:2].max() if is_at_rest else away.max())
 
 
 def _listed(seen: Seen, rows: int, change: Change) -> Impacts:

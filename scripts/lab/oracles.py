@@ -175,7 +175,7 @@ def _same(trial: Trial, old: Seen, new: Seen, change: Change, tolerance: float) 
     if found.missing:
         return f"only in one result: {', '.join(found.missing[:3])}"
     compared = {
-        name: np.where(_has_answer(trial, old, name)[: len(away)], away, 0.0)
+        name: np.where(_has_answer(old, name)[: len(away)], away, 0.0)
         for name, away in found.by_name.items()
     }
     beyond = {name: away for name, away in compared.items() if (away > tolerance).any()}
@@ -202,16 +202,14 @@ def _same(trial: Trial, old: Seen, new: Seen, change: Change, tolerance: float) 
     return where or None
 
 
-def _has_answer(trial: Trial, seen: Seen, name: str) -> NDArray[np.bool_]:
+def _has_answer(seen: Seen, name: str) -> NDArray[np.bool_]:
     """Rows of a history or field that have one answer.
 
-    Where pairs in both orders can carry the same force, only the sums of their impulses have: landings of pairs are left out.
     Where a surface touches itself, the order of its faces decides which side is slave, and forces on bodies alone have a sign.
     Where all contact forces are round-off, it decides which pairs are closed.
     """
     if name == IMPACTS:
-        is_shared = trial.choice["contact"].startswith("both")
-        return np.full(seen.rows, not is_shared)
+        return np.ones(seen.rows, np.bool_)
     values = seen.by_row(name)
     group, _, own = name.rpartition("/")
     if own == "CONTACT_STATUS":
