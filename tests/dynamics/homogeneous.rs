@@ -1,4 +1,4 @@
-//! Static steps of every element type with every law: homogeneous states stay homogeneous.
+//! Static steps of every element type with every law: homogeneous states stay homogeneous, and loads that stay change nothing.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -106,6 +106,64 @@ fn homogeneous_states_stay_homogeneous_to_large_strains() {
                 for i in 0..2 {
                     let error = u[2 * n + i] - stretch[i] * x[i];
                     assert!(error.abs() < 1e-9, "{what}: node {} {error:e}", n + 1);
+                }
+            }
+        }
+    }
+}
+
+/// Whether the element has one strain and hourglass modes beside it.
+fn has_hourglass_modes(element_type: ElementType) -> bool {
+    ["CPE4R", "CPS4R", "CAX4R"].contains(&element_type.name())
+}
+
+/// In a square that its base holds, with forces at its right side beyond the strength of the metal, a step without anything
+/// new leaves displacements and reactions as they are. Two things are no part of the table: metals in elements with one
+/// strain, where the limit of the hourglass modes is that of the strain at the start of the increment, eq. (2.48), and kinematic
+/// hardening, where the stress changes in the second order of an increment's flow as that is committed, eq. (2.41).
+#[test]
+fn loads_that_stay_change_nothing() {
+    // laws, and the forces at each node of the side
+    let laws = [
+        (LINEAR, [0.2, -0.5]),
+        (NEO_HOOKE, [0.01, -0.03]),
+        (RUBBER, [0.01, -0.03]),
+        (METAL, [0.03, -0.08]),
+    ];
+    for element_type in ElementType::NAMED {
+        for (material, [across, up]) in laws {
+            if has_hourglass_modes(element_type) && material.contains("PLASTIC") {
+                continue;
+            }
+            let (mut deck, _) = patch(element_type, material);
+            let load = format!("*CLOAD\nR, 1, {across:?}\nR, 2, {up:?}\n");
+            let axis = if element_type.is_ring() {
+                "L, 1, 1\n"
+            } else {
+                ""
+            };
+            write!(deck, "*BOUNDARY\nB, 1, 2\n{axis}").expect("text");
+            for load in [&load, ""] {
+                write!(deck, "*STEP, NLGEOM\n*STATIC\n0.25, 1.\n{load}*END STEP\n").expect("text");
+            }
+            let what = format!("{} {material}", element_type.name());
+            let (keep, failure) = run_deck(&deck);
+            assert_eq!(failure, None, "{what}");
+            let start = keep.reports.iter().rposition(|report| report.step == 1);
+            let [start, held @ ..] = &keep.reports[start.expect("a load")..] else {
+                panic!("{what}")
+            };
+            assert!(!held.is_empty(), "{what}");
+            for report in held {
+                let both = [
+                    [&start.state.u, &report.state.u],
+                    [&start.nodal.reaction, &report.nodal.reaction],
+                ];
+                for [before, after] in both {
+                    let size = before.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+                    let changes = before.iter().zip(after).map(|(x, y)| (x - y).abs());
+                    let change = changes.fold(0.0, f64::max);
+                    assert!(change < 1e-9 * size, "{what}: {change:e} of {size:e}");
                 }
             }
         }
