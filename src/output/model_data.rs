@@ -375,15 +375,24 @@ const TABLE_STEPS: Meaning = ("1", "step of every row of the tables of friction,
 const TABLE: [(&str, Meaning); 3] = [
     (
         "table_pressures",
-        ("force/length^2", "pressure of every row of the tables of friction"),
+        (
+            "force/length^2",
+            "pressure of every row of the tables of friction",
+        ),
     ),
     (
         "table_slip_rates",
-        ("length/time", "slip rate of every row of the tables of friction"),
+        (
+            "length/time",
+            "slip rate of every row of the tables of friction",
+        ),
     ),
     (
         "table_coefficients",
-        ("1", "coefficient of friction of every row of the tables of friction"),
+        (
+            "1",
+            "coefficient of friction of every row of the tables of friction",
+        ),
     ),
 ];
 const SHEAR_LIMIT: Meaning = (

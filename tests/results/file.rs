@@ -197,7 +197,10 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/contacts/BOTTOM_TOP/segments", vec![2, 2]),
         ("/model/contacts/BOTTOM_TOP/friction", vec![2]),
         ("/model/contacts/BOTTOM_TOP/acts", vec![1]),
-        ("/model/contacts/BOTTOM_TOP/friction_coefficients", vec![1, 2]),
+        (
+            "/model/contacts/BOTTOM_TOP/friction_coefficients",
+            vec![1, 2],
+        ),
         ("/model/contacts/BOTTOM_TOP/friction_decay", vec![1]),
         ("/model/contacts/BOTTOM_TOP/table_steps", vec![0]),
         ("/model/contacts/BOTTOM_TOP/table_pressures", vec![0]),
@@ -209,7 +212,10 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/contacts/BOTTOM_TOP_2/segments", vec![2, 2]),
         ("/model/contacts/BOTTOM_TOP_2/friction", vec![2]),
         ("/model/contacts/BOTTOM_TOP_2/acts", vec![1]),
-        ("/model/contacts/BOTTOM_TOP_2/friction_coefficients", vec![1, 2]),
+        (
+            "/model/contacts/BOTTOM_TOP_2/friction_coefficients",
+            vec![1, 2],
+        ),
         ("/model/contacts/BOTTOM_TOP_2/friction_decay", vec![1]),
         ("/model/contacts/BOTTOM_TOP_2/table_steps", vec![0]),
         ("/model/contacts/BOTTOM_TOP_2/table_pressures", vec![0]),
