@@ -29,7 +29,7 @@ from stickslip.report.pack import Packed
 from stickslip.result import Result
 
 from lab.levels import INELASTIC, INTERACTIONS, PROCEDURES, SLOW, STATIC
-from lab.scene import FORCE, Scene
+from lab.scene import BOLT, FORCE, Scene
 
 SAME = 1e-8
 """Largest deviation of another form, relative to the largest value of its dimension."""
@@ -591,7 +591,9 @@ def reactions(trial: Trial) -> str | None:
     if trial.is_one("sequence", "on and off", "two loads", "removed") or trial.scene.is_ring:
         raise Untold("loads are known of one force")
     result = trial.result
-    reaction = result.frames[-1]["RF"].sum(axis=0)[:2]
+    # the force of a section that is closed pulls both of its sides
+    has_support = result.node_labels != BOLT
+    reaction = result.frames[-1]["RF"][has_support].sum(axis=0)[:2]
     mass = result.read("model/bodies/mass").sum()
     if trial.is_one("connection", "rigid nodes", "rigid tie nodes", "rigid elements", "disc"):
         mass += 0.3

@@ -80,3 +80,22 @@ def test_certificate_of_a_support_that_fades(procedure: str) -> None:
 def test_certificate_of_two_contacts_from_surface_to_surface_in_both_orders(family: str, procedure: str) -> None:
     choice = {**SIMPLEST, "family": family, "procedure": procedure, "contact": "both orders s2s", "interaction": "wear"}
     assert judge("both orders", choice, program.binary(), "certificate").failures == {}
+
+
+FOUND = [
+    ("rests", {"family": "CPE3", "procedure": "dynamic", "sequence": "rest", "contact": "surface to surface", "interaction": "rough"}),
+    ("certificate", {"connection": "disc"}),
+    ("own checks", {"procedure": "static direct", "sequence": "removed", "contact": "general floor", "interaction": "friction", "connection": "disc", "load": "rotation", "amplitude": "tabular"}),
+    ("balance", {"procedure": "redistributed", "contact": "node to surface", "connection": "rigid elements", "load": "moment"}),
+    ("balance", {"procedure": "quasi-static", "sequence": "contact removed", "contact": "node to surface", "connection": "rigid tie nodes", "load": "gravity"}),
+    ("certificate", {"procedure": "quasi-static", "sequence": "contact removed", "contact": "both orders", "connection": "pin", "load": "face pressure", "amplitude": "smooth"}),
+    ("certificate", {"family": "CPE8RH", "material": "rubber", "procedure": "events", "sequence": "released", "contact": "node surface", "interaction": "taumax", "connection": "kinematic coupling", "load": "rotation", "amplitude": "smooth"}),
+]
+"""What decks of the arrays have failed, with the levels that are left of them."""
+
+
+@pytest.mark.parametrize(("oracle", "levels"), FOUND)
+def test_what_arrays_have_found(oracle: str, levels: dict[str, str]) -> None:
+    choice = {**SIMPLEST, **levels}
+    assert allows(choice)
+    assert judge("found", choice, program.binary(), oracle).failures == {}

@@ -507,7 +507,7 @@ class Frames:
             check.skip("no node is free of supports and loads")
 
     def _take_fading(self, residual: Array, frame: Frame, increment: Increment) -> None:
-        """Takes out the reactions of removed supports, which fade until the end of a static or quasi-static step."""
+        """Takes out the forces of removed supports and contacts, which fade until the end of a static or quasi-static step."""
         row, step = increment.row, self.step
         is_end = row + 1 == len(step) or step[row + 1] != step[row]
         if increment.step == 0 or is_end or increment.scheme not in (0, EULER):
@@ -516,6 +516,10 @@ class Frames:
         if (residual[self.supported][free] != 0.0).any():
             residual[self.supported] = np.where(free, 0.0, residual[self.supported])
             self.checks["equilibrium"].skip("reactions of supports that a step removes fade until its end")
+        for contact in self.contacts:
+            if contact.acts[increment.step - 1] and not contact.acts[increment.step]:
+                residual[contact.slaves] = residual[contact.segments.ravel()] = 0.0
+                self.checks["equilibrium"].skip("forces of contacts that a step removes fade until its end")
 
     def _without_weight(self, residual: Array, told: Flags) -> Array:
         """Takes out the body forces: the accelerations of their patterns that fit best."""
