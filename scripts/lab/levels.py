@@ -347,7 +347,14 @@ class Known:
     """A part of what the oracle says."""
 
 
-KNOWN: list[Known] = []
+KNOWN: list[Known] = [
+    Known(
+        "moved",
+        "of two nodes that face each other's segments at the same distance, round-off decides which general contact moves",
+        {"contact": ["general adjusted"]},
+        "CONTACT_STATUS",
+    ),
+]
 
 
 def known(oracle: str, choice: Mapping[str, str], said: str) -> str:

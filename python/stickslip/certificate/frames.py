@@ -18,7 +18,7 @@ from stickslip.certificate.contacts import (
     split,
     touching,
 )
-from stickslip.certificate.elements import EPS, Elements, is_axisymmetric
+from stickslip.certificate.elements import EPS, SAINT_VENANT_KIRCHHOFF, Elements, is_axisymmetric
 from stickslip.certificate.means import Mean, Means
 from stickslip.certificate.rings import RingBlock
 from stickslip.certificate.fits import REASON, Fits
@@ -153,10 +153,10 @@ class Frames:
         energy = result.history.energy.largest
         self.reach = np.sqrt(2.0 * energy / np.where(self.stiffness > 0.0, self.stiffness, np.inf))
         """Largest displacement of every body in the frames so far, at least the one that would store the
-        largest energy of the run: the round-off of a load stays when it is taken off. The mean
-        dilatation is computed beside 1, as positions are."""
+        largest energy of the run: the round-off of a load stays when it is taken off. Mean dilatations, and
+        the invariants of hyperelastic laws, are computed beside 1, as positions are."""
         for block in self.elements.blocks:
-            if block.mean_dilatation:
+            if block.mean_dilatation or block.law != SAINT_VENANT_KIRCHHOFF:
                 size = 1.0 / np.abs(block.gradient).max(axis=(1, 2, 3))
                 np.maximum.at(self.reach, self.elements.body[block.elements], size)
 
