@@ -491,7 +491,12 @@ impl<'m> Discretization<'m> {
         let model = &prepared.model;
         let mut elements = Elements::new(model);
         let redistribution = &prepared.redistribution;
-        let turning = TurningBody::all(model, &elements);
+        let mut turning = TurningBody::all(model, &elements);
+        let deforming = (0..elements.len()).filter(|&element| !elements.is_rigid(element));
+        let nodes = deforming.flat_map(|element| elements.nodes(element));
+        let donors = nodes.filter_map(|&node| redistribution.donors(node));
+        let carriers: Vec<usize> = donors.flatten().map(|donor| donor.0).collect();
+        turning.iter_mut().for_each(|body| body.load(&carriers));
         elements.measure_angles(turning.iter().map(|body| (body.spin / 2, body.length)));
         let mut coordinates = model.mesh.coordinates.clone();
         for body in &turning {

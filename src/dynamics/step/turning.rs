@@ -127,6 +127,15 @@ impl TurningBody {
             .collect()
     }
 
+    /// Takes in those of its nodes that carry mass of elements that deform in the place of nodes without mass.
+    pub fn load(&mut self, carriers: &[usize]) {
+        let nodes: Vec<usize> = self.nodes().collect();
+        let own = carriers.iter().filter(|node| nodes.contains(node));
+        self.loaded.extend(own);
+        self.loaded.sort_unstable();
+        self.loaded.dedup();
+    }
+
     /// Reference position of its centre of mass, the reference node being at `x`.
     pub fn centre_from(&self, x: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| x[i] + self.to_centre[i])
