@@ -195,6 +195,7 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/load_groups", vec![E]),
         ("/model/contacts/BOTTOM_TOP/slaves", vec![4]),
         ("/model/contacts/BOTTOM_TOP/segments", vec![2, 2]),
+        ("/model/contacts/BOTTOM_TOP/slave_faces", vec![0, 2]),
         ("/model/contacts/BOTTOM_TOP/friction", vec![2]),
         ("/model/contacts/BOTTOM_TOP/acts", vec![1]),
         (
@@ -210,6 +211,7 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/contacts/BOTTOM_TOP/friction_ramps", vec![1]),
         ("/model/contacts/BOTTOM_TOP_2/slaves", vec![4]),
         ("/model/contacts/BOTTOM_TOP_2/segments", vec![2, 2]),
+        ("/model/contacts/BOTTOM_TOP_2/slave_faces", vec![0, 2]),
         ("/model/contacts/BOTTOM_TOP_2/friction", vec![2]),
         ("/model/contacts/BOTTOM_TOP_2/acts", vec![1]),
         (
