@@ -1,7 +1,9 @@
-# What `run`, `test` and `venv` share; sourced by them. Sets ROOT and FEATURES.
+# What `run`, `test` and `venv` share; sourced by them. Sets ROOT, FIRST_WORD and FEATURES.
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 VENV="$ROOT/.venv"
+# The first word behind the name of the script that sources this.
+FIRST_WORD="${1:-}"
 export PYTHONPATH="$ROOT/python${PYTHONPATH:+:$PYTHONPATH}"
 FEATURES=()
 
@@ -105,9 +107,11 @@ need_browser() {
 
 # Builds the program, with cargo's progress on a terminal; sets PROGRAM to its path.
 need_program() {
+    PROGRAM="${CARGO_TARGET_DIR:-$ROOT/target}/release/stickslip"
+    # the help of a script is told before anything is built
+    case "$FIRST_WORD" in -h | --help) return ;; esac
     need_rust
     need_hdf5
-    PROGRAM="${CARGO_TARGET_DIR:-$ROOT/target}/release/stickslip"
     local quiet=(--quiet)
     [ ! -t 2 ] || quiet=()
     if [ -x "$PROGRAM" ]; then
