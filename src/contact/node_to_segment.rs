@@ -208,6 +208,7 @@ fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::constraint::Rows;
     use super::*;
     use crate::contact::geometry::position;
     use crate::contact::testing;
@@ -293,8 +294,8 @@ mod tests {
             assert!((row[1] + row[3] + row[5]).abs() < 1e-15);
             let moment: f64 = (0..3)
                 .map(|n| {
-                    let x = position(&X, &from[..], n)[0] / 2.0 + position(&X, &U1, n)[0] / 2.0;
-                    let y = position(&X, &from[..], n)[1] / 2.0 + position(&X, &U1, n)[1] / 2.0;
+                    let x = position(&X, *from, n)[0] / 2.0 + position(&X, &U1, n)[0] / 2.0;
+                    let y = position(&X, *from, n)[1] / 2.0 + position(&X, &U1, n)[1] / 2.0;
                     x * row[2 * n + 1] - y * row[2 * n]
                 })
                 .sum();
