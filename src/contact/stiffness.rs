@@ -13,12 +13,12 @@
 //! dBt = (gamma H1 + delta H3)/2 + H1 zm dgamma + H3 zm ddelta
 //! ```
 //!
-//! Of the end rows Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t + (g/l) e_n), eq. (3.4), with de_n = -e_t (e_n.de)/l,
-//! de_t = e_n (e_n.de)/l and dg = Bn.(dr, de),
+//! Of the end rows Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t), eq. (3.4), with de_n = -e_t (e_n.de)/l
+//! and de_t = e_n (e_n.de)/l,
 //!
 //! ```text
 //! dBn = -(e_t, -xi e_t) (e_n.de)/l - (0, e_n) dxi
-//! dBt =  (e_n, -xi e_n) (e_n.de)/l - (0, e_t) (dxi + g (e_n.de)/l²) + (0, e_n) (dg - g (e_t.de)/l)/l
+//! dBt =  (e_n, -xi e_n) (e_n.de)/l - (0, e_t) dxi
 //! dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²
 //! ```
 
@@ -134,11 +134,7 @@ fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], [pn, pt]: [f64; 2]) -> Matrix4<
     let turn = of_e(p.normal) / p.length;
     let dxi = row(p.tangent) / p.length + turn * (p.gap / p.length);
     let normal = -row(p.tangent) * turn.transpose() - of_e(p.normal) * dxi.transpose();
-    let height = p.gap / p.length;
-    let lean = (row(p.normal) - of_e(p.tangent) * height) / p.length;
-    let tangential = row(p.normal) * turn.transpose()
-        - of_e(p.tangent) * (dxi + turn * height).transpose()
-        + of_e(p.normal) * lean.transpose();
+    let tangential = row(p.normal) * turn.transpose() - of_e(p.tangent) * dxi.transpose();
     normal * pn + tangential * pt
 }
 

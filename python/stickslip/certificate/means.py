@@ -240,8 +240,7 @@ class Means:
             x0, x1 = self.at[0], self.at[1]
             d = s[1] - s[0] - (1.0 - xi[1]) * (x1[1][j] - x0[1][j]) - xi[1] * (x1[2][j] - x0[2][j])
             normal = _turned(t[1])
-            slip = float(t[1] @ d + gaps[1] / length[1] * normal @ (e[1] - e[0]))
-            return Point(face, eta, weight, j, i, gaps[1], slip, (normal, t[1]), -xi[1] * normal)
+            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (normal, t[1]), -xi[1] * normal)
         mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
         long, square = (length[0] + length[1]) / 2.0, (length[0] * length[1]) ** 2
         slip = long * (xi[1] - xi[0])
