@@ -349,6 +349,12 @@ class Known:
 
 KNOWN: list[Known] = [
     Known(
+        "rests",
+        "static rows leave out the couple of friction at a distance from the segment that dynamic rows have: a body at rest "
+        "moves by 2e-6 of its displacement",
+        {"contact": ["surface to surface", "both orders s2s", "rigid floor s2s"]},
+    ),
+    Known(
         "moved",
         "of two nodes that face each other's segments at the same distance, round-off decides which general contact moves",
         {"contact": ["general adjusted"]},

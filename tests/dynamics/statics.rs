@@ -318,23 +318,17 @@ fn a_block_on_matching_nodes_is_pushed_alike_from_both_sides() {
     }
 }
 
-/// In a static step without friction: where a node at a vertex sticks as its overlap goes, both segments hold it in an
-/// equilibrium of their own.
 #[test]
 fn a_fit_on_matching_nodes_is_pressed_apart_alike_on_both_sides() {
-    let procedures = [
-        ("*DYNAMIC, DIRECT\n0.005, 0.05", 0.3, ""),
-        ("*STATIC\n0.25, 1.", 0.0, "27, 1\n"),
-    ];
     for pairs in ["SOLE, TOP\n", "SOLE, TOP\nTOP, SOLE\n"] {
-        for (procedure, mu, held) in procedures {
+        for procedure in ["*DYNAMIC, DIRECT\n0.005, 0.05", "*STATIC\n0.25, 1."] {
             let decks = [1.0, -1.0].map(|side| {
                 let steps = format!(
-                    "ROOF, 2\n{held}*STEP, NLGEOM\n{procedure}\n*CONTACT INTERFERENCE, SHRINK\nSOLE, TOP\n\
+                    "ROOF, 2\n*STEP, NLGEOM\n{procedure}\n*CONTACT INTERFERENCE, SHRINK\nSOLE, TOP\n\
                      *CLOAD\nROOF, 1, {:?}\n*END STEP\n",
                     0.1 * side
                 );
-                on_matching_nodes(side, [1e3, 0.3, mu], (0.01, pairs), &steps)
+                on_matching_nodes(side, [1e3, 0.3, 0.3], (0.01, pairs), &steps)
             });
             assert_mirrored(decks, &format!("{procedure} {pairs}"));
         }
