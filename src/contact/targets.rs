@@ -432,9 +432,8 @@ impl SlaveNode<'_> {
     }
 
     /// The neighbour, round a convex corner near the node, of a segment that the surface of the
-    /// node does not face, if it faces that better. Where a corner slides over a corner, only the face that the surface of
-    /// the node faces constrains it; behind the other the node's own body would lie. That is so if the node was over that face at
-    /// the start, or so near that half of a face of its own, which may be shorter than the segment by any factor, reached over it.
+    /// node does not face. Where a corner slides over a corner, only the face that the surface of
+    /// the node faces constrains it; behind the other the node's own body would lie.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;
@@ -447,10 +446,8 @@ impl SlaveNode<'_> {
             .filter(|&j| (1.0 - p.xi) * p.length <= near && self.corner_sine(i, j) > STRAIGHT_SINE);
         let constrains = |&j: &usize| {
             let start = self.project_at_start(j);
-            let is_near = (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&start.xi);
-            let was_near = is_near && self.was_over(j);
-            let is_faced = || self.facing(j) > self.facing(i);
-            was_near && self.was_in_front(j) && !self.is_own(j) && is_faced()
+            let was_near = (-near..=start.length + near).contains(&(start.xi * start.length));
+            was_near && self.was_in_front(j) && !self.is_own(j) && self.is_opposite(j) == Some(true)
         };
         before.filter(constrains).or(after.filter(constrains))
     }
@@ -642,18 +639,6 @@ impl SlaveNode<'_> {
         Some(adjacent.iter().all(is_in_front))
     }
 
-    /// Least sine by which a neighbour of the node lies in front of the parallel to the segment through the node.
-    fn facing(&self, segment: usize) -> f64 {
-        let node = self.now.of(self.node());
-        let normal = self.project(segment).normal;
-        let sine = |adjacent: usize| {
-            let r = difference(node, self.now.of(adjacent));
-            dot(r, normal) / r[0].hypot(r[1])
-        };
-        let adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
-        adjacent.map(sine).fold(1.0, f64::min)
-    }
-
     /// Whether the node was in front of the line of a segment at the start.
     pub(crate) fn was_in_front(&self, segment: usize) -> bool {
         let p = self.project_at_start(segment);
@@ -688,20 +673,6 @@ impl SlaveNode<'_> {
     /// concave corner counts (length).
     pub(crate) fn corner_reach(&self, segment: usize, p: &Projection) -> f64 {
         CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
-    }
-
-    /// Whether the node, or the middle of a face of its own, projected on a segment at the start.
-    fn was_over(&self, segment: usize) -> bool {
-        let [a, b] = self.surfaces.segments[segment].map(|n| self.start.of(n));
-        let node = self.start_position();
-        // but for round-off: nodes of matching meshes are at the ends
-        let is_over = |p: [f64; 2]| (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&project(p, a, b).xi);
-        let middle = |n: usize| {
-            let [x, y] = self.start.of(n);
-            [(node[0] + x) / 2.0, (node[1] + y) / 2.0]
-        };
-        let adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
-        is_over(node) || adjacent.map(middle).any(is_over)
     }
 
     /// Displacement of the node relative to a segment since the start (length).
