@@ -550,7 +550,7 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Weight of the second normal at a corner, that of the common normal.
+    /// Weight w of the second segment at a corner, for which the blend of both normals is the common normal.
     fn common_weight(&self, normals: [[f64; 2]; 2]) -> Option<f64> {
         let [before, after] = self.surfaces.adjacent[self.slave]?;
         let at = |n: usize| self.now.of(n);
