@@ -86,7 +86,7 @@ def judge(name: str, choice: Choice, program: Path, only: str | None = None) -> 
                 said = one_line(error) or type(error).__name__
             verdict.told.append(oracle)
             if said:
-                if reason := known(oracle, choice, said):
+                if reason := known(oracle, choice):
                     verdict.known[oracle] = f"{said} ({reason})"
                 else:
                     verdict.failures[oracle] = said

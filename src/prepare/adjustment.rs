@@ -8,7 +8,7 @@ use crate::contact::{ContactSurfaces, project};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{Adjust, Contact, Element, Model, Reach};
 use crate::vectors::distance;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// Most sweeps over the nodes of a surface that touches itself.
 const SWEEPS: usize = 20;
@@ -74,9 +74,12 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
 }
 
 /// Those of the nodes that face segments at rest: of a node and the segment that it faces only one is
-/// moved in a sweep. The deepest nodes come first.
+/// moved in a sweep. The deepest nodes come first; of nodes equally deep but for round-off those that face the longest
+/// segments, since nodes of a fine mesh follow the shape of a coarse one; then those before others in the model.
 fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
-    gaps.sort_by(|a, b| a.gap.total_cmp(&b.gap).then(a.slave.cmp(&b.slave)));
+    let depths = ranks(&gaps, |gap| gap.gap);
+    let lengths = ranks(&gaps, |gap| -gap.length);
+    gaps.sort_by_key(|gap| (depths[&gap.slave], lengths[&gap.slave], gap.slave));
     let (mut moved, mut faced) = (HashSet::new(), HashSet::new());
     gaps.retain(|gap| {
         let is_free = !faced.contains(&gap.slave);
@@ -88,6 +91,22 @@ fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
         is_free && is_at_rest
     });
     gaps
+}
+
+/// Rank of each slave node by a length, from the least on; lengths that differ by no more than the round-off of coordinates
+/// have the same rank.
+fn ranks(gaps: &[InitialGap], length: impl Fn(&InitialGap) -> f64) -> HashMap<usize, usize> {
+    let mut ordered: Vec<&InitialGap> = gaps.iter().collect();
+    ordered.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    let mut rank = 0;
+    let mut last = f64::NEG_INFINITY;
+    let mut ranks = HashMap::new();
+    for gap in ordered {
+        rank += usize::from(length(gap) - last > COORDINATE_ROUND_OFF * gap.edge);
+        last = length(gap);
+        ranks.insert(gap.slave, rank);
+    }
+    ranks
 }
 
 /// Whether a node is to be moved.
@@ -214,6 +233,32 @@ mod tests {
             assert!(!is_spoiled_by([1.02, 0.6], [0.01, 0.6]), "low, {unit:e}");
             assert!(is_spoiled_by([1.02, 0.4], [0.01, 0.4]), "flat, {unit:e}");
         }
+    }
+
+    #[test]
+    fn round_off_does_not_choose_between_nodes_that_face_each_other() {
+        let gap = |slave: usize, segment: [usize; 2], gap: f64, length: f64| InitialGap {
+            slave,
+            segment,
+            xi: 0.5,
+            gap,
+            length,
+            edge: 1.0,
+        };
+        let moved = |noise: [f64; 3], lengths: [f64; 3]| -> Vec<usize> {
+            let gaps = vec![
+                gap(7, [1, 2], -0.1 + noise[0], lengths[0]),
+                gap(1, [7, 8], -0.1 + noise[1], lengths[1]),
+                gap(9, [3, 4], -0.2 + noise[2], lengths[2]),
+            ];
+            independent(gaps).iter().map(|gap| gap.slave).collect()
+        };
+        for noise in [[0.0; 3], [-1e-16, 1e-16, 0.0], [1e-16, -1e-16, 1e-16]] {
+            let noisy = noise.map(|noise| 1.0 + noise);
+            assert_eq!(moved(noise, noisy), [9, 1], "{noise:?}");
+            assert_eq!(moved(noise, [1.5, 1.0, 1.0]), [9, 7], "{noise:?}");
+        }
+        assert_eq!(moved([-1e-3, 0.0, 0.0], [1.0; 3]), [9, 7]);
     }
 
     /// Number of nodes that are moved of a square that lies above another, the gap being a part of the
