@@ -202,6 +202,11 @@ RULES = [
     ),
     Rule("a disc rolls away under a moment", {"load": ["moment"], "connection": ["disc"]}),
     Rule("a node that is held is not thrown", {"load": ["thrown"], "sequence": ["released"]}),
+    Rule(
+        "a node of rigid elements is held with their reference node",
+        {"contact": ["none"], "sequence": ["released"], "connection": ["rigid elements"]},
+        "D413",
+    ),
     Rule("general contact is no pair", {"contact": GENERAL, "sequence": ["contact removed"]}),
     Rule(
         "friction that is no coefficient does not change",
@@ -288,6 +293,11 @@ RULES = [
         {"form": ["removed as zero"], "sequence": but("sequence", "removed")},
     ),
     Rule("a removed support is not one of value 0", {"form": ["removed as zero"], "load": DRIVEN}),
+    Rule("a velocity given at the start is not removed", {"form": ["removed as zero"], "load": ["thrown"]}),
+    Rule(
+        "a fit is pressed together in a step, from which no load is removed",
+        {"form": ["removed as zero"], "contact": ["interference"]},
+    ),
     Rule("a restart needs a second step", {"form": ["restarted"], "sequence": ["one"]}),
     Rule(
         "both orders are exchanged",
@@ -297,6 +307,7 @@ RULES = [
         "a flat deck is not written otherwise", {"form": ["otherwise written"], "written": ["flat"]}
     ),
     Rule("impacts of meshes that differ differ", {"form": ["finer family"], "procedure": FAST}),
+    Rule("a thrown body has impacts", {"form": ["finer family"], "load": ["thrown"]}),
     Rule(
         "a finer family ends elsewhere after its load",
         {"form": ["finer family"], "sequence": but("sequence", "one", "hold")},
