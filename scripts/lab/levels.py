@@ -293,7 +293,10 @@ RULES = [
         {"form": ["removed as zero"], "sequence": but("sequence", "removed")},
     ),
     Rule("a removed support is not one of value 0", {"form": ["removed as zero"], "load": DRIVEN}),
-    Rule("a velocity given at the start is not removed", {"form": ["removed as zero"], "load": ["thrown"]}),
+    Rule(
+        "a velocity given at the start is not removed",
+        {"form": ["removed as zero"], "load": ["thrown"]},
+    ),
     Rule(
         "a fit is pressed together in a step, from which no load is removed",
         {"form": ["removed as zero"], "contact": ["interference"]},

@@ -220,7 +220,10 @@ def _is_of_contacts(name: str) -> bool:
 def _other_contact(
     seen: Seen, grown: Mapping[str, NDArray[np.float64]], small: float
 ) -> float:
-    """When noise first changes a contact: which pairs are closed, stick or collide is not compared from there on."""
+    """When noise first changes a contact.
+
+    Which pairs are closed, stick or collide is not compared from there on.
+    """
     times = [
         seen.times(name)[: len(away)][(away > small) & _has_answer(seen, name)[: len(away)]]
         for name, away in grown.items()
