@@ -359,14 +359,7 @@ class Known:
     levels: Mapping[str, list[str]]
 
 
-KNOWN: list[Known] = [
-    Known(
-        "rests",
-        "static rows leave out the couple of friction at a distance from the segment that dynamic rows have: a body at rest "
-        "moves by 2e-6 of its displacement",
-        {"contact": ["surface to surface", "both orders s2s", "rigid floor s2s"]},
-    ),
-]
+KNOWN: list[Known] = []
 
 
 def known(oracle: str, choice: Mapping[str, str]) -> str:

@@ -21,7 +21,9 @@ use super::targets::PairTarget;
 pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations) -> Constraint {
     let [s, a, b, c] = source.nodes;
     // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
-    let (before, behind) = (segment_rows([s, a, b], at), segment_rows([s, b, c], at));
+    let (before, behind) = [[s, a, b], [s, b, c]]
+        .map(|nodes| segment_rows(nodes, source.allowed, at))
+        .into();
     let (p, q) = (before.projection, behind.projection);
     let [x, y] = [0, 1].map(|i| corner.blend(p.normal[i], q.normal[i]));
     let m = x.hypot(y);

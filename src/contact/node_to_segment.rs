@@ -33,7 +33,7 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         projection,
         mut force,
         derivative,
-    } = segment_rows([s, a, b], at);
+    } = segment_rows([s, a, b], source.allowed, at);
     let kappa = tilt(&source, at);
     if kappa != 0.0 {
         force.normal = sum_of(1.0, &force.normal, kappa, &force.tangential);
@@ -78,17 +78,26 @@ pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
     }
 }
 
-/// Projection and rows of the node s on the segment from a to b.
-pub(super) fn segment_rows(nodes: [usize; 3], at: &Configurations) -> SegmentRows {
-    rows_between([at.start(nodes), at.iterate(nodes)], at.form)
+/// Projection and rows of the node s on the segment from a to b, which may overlap.
+pub(super) fn segment_rows(
+    nodes: [usize; 3],
+    [_, allowed]: [f64; 2],
+    at: &Configurations,
+) -> SegmentRows {
+    rows_between([at.start(nodes), at.iterate(nodes)], -allowed, at.form)
 }
 
-/// Projection and rows between the positions of s, a and b at start and end.
-pub(super) fn rows_between([start, end]: [[[f64; 2]; 3]; 2], form: RowForm) -> SegmentRows {
+/// Projection and rows between the positions of s, a and b at start and end; s is at a `height` over the segment when the
+/// constraint is closed, which end rows take and discrete gradients do not need.
+pub(super) fn rows_between(
+    [start, end]: [[[f64; 2]; 3]; 2],
+    height: f64,
+    form: RowForm,
+) -> SegmentRows {
     let [s, a, b] = end;
     let projection = project(s, a, b);
     let (force, derivative) = match form {
-        RowForm::End => end_rows(&projection, start, end),
+        RowForm::End => end_rows(&projection, height, [start, end]),
         RowForm::DiscreteGradient => {
             let (start, end) = (Arms::new(start), Arms::new(end));
             (
@@ -105,9 +114,13 @@ pub(super) fn rows_between([start, end]: [[[f64; 2]; 3]; 2], form: RowForm) -> S
 }
 
 /// Force rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the
-/// same with e_t. The normal row is the derivative of the gap; the slip e_t.w has the derivative of
-/// eq. (3.9).
-fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPair<6>, RowPair<6>) {
+/// same with e_t and the couple (h/l) D, by which friction at the height h has no moment. The normal row is the derivative
+/// of the gap; the slip has the derivative of eq. (3.9).
+fn end_rows(
+    p: &Projection,
+    height: f64,
+    [start, end]: [[[f64; 2]; 3]; 2],
+) -> (RowPair<6>, RowPair<6>) {
     let weights = [1.0, -(1.0 - p.xi), -p.xi];
     let row = |e: [f64; 2]| -> [f64; 6] { std::array::from_fn(|k| weights[k / 2] * e[k % 2]) };
     let (normal, tangential) = (row(p.normal), row(p.tangent));
@@ -115,15 +128,17 @@ fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPai
     let d = |node: usize, i: usize| end[node][i] - start[node][i];
     let w = [0, 1].map(|i| d(0, i) + weights[1] * d(1, i) + weights[2] * d(2, i));
     let stretch = [0, 1].map(|i| d(2, i) - d(1, i));
-    // Gt = Bt + (e_n.w)/l (e_n at b, -e_n at a) - (e_t.d_e) Gxi
-    // Gxi = (Bt + g/l (e_n at b, -e_n at a))/l, eq. (3.9)
-    let turn = nodal([0.0; 2], p.normal);
-    let (across, along) = (
-        dot(p.normal, w) / p.length,
-        dot(p.tangent, stretch) / p.length,
-    );
+    // D = (e_n at b, -e_n at a), T = (e_t at b, -e_t at a)
+    let [turn, stretched] = [p.normal, p.tangent].map(|e| nodal([0.0; 2], e));
+    // Gt = Bt + (e_n.w)/l D - (e_t.d_e)/l (Bt + (g/l) D) - (e_n.d_e) h/l² T, eq. (3.9)
+    let across = dot(p.normal, w) / p.length;
+    let [turned, along] = [p.normal, p.tangent].map(|e| dot(e, stretch) / p.length);
+    let lean = height / p.length;
+    let tangential = sum_of(1.0, &tangential, lean, &turn);
     let slope = std::array::from_fn(|k| {
-        tangential[k] + across * turn[k] - along * (tangential[k] + p.gap / p.length * turn[k])
+        tangential[k] + across * turn[k]
+            - along * (tangential[k] + p.gap / p.length * turn[k])
+            - turned * lean * stretched[k]
     });
     let force = RowPair { normal, tangential };
     let derivative = RowPair {
@@ -131,6 +146,11 @@ fn end_rows(p: &Projection, start: [[f64; 2]; 3], end: [[f64; 2]; 3]) -> (RowPai
         tangential: slope,
     };
     (force, derivative)
+}
+
+/// D/l = (e_n at b, -e_n at a)/l: the couple of end rows for a force at a unit of height.
+pub(super) fn couple(p: &Projection) -> [f64; 6] {
+    nodal([0.0; 2], p.normal.map(|n| n / p.length))
 }
 
 /// Discrete gradients between the start and the end of the increment.
@@ -217,9 +237,28 @@ mod tests {
     const U1: [f64; 6] = [-0.4, -0.35, 0.3, 0.2, 0.25, -0.3];
 
     fn between(form: RowForm, u0: &[f64], u: &[f64]) -> Constraint {
-        let source = testing::face();
+        of(testing::face(), form, u0, u)
+    }
+
+    fn of(source: PairTarget, form: RowForm, u0: &[f64], u: &[f64]) -> Constraint {
         let x = &X;
         Constraint::new(source, &Configurations { form, x, u0, u })
+    }
+
+    /// A pair that is closed at U1 with the overlap that is allowed there, and at a distance from the segment.
+    fn fit() -> PairTarget {
+        let gap = projected(&U1).gap;
+        assert!(gap.abs() > 0.1);
+        PairTarget {
+            allowed: [-gap; 2],
+            ..testing::face()
+        }
+    }
+
+    fn closed(form: RowForm, u0: &[f64]) -> Constraint {
+        let constraint = of(fit(), form, u0, &U1);
+        assert_eq!(constraint.gap, 0.0);
+        constraint
     }
 
     fn projected(u: &[f64]) -> Projection {
@@ -281,32 +320,44 @@ mod tests {
     }
 
     #[test]
-    fn discrete_gradients_keep_momentum() {
-        let constraint = between(RowForm::DiscreteGradient, &U0, &U1);
-        let Rows { normal, tangential } = &constraint.force_rows;
-        for row in [normal, tangential] {
-            assert!((row[0] + row[2] + row[4]).abs() < 1e-15);
-            assert!((row[1] + row[3] + row[5]).abs() < 1e-15);
-            let moment: f64 = (0..3)
-                .map(|n| {
-                    let x = position(&X, &U0, n)[0] / 2.0 + position(&X, &U1, n)[0] / 2.0;
-                    let y = position(&X, &U0, n)[1] / 2.0 + position(&X, &U1, n)[1] / 2.0;
-                    x * row[2 * n + 1] - y * row[2 * n]
-                })
-                .sum();
-            assert!(moment.abs() < 1e-15);
+    fn forces_of_a_closed_pair_keep_both_momenta() {
+        // of end rows about the end
+        for (form, from) in [(RowForm::DiscreteGradient, &U0), (RowForm::End, &U1)] {
+            let Rows { normal, tangential } = closed(form, &U0).force_rows;
+            for row in [normal, tangential] {
+                assert!((row[0] + row[2] + row[4]).abs() < 1e-15);
+                assert!((row[1] + row[3] + row[5]).abs() < 1e-15);
+                let moment: f64 = (0..3)
+                    .map(|n| {
+                        let [p, q] = [from, &U1].map(|u| position(&X, u, n));
+                        let [x, y] = [0, 1].map(|i| (p[i] + q[i]) / 2.0);
+                        x * row[2 * n + 1] - y * row[2 * n]
+                    })
+                    .sum();
+                assert!(moment.abs() < 1e-15, "{form:?}");
+            }
         }
     }
 
     #[test]
-    fn both_forms_agree_when_nothing_moves() {
-        let rows = |form| between(form, &U1, &U1).force_rows;
+    fn both_forms_of_a_closed_pair_agree_when_nothing_moves() {
+        let rows = |form| closed(form, &U1).force_rows;
         let (p, q) = (rows(RowForm::End), rows(RowForm::DiscreteGradient));
-        for (p, q) in p.normal.iter().zip(&q.normal) {
-            assert!((p - q).abs() < 1e-15);
+        for (p, q) in [(p.normal, q.normal), (p.tangential, q.tangential)] {
+            assert!(p.iter().zip(&q).all(|(p, q)| (p - q).abs() < 1e-15));
         }
-        // The tangents agree at the slave node; on the segment they differ by the gap.
-        assert!((p.tangential[0] - q.tangential[0]).abs() < 1e-15);
-        assert!((p.tangential[1] - q.tangential[1]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn rows_of_a_fit_are_derivatives_too() {
+        let slip = |u: &[f64]| of(fit(), RowForm::End, &U0, u).slip;
+        let found = closed(RowForm::End, &U0);
+        for k in 0..6 {
+            let [mut plus, mut minus] = [U1; 2];
+            (plus[k], minus[k]) = (plus[k] + 1e-6, minus[k] - 1e-6);
+            let quotient = (slip(&plus) - slip(&minus)) / 2e-6;
+            let error = found.derivative_rows().tangential[k] - quotient;
+            assert!(error.abs() < 1e-9, "{k} {error}");
+        }
     }
 }

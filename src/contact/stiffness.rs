@@ -13,12 +13,12 @@
 //! dBt = (gamma H1 + delta H3)/2 + H1 zm dgamma + H3 zm ddelta
 //! ```
 //!
-//! Of the end rows Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t), eq. (3.4), with de_n = -e_t (e_n.de)/l
-//! and de_t = e_n (e_n.de)/l,
+//! Of the end rows Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t + (h/l) e_n), eq. (3.4), with de_n = -e_t (e_n.de)/l,
+//! de_t = e_n (e_n.de)/l and constant h,
 //!
 //! ```text
 //! dBn = -(e_t, -xi e_t) (e_n.de)/l - (0, e_n) dxi
-//! dBt =  (e_n, -xi e_n) (e_n.de)/l - (0, e_t) dxi
+//! dBt =  (e_n, -xi e_n) (e_n.de)/l - (0, e_t) (dxi + h (e_n.de)/l²) - (0, e_n) h (e_t.de)/l²
 //! dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²
 //! ```
 
@@ -35,13 +35,14 @@ impl Constraint {
     /// Change of the contact force of a node, over the dofs of the constraint (force/length). The weight of a corner and
     /// the length of its normal are those of the iterate.
     pub(super) fn change_of_node(&self, [pn, pt]: [f64; 2], at: &Configurations) -> DMatrix<f64> {
-        let [s, a, b, c] = self.source.nodes;
+        let ([s, a, b, c], allowed) = (self.source.nodes, self.source.allowed[1]);
         let mut k = DMatrix::zeros(self.dofs.len(), self.dofs.len());
         match self.source.target.corner {
             None => {
                 // the force of a tilted row is Bn^T Pn + Bt^T (Pt + kappa Pn), eq. (7.6)
                 let kappa = tilt(&self.source, at);
-                add_block(&mut k, &changes([s, a, b], [pn, pt + kappa * pn], at), 0);
+                let of_segment = changes([s, a, b], allowed, [pn, pt + kappa * pn], at);
+                add_block(&mut k, &of_segment, 0);
                 if kappa != 0.0 {
                     // dkappa = -kappa/s Gt
                     let column = |row: &[f64]| DVector::from_column_slice(row);
@@ -59,12 +60,12 @@ impl Constraint {
                 let blended = |weight: f64| [pn, pt].map(|p| weight * p / x.hypot(y));
                 add_block(
                     &mut k,
-                    &changes([s, a, b], blended(corner.blend(1.0, 0.0)), at),
+                    &changes([s, a, b], allowed, blended(corner.blend(1.0, 0.0)), at),
                     0,
                 );
                 add_block(
                     &mut k,
-                    &changes([s, b, c], blended(corner.blend(0.0, 1.0)), at),
+                    &changes([s, b, c], allowed, blended(corner.blend(0.0, 1.0)), at),
                     1,
                 );
             }
@@ -96,20 +97,22 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, segment: usize) {
     }
 }
 
-/// d(Bn^T Pn + Bt^T Pt) of a node s on the segment from a to b, with respect to the end, over s, a
+/// d(Bn^T Pn + Bt^T Pt) of a node s on the segment from a to b, which may overlap, with respect to the end, over s, a
 /// and b.
-fn changes(nodes: [usize; 3], force: [f64; 2], at: &Configurations) -> Matrix6<f64> {
-    changes_between([at.start(nodes), at.iterate(nodes)], force, at.form)
+fn changes(nodes: [usize; 3], allowed: f64, force: [f64; 2], at: &Configurations) -> Matrix6<f64> {
+    let places = [at.start(nodes), at.iterate(nodes)];
+    changes_between(places, -allowed, force, at.form)
 }
 
-/// The same between the positions of s, a and b at start and end.
+/// The same between the positions of s, a and b at start and end, of a force at a constant height.
 pub(super) fn changes_between(
     [start, end]: [[[f64; 2]; 3]; 2],
+    height: f64,
     force: [f64; 2],
     form: RowForm,
 ) -> Matrix6<f64> {
     let k = match form {
-        RowForm::End => changes_of_end_rows(end, force),
+        RowForm::End => changes_of_end_rows(end, height, force),
         RowForm::DiscreteGradient => changes_of_discrete_gradients(start, end, force),
     };
     // s: r-part, a: -(r-part) - (e-part), b: e-part
@@ -126,7 +129,7 @@ pub(super) fn changes_between(
 }
 
 /// Over (r, e), of the rows of the end configuration.
-fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], [pn, pt]: [f64; 2]) -> Matrix4<f64> {
+fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], height: f64, [pn, pt]: [f64; 2]) -> Matrix4<f64> {
     let p = project(s, a, b);
     let row = |e: [f64; 2]| Vector4::new(e[0], e[1], -p.xi * e[0], -p.xi * e[1]);
     let of_e = |e: [f64; 2]| Vector4::new(0.0, 0.0, e[0], e[1]);
@@ -134,7 +137,10 @@ fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], [pn, pt]: [f64; 2]) -> Matrix4<
     let turn = of_e(p.normal) / p.length;
     let dxi = row(p.tangent) / p.length + turn * (p.gap / p.length);
     let normal = -row(p.tangent) * turn.transpose() - of_e(p.normal) * dxi.transpose();
-    let tangential = row(p.normal) * turn.transpose() - of_e(p.tangent) * dxi.transpose();
+    let lean = height / p.length;
+    let tangential = row(p.normal) * turn.transpose()
+        - of_e(p.tangent) * (dxi + turn * lean).transpose()
+        - of_e(p.normal) * of_e(p.tangent).transpose() * (lean / p.length);
     normal * pn + tangential * pt
 }
 

@@ -6,7 +6,7 @@
 
 use std::array::from_fn;
 
-use nalgebra::{DMatrix, Matrix6, SMatrix, Vector6};
+use nalgebra::{DMatrix, DVector, Matrix6, SMatrix, Vector6};
 use smallvec::SmallVec;
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair, Rows};
@@ -15,7 +15,7 @@ use super::geometry::{
 };
 use super::keys::ConstraintKey;
 use super::lists::{PerDof, Recycled};
-use super::node_to_segment::{SegmentRows, rows_between, sum_of};
+use super::node_to_segment::{SegmentRows, couple, rows_between, sum_of};
 use super::search::{Cells, Faced, FacedRun, Territory};
 use super::stiffness::changes_between;
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint};
@@ -459,10 +459,23 @@ impl SurfacePoint {
         Tilt::new(p.gap - before, slip(&p, &q), POINT_TILT.max(2.0 * turn))
     }
 
-    /// Projection and rows over the point, a and b, the force row tilted, eq. (7.8); and the tilt.
-    fn rows(&self, at: &Configurations) -> (SegmentRows, Tilt) {
+    /// Gap of the point in the iterate.
+    fn gap(&self, at: &Configurations) -> f64 {
+        let [s, a, b] = self.places(|node| at.iterate([node])[0]);
+        project(s, a, b).gap
+    }
+
+    /// (e_n.d_e)/l: the turn of its segment in the increment.
+    fn turn(&self, p: &Projection, at: &Configurations) -> f64 {
+        let [start, end] = self.configurations(at).map(|[_, a, b]| difference(a, b));
+        dot(p.normal, difference(start, end)) / p.length
+    }
+
+    /// Projection and rows over the point, a and b, the force row tilted, eq. (7.8); and the tilt. The gap of the constraint
+    /// is given: when it closes the point is lower by that.
+    fn rows(&self, gap: f64, at: &Configurations) -> (SegmentRows, Tilt) {
         let places = self.configurations(at);
-        let mut rows = rows_between(places, at.form);
+        let mut rows = rows_between(places, self.gap(at) - gap, at.form);
         let tilt = match at.form {
             RowForm::End => Tilt::default(),
             RowForm::DiscreteGradient => self.tilt(places, |node| at.start([node])[0]),
@@ -565,16 +578,29 @@ fn nodes(source: &PairTarget) -> (Recycled<usize>, usize) {
 /// ```text
 /// Bn_j = sum_q C_jq Bn_q,  Gn_j = sum_q C_jq Gn_q,  s_j = Bt_j d,   C_jq = w_q N_j/c_j    eq. (3.20)
 /// ```
+///
+/// A point is at the height g_q - g_j when the constraint is closed, which changes with both gaps:
+///
+/// ```text
+/// Gt_j = sum_q C_jq (Gt_q + (e_n.d_e)/l (Gn_q - Gn_j))   of end rows, Gt_q with constant heights
+/// ```
 pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
     let (nodes, slaves) = nodes(&source);
     // force rows n, t and derivative rows n, t
     let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
     let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
-    let (mut gap, mut scale) = (0.0, 0.0);
+    let [allowed_before, allowed] = source.allowed;
+    let mean: f64 = (source.points.iter().map(|q| q.weight * q.gap(at))).sum();
+    let (mut gap, mut scale, mut turn) = (mean + allowed, 0.0, 0.0);
     for point in source.points.iter() {
-        let (rows, _) = point.rows(at);
-        gap += point.weight * rows.projection.gap;
+        let (mut rows, _) = point.rows(gap, at);
         scale += point.weight * rows.projection.length;
+        if at.form == RowForm::End {
+            let turned = point.turn(&rows.projection, at);
+            let SegmentRows { derivative, .. } = &mut rows;
+            derivative.tangential = sum_of(1.0, &derivative.tangential, turned, &derivative.normal);
+            turn += point.weight * turned;
+        }
         let of_point = [
             &rows.force.normal,
             &rows.force.tangential,
@@ -596,10 +622,9 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         let motions = dofs.iter().map(|&dof| at.u[dof] - at.u0[dof]);
         row.iter().zip(motions).map(|(b, d)| b * d).sum()
     };
-    let [n, t, gn, gt] = sums;
-    let [allowed_before, allowed] = source.allowed;
-    let (mut start_gap, slip) = (gap - product(&n) + allowed_before, product(&t));
-    gap += allowed;
+    let [n, t, gn, mut gt] = sums;
+    gt.iter_mut().zip(&gn).for_each(|(gt, gn)| *gt -= turn * gn);
+    let (mut start_gap, slip) = (mean - product(&n) + allowed_before, product(&t));
     // what overlaps at the start stays, eq. (7.9)
     if at.form == RowForm::DiscreteGradient && start_gap < 0.0 {
         gap -= start_gap;
@@ -642,14 +667,23 @@ pub(super) fn change(
 ) -> DMatrix<f64> {
     let nodes: SmallVec<[usize; 16]> = constraint.nodes().collect();
     let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
+    // of heights, end rows alone
+    let mut couples = DVector::zeros(constraint.dofs.len());
     for point in points {
         let places = point.configurations(at);
-        let (rows, Tilt { kappa, slope }) = point.rows(at);
+        let (rows, Tilt { kappa, slope }) = point.rows(constraint.gap, at);
+        let height = rows.projection.gap - constraint.gap;
         let [pn, pt] = [pn, pt].map(|p| point.weight * p);
-        let mut own: Matrix6<f64> = changes_between(places, [pn, pt + kappa * pn], at.form);
+        let mut own: Matrix6<f64> = changes_between(places, height, [pn, pt + kappa * pn], at.form);
+        let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
+        let mut lean = Vector6::zeros();
+        if at.form == RowForm::End {
+            // heights change with the gap of the point and with that of the constraint
+            lean = column(couple(&rows.projection)) * pt;
+            own += lean * column(rows.derivative.normal).transpose();
+        }
         if slope != 0.0 {
             // dkappa = (dkappa/ds) Gt
-            let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
             let (force, change) = (
                 column(rows.force.tangential),
                 column(rows.derivative.tangential),
@@ -659,6 +693,8 @@ pub(super) fn change(
         let mut shares: SmallVec<[(usize, usize, f64); 12]> = SmallVec::new();
         point.each_share(&nodes, |place, own, share| shares.push((place, own, share)));
         for &(row, i, p) in &shares {
+            let mut place = couples.fixed_rows_mut::<2>(2 * row);
+            place += lean.fixed_rows::<2>(2 * i) * p;
             for &(col, j, q) in &shares {
                 let block: SMatrix<f64, 2, 2> =
                     own.fixed_view::<2, 2>(2 * i, 2 * j).into_owned() * (p * q);
@@ -667,7 +703,7 @@ pub(super) fn change(
             }
         }
     }
-    k
+    k - couples * DVector::from_column_slice(&constraint.derivative_rows().normal).transpose()
 }
 
 #[cfg(test)]
@@ -830,6 +866,32 @@ mod tests {
     }
 
     #[test]
+    fn end_rows_of_a_closed_mean_keep_both_momenta_and_are_those_of_a_body_at_rest() {
+        let source = PairTarget {
+            allowed: [-gap(&U1, false); 2],
+            ..source().untilted()
+        };
+        let rows = |form, u0: &[f64]| {
+            constraint(source.clone(), &between_displacements(form, u0, &U1)).force_rows
+        };
+        let nodes = nodes(&source).0;
+        let found = rows(RowForm::End, &U0);
+        for row in [&found.normal, &found.tangential] {
+            let moment: f64 = (row.chunks(2).zip(nodes.iter()))
+                .map(|(f, &n)| cross([0, 1].map(|i| X[n][i] + U1[2 * n + i]), [f[0], f[1]]))
+                .sum();
+            assert!(moment.abs() < 1e-14, "{moment}");
+        }
+        let (end, halfway) = (found, rows(RowForm::DiscreteGradient, &U1));
+        for (p, q) in [
+            (end.normal, halfway.normal),
+            (end.tangential, halfway.tangential),
+        ] {
+            assert!(p.iter().zip(&q).all(|(p, q)| (p - q).abs() < 1e-14));
+        }
+    }
+
+    #[test]
     fn the_parts_of_its_force_on_each_surface_sum_to_one() {
         let at = between_displacements(RowForm::DiscreteGradient, &U0, &U1);
         let surfaces = constraint(source(), &at).surface_parts();
@@ -871,10 +933,17 @@ mod tests {
                 let moved = |by: f64| {
                     let mut u = U1;
                     u[dof] += by;
-                    of(&u).gap
+                    of(&u)
                 };
-                let slope = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                let (plus, minus) = (moved(1e-6), moved(-1e-6));
+                let slope = (plus.gap - minus.gap) / 2e-6;
                 assert!((rows.normal[k] - slope).abs() < 1e-9, "{form:?} {k}");
+                let slope = (plus.slip - minus.slip) / 2e-6;
+                let error = (rows.tangential[k] - slope).abs();
+                assert!(
+                    error < 1e-9 || form == RowForm::DiscreteGradient,
+                    "{k} {error}"
+                );
             }
         }
     }

@@ -83,6 +83,7 @@ def test_certificate_of_two_contacts_from_surface_to_surface_in_both_orders(fami
 
 
 FOUND = [
+    ("rests", {"family": "CPE3", "procedure": "dynamic", "sequence": "rest", "contact": "surface to surface", "interaction": "rough"}),
     ("certificate", {"connection": "disc"}),
     ("own checks", {"procedure": "static direct", "sequence": "removed", "contact": "general floor", "interaction": "friction", "connection": "disc", "load": "rotation", "amplitude": "tabular"}),
     ("balance", {"procedure": "redistributed", "contact": "node to surface", "connection": "rigid elements", "load": "moment"}),

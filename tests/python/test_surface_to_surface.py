@@ -109,7 +109,9 @@ def test_discs_of_unlike_mesh_pass_the_patch_test(
     tmp_path: Path, kinds: tuple[str, str], counts: tuple[int, int]
 ) -> None:
     assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.0) < 1e-11
-    # on a cone the same stress has a part along the surface, and friction holds it
+    # On a cone the same stress has a part along the surface, and friction holds it. 32 faces on 7 segments between nodes that
+    # are held let the round-off of gaps grow 1e5 times; a CAX8 has two faces.
+    counts = tuple(count // 2 if kind == "CAX8" else count for kind, count in zip(kinds, counts))
     assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.9, slope=0.3) < 1e-11
     assert patch(tmp_path, kinds, counts, PRESSED, 0.0, 0.01, slope=0.3) > 1e-3
 

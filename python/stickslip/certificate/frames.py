@@ -435,14 +435,16 @@ class Frames:
                     ENERGY,
                     f"{contact.name}, t = {frame.time:g}",
                 )
-        if increment.start is None or increment.scheme != 1:
-            return
-        x = self.result.coordinates + 0.5 * (increment.start + frame["U"])
+        x = self.result.coordinates + frame["U"]
         loaded = np.abs(force).max(axis=1) > 0.0
+        if increment.scheme == 1:
+            # discrete gradients act halfway
+            if increment.start is None or not self._start_is_told(frame, increment)[loaded].all():
+                return
+            x = self.result.coordinates + 0.5 * (increment.start + frame["U"])
         moment = x[:, 0] * force[:, 1] - x[:, 1] * force[:, 0]
         arm = np.abs(x[loaded]).max()
-        if self._start_is_told(frame, increment)[loaded].all():
-            check.add(abs(moment.sum()) / (size * arm), 1e-9, f"moment, t = {frame.time:g}")
+        check.add(abs(moment.sum()) / (size * arm), 1e-9, f"moment, t = {frame.time:g}")
 
     def _start_is_told(self, frame: Frame, increment: Increment) -> Flags:
         """Nodes whose place at the start of the increment is known [N]."""

@@ -51,6 +51,8 @@ class Point:
     """What a unit normal and a unit tangential force are there."""
     on_end: Array
     """What the unit normal force is on the end of the segment."""
+    turn: float = 0.0
+    """Of end rows, the turn of the segment."""
 
 
 @dataclass
@@ -152,7 +154,8 @@ class Means:
                         continue
                     mean.points = [(weight / covered, q) for weight, q in mean.points]
                     mean.gap = sum(weight * q.gap for weight, q in mean.points)
-                    mean.slip = sum(weight * q.slip for weight, q in mean.points)
+                    # at the height of a point when the mean is closed, eq. (3.4)
+                    mean.slip = sum(weight * (q.slip + (q.gap - mean.gap) * q.turn) for weight, q in mean.points)
                     mean.moved = any(q.before != q.segment for _, q in mean.points)
                     mean.moved |= abs(covered - whole) > 1e-9 * whole
                     yield mean
@@ -240,7 +243,8 @@ class Means:
             x0, x1 = self.at[0], self.at[1]
             d = s[1] - s[0] - (1.0 - xi[1]) * (x1[1][j] - x0[1][j]) - xi[1] * (x1[2][j] - x0[2][j])
             normal = _turned(t[1])
-            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (normal, t[1]), -xi[1] * normal)
+            turn = float(normal @ (e[1] - e[0])) / length[1]
+            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (normal, t[1]), -xi[1] * normal, turn)
         mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
         long, square = (length[0] + length[1]) / 2.0, (length[0] * length[1]) ** 2
         slip = long * (xi[1] - xi[0])
