@@ -818,7 +818,10 @@ impl fmt::Display for Cause {
             Cause::Diverged => write!(f, "the passes diverged"),
             Cause::Lcp(failed) => match &failed.error {
                 LcpError::Ray { .. } => {
-                    write!(f, "contacts exclude each other (an LCP ended on a ray)")
+                    write!(
+                        f,
+                        "no contact forces hold the bodies (an LCP ended on a ray)"
+                    )
                 }
                 error => write!(f, "a complementarity problem was not solved: {error}"),
             },

@@ -400,6 +400,11 @@ fn alternation_text(alternations: &[Alternation], model: &Model) -> String {
 /// What to change; none where the cause has its own lines or says it all.
 pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
     let step = model.steps.get(failure.step.wrapping_sub(1))?;
+    let is_static = step.procedure == Procedure::Static;
+    let with_limit = |own: &str| match is_static && may_be_at_limit(&failure.cause) {
+        true => format!("{own}; {}", limit_advice(step)),
+        false => own.to_owned(),
+    };
     let text = match (&failure.cause, failure.course.as_deref()) {
         (_, Some(Course::Slow { left, .. })) => {
             let passes = step.settings.max_passes.saturating_add(*left);
@@ -413,18 +418,40 @@ pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
                 scientific(*correction, 0)
             )
         }
-        (_, Some(Course::Alternating(all))) => alternation_advice(all)?.to_owned(),
-        (Cause::NotConverged | Cause::Diverged, _) if step.procedure == Procedure::Static => {
-            "the load may have reached a limit: go on with *DYNAMIC from the last increment, or prescribe a \
-             displacement in place of the load"
-                .to_owned()
-        }
-        (cause, _) => cause_advice(cause, model)?.to_owned(),
+        (_, Some(Course::Alternating(all))) => with_limit(alternation_advice(all)?),
+        (Cause::NotConverged | Cause::Diverged, _) if is_static => limit_advice(step),
+        (cause, _) => with_limit(cause_advice(cause, model)?),
     };
     Some(match has_halvings_left(failure, step) {
         true => text + "; or let it be cut further, by a smaller least increment of the step",
         false => text,
     })
+}
+
+/// Whether a cause is also that of a static step whose equilibria end: passes find none, or no contact forces hold the bodies.
+fn may_be_at_limit(cause: &Cause) -> bool {
+    match cause {
+        Cause::NotConverged | Cause::Diverged => true,
+        Cause::Lcp(failed) => failed.is_contradiction(),
+        _ => false,
+    }
+}
+
+/// The ways out of a static step whose equilibria end.
+fn limit_advice(step: &Step) -> String {
+    let is_loaded = !(step.point_loads.is_empty()
+        && step.body_forces.is_empty()
+        && step.centrifugal_forces.is_empty()
+        && step.pressures.is_empty()
+        && step.tractions.is_empty());
+    let held = match is_loaded {
+        true => ", or prescribe a displacement in place of the load",
+        false => "",
+    };
+    format!(
+        "where equilibrium ends, as at a limit of the load, of friction or before a body snaps, go on with \
+         *DYNAMIC, APPLICATION=QUASI-STATIC from the last increment{held}"
+    )
 }
 
 /// Whether only the deck's least increment kept a stopped run from halving its increment again.
@@ -578,8 +605,8 @@ mod tests {
     use crate::dynamics::FailedLcp;
     use crate::lcp::FrictionalLcp;
     use crate::model::{
-        ContactChanges, Element, ElementType, Incrementation, Increments, Mesh, Procedure, Set,
-        Settings,
+        ContactChanges, Element, ElementType, Incrementation, Increments, Load, Mesh, PointLoad,
+        Procedure, Set, Settings, Variation,
     };
 
     #[test]
@@ -739,6 +766,56 @@ mod tests {
             let failure = failure(Cause::NotConverged, Some(course), 0.5);
             let text = advice(&failure, &model()).expect("advice");
             assert!(text.contains(advised) && !text.contains("halved"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_static_step_without_equilibrium_tells_the_ways_out() {
+        let failed = FailedLcp {
+            error: LcpError::Ray {
+                pivots: 3,
+                members: vec![0],
+            },
+            problem: FrictionalLcp {
+                q: DMatrix::identity(2, 2),
+                gap: vec![-1.0].into(),
+                slip: vec![0.0].into(),
+                mu: vec![0.2].into(),
+            },
+            pairs: vec![[0, 1, 2]],
+        };
+        let sliding = Course::Alternating(vec![Alternation::Sliding([0, 1, 2])]);
+        for (cause, course) in [
+            (Cause::Lcp(Box::new(failed)), None),
+            (Cause::Diverged, None),
+            (Cause::NotConverged, Some(sliding)),
+        ] {
+            let failure = failure(cause, course, 0.5);
+            for (procedure, is_loaded) in [
+                (Procedure::Dynamic, true),
+                (Procedure::Static, true),
+                (Procedure::Static, false),
+            ] {
+                let mut model = model();
+                let step = &mut model.steps[0];
+                step.procedure = procedure;
+                if is_loaded {
+                    step.point_loads.push(Load {
+                        at: PointLoad { dof: 0 },
+                        magnitude: 1.0,
+                        variation: Variation::Constant,
+                    });
+                }
+                let text = advice(&failure, &model).expect("advice");
+                let is_static = procedure == Procedure::Static;
+                assert_eq!(
+                    text.contains("APPLICATION=QUASI-STATIC"),
+                    is_static,
+                    "{text}"
+                );
+                let held = text.contains("displacement in place of the load");
+                assert_eq!(held, is_static && is_loaded, "{text}");
+            }
         }
     }
 
