@@ -372,8 +372,8 @@ class Scene:
         if self.base == "rigid":
             text += card(f"RIGID BODY, ELSET=LOWER, REF NODE={FLOOR}")
         text += self._connection() + self._interactions()
-        procedure = PROCEDURES[self.choice["procedure"]]
-        end = procedure.duration * (self.slowed if self.choice["procedure"] not in STATIC else 1.0)
+        loaded = "static" if self.choice["sequence"] == "rest" else self.choice["procedure"]
+        end = PROCEDURES[loaded].duration * (self.slowed if loaded not in STATIC else 1.0)
         text += AMPLITUDES[self.choice["amplitude"]].format(
             half=end / 2.0, quarter=end / 4.0, end=end, rate=pi / 2.0 / end
         )

@@ -121,10 +121,7 @@ impl Elements {
             all.starts.push(all.nodes.len());
         }
         let mut is_rigid = vec![false; elements.len()];
-        for &element in model
-            .turning_bodies()
-            .flat_map(|(rigid, _)| &rigid.elements)
-        {
+        for &element in model.rigid_bodies.iter().flat_map(|body| &body.elements) {
             is_rigid[element] = true;
         }
         let body = model.mesh.bodies();

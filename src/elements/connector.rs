@@ -67,9 +67,9 @@ impl PlacedConnector {
     pub fn new(connector: &Connector, model: &Model) -> Self {
         let at = |node: usize| Vector2::from(model.mesh.coordinates[node]);
         let angle_at = |node: &usize| {
-            let mut bodies = model.turning_bodies();
-            let found = bodies.find(|(body, _)| body.reference == *node);
-            found.map_or(*node, |(_, turning)| model.angle_of(turning) / 2)
+            let mut bodies = model.rigid_bodies.iter();
+            let found = bodies.find(|body| body.reference == *node);
+            found.map_or(*node, |body| model.angle_of(body) / 2)
         };
         let nodes = match connector.direction {
             ConnectorDirection::Angle => connector.nodes.iter().map(angle_at).collect(),

@@ -134,7 +134,7 @@ fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usi
     nodes.filter(move |node| !is_whole && !own.contains(node))
 }
 
-/// Masses and rotary inertia of the bodies that turn, as elements with numbers after the largest one.
+/// Masses and rotary inertia of the rigid bodies, as elements with numbers after the largest one.
 fn point_elements(model: &Model, lines: &mut DeckWriter) {
     let elements = model.mesh.elements.iter().map(|element| element.label);
     let connectors = model.connectors.iter().map(|connector| connector.label);
@@ -148,13 +148,13 @@ fn point_elements(model: &Model, lines: &mut DeckWriter) {
         lines.card(keyword, [set("ELSET", &name)]);
         lines.row(row);
     };
-    for (rigid, body) in model.turning_bodies() {
+    for body in &model.rigid_bodies {
         for &(node, mass) in &body.masses {
             write("MASS", "MASS", node, vec![number(mass)]);
         }
         if body.rotary_inertia > 0.0 {
             let row = vec![String::new(), String::new(), number(body.rotary_inertia)];
-            write("ROTARYI", "ROTARY INERTIA", rigid.reference, row);
+            write("ROTARYI", "ROTARY INERTIA", body.reference, row);
         }
     }
 }
@@ -355,7 +355,7 @@ fn write_mesh(model: &Model, lines: &mut DeckWriter) {
 }
 
 /// Index of the first node that belongs to a rigid surface: these nodes come with the surfaces.
-pub(super) fn first_of_rigid(model: &Model) -> usize {
+fn first_of_rigid(model: &Model) -> usize {
     let nodes = model.rigid_segments().into_iter().flatten();
     nodes.min().unwrap_or(model.mesh.node_count())
 }
@@ -467,11 +467,8 @@ pub(super) fn set_of<'m>(elements: &[usize], model: &'m Model) -> Option<&'m str
 /// A field that names elements of bodies: nothing for all of them, a set, or `None` where they make none. Nothing names point
 /// masses too, whose weights are forces in the flat deck.
 pub(super) fn elements_field(elements: &[usize], model: &Model) -> Option<String> {
-    let mut turning = model
-        .rigid_bodies
-        .iter()
-        .filter_map(|body| body.turning.as_ref());
-    let has_masses = turning.any(|turning| !turning.masses.is_empty());
+    let mut bodies = model.rigid_bodies.iter();
+    let has_masses = bodies.any(|body| !body.masses.is_empty());
     match elements.len() == model.mesh.elements.len() && !has_masses {
         true => Some(String::new()),
         false => set_of(elements, model).map(name),

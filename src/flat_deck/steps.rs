@@ -2,12 +2,12 @@
 //! step before.
 
 use super::lines::{DeckWriter, name, named, number, set};
-use super::model::{Interactions, elements_field, first_of_rigid, friction, pair_row};
+use super::model::{Interactions, elements_field, friction, pair_row};
 use crate::model::{
     ALL_EXTERIOR, Amplitude, BodyForce, CentrifugalForce, ContactChanges, Frames, HistorySet,
     Incrementation, Increments, Interference, Load, Model, NamedSets, NodalVariable, PointLoad,
-    Pressure, Procedure, Rate, RigidBody, RigidPart, Scheme, Settings, Step, Support,
-    SupportMotion, TimeBase, Traction, Variation,
+    Pressure, Procedure, Rate, Scheme, Settings, Step, Support, SupportMotion, TimeBase, Traction,
+    Variation,
 };
 use crate::reader::{self, carried_loads};
 use std::collections::HashMap;
@@ -29,8 +29,7 @@ pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
         let ramps = now.ramp() || step.contacts.ramp();
         head(step, model, ramps, lines);
         settings(&step.settings, lines);
-        let held = own_supports(step, model);
-        write_supports(&held, &supports, model, lines);
+        write_supports(&step.supports, &supports, model, lines);
         now.write((&loads, ramps), model, lines);
         let before = index.checked_sub(1).map(|before| &model.steps[before]);
         write_interferences(step, before, model, lines);
@@ -38,7 +37,7 @@ pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
         contacts = &step.contacts;
         requests(index, step, model, lines);
         lines.card("END STEP", []);
-        supports = carried(&held, step, &model.amplitudes);
+        supports = carried(&step.supports, step, &model.amplitudes);
         loads = LoadCards::of(&carried_loads(step, &model.amplitudes), model);
     }
 }
@@ -55,8 +54,8 @@ fn initial_velocity(model: &Model, lines: &mut DeckWriter) {
 }
 
 fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
-    let mut bodies = model.turning_bodies();
-    if let Some((body, _)) = bodies.find(|(_, turning)| model.angle_of(turning) == dof) {
+    let mut bodies = model.rigid_bodies.iter();
+    if let Some(body) = bodies.find(|body| model.angle_of(body) == dof) {
         let label = model.mesh.node_labels[body.reference];
         return [label.to_string(), "6".to_owned()];
     }
@@ -185,16 +184,6 @@ fn settings(settings: &Settings, lines: &mut DeckWriter) {
     lines.card("STICKSLIP", parameters);
 }
 
-/// Supports but those of the nodes of rigid surfaces, which follow their reference nodes.
-fn own_supports(step: &Step, model: &Model) -> Vec<Support> {
-    let first = first_of_rigid(model);
-    let own = step
-        .supports
-        .iter()
-        .filter(|support| support.dof / 2 < first || support.dof >= model.mesh.dof_count());
-    own.copied().collect()
-}
-
 /// Supports that a step leaves to the next one.
 fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<Support> {
     let period = step.increments.period;
@@ -286,20 +275,6 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
         let alike = |a: &&Support, b: &&Support| a.dof / 2 == b.dof / 2 && a.motion == b.motion;
         for supports in of_card.chunk_by(alike) {
             support_row(supports, model, lines);
-        }
-    }
-    // elements and nodes with mass that do not turn would be free to
-    let rigid = model.rigid_bodies.iter();
-    let is_surface = |part: &RigidPart| matches!(part, RigidPart::Surface(_));
-    let is_light = |body: &RigidBody| !body.is_coupling && body.parts.iter().all(is_surface);
-    let held: Vec<&RigidBody> = rigid
-        .filter(|body| !is_light(body) && body.turning.is_none())
-        .collect();
-    if !held.is_empty() && !now.is_empty() {
-        lines.card("BOUNDARY", []);
-        for body in held {
-            let label = model.mesh.node_labels[body.reference].to_string();
-            lines.row([label, "6".to_owned()]);
         }
     }
 }

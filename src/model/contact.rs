@@ -266,11 +266,12 @@ impl Equation {
     }
 }
 
-/// A rigid body and the node that it moves with: one with a rigid surface, or one that turns.
-///
-/// Elements of a body that does not turn are known by the supports of their nodes.
+/// A rigid body and the node that it moves with. It has a centre of mass and an angle of its own in all steps, whether one
+/// frees them or not, so that a run does not depend on steps behind it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidBody {
+    /// Number among the rigid bodies.
+    pub number: usize,
     /// Name of its first surface or set in the deck, or of the coupling.
     pub name: String,
     /// The surfaces and sets that it is made of, in the order of the deck.
@@ -283,8 +284,12 @@ pub struct RigidBody {
     pub elements: Vec<usize>,
     /// Whether it is made of coupled nodes (`*COUPLING`, `*KINEMATIC COUPLING`, `*MPC`), whose mass it has.
     pub is_coupling: bool,
-    /// Its motion, if it turns.
-    pub turning: Option<TurningInertia>,
+    /// Nodes with the masses that they carry beside the elements (mass).
+    pub masses: Vec<(usize, f64)>,
+    /// Moment of inertia beside that of elements and masses (mass length^2).
+    pub rotary_inertia: f64,
+    /// Whether some step leaves it free in some direction, or turns it.
+    pub turns: bool,
 }
 
 impl RigidBody {
@@ -303,15 +308,4 @@ pub enum RigidPart {
     Elements(String),
     /// The nodes of the set with this name.
     Nodes(String),
-}
-
-/// A rigid body with an angle of its own, prescribed or free.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct TurningInertia {
-    /// Number among the bodies that turn.
-    pub number: usize,
-    /// Nodes with the masses that they carry beside the elements (mass).
-    pub masses: Vec<(usize, f64)>,
-    /// Moment of inertia beside that of elements and masses (mass length^2).
-    pub rotary_inertia: f64,
 }

@@ -23,8 +23,7 @@ pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
     ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Heat, Hinge,
-    Interaction, Reach, RigidBody, RigidPart, RigidProfile, Surface, SurfaceKind, TurningInertia,
-    Wear,
+    Interaction, Reach, RigidBody, RigidPart, RigidProfile, Surface, SurfaceKind, Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};
@@ -83,18 +82,17 @@ pub struct Model {
 }
 
 impl Model {
-    /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a body which turns has beside
-    /// those of the mesh, its reference node.
+    /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a rigid body has beside those of the
+    /// mesh, its reference node.
     pub fn node_name(&self, node: usize) -> String {
         node_name(self.node_of(node), &self.mesh, &self.sets.instances)
     }
 
-    /// The node of the mesh that a pair of dofs belongs to: beyond those of the nodes the reference node of the rigid body
-    /// that turns.
+    /// The node of the mesh that a pair of dofs belongs to: beyond those of the nodes the reference node of the rigid body.
     pub fn node_of(&self, node: usize) -> usize {
         let beyond = node.checked_sub(self.mesh.node_count());
-        let body = beyond.and_then(|k| self.turning_bodies().nth(k / 2));
-        body.map_or(node, |(body, _)| body.reference)
+        let body = beyond.and_then(|k| self.rigid_bodies.get(k / 2));
+        body.map_or(node, |body| body.reference)
     }
 
     /// What the deck calls an element: its number, or `Instance.number`.
@@ -102,44 +100,38 @@ impl Model {
         element_name(element, &self.mesh, &self.sets.instances)
     }
 
-    /// The rigid bodies that turn, in the order of their numbers.
-    pub fn turning_bodies(&self) -> impl Iterator<Item = (&RigidBody, &TurningInertia)> {
-        let bodies = self.rigid_bodies.iter();
-        bodies.filter_map(|body| Some((body, body.turning.as_ref()?)))
-    }
-
-    /// Number of degrees of freedom: 2 of every node, and 4 of every body that turns.
+    /// Number of degrees of freedom: 2 of every node, and 4 of every rigid body.
     pub fn dof_count(&self) -> usize {
-        self.mesh.dof_count() + 4 * self.turning_bodies().count()
+        self.mesh.dof_count() + 4 * self.rigid_bodies.len()
     }
 
-    /// The node that is the centre of mass of a body that turns.
-    pub fn centre_of(&self, body: &TurningInertia) -> usize {
+    /// The node that is the centre of mass of a rigid body.
+    pub fn centre_of(&self, body: &RigidBody) -> usize {
         self.mesh.node_count() + 2 * body.number
     }
 
-    /// The dof that is the angle of a body that turns.
-    pub fn angle_of(&self, body: &TurningInertia) -> usize {
+    /// The dof that is the angle of a rigid body.
+    pub fn angle_of(&self, body: &RigidBody) -> usize {
         2 * (self.centre_of(body) + 1)
     }
 
-    /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that no step turns: a
-    /// hinge between them has nothing to hold there.
+    /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither it nor a step
+    /// before it turns: a hinge between them has nothing to hold there.
     pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
-        let never_turns = |body: &TurningInertia| {
+        let has_not_turned = |body: &&RigidBody| {
             let angle = self.angle_of(body);
             let is_still = |step: &Step| step.motion_of(angle).is_some_and(SupportMotion::is_still);
-            self.steps.iter().all(is_still)
+            let mut before = (self.steps.iter()).take_while(|other| !std::ptr::eq(*other, step));
+            before.all(is_still) && is_still(step)
         };
         let motion_of = |node: usize| {
-            let rides = |(body, _): &(&RigidBody, _)| {
+            let rides = |body: &&RigidBody| {
                 body.reference == node || body.nodes.binary_search(&node).is_ok()
             };
-            match self.turning_bodies().find(rides) {
+            match self.rigid_bodies.iter().find(rides) {
                 None => step.motion_of(2 * node + axis),
-                Some((body, turning)) => step
-                    .motion_of(2 * body.reference + axis)
-                    .filter(|_| never_turns(turning)),
+                Some(body) => (Some(body).filter(has_not_turned))
+                    .and_then(|body| step.motion_of(2 * body.reference + axis)),
             }
         };
         let [a, b] = nodes.map(motion_of);

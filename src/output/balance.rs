@@ -56,7 +56,7 @@ impl Balance {
                     && step.tractions.is_empty()
             });
         let elements = model.mesh.elements.iter();
-        let bodies = model.turning_bodies().flat_map(|(_, body)| &body.masses);
+        let bodies = model.rigid_bodies.iter().flat_map(|body| &body.masses);
         let of_points: f64 = bodies.map(|(_, mass)| mass).sum();
         Balance {
             free,

@@ -42,7 +42,7 @@ impl ModelEcho {
     pub fn new(model: &Model) -> Self {
         let [lower, upper] = extents(model.mesh.coordinates.iter().copied());
         let elements = model.mesh.elements.iter();
-        let points = model.turning_bodies().flat_map(|(_, body)| &body.masses);
+        let points = model.rigid_bodies.iter().flat_map(|body| &body.masses);
         let points: f64 = points.map(|(_, mass)| mass).sum();
         ModelEcho {
             mass: elements.fold(0.0, |mass, element| mass + model.element_mass(element)) + points,
@@ -319,7 +319,8 @@ fn fit_lines(prepared: &PreparedModel, step: &Step) -> Vec<String> {
 /// Bodies that turn, with their mass and the directions in which they move freely.
 fn rigid_lines(model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
-    for ((body, turning), [mass, inertia]) in model.turning_bodies().zip(rigid_inertia(model)) {
+    let all = model.rigid_bodies.iter().zip(rigid_inertia(model));
+    for (body, [mass, inertia]) in all.filter(|(body, _)| body.turns) {
         let reference = model.node_name(body.reference);
         let nodes = counted(body.nodes.len(), "node");
         let what = match body.is_coupling {
@@ -332,7 +333,7 @@ fn rigid_lines(model: &Model) -> Vec<String> {
             pieces.push(format!("mass {mass}, inertia {inertia}"));
         }
         let x = 2 * body.reference;
-        let dofs = [(x, 1), (x + 1, 2), (model.angle_of(turning), 6)];
+        let dofs = [(x, 1), (x + 1, 2), (model.angle_of(body), 6)];
         let free = |step: &Step| {
             let is_free = |dof: usize| step.motion_of(dof).is_none();
             let free = dofs.iter().filter(|(dof, _)| is_free(*dof));

@@ -404,7 +404,7 @@ impl<'m> History<'m> {
         let own = move |r: &IncrementReport, each: &mut dyn FnMut(&RigidReaction)| {
             r.rigid.get(k).into_iter().for_each(each);
         };
-        if body.turning.is_some() {
+        if body.turns {
             self.table(at, &[], &TURNING, own)?;
         }
         self.table(at, &[], &REACTION, own)

@@ -215,10 +215,12 @@ fn write_steps(at: &Group, steps: &[Step]) -> hdf5::Result<()> {
     constant(at, "theta", &[codes.len(), 2], theta.as_flattened(), THETA)
 }
 
-/// Nodes with a support in any step.
+/// Nodes with a support in any step, and those of rigid bodies that no step frees.
 fn supported(model: &Model) -> Vec<usize> {
     let supports = model.steps.iter().flat_map(|step| &step.supports);
     let nodes = supports.map(|support| support.dof / 2);
+    let held = model.rigid_bodies.iter().filter(|body| !body.turns);
+    let nodes = nodes.chain(held.flat_map(|body| body.nodes.iter().copied()));
     nodes.filter(|&n| n < model.mesh.node_count()).collect()
 }
 

@@ -101,9 +101,9 @@ fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
     for (element, &body) in model.mesh.elements.iter().zip(&bodies.of_element) {
         mass[body] += model.element_mass(element);
     }
-    for (rigid, turning) in model.turning_bodies() {
+    for rigid in &model.rigid_bodies {
         if let Some(&element) = rigid.elements.first() {
-            let of_points = turning.masses.iter().map(|(_, mass)| mass);
+            let of_points = rigid.masses.iter().map(|(_, mass)| mass);
             mass[bodies.of_element[element]] += of_points.sum::<f64>();
         }
     }

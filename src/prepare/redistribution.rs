@@ -174,14 +174,14 @@ pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<
     }
     // nodes that turn with a rigid body keep the mass of the elements that deform, and have no other
     let mut deforms = vec![false; mesh.node_count()];
-    let rigid: BTreeSet<usize> = (model.turning_bodies())
-        .flat_map(|(body, _)| body.elements.iter().copied())
+    let rigid: BTreeSet<usize> = (model.rigid_bodies.iter())
+        .flat_map(|body| body.elements.iter().copied())
         .collect();
     let elements = mesh.elements.iter().enumerate();
     for (_, element) in elements.filter(|(index, _)| !rigid.contains(index)) {
         element.nodes.iter().for_each(|&node| deforms[node] = true);
     }
-    for (body, _) in model.turning_bodies() {
+    for body in &model.rigid_bodies {
         for &node in body.nodes.iter().chain([&body.reference]) {
             may[node] = may[node].filter(|_| deforms[node]).map(|_| false);
         }

@@ -128,10 +128,10 @@ fn read(cx: &mut Context) -> Model {
     let mut steps = steps::read(&outline, targets, (&surfaces, &contacts), guide, cx);
     checks::density(&properties, mesh, &steps.all, cx);
     let at_start = (steps.at_start.as_slice(), &steps.supports);
-    let mut velocity = boundary::initial_velocity(&outline, targets, at_start, cx);
+    let velocity = boundary::initial_velocity(&outline, targets, at_start, cx);
     let all = &mut steps.all;
     let known = (&mesh_index, &steps.supports);
-    let bodies = rigid_motion::complete(&rigid_bodies, known, all, &mut velocity, cx);
+    let bodies = rigid_motion::complete(&rigid_bodies, known, all, &velocity, cx);
     let of_steps = (&steps.supports, steps.all.as_slice());
     let equations = equations::read(&outline, targets, (constraints, of_steps), cx);
     let actions = [&steps.supports.actions, &steps.forces, &velocity.actions];
@@ -164,7 +164,6 @@ fn read(cx: &mut Context) -> Model {
     formulation::restrict(&mut model, cx);
     formulation::choose(&mut model, cx);
     contact::keep_arcs_for_discs(&mut model);
-    let model = model;
     let all: [&dyn Fn(&mut Context); 11] = [
         &|cx| checks::hinges(&model, &hinge_places, cx),
         &|cx| contact::check_discs(&model, cx),
@@ -183,6 +182,7 @@ fn read(cx: &mut Context) -> Model {
             check(cx);
         }
     }
+    rigid_motion::leave_to_bodies(&mut model);
     model
 }
 

@@ -8,23 +8,15 @@ use super::owners::Owner;
 use super::rigid_bodies::{Rigid, angle_dof};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    ContactMass, Equation, LandingRule, Mesh, Procedure, Rate, RigidBody, Step, Support,
-    SupportMotion, TurningInertia,
+    ContactMass, Equation, LandingRule, Mesh, Model, Procedure, Rate, RigidBody, Step, Support,
+    SupportMotion,
 };
 use crate::vectors::difference;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How a rigid body moves in all steps.
-#[derive(Clone, Copy, PartialEq)]
-enum BodyMotion {
-    /// By the supports of its nodes, which are those of the reference node.
-    Translates,
-    /// It has an angle of its own, with this number.
-    Turns(usize),
-}
-
-/// Gives steps and initial velocities the motion of the rigid bodies; the bodies as the model holds them. `supports` and the
-/// velocities know the places of what is prescribed and given.
+/// Gives steps the motion of the rigid bodies; the bodies as the model holds them. Nodes of bodies that no step frees get the
+/// supports of their reference nodes, until [`leave_to_bodies`] takes them away. `supports` and the velocities know the places of
+/// what is prescribed and given.
 pub(crate) fn complete(
     rigid_bodies: &[Rigid],
     (mesh_index, supports): (&MeshIndex, &Supports),
@@ -33,75 +25,51 @@ pub(crate) fn complete(
         values: velocity,
         places,
         ..
-    }: &mut InitialVelocity,
+    }: &InitialVelocity,
     cx: &mut Context,
 ) -> Vec<RigidBody> {
     let mesh = &mesh_index.mesh;
-    let mut count = 0;
-    let motions = rigid_bodies.iter().enumerate().map(|(number, rigid)| {
-        let turns = turns(rigid, angle_dof(number, mesh), steps, velocity);
-        count += usize::from(turns);
-        match turns {
-            true => BodyMotion::Turns(count - 1),
-            false => BodyMotion::Translates,
-        }
-    });
-    let motions: Vec<BodyMotion> = motions.collect();
-    let all = rigid_bodies.iter().zip(&motions).enumerate();
-    for (number, (rigid, motion)) in all {
+    let all = rigid_bodies.iter().enumerate();
+    let turn: Vec<bool> = all
+        .clone()
+        .map(|(number, rigid)| turns(rigid, angle_dof(number, mesh), steps, velocity))
+        .collect();
+    for ((number, rigid), turns) in all.zip(&turn) {
         let angle = angle_dof(number, mesh);
-        match motion {
-            BodyMotion::Translates => report_moments(rigid, angle, steps, cx),
-            BodyMotion::Turns(_) => {
-                complete_turning(rigid, angle, (mesh_index, supports), steps, cx);
-                report_own_velocities(rigid, angle, mesh_index, (velocity, places), cx);
+        if *turns {
+            complete_turning(rigid, angle, (mesh_index, supports), steps, cx);
+            report_own_velocities(rigid, angle, mesh_index, (velocity, places), cx);
+        } else {
+            report_moments(rigid, angle, steps, cx);
+            for (index, step) in steps.iter_mut().enumerate() {
+                hold_angle(step, angle);
+                follow(rigid, (mesh_index, supports), (index + 1, step), cx);
             }
         }
     }
-    for (index, step) in steps.iter_mut().enumerate() {
-        follow(
-            rigid_bodies,
-            &motions,
-            (mesh_index, supports),
-            index + 1,
-            &mut step.supports,
-            cx,
-        );
-        let renumbered = |dof: usize| renumbered(dof, &motions, mesh);
-        let supports = step.supports.iter().filter_map(|support| {
-            let dof = renumbered(support.dof)?;
-            Some(Support { dof, ..*support })
-        });
-        step.supports = supports.collect();
-        for load in &mut step.point_loads {
-            load.at.dof = renumbered(load.at.dof).unwrap_or(load.at.dof);
-        }
-    }
-    let nodes = mesh.dof_count();
-    let angles = velocity.split_off(nodes.min(velocity.len()));
-    for (number, motion) in motions.iter().enumerate() {
-        if let BodyMotion::Turns(_) = motion {
-            let omega = angles.get(angle_dof(number, mesh) - nodes);
-            velocity.extend([0.0, 0.0, omega.copied().unwrap_or(0.0), 0.0]);
-        }
-    }
-    let body = |(rigid, motion): (&Rigid, &BodyMotion)| RigidBody {
+    let body = |((number, rigid), turns): ((usize, &Rigid), bool)| RigidBody {
+        number,
         name: rigid.name.clone(),
         parts: rigid.parts.clone(),
         reference: rigid.reference,
         nodes: rigid.nodes.clone(),
         elements: rigid.elements.clone(),
         is_coupling: rigid.is_coupling,
-        turning: match *motion {
-            BodyMotion::Translates => None,
-            BodyMotion::Turns(number) => Some(TurningInertia {
-                number,
-                masses: rigid.masses.clone(),
-                rotary_inertia: rigid.rotary_inertia,
-            }),
-        },
+        masses: rigid.masses.clone(),
+        rotary_inertia: rigid.rotary_inertia,
+        turns,
     };
-    rigid_bodies.iter().zip(&motions).map(body).collect()
+    let all = rigid_bodies.iter().enumerate();
+    all.zip(turn).map(body).collect()
+}
+
+/// Takes the supports away that nodes of rigid bodies have from their reference nodes: the bodies move them.
+pub(crate) fn leave_to_bodies(model: &mut Model) {
+    let nodes = model.rigid_bodies.iter().flat_map(|body| &body.nodes);
+    let nodes: BTreeSet<usize> = nodes.copied().collect();
+    for step in &mut model.steps {
+        (step.supports).retain(|support| !nodes.contains(&(support.dof / 2)));
+    }
 }
 
 /// Reports equations at nodes of bodies that turn, and that landing return and redistributed mass leave these bodies
@@ -113,10 +81,8 @@ pub(crate) fn check(
     (steps, equations): (&[Step], &[(Equation, Owner)]),
     cx: &mut Context,
 ) {
-    for (rigid, body) in rigid_bodies.iter().zip(bodies) {
-        let Some(turning) = &body.turning else {
-            continue;
-        };
+    let all = rigid_bodies.iter().zip(bodies);
+    for (rigid, body) in all.filter(|(_, body)| body.turns) {
         let has =
             |dof: usize| dof / 2 == body.reference || body.nodes.binary_search(&(dof / 2)).is_ok();
         if let Some((_, owner)) = equations.iter().find(|(e, _)| e.dofs().any(has)) {
@@ -130,7 +96,7 @@ pub(crate) fn check(
                  directions 1, 2 and 6 of the reference node",
             );
         }
-        let angle = angle_dof(turning.number, mesh);
+        let angle = angle_dof(body.number, mesh);
         let is_held = |step: &&Step| step.motion_of(angle).is_some_and(SupportMotion::is_still);
         if mesh.is_axisymmetric() {
             let is_driven = |step: &Step| step.motion_of(2 * body.reference).is_some();
@@ -160,17 +126,6 @@ pub(crate) fn check(
             cx.warning(Code::RigidSurface, rigid.span, message)
                 .help("it holds for contacts between bodies that deform");
         }
-    }
-}
-
-/// The dof with the number that the angle of a body has among those that turn; none of a body that does not.
-fn renumbered(dof: usize, motions: &[BodyMotion], mesh: &Mesh) -> Option<usize> {
-    match dof.checked_sub(angle_dof(0, mesh)) {
-        None => Some(dof),
-        Some(number) => match motions.get(number / 4)? {
-            BodyMotion::Turns(number) => Some(angle_dof(*number, mesh)),
-            BodyMotion::Translates => None,
-        },
     }
 }
 
@@ -293,17 +248,7 @@ fn complete_turning(
                 return report_free(rigid, direction, index + 1, cx);
             }
         }
-        if let Err(at) = step
-            .supports
-            .binary_search_by_key(&angle, |support| support.dof)
-        {
-            let motion = SupportMotion::Rate {
-                rate: Rate::Velocity,
-                value: 0.0,
-                amplitude: None,
-            };
-            step.supports.insert(at, Support { dof: angle, motion });
-        }
+        hold_angle(step, angle);
     }
 }
 
@@ -337,36 +282,45 @@ fn report_empty_coupling(
     false
 }
 
-/// Adds the supports of the nodes of rigid bodies that do not turn to those of a step: they move as their reference
-/// nodes.
+/// Holds an angle in a step that does not prescribe it.
+fn hold_angle(step: &mut Step, angle: usize) {
+    let place = (step.supports).binary_search_by_key(&angle, |support| support.dof);
+    if let Err(at) = place {
+        let motion = SupportMotion::Rate {
+            rate: Rate::Velocity,
+            value: 0.0,
+            amplitude: None,
+        };
+        step.supports.insert(at, Support { dof: angle, motion });
+    }
+}
+
+/// Adds the supports of the nodes of a rigid body to those of a step with its number: they move as the reference node.
 fn follow(
-    rigid_bodies: &[Rigid],
-    of_bodies: &[BodyMotion],
+    rigid: &Rigid,
     (mesh_index, places): (&MeshIndex, &Supports),
-    step: usize,
-    supports: &mut Vec<Support>,
+    (number, step): (usize, &mut Step),
     cx: &mut Context,
 ) {
-    let mut motions: BTreeMap<usize, SupportMotion> = BTreeMap::new();
-    motions.extend(supports.iter().map(|support| (support.dof, support.motion)));
-    let all = rigid_bodies.iter().zip(of_bodies);
-    for (rigid, _) in all.filter(|(_, motion)| **motion == BodyMotion::Translates) {
-        for direction in 0..2 {
-            let Some(&motion) = motions.get(&(2 * rigid.reference + direction)) else {
-                report_free(rigid, direction, step, cx);
-                continue;
-            };
-            for &node in &rigid.nodes {
-                let dof = 2 * node + direction;
-                let other = motions.insert(dof, motion);
-                if other.is_some_and(|other| other != motion) {
-                    return report_other_motion(rigid, dof, (mesh_index, places), cx);
-                }
+    let supports = step.supports.iter();
+    let mut motions: BTreeMap<usize, SupportMotion> = supports
+        .map(|support| (support.dof, support.motion))
+        .collect();
+    for direction in 0..2 {
+        let Some(&motion) = motions.get(&(2 * rigid.reference + direction)) else {
+            report_free(rigid, direction, number, cx);
+            continue;
+        };
+        for &node in &rigid.nodes {
+            let dof = 2 * node + direction;
+            let other = motions.insert(dof, motion);
+            if other.is_some_and(|other| other != motion) {
+                return report_other_motion(rigid, dof, (mesh_index, places), cx);
             }
         }
     }
     let all = motions.into_iter();
-    *supports = all.map(|(dof, motion)| Support { dof, motion }).collect();
+    step.supports = all.map(|(dof, motion)| Support { dof, motion }).collect();
 }
 
 fn report_other_motion(

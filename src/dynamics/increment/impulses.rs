@@ -199,7 +199,7 @@ impl Impulses {
                 false => 0.0,
             }
         };
-        match turning.is_empty() {
+        match turning.are_driven() {
             true => Vec::new(),
             false => self.of_iterate.iter().map(of_pair).collect(),
         }
@@ -275,7 +275,7 @@ impl Impulses {
     /// Takes over the pairs in contact after a pass; whether they are the same as before, and the impulses theirs. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
-        self.sticking = match problem.unknowns.turning.is_empty() {
+        self.sticking = match problem.unknowns.turning.are_driven() {
             true => Vec::new(),
             false => sticking(&contact.closed),
         };

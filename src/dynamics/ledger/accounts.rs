@@ -2,7 +2,7 @@
 //! resultants of the contacts, nodal quantities and reactions of rigid surfaces. Section 9 of
 //! docs/theory.md.
 
-use super::bodies::{BodyMasses, Moving, RigidSurfaces, momentum};
+use super::bodies::{BodyMasses, Moving, momentum, rigid_reactions};
 use super::contact_ledger::ContactLedger;
 use super::energy::Ledger;
 use super::nodal_results::{
@@ -14,16 +14,15 @@ use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, FrictionResults, IncrementReport, Momentum, NodalResults,
-    NodeStatus, RigidReaction, State,
+    NodeStatus, State,
 };
 use crate::dynamics::step::{Discretization, Interval, Mass, SlaveFaces, StepProblem};
 use crate::model::Contact;
 use crate::prepare::Redistribution;
 
-/// Accounts of a run besides the energy ledger: bodies, rigid surfaces and contacts.
+/// Accounts of a run besides the energy ledger: bodies and contacts.
 pub(crate) struct Accounts {
     bodies: BodyMasses,
-    rigid: RigidSurfaces,
     faces: SlaveFaces,
     contacts: ContactLedger,
     touches: Touches,
@@ -55,7 +54,6 @@ impl Accounts {
         };
         Accounts {
             bodies: BodyMasses::new(model, mass, turning),
-            rigid: RigidSurfaces::new(model),
             contacts: ContactLedger::new(model, faces.start.clone()),
             touches: Touches::new(&model.mesh),
             surface_work: SurfaceWork::new(model, &faces),
@@ -68,7 +66,7 @@ impl Accounts {
     /// Carries the sums over the run.
     pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         carry_fields!(archive, self => Self {
-            [contacts, touches, surface_work] damped; bodies, rigid, faces, consistent
+            [contacts, touches, surface_work] damped; bodies, faces, consistent
         })
     }
 
@@ -105,11 +103,7 @@ impl Accounts {
                 mass: node_masses(problem),
             },
             contacts: problem.model.contacts.iter().map(of_contact).collect(),
-            rigid: {
-                let mut rigid = vec![RigidReaction::default(); self.rigid.count()];
-                self.rigid.set_motion(problem, state, &mut rigid);
-                rigid
-            },
+            rigid: rigid_reactions(problem, state, &vec![0.0; dofs]),
             ..self.moving(problem, state, ledger)
         }
     }
@@ -151,9 +145,7 @@ impl Accounts {
             coefficient: nodal.friction.coefficient,
             ..self.surface_work.results()
         };
-        report.rigid = self.rigid.collect(problem, u, &mut nodal.reaction);
-        self.rigid
-            .set_motion(problem, &solved.end, &mut report.rigid);
+        report.rigid = rigid_reactions(problem, &solved.end, &nodal.reaction);
         (self.bodies).add_contact(problem, u, &nodal.contact_force, &mut report.bodies);
         IncrementReport {
             nodal,

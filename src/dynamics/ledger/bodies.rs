@@ -5,7 +5,7 @@
 use crate::dynamics::results::{BodyResult, Momentum, RigidReaction, State};
 use crate::dynamics::step::{Mass, StepProblem, TurningBody};
 use crate::elements::ElementResult;
-use crate::model::{Bodies, Model, RigidBody};
+use crate::model::{Bodies, Model};
 use crate::vectors::dot;
 
 /// Masses of the bodies of a model, constant over a run.
@@ -31,8 +31,8 @@ impl BodyMasses {
     /// Masses of the bodies of a model.
     pub fn new(model: &Model, mass: &Mass, turning: &[TurningBody]) -> Self {
         let bodies = Bodies::new(&model.mesh);
-        let with_elements = model.turning_bodies().zip(turning);
-        let turning = with_elements.filter_map(|((rigid, _), turning)| {
+        let with_elements = model.rigid_bodies.iter().zip(turning);
+        let turning = with_elements.filter_map(|(rigid, turning)| {
             let element = *rigid.elements.first()?;
             Some((bodies.of_element[element], turning.centre, turning.inertia))
         });
@@ -195,65 +195,25 @@ pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum 
     momentum
 }
 
-/// The rigid bodies of a model.
-pub(crate) struct RigidSurfaces(Vec<RigidBody>);
-
-impl RigidSurfaces {
-    /// Those of a model.
-    pub fn new(model: &Model) -> Self {
-        RigidSurfaces(model.rigid_bodies.clone())
-    }
-
-    /// Number of bodies.
-    pub fn count(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Sets the motion of the bodies that turn.
-    pub fn set_motion(&self, problem: &StepProblem, state: &State, rigid: &mut [RigidReaction]) {
-        for (body, result) in self.0.iter().zip(rigid) {
-            let Some(turning) = &body.turning else {
-                continue;
-            };
-            let own = &problem.unknowns.turning.bodies[turning.number];
-            let v = [0, 1].map(|i| state.v[2 * own.centre + i]);
-            result.angle = state.u[own.spin] / own.length;
-            result.angular_velocity = state.v[own.spin] / own.length;
-            result.center = problem.position(&state.u, own.centre);
-            result.kinetic =
-                (own.mass * dot(v, v) + own.inertia * result.angular_velocity.powi(2)) / 2.0;
+/// The motion of the rigid bodies, and the forces `reaction` at their reference nodes and angles, to which those of their nodes
+/// have been handed over, eq. (9.9).
+pub(crate) fn rigid_reactions(
+    problem: &StepProblem,
+    state: &State,
+    reaction: &[f64],
+) -> Vec<RigidReaction> {
+    let of_body = |own: &TurningBody| {
+        let v = [0, 1].map(|i| state.v[2 * own.centre + i]);
+        let angular_velocity = state.v[own.spin] / own.length;
+        RigidReaction {
+            force: [0, 1].map(|i| reaction[2 * own.reference + i]),
+            moment: reaction[own.spin] * own.length,
+            angle: state.u[own.spin] / own.length,
+            angular_velocity,
+            center: problem.position(&state.u, own.centre),
+            kinetic: (own.mass * dot(v, v) + own.inertia * angular_velocity.powi(2)) / 2.0,
         }
-    }
-
-    /// Moves the reactions from the nodes of the bodies to the reference nodes, in the
-    /// configuration of displacements `u`: the force sum R_a and the moment sum (x_a - x_ref) x
-    /// R_a, eq. (9.9). Those of bodies that turn are there already, with the moment at the angle.
-    pub fn collect(
-        &self,
-        problem: &StepProblem,
-        u: &[f64],
-        reaction: &mut [f64],
-    ) -> Vec<RigidReaction> {
-        let of_body = |body: &RigidBody| {
-            let center = problem.position(u, body.reference);
-            let mut sum = RigidReaction::default();
-            if let Some(turning) = &body.turning {
-                let own = &problem.unknowns.turning.bodies[turning.number];
-                sum.force = [0, 1].map(|i| reaction[2 * body.reference + i]);
-                sum.moment = reaction[own.spin] * own.length;
-                return sum;
-            }
-            for &node in &body.nodes {
-                let [fx, fy] = [2 * node, 2 * node + 1].map(|p| std::mem::take(&mut reaction[p]));
-                let x = problem.position(u, node);
-                sum.force[0] += fx;
-                sum.force[1] += fy;
-                sum.moment += (x[0] - center[0]) * fy - (x[1] - center[1]) * fx;
-            }
-            reaction[2 * body.reference] += sum.force[0];
-            reaction[2 * body.reference + 1] += sum.force[1];
-            sum
-        };
-        self.0.iter().map(of_body).collect()
-    }
+    };
+    let bodies = problem.unknowns.turning.bodies.iter();
+    bodies.map(of_body).collect()
 }

@@ -7,6 +7,8 @@
 use std::sync::Arc;
 
 use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
+use std::borrow::Cow;
+
 use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
@@ -179,10 +181,10 @@ impl Ledger {
             let change = difference(v0p, &start.v);
             let seen = solved.contact.impulses.seen(&start.v);
             self.energy.impact_loss -= dot(seen, impulse) + dot(&change, impulse) / 2.0;
-            let mut reaction = difference(&problem.mass.times(&change), impulse);
+            let reaction = difference(&problem.mass.times(&change), impulse);
+            let mut reaction = problem.unknowns.passed_on(&reaction).into_owned();
             let nothing = vec![0.0; d.len()];
             turning.hand_over([&start.u, &nothing], false, &mut reaction);
-            let reaction = problem.unknowns.passed_on(&reaction);
             let prescribed = problem.unknowns.prescribed();
             self.energy.external_work += prescribed.map(|p| start.v[p] * reaction[p]).sum::<f64>();
         }
@@ -210,27 +212,15 @@ impl Ledger {
         // without that of hinges, which is none
         e.external_work += dot(d, load) - dot(&solved.equilibrium.hinges, &problem.hinges.gaps(d));
         let contact = &forces.resultant(d.len());
-        let handed_over = |force: &Vec<f64>, keeps_driven| {
-            let mut force = force.clone();
-            turning.hand_over([&end.u, d], keeps_driven, &mut force);
+        let handed_over = |force, keeps_driven| {
+            let mut force: Cow<[f64]> = problem.unknowns.passed_on(force);
+            if !turning.is_empty() {
+                turning.hand_over([&end.u, d], keeps_driven, force.to_mut());
+            }
             force
         };
-        let at_poles;
-        let [load, internal, contact, inertia] = match turning.is_empty() {
-            true => [load, internal, contact, inertia],
-            false => {
-                let forces = [
-                    (load, false),
-                    (internal, false),
-                    (contact, false),
-                    (inertia, true),
-                ];
-                at_poles = forces.map(|(force, keeps_driven)| handed_over(force, keeps_driven));
-                at_poles.each_ref()
-            }
-        };
-        let [load, internal, inertia, contact] =
-            [load, internal, inertia, contact].map(|force| problem.unknowns.passed_on(force));
+        let [load, internal, contact] = [load, internal, contact].map(|f| handed_over(f, false));
+        let inertia = handed_over(inertia, true);
         let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
         // (d - dt V_mid).M A of what is free, eq. (4.27)
         if problem.integration.backward_euler {

@@ -40,14 +40,14 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     } = &solved.equilibrium;
     // M A + F - R - B^T P at the supports, with what equations pass on to them, eq. (9.12)
     let missing = |p: usize| inertia[p] + internal[p] - load[p] - contact_force[p];
-    let mut missing: Vec<f64> = (0..dofs).map(missing).collect();
+    let missing: Vec<f64> = (0..dofs).map(missing).collect();
     let tie_force = tie_forces(problem.model, |dof| missing[dof]);
+    let mut missing = problem.unknowns.passed_on(&missing).into_owned();
     let turning = &problem.unknowns.turning;
     turning.hand_over([&solved.end.u, &solved.d], false, &mut missing);
-    let passed_on = problem.unknowns.passed_on(&missing);
     let mut reaction = vec![0.0; dofs];
     for p in problem.unknowns.prescribed() {
-        reaction[p] = passed_on[p];
+        reaction[p] = missing[p];
     }
     // of nodes only, not of the angles of bodies that turn
     for &(dof, force) in held {

@@ -139,9 +139,8 @@ impl EndForces {
     /// increment `d`, or at its start (dof, force).
     pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
         let unknowns = &problem.unknowns;
-        let mut missing = self.missing(d.len());
+        let mut missing = unknowns.passed_on(&self.missing(d.len())).into_owned();
         unknowns.turning.hand_over([u, d], false, &mut missing);
-        let missing = unknowns.passed_on(&missing);
         unknowns.prescribed().map(|p| (p, missing[p])).collect()
     }
 

@@ -278,7 +278,7 @@ impl EffectiveStiffness {
     /// changes.
     pub fn start(&mut self, problem: &StepProblem, u0: &[f64]) {
         let turning = &problem.unknowns.turning;
-        if turning.is_empty() {
+        if turning.are_driven() {
             return;
         }
         let map = self.m.map_mut();
@@ -399,7 +399,7 @@ impl EffectiveStiffness {
             };
             blocks.add(map, &constraint.dofs, &k);
         }
-        if !problem.integration.has_rates && !problem.unknowns.turning.is_empty() {
+        if !problem.integration.has_rates && !problem.unknowns.turning.are_driven() {
             let mut force = contact.out_of_balance.to_vec();
             for (constraint, pair) in &contact.acting {
                 constraint.add_force(pair.force, &mut force);

@@ -152,24 +152,22 @@ impl Parts {
     }
 }
 
-/// First node of the body of every node, with the bodies that turn.
+/// First node of the body of every node, with the rigid bodies.
 fn bodies_of(model: &Model) -> Vec<usize> {
     let mut first = model.mesh.bodies();
     first.extend(first.len()..model.dof_count() / 2);
-    for group in turning_groups(model) {
+    for group in rigid_groups(model) {
         unite(&mut first, &group);
     }
     (0..first.len()).map(|node| root(&first, node)).collect()
 }
 
-/// The nodes of every body that turns, with its reference node, its centre of mass and its angle.
-fn turning_groups(model: &Model) -> impl Iterator<Item = Vec<usize>> + '_ {
-    model.turning_bodies().map(|(rigid, body)| {
+/// The nodes of every rigid body, with its reference node, its centre of mass and its angle.
+fn rigid_groups(model: &Model) -> impl Iterator<Item = Vec<usize>> + '_ {
+    model.rigid_bodies.iter().map(|body| {
         let centre = model.centre_of(body);
-        let others = rigid.nodes.iter().copied();
-        others
-            .chain([rigid.reference, centre, centre + 1])
-            .collect()
+        let others = body.nodes.iter().copied();
+        others.chain([body.reference, centre, centre + 1]).collect()
     })
 }
 
@@ -177,7 +175,7 @@ fn turning_groups(model: &Model) -> impl Iterator<Item = Vec<usize>> + '_ {
 fn sections(model: &Model) -> Vec<Vec<usize>> {
     let nodes = model.dof_count() / 2;
     let mut cluster: Vec<usize> = (0..nodes).collect();
-    turning_groups(model).for_each(|group| unite(&mut cluster, &group));
+    rigid_groups(model).for_each(|group| unite(&mut cluster, &group));
     let cluster = united(cluster, &model.equations);
     let mut sections = vec![Vec::new(); nodes];
     for element in &model.mesh.elements {

@@ -120,9 +120,10 @@ impl Pins {
             spins[parts.of_nodes()[body.centre]].push((body.spin, body.length));
         }
         // the angles of bodies that turn have no place
-        let is_angle = |node: usize| turning.bodies.iter().any(|body| body.spin == 2 * node);
+        let mut is_angle = vec![false; parts.of_nodes().len()];
+        (turning.bodies.iter()).for_each(|body| is_angle[body.spin / 2] = true);
         let placed = parts.of_nodes().iter().enumerate();
-        for (node, &body) in placed.filter(|(node, _)| !is_angle(*node)) {
+        for (node, &body) in placed.filter(|(node, _)| !is_angle[*node]) {
             nodes[body].push(node);
         }
         for &dof in &unknowns.dof {

@@ -376,6 +376,7 @@ impl StepProblem<'_> {
             acceleration,
         );
         turning.drive([&start.u, d], &start.v, dt, acceleration);
+        self.unknowns.follow(acceleration);
         self.mass.write_product(acceleration, inertia);
         // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet
         for (inertia, impulse) in inertia.iter_mut().zip(*impulse) {

@@ -1,12 +1,12 @@
-//! Rigid bodies that turn: positions of their nodes and rows of T at an iterate of two translations and a
+//! Rigid bodies: positions of their nodes and rows of T at an iterate of two translations and a
 //! finite rotation. Section 11 of docs/theory.md.
 
 use crate::elements::Elements;
 use crate::linear::Transformation;
-use crate::model::{Model, RigidBody, TurningInertia};
+use crate::model::{Model, RigidBody};
 use crate::vectors::{cross, difference, distance, dot};
 
-/// A rigid body that turns. Its unknowns are the displacement of its pole and s = L c: c = 2 tan(dtheta/2) is its
+/// A rigid body, which turns where its angle is not held. Its unknowns are the displacement of its pole and s = L c: c = 2 tan(dtheta/2) is its
 /// rotation in the increment, L a length of the body, which makes s a displacement and its force a force.
 pub(crate) struct TurningBody {
     /// Node that is its centre of mass.
@@ -35,9 +35,8 @@ fn turned([x, y]: [f64; 2]) -> [f64; 2] {
     [-y, x]
 }
 
-/// R(theta) r.
-fn rotated(theta: f64, [x, y]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = theta.sin_cos();
+/// R r of the sine and the cosine of an angle.
+fn rotated((sin, cos): (f64, f64), [x, y]: [f64; 2]) -> [f64; 2] {
     [cos * x - sin * y, sin * x + cos * y]
 }
 
@@ -52,12 +51,8 @@ fn mean_arm(r0: [f64; 2], c: f64) -> [f64; 2] {
 }
 
 impl TurningBody {
-    /// A body of a model.
-    fn new(
-        model: &Model,
-        elements: &Elements,
-        (rigid, body): (&RigidBody, &TurningInertia),
-    ) -> Self {
+    /// A body of a model; `deforming` are the nodes of elements that deform.
+    fn new(model: &Model, elements: &Elements, deforming: &[bool], rigid: &RigidBody) -> Self {
         let x = &model.mesh.coordinates;
         // mass, its moments and int rho (X - X_ref)² dOmega from the consistent mass
         let arm = |node: usize| difference(x[rigid.reference], x[node]);
@@ -73,7 +68,7 @@ impl TurningBody {
                 }
             }
         }
-        for &(node, m) in &body.masses {
+        for &(node, m) in &rigid.masses {
             mass += m;
             (0..2).for_each(|k| moment[k] += m * arm(node)[k]);
             square += m * dot(arm(node), arm(node));
@@ -82,25 +77,17 @@ impl TurningBody {
             true => moment.map(|sum| sum / mass),
             false => [0.0; 2],
         };
-        let centre = model.centre_of(body);
+        let centre = model.centre_of(rigid);
         let ends = [(rigid.reference, [0.0; 2]), (centre, to_centre)];
         let others = rigid.nodes.iter().map(|&node| (node, arm(node)));
         let arms: Vec<_> = others.chain(ends).collect();
-        let inertia = body.rotary_inertia + square - mass * dot(to_centre, to_centre);
+        let inertia = rigid.rotary_inertia + square - mass * dot(to_centre, to_centre);
         let longest = arms.iter().map(|(_, r)| distance([0.0; 2], *r));
         let length = match longest.fold(0.0, f64::max) {
             0.0 if mass > 0.0 && inertia > 0.0 => (inertia / mass).sqrt(),
             0.0 => 1.0,
             length => length,
         };
-        let deforms = |element: &usize| !elements.is_rigid(*element);
-        let mut deforming = vec![false; model.mesh.node_count()];
-        for element in (0..elements.len()).filter(deforms) {
-            elements
-                .nodes(element)
-                .iter()
-                .for_each(|&node| deforming[node] = true);
-        }
         let own = arms.iter().map(|arm| arm.0);
         let mut loaded: Vec<usize> = own
             .filter(|&node| deforming.get(node) == Some(&true))
@@ -110,7 +97,7 @@ impl TurningBody {
             loaded,
             centre,
             reference: rigid.reference,
-            spin: model.angle_of(body),
+            spin: model.angle_of(rigid),
             length,
             mass,
             inertia,
@@ -119,11 +106,17 @@ impl TurningBody {
         }
     }
 
-    /// The bodies of a model that turn.
+    /// The rigid bodies of a model.
     pub fn all(model: &Model, elements: &Elements) -> Vec<Self> {
-        let bodies = model.turning_bodies();
+        let deforms = |element: &usize| !elements.is_rigid(*element);
+        let mut deforming = vec![false; model.mesh.node_count()];
+        for element in (0..elements.len()).filter(deforms) {
+            let nodes = elements.nodes(element).iter();
+            nodes.for_each(|&node| deforming[node] = true);
+        }
+        let bodies = model.rigid_bodies.iter();
         bodies
-            .map(|body| Self::new(model, elements, body))
+            .map(|body| Self::new(model, elements, &deforming, body))
             .collect()
     }
 
@@ -161,21 +154,22 @@ impl TurningBody {
             true => [0.0; 2],
             false => self.to_centre,
         };
+        let turn = theta.sin_cos();
         let arms = self.arms.iter().filter(move |(node, _)| *node != pole);
-        arms.map(move |&(node, r)| (node, rotated(theta, difference(from, r))))
+        arms.map(move |&(node, r)| (node, rotated(turn, difference(from, r))))
     }
 }
 
-/// Mass and moment of inertia about the centre of mass of every body of a model that turns.
+/// Mass and moment of inertia about the centre of mass of every rigid body of a model.
 pub(crate) fn rigid_inertia(model: &Model) -> Vec<[f64; 2]> {
-    if model.turning_bodies().next().is_none() {
+    if model.rigid_bodies.is_empty() {
         return Vec::new();
     }
     let all = TurningBody::all(model, &Elements::new(model));
     all.iter().map(|body| [body.mass, body.inertia]).collect()
 }
 
-/// The bodies that turn in a step.
+/// The rigid bodies in a step.
 pub(crate) struct Turning<'m> {
     pub bodies: &'m [TurningBody],
     /// The pole of every body: its reference node where that is held, else its centre of mass.
@@ -220,6 +214,11 @@ impl<'m> Turning<'m> {
         self.bodies.is_empty()
     }
 
+    /// Whether supports prescribe the motion of all of them.
+    pub fn are_driven(&self) -> bool {
+        self.driven.iter().all(|driven| *driven)
+    }
+
     /// L of the body whose angle this dof is: a force on it is a moment over L.
     pub fn length_of(&self, dof: usize) -> Option<f64> {
         let body = self.bodies.iter().find(|body| body.spin == dof);
@@ -236,10 +235,10 @@ impl<'m> Turning<'m> {
     /// Whether the mass matrix over the unknowns changes as they turn: a centre of mass follows a reference node, or
     /// nodes with mass of elements that deform follow a pole.
     pub fn turn_mass(&self) -> bool {
-        let mut all = self.with_poles();
-        all.any(|(body, pole)| {
+        let mut all = self.with_poles().zip(&self.driven);
+        all.any(|((body, pole), driven)| {
             let follows = body.mass > 0.0 && pole != body.centre;
-            follows || !body.loaded.is_empty()
+            !driven && (follows || !body.loaded.is_empty())
         })
     }
 
@@ -250,9 +249,10 @@ impl<'m> Turning<'m> {
         all.any(|(body, driven)| !driven && !body.loaded.is_empty())
     }
 
-    /// Whether a node belongs to a body that turns.
+    /// Whether a node belongs to a body that is not driven.
     pub fn moves(&self, node: usize) -> bool {
-        self.body_of.get(node).copied().flatten().is_some()
+        let body = self.body_of.get(node).copied().flatten();
+        body.is_some_and(|body| !self.driven[body])
     }
 
     /// The bodies with their poles.
@@ -380,9 +380,9 @@ impl<'m> Turning<'m> {
     /// Sets the displacements of all nodes to those of the poles and angles.
     pub fn place(&self, u: &mut [f64]) {
         for (body, pole) in self.with_poles() {
-            let (of_pole, theta) = ([u[2 * pole], u[2 * pole + 1]], body.angle(u));
+            let (of_pole, turn) = ([u[2 * pole], u[2 * pole + 1]], body.angle(u).sin_cos());
             for (node, r) in body.arms_from(pole, 0.0) {
-                let end = rotated(theta, r);
+                let end = rotated(turn, r);
                 (0..2).for_each(|i| u[2 * node + i] = of_pole[i] + (end[i] - r[i]));
             }
         }
@@ -562,11 +562,8 @@ mod tests {
             name: "B".into(),
             reference: 0,
             nodes: vec![1, 2],
-            turning: Some(TurningInertia {
-                masses: vec![(1, 2.0), (2, 1.0)],
-                rotary_inertia: 0.7,
-                ..TurningInertia::default()
-            }),
+            masses: vec![(1, 2.0), (2, 1.0)],
+            rotary_inertia: 0.7,
             ..RigidBody::default()
         });
         TurningBody::all(&model, &Elements::new(&model))

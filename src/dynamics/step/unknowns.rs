@@ -164,16 +164,15 @@ impl<'m> Unknowns<'m> {
         self.follow(v);
     }
 
-    /// Gives supports the acceleration (V1 - V0)/dt, and the dofs of equations the one that follows.
+    /// Gives supports the acceleration (V1 - V0)/dt.
     pub fn prescribe_acceleration(&self, at: TimePoint, v0: &[f64], dt: f64, a: &mut [f64]) {
         for (dof, _, v1) in self.supports.motion(at) {
             a[dof] = (v1 - v0[dof]) / dt;
         }
-        self.follow(a);
     }
 
     /// Makes a vector of displacements, velocities or accelerations satisfy the equations, eq. (3.8).
-    fn follow(&self, v: &mut [f64]) {
+    pub fn follow(&self, v: &mut [f64]) {
         for equation in self.equations {
             v[equation.dof] = equation.terms.iter().map(|&(dof, c)| c * v[dof]).sum();
         }

@@ -54,16 +54,13 @@ fn row(model: &Model, step: &Step, nodes: [usize; 2], axis: usize) -> DVector<f6
             continue;
         };
         let body = &model.rigid_bodies[number];
-        let Some(turning) = &body.turning else {
-            continue;
-        };
         let arm = |node: usize| difference(x[body.reference], x[node]);
         let longest = body.nodes.iter().map(|&node| length(arm(node)));
         let longest = longest.fold(0.0, f64::max);
         if is_free(2 * body.reference + axis) {
             row[3 * number + axis] += sign;
         }
-        if is_free(model.angle_of(turning)) && longest > 0.0 {
+        if is_free(model.angle_of(body)) && longest > 0.0 {
             let [rx, ry] = arm(node);
             row[3 * number + 2] += sign * [-ry, rx][axis] / longest;
         }
