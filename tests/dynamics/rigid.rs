@@ -108,3 +108,37 @@ fn a_rigid_surface_takes_part_in_general_contact() {
     }
     assert!(histories[0].2 > 0.0);
 }
+
+/// A rigid box of mass 1 with a point mass of 2 that a support accelerates: the reaction is that of the whole mass, whether
+/// a later step frees the box or not.
+#[test]
+fn a_held_rigid_body_has_its_point_masses() {
+    let deck = |more: &str| {
+        format!(
+            "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n9, 0.5, 0.5\n*ELEMENT, TYPE=CPE4, ELSET=BOX\n1, 1, 2, 3, 4\n\
+             *SOLID SECTION, ELSET=BOX, MATERIAL=M\n1.,\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n\
+             *ELEMENT, TYPE=MASS, ELSET=EM\n2, 9\n*MASS, ELSET=EM\n2.\n*RIGID BODY, ELSET=BOX, REF NODE=9\n\
+             *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.05\n*BOUNDARY\n9, 6, 6\n*BOUNDARY, TYPE=ACCELERATION\n9, 1, 1, 5.\n\
+             9, 2, 2, 0.\n*DLOAD\n, GRAV, 10., 0., -1.\n*END STEP\n{more}"
+        )
+    };
+    let freed =
+        "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.05\n*BOUNDARY, OP=NEW\n9, 6, 6\n*END STEP\n";
+    let [held, freed] = ["", freed].map(|more| {
+        let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+        let deck = deck::parse_str("deck.inp", &deck(more), &mut sources, &mut d);
+        let model = reader::build(&deck, &mut d).expect("a valid deck");
+        run_to_end(&model).0.reports
+    });
+    for (a, b) in held.iter().zip(&freed).skip(1) {
+        for (force, right) in a.rigid[0].force.into_iter().zip([15.0, 30.0]) {
+            assert!((force - right).abs() < 1e-12, "{force} at {}", a.time);
+        }
+        assert_eq!(a.rigid[0], b.rigid[0]);
+        assert_eq!(a.state, b.state);
+        // (1 + 2) (5 t)²/2, and the work of the support, which gravity has no part in
+        let speed = 5.0 * a.time;
+        assert!((a.energy.kinetic - 1.5 * speed * speed).abs() < 1e-13);
+        assert!((a.energy.external_work - a.energy.kinetic).abs() < 1e-13);
+    }
+}

@@ -283,6 +283,109 @@ fn last_rows(folder: &Path, job: &str, rows: usize) -> BTreeMap<String, Vec<u64>
     found.into_iter().map(last).collect()
 }
 
+/// A block that a coupling grips and a rigid box with a point mass, over a rigid floor.
+const HELD_BODIES: &str = "\
+*NODE
+1, 0., 0.
+2, 1., 0.
+3, 0., 1.
+4, 1., 1.
+5, 0., 2.
+6, 1., 2.
+11, 3., 0.5
+12, 4., 0.5
+13, 4., 1.5
+14, 3., 1.5
+100, 0.5, 2.3
+110, 3.5, 1.
+120, 0., 0.
+*ELEMENT, TYPE=CPE4, ELSET=BLOCK
+1, 1, 2, 4, 3
+2, 3, 4, 6, 5
+*ELEMENT, TYPE=CPE4, ELSET=BOX
+11, 11, 12, 13, 14
+*SOLID SECTION, ELSET=BLOCK, MATERIAL=M
+1.,
+*SOLID SECTION, ELSET=BOX, MATERIAL=M
+1.,
+*MATERIAL, NAME=M
+*ELASTIC
+1000., 0.3
+*DENSITY
+1.
+*ELEMENT, TYPE=MASS, ELSET=EM
+901, 110
+*MASS, ELSET=EM
+2.
+*NSET, NSET=TOP
+5, 6
+*RIGID BODY, ELSET=BOX, REF NODE=110
+*SURFACE, NAME=TOPS
+2, S3
+*COUPLING, CONSTRAINT NAME=GRIP, REF NODE=100, SURFACE=TOPS
+*KINEMATIC
+*SURFACE, NAME=FLOOR, TYPE=SEGMENTS
+START, -2., 0.
+LINE, 8., 0.
+*RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=120
+*SURFACE, NAME=SOLES
+1, S1
+11, S1
+*SURFACE INTERACTION, NAME=DRY
+*FRICTION
+0.3
+*CONTACT PAIR, INTERACTION=DRY
+SOLES, FLOOR
+";
+
+#[test]
+fn a_later_job_frees_rigid_bodies_that_all_earlier_steps_hold() {
+    let held = "*BOUNDARY\n100, 1, 1, 0.003\n100, 2, 2, -0.01\n100, 6, 6, 0.002\n110, 1, 2\n110, 6, 6\n120, 1, 2\n\
+                *DLOAD\n, GRAV, 9.81, 0., -1.\n";
+    let free = "*BOUNDARY, OP=NEW\n120, 1, 2\n";
+    let box_held = "110, 1, 2\n110, 6, 6\n";
+    for (procedure, left) in [
+        ("*DYNAMIC, DIRECT\n0.01, 0.1\n", free.to_owned()),
+        ("*STATIC\n0.25, 1.\n", format!("{free}{box_held}")),
+    ] {
+        let place = TempDir::new().expect("folder");
+        let step = |cards: &str| format!("*STEP, NLGEOM\n{procedure}{cards}*END STEP\n");
+        let (first, second) = (step(held), step(&left));
+        let decks = [
+            ("whole", format!("{HELD_BODIES}{first}{second}"), vec![]),
+            (
+                "first",
+                format!("{HELD_BODIES}*RESTART, WRITE, FREQUENCY=100\n{first}"),
+                vec![],
+            ),
+            (
+                "second",
+                format!("*RESTART, READ\n{second}"),
+                vec!["--oldjob", "first"],
+            ),
+        ];
+        for (name, text, words) in decks {
+            let deck = format!("{name}.inp");
+            fs::write(place.path().join(&deck), text).expect("deck");
+            let all = [&["run", "-q", &deck], words.as_slice()].concat();
+            assert_done(&program(place.path(), &all));
+        }
+        let file = hdf5::File::open(place.path().join("second.vtkhdf")).expect("a result");
+        let times = file.dataset("history/time").expect("times");
+        let rows = times.shape()[0];
+        assert!(rows > 3, "{procedure} {rows}");
+        // the state that the second job begins from has no forces
+        let whole = last_rows(place.path(), "whole", rows - 1);
+        let second = last_rows(place.path(), "second", rows - 1);
+        for name in ["/history/rigid/GRIP/angle", "/history/rigid/BOX/force"] {
+            assert!(second.contains_key(name), "{name}");
+        }
+        for (name, bits) in &second {
+            assert_eq!(whole.get(name), Some(bits), "{procedure} {name}");
+        }
+    }
+}
+
 #[test]
 fn a_deck_goes_on_from_the_end_of_another_job_in_the_same_bits() {
     let place = TempDir::new().expect("folder");
