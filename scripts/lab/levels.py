@@ -359,7 +359,14 @@ class Known:
     levels: Mapping[str, list[str]]
 
 
-KNOWN: list[Known] = []
+KNOWN: list[Known] = [
+    Known(
+        "holds",
+        "a back strain of another direction leaves the stress of an increment in the frame of its start: an error of the increment, "
+        "of first order in its length",
+        {"material": ["kinematic metal"]},
+    ),
+]
 
 
 def known(oracle: str, choice: Mapping[str, str]) -> str:

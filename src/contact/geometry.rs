@@ -110,6 +110,28 @@ pub(crate) fn position(x: &[[f64; 2]], u: &[f64], node: usize) -> [f64; 2] {
     [x[node][0] + u[2 * node], x[node][1] + u[2 * node + 1]]
 }
 
+/// Nodes at one place that equations join, as those of both sides of a pre-tension section: one vertex of the surface on both
+/// sides of it, which does not touch the segments there.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct JoinedNodes(HashMap<usize, Vec<usize>>);
+
+impl JoinedNodes {
+    /// Those of a model.
+    pub fn new(model: &Model) -> Self {
+        let mut others: HashMap<usize, Vec<usize>> = HashMap::new();
+        for [a, b] in model.joined_nodes() {
+            others.entry(a).or_default().push(b);
+            others.entry(b).or_default().push(a);
+        }
+        JoinedNodes(others)
+    }
+
+    /// A node and those at its place.
+    fn of(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        std::iter::once(node).chain(self.0.get(&node).into_iter().flatten().copied())
+    }
+}
+
 /// The two sides of a contact of the model, as nodes and segments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSurfaces {
@@ -139,6 +161,8 @@ pub struct ContactSurfaces {
     pub disc: Option<Disc>,
     /// Arcs of a rigid master, with increasing segments.
     pub arcs: Vec<SurfaceArc>,
+    /// Nodes that are one vertex.
+    pub joined: Arc<JoinedNodes>,
 }
 
 /// An arc about a point that moves with two nodes p and q of the master: x_c = x_p + alpha e + beta J e, e = x_q - x_p.
@@ -357,15 +381,27 @@ impl ContactSurfaces {
     /// Slave nodes against master segments; `own` are the segments of the slave surface, none if it
     /// is made of nodes.
     pub fn new(slaves: Vec<usize>, own: &[[usize; 2]], segments: Vec<[usize; 2]>) -> Self {
+        Self::with_joined(slaves, own, segments, &Arc::default())
+    }
+
+    /// The same where some nodes are one vertex.
+    fn with_joined(
+        slaves: Vec<usize>,
+        own: &[[usize; 2]],
+        segments: Vec<[usize; 2]>,
+        joined: &Arc<JoinedNodes>,
+    ) -> Self {
         // node at the other end of the segment that starts or ends at a node
         let following: HashMap<usize, usize> = own.iter().map(|&[a, b]| (a, b)).collect();
         let preceding: HashMap<usize, usize> = own.iter().map(|&[a, b]| (b, a)).collect();
-        let neighbours = |slave: &usize| Some([*preceding.get(slave)?, *following.get(slave)?]);
+        let at = |of: &HashMap<usize, usize>, node: usize| {
+            joined.of(node).find_map(|node| of.get(&node).copied())
+        };
+        let neighbours = |&slave: &usize| Some([at(&preceding, slave)?, at(&following, slave)?]);
         // segment that starts or ends at a node
         let numbered = || segments.iter().enumerate();
         let starting: HashMap<usize, usize> = numbered().map(|(i, &[a, _])| (a, i)).collect();
         let ending: HashMap<usize, usize> = numbered().map(|(i, &[_, b])| (b, i)).collect();
-        let at = |of: &HashMap<usize, usize>, node: usize| of.get(&node).copied();
         ContactSurfaces {
             adjacent: slaves.iter().map(neighbours).collect(),
             slave_faces: own.to_vec(),
@@ -379,7 +415,14 @@ impl ContactSurfaces {
             corners: Vec::new(),
             disc: None,
             arcs: Vec::new(),
+            joined: Arc::clone(joined),
         }
+    }
+
+    /// Whether a node, or one that is the same vertex, is an end of a segment.
+    pub fn is_end(&self, node: usize, segment: usize) -> bool {
+        let ends = self.segments[segment];
+        self.joined.of(node).any(|node| ends.contains(&node))
     }
 
     /// Radius of the disc that the slave node is the centre of (length); 0 of nodes.
@@ -509,7 +552,9 @@ impl ContactSurfaces {
 
     /// The corners of both surfaces, of one that touches itself once.
     fn corners_of_both(&self, x: &[[f64; 2]], is_self_contact: bool) -> Vec<Corners> {
-        let chains = |faces: &[[usize; 2]]| ContactSurfaces::new(Vec::new(), &[], faces.to_vec());
+        let chains = |faces: &[[usize; 2]]| {
+            ContactSurfaces::with_joined(Vec::new(), &[], faces.to_vec(), &self.joined)
+        };
         let [slave, master] = [&self.slave_faces, &self.segments].map(|faces| chains(faces));
         let mut both = vec![(&slave, &master, false)];
         if !is_self_contact {
@@ -524,7 +569,9 @@ impl ContactSurfaces {
             let least = lengths.fold(f64::INFINITY, f64::min);
             let allowed = |node: &usize| CORNER_DEPTH * shortest[node].min(least);
             let allowed = nodes.iter().map(allowed).collect();
-            let surfaces = ContactSurfaces::new(nodes, &own.segments, against.segments.clone());
+            let segments = against.segments.clone();
+            let surfaces =
+                ContactSurfaces::with_joined(nodes, &own.segments, segments, &self.joined);
             Corners {
                 surfaces: surfaces
                     .with_sharp_corners(x)
@@ -672,6 +719,7 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
     }
     let is_behind = |element: &Element| has_segments[bodies[element.nodes[0]]];
     let interior = Arc::new(Interior::new(&model.mesh, is_behind));
+    let joined = Arc::new(JoinedNodes::new(model));
     let of_contact = |contact: &Contact| {
         let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
         let (disc, x) = (model.disc(contact), &model.mesh.coordinates);
@@ -680,7 +728,8 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
             None => slave.segments(&model.mesh),
         };
         let segments = master.segments(&model.mesh);
-        let mut surfaces = ContactSurfaces::new(model.slave_nodes(contact), &own, segments)
+        let slaves = model.slave_nodes(contact);
+        let mut surfaces = ContactSurfaces::with_joined(slaves, &own, segments, &joined)
             .with_sharp_corners(x)
             .with_interior(Arc::clone(&interior));
         surfaces.disc = disc;

@@ -200,6 +200,17 @@ impl<'m> Search<'m> {
         })
     }
 
+    /// Surfaces of the contacts of nodes with segments in which no node may overlap.
+    pub(super) fn surfaces_of_nodes(&self) -> impl Iterator<Item = &'m ContactSurfaces> {
+        let territories = self.territories.iter();
+        let of_nodes = territories.filter(|territory| {
+            let surfaces = territory.contact;
+            let meets_segments = surfaces.slave_segments.is_none() && surfaces.disc.is_none();
+            meets_segments && territory.corners.is_none() && !territory.is_fitted
+        });
+        of_nodes.map(|territory| territory.contact)
+    }
+
     /// Reference coordinates of the nodes.
     pub fn coordinates(&self) -> &'m [[f64; 2]] {
         self.x
@@ -261,9 +272,9 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         self.surfaces.slave_segments.is_none()
     }
 
-    /// Whether its contact is node to segment.
-    pub fn is_node_to_segment(&self) -> bool {
-        self.territory.corners.is_none() && self.meets_segments()
+    /// Whether it is a corner of contact from surface to surface.
+    pub fn is_corner(&self) -> bool {
+        self.territory.corners.is_some()
     }
 
     /// Whether nodes of its contact may overlap at the end of the increment.
@@ -515,7 +526,7 @@ impl<'m> Territory<'m> {
         } = self;
         found.clear();
         self.slaves.circles.overlaps(&self.segments.circles, found);
-        found.retain(|&[k, i]| !contact.segments[i as usize].contains(&contact.slaves[k as usize]));
+        found.retain(|&[k, i]| !contact.is_end(contact.slaves[k as usize], i as usize));
 
         starts.clear();
         starts.resize(contact.slaves.len() + 1, 0);

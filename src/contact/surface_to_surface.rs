@@ -293,8 +293,8 @@ impl<'a> Finder<'a> {
     /// Whether a face and a segment may be slave and master: they have no common node, and where a surface touches
     /// itself the face comes first.
     fn may_meet(&self, face: usize, segment: usize) -> bool {
-        let ends = self.surfaces.segments[segment];
-        let has_own = (self.surfaces.slave_faces[face].iter()).any(|node| ends.contains(node));
+        let ends = self.surfaces.slave_faces[face];
+        let has_own = (ends.into_iter()).any(|node| self.surfaces.is_end(node, segment));
         let ranks = self.slave.ranks.as_ref();
         !has_own && ranks.is_none_or(|ranks| ranks[face] < ranks[segment])
     }

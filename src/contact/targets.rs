@@ -663,10 +663,9 @@ impl SlaveNode<'_> {
         (surfaces.interior).joins(surfaces.segments[segment], node, start)
     }
 
-    /// Whether the node is an end of the segment.
+    /// Whether the node is an end of the segment, or the same vertex as one.
     pub(crate) fn is_own(&self, segment: usize) -> bool {
-        let node = self.node();
-        self.surfaces.segments[segment].contains(&node)
+        self.surfaces.is_end(self.node(), segment)
     }
 
     /// Distance from the end of a segment with the projection `p` within which the other segment of a

@@ -13,7 +13,8 @@ use super::search::{ListedSlave, Search};
 use super::targets::raised;
 use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END};
 use crate::linear::{larger, largest};
-use crate::vectors::{cross, difference, length};
+use crate::vectors::{Circle, CircleTree, cross, difference, length};
+use std::collections::HashSet;
 
 /// The first slave node that penetrates a body on its straight path from the displacements `u0` to
 /// `u1`, if there is one, with the segment through which it has entered. The search must cover the paths; `closed` are the pairs in contact before
@@ -41,7 +42,7 @@ pub fn find_penetration(
             closed,
             unsolved,
             allowed: listed.allowed(),
-            is_corner: listed.meets_segments() && !listed.is_node_to_segment(),
+            is_corner: listed.is_corner(),
             depth: match listed.surfaces.slave_segments {
                 Some(_) => NODE_DEPTH,
                 None => DEPTH_ROUND_OFF,
@@ -144,7 +145,7 @@ impl NodePath<'_> {
     /// The nearest segment at the end, if the node is behind it without a force although it was
     /// outside at the start: it has come round a corner that has turned concave.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
-        let is_own = |i: &usize| self.contact.segments[*i].contains(&self.slave);
+        let is_own = |i: &usize| self.contact.is_end(self.slave, *i);
         let others = segments.filter(|i| !is_own(i));
         let is_behind = |&i: &usize| {
             if self.ends_in_front(i) {
@@ -311,30 +312,40 @@ fn turns_left(first: &Projection, second: &Projection) -> bool {
     cross(first.tangent, second.tangent) > 0.0
 }
 
-/// How far an edge of a slave surface and a segment have crossed in the displacements `u`, the most of all
-/// pairs that the search lists, 0 where none cross:
+/// How far a face of a slave surface and a segment have crossed in the displacements `u`, the most of all, 0 where none cross:
 ///
 /// ```text
 /// min(|h_p|, |h_q|)/|b - a|, min(|h_a|, |h_b|)/|q - p|   the smaller    eq. (10.6)
 /// ```
 ///
-/// h being the distances of the ends p and q of the edge from the line of the segment from a to b, and the other
+/// h being the distances of the ends p and q of the face from the line of the segment from a to b, and the other
 /// way round. Edges with a common node do not count, nor do those of contact from surface to surface, whose gaps are means.
 pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
-    let mut most = 0.0;
-    for listed in search
-        .slaves()
-        .filter(|listed| !listed.is_fitted() && listed.is_node_to_segment())
-    {
-        let slave = listed.node();
-        let Some(adjacent) = listed.surfaces.adjacent[listed.number] else {
-            continue;
+    let (mut most, mut found) = (0.0, Vec::new());
+    for surfaces in search.surfaces_of_nodes() {
+        let is_slave: HashSet<usize> = surfaces.slaves.iter().copied().collect();
+        let faces = surfaces.slave_faces.iter();
+        let faces: Vec<[usize; 2]> = faces
+            .filter(|face| face.iter().all(|node| is_slave.contains(node)))
+            .copied()
+            .collect();
+        let circle = |edge: &[usize; 2]| {
+            let [a, b] = edge.map(at);
+            Circle {
+                centre: between(a, b, 0.5),
+                radius: length(difference(a, b)) / 2.0,
+            }
         };
-        for candidate in listed.candidates() {
-            let segment = listed.surfaces.segments[candidate.segment];
-            for other in adjacent.iter().filter(|other| !segment.contains(other)) {
-                let depth = crossed_by([slave, *other].map(at), segment.map(at));
+        let [own, others] = [&faces, &surfaces.segments]
+            .map(|edges| CircleTree::new(edges.iter().map(circle).collect::<Vec<_>>()));
+        found.clear();
+        own.overlaps(&others, &mut found);
+        for &[face, segment] in &found {
+            let (face, segment) = (faces[face as usize], segment as usize);
+            if !face.iter().any(|&node| surfaces.is_end(node, segment)) {
+                let segment = surfaces.segments[segment].map(at);
+                let depth = crossed_by(face.map(at), segment);
                 most = larger(most, depth.unwrap_or(0.0));
             }
         }
@@ -369,7 +380,7 @@ fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 
         (i, p, apart)
     };
     let others = (listed.candidates().map(|candidate| candidate.segment))
-        .filter(|&i| !surfaces.segments[i].contains(&node));
+        .filter(|&i| !surfaces.is_end(node, i));
     let nearest = others.map(beside).min_by(|p, q| p.2.total_cmp(&q.2));
     let Some((i, p, apart)) = nearest.filter(|(_, p, _)| p.gap < 0.0) else {
         return 0.0;
@@ -420,27 +431,32 @@ mod tests {
 
     #[test]
     fn a_corner_that_an_edge_cuts_is_seen_though_no_node_is_inside() {
-        // a roof over (0, 0), and a beam of two nodes that lies across its ridge, both ends outside
-        let x = [
-            [2.0, -2.0],
-            [0.0, 0.0],
-            [-2.0, -2.0],
-            [1.0, -0.5],
-            [-1.0, -0.5],
-        ];
-        let sides = vec![[0, 1], [1, 2]];
-        let beam = [[3, 4], [4, 3]];
-        let surfaces = ContactSurfaces::new(vec![3, 4], &beam, sides);
-        let contacts = [surfaces];
-        let mut search = Search::new(&contacts, &x);
-        let mut depth = |height: f64| {
-            let mut u = [0.0; 10];
-            (u[7], u[9]) = (height, height);
-            search.cover(&u);
-            crossed_edges(&search, &u)
-        };
-        assert_eq!(depth(0.6), 0.0);
-        // the ridge is 0.25 above the beam of length 2
-        assert!((depth(0.25) - 0.125).abs() < 1e-15, "{}", depth(0.25));
+        // a roof over (0, 0), and a beam of two nodes that lies across its ridge, both ends outside: as long as the roof, or
+        // so long that no end is near it
+        for (roof, half) in [(2.0, 1.0), (0.1, 5.0)] {
+            let x = [
+                [roof, -roof],
+                [0.0, 0.0],
+                [-roof, -roof],
+                [half, -0.25 * roof],
+                [-half, -0.25 * roof],
+            ];
+            let sides = vec![[0, 1], [1, 2]];
+            let beam = [[3, 4], [4, 3]];
+            let surfaces = ContactSurfaces::new(vec![3, 4], &beam, sides);
+            let contacts = [surfaces];
+            let mut search = Search::new(&contacts, &x);
+            let mut depth = |height: f64| {
+                let mut u = [0.0; 10];
+                (u[7], u[9]) = (height, height);
+                search.cover(&u);
+                crossed_edges(&search, &u)
+            };
+            assert_eq!(depth(0.3 * roof), 0.0);
+            // the ridge is an eighth of the roof above the beam
+            let right = roof / 8.0 / (2.0 * half);
+            let found = depth(roof / 8.0);
+            assert!((found - right).abs() < 1e-15, "{found} {right}");
+        }
     }
 }

@@ -33,6 +33,7 @@ pub use sets::{
     HistorySet, Instance, NamedSets, NodalVariable, RequestedFields, element_name, node_name,
 };
 pub use side::{Segment, Side, SideNodes};
+use std::collections::{BTreeMap, BTreeSet};
 pub use step::{
     BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, FormerFriction,
     Frames, FrictionChange, Impact, ImpactTime, Incrementation, Increments, Interference,
@@ -136,6 +137,26 @@ impl Model {
         };
         let [a, b] = nodes.map(motion_of);
         a.is_some() && a == b
+    }
+
+    /// Pairs of nodes at one place that equations of their own join in both directions, the smaller index first: such an
+    /// equation has a third node at most, as the one of a pre-tension section.
+    pub fn joined_nodes(&self) -> BTreeSet<[usize; 2]> {
+        let mesh = &self.mesh;
+        let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+        for equation in &self.equations {
+            let nodes: BTreeSet<usize> = equation.dofs().map(|dof| dof / 2).collect();
+            let of_mesh = nodes.iter().filter(|&&node| node < mesh.node_count());
+            let nodes: Vec<usize> = of_mesh.copied().collect();
+            for (i, &a) in nodes.iter().enumerate().filter(|_| nodes.len() <= 3) {
+                let same = |b: &&usize| mesh.coordinates[**b] == mesh.coordinates[a];
+                for &b in nodes[i + 1..].iter().filter(same) {
+                    *counts.entry([a, b]).or_default() += 1;
+                }
+            }
+        }
+        let both = counts.into_iter().filter(|(_, count)| *count >= 2);
+        both.map(|(pair, _)| pair).collect()
     }
 
     /// Mass of an element: density x volume.

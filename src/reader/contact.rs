@@ -10,12 +10,11 @@ use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Equation, Face, Friction, FrictionCurve,
-    FrictionLaw, Heat, Interaction, Mesh, Model, Reach, RigidProfile, Segment, Surface,
-    SurfaceKind, Wear,
+    ALL_EXTERIOR, Adjust, Contact, ContactFormulation, Face, Friction, FrictionCurve, FrictionLaw,
+    Heat, Interaction, Mesh, Model, Reach, RigidProfile, Segment, Surface, SurfaceKind, Wear,
 };
 use crate::vectors::cross;
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Reads the contacts with their interactions.
 pub(crate) fn read(
@@ -628,7 +627,7 @@ fn assigned_in(
 /// Leaves out of general contact the faces that equations join to others: those of a pre-tension section.
 pub(super) fn leave_out_joined(model: &mut Model) {
     let mesh = &model.mesh;
-    let partners = joined_nodes(&model.equations, mesh);
+    let partners = model.joined_nodes();
     let is_partner = |a: usize, b: usize| partners.contains(&[a.min(b), a.max(b)]);
     let own: BTreeSet<usize> = partners.iter().flatten().copied().collect();
     let all = mesh.exterior_faces();
@@ -649,25 +648,6 @@ pub(super) fn leave_out_joined(model: &mut Model) {
         let rest: Vec<Face> = rest.collect();
         surface.kind = SurfaceKind::Faces(chained(&rest, mesh));
     }
-}
-
-/// Pairs of nodes at one place that equations of their own join in both directions, the smaller index first: such an
-/// equation has a third node at most, as the one of a pre-tension section.
-fn joined_nodes(equations: &[Equation], mesh: &Mesh) -> BTreeSet<[usize; 2]> {
-    let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();
-    for equation in equations {
-        let nodes: BTreeSet<usize> = equation.dofs().map(|dof| dof / 2).collect();
-        let of_mesh = nodes.iter().filter(|&&node| node < mesh.node_count());
-        let nodes: Vec<usize> = of_mesh.copied().collect();
-        for (i, &a) in nodes.iter().enumerate().filter(|_| nodes.len() <= 3) {
-            let same = |b: &&usize| mesh.coordinates[**b] == mesh.coordinates[a];
-            for &b in nodes[i + 1..].iter().filter(same) {
-                *counts.entry([a, b]).or_default() += 1;
-            }
-        }
-    }
-    let both = counts.into_iter().filter(|(_, count)| *count >= 2);
-    both.map(|(pair, _)| pair).collect()
 }
 
 /// Faces chain by chain along the boundaries.

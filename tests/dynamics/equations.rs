@@ -462,6 +462,30 @@ fn a_deck_ties_sets_of_nodes() {
     }
 }
 
+/// The sides of a pre-tension section slide past each other at its ends, and the nodes there touch nothing of the other side.
+#[test]
+fn ends_of_a_section_do_not_touch() {
+    for formulation in ["", "*CONTACT FORMULATION, TYPE=SURFACE TO SURFACE\n"] {
+        let text = format!(
+            "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 0., 1.\n4, 1., 1.\n5, 0., 2.\n6, 1., 2.\n99, 5., 5.\n\
+             *ELEMENT, TYPE=CPE4, ELSET=ALL\n1, 1, 2, 4, 3\n2, 3, 4, 6, 5\n\
+             *SOLID SECTION, ELSET=ALL, MATERIAL=M\n1.,\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n\
+             1.\n*SURFACE, NAME=CUT\n2, S1\n*PRE-TENSION SECTION, NODE=99, SURFACE=CUT\n\
+             *SURFACE INTERACTION, NAME=DRY\n*FRICTION\n0.3\n*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n\
+             {formulation}*CONTACT PROPERTY ASSIGNMENT\n, , DRY\n*BOUNDARY\n1, 1, 2\n2, 1, 2\n5, 1, 2\n\
+             6, 1, 2\n*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY\n99, 1, 1, 0.02\n*END STEP\n"
+        );
+        let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
+        let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
+        let model = reader::build(&deck, &mut d);
+        let model = model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)));
+        for report in &run_to_end(&model).0.reports {
+            assert_eq!(report.contacts[0].closed, 0, "{formulation}");
+            assert_eq!(size(&report.nodal.contact_force), 0.0, "{formulation}");
+        }
+    }
+}
+
 /// All exterior faces may touch each other: those of a tied interface carry no contact force.
 #[test]
 fn tied_faces_do_not_touch() {

@@ -613,6 +613,8 @@ class Frames:
             found = list(means.means(x0, x1, asked, told and increment.scheme == 1))
             all_found.append((contact, means, found))
         for contact, means, found in all_found:
+            # the file tells the least gap and the state of all contacts that a node is in
+            elsewhere = _elsewhere(contact, contacts, {other.name for other, _, _ in all_found})
             # of nodes that are master too the file tells one gap and one state for both, eq. (9.16)
             of_master = _at_masters([(other, more) for _, other, more in all_found if other is not means])
             closed = []
@@ -627,19 +629,21 @@ class Frames:
                 is_corner = node in means.corners or on_master.is_corner
                 nearest = min(mean.gap, on_master.gap)
                 if not is_corner and gaps[node] <= NEAR * self._edge and (told or not on_master.whole):
-                    stored = abs(nearest - gaps[node]) / self._edge
+                    beyond = gaps[node] - nearest
+                    stored = (beyond if node in elsewhere else abs(beyond)) / self._edge
                     self.checks["gap"].add(stored, TOUCH + noise, f"GAP, {at}")
                 # what is left at the ends of masters, eq. (7.9)
                 is_exact = told and not mean.moved and node not in means.corners
                 bound = GAP if is_exact else LEFT
                 self.checks["gap"].add(-mean.gap / self._edge, bound + noise, at)
-                if status[node] >= STICK and not is_corner:
+                if status[node] >= STICK and not is_corner and node not in elsewhere:
                     open_by = min(mean.gap, on_master.least)
                     bound = LEFT if on_master.moved else bound
                     self.checks["gap"].add(open_by / self._edge, bound + noise, at)
             for mean in found:
                 is_near = abs(mean.gap) <= (GAP + noise if not mean.moved else LEFT) * self._edge
-                if status[mean.node] >= STICK and (is_near or mean is least[mean.node]):
+                is_least = mean is least[mean.node] and mean.node not in elsewhere
+                if status[mean.node] >= STICK and (is_near or is_least):
                     closed.append(mean)
             if not closed:
                 continue
@@ -812,6 +816,14 @@ class AtMaster:
     def gap(self) -> float:
         """Their mean gap, eq. (9.16)."""
         return self.weighted / self.whole if self.whole > 0.0 else np.inf
+
+
+def _elsewhere(contact: Contact, contacts: list[Contact], with_means: set[str]) -> set[int]:
+    """Nodes that are also in contacts whose means are not known, or slaves of another contact."""
+    others = [one for one in contacts if one is not contact]
+    nodes = [one.slaves for one in others]
+    nodes += [one.segments.ravel() for one in others if one.name not in with_means]
+    return set(np.concatenate(nodes).tolist()) if nodes else set()
 
 
 def _at_masters(found: list[tuple[Means, list[Mean]]]) -> dict[int, AtMaster]:

@@ -37,6 +37,8 @@ pub(crate) struct Impulses {
     of_iterate: Vec<Constraint>,
     /// Whether the impulses are those of the rows of the iterate, as an increment may end with.
     are_exact: bool,
+    /// The pairs that have the impulse of their force at their disposal for them, eq. (11.7); increasing.
+    lent: Vec<ConstraintKey>,
     /// What they see of V0, eq. (11.5) and eq. (11.11); none where that is V0.
     seen: Option<Vec<f64>>,
     /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
@@ -131,15 +133,18 @@ impl Impulses {
         };
         let [steady_part, exact_part] = steady.tolerances();
         let held = self.held(problem, v0, dt);
-        let part = match held.iter().any(|impulse| *impulse > 0.0) {
-            true => f64::INFINITY,
-            false => self.part_of_change(&steady),
+        let pairs = self.of_iterate.iter().zip(&held);
+        let pairs = pairs.filter(|(_, impulse)| **impulse > 0.0);
+        let pairs: Vec<ConstraintKey> = pairs.map(|(constraint, _)| constraint.key).collect();
+        let part = match pairs.is_empty() && self.lent.is_empty() {
+            true => self.part_of_change(&steady),
+            false => f64::INFINITY,
         };
         self.are_exact = part <= exact_part;
         if part <= steady_part {
             return Ok(());
         }
-        self.are_exact = true;
+        (self.are_exact, self.lent) = (true, pairs);
         let system = mass_system(problem, workspace);
         let states = (self.of_iterate.iter()).map(|c| self.state(c, v0, dt));
         let states = states.collect();
@@ -272,7 +277,8 @@ impl Impulses {
         self.at_rest && self.are_exact
     }
 
-    /// Takes over the pairs in contact after a pass; whether they are the same as before, and the impulses theirs. After
+    /// Takes over the pairs in contact after a pass; whether they are the same as before, those that have the impulse of their
+    /// force still stick, and the impulses are theirs. After
     /// some changes the set is kept: impulses of any set take energy, never give it.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
         self.sticking = match problem.unknowns.turning.are_driven() {
@@ -282,12 +288,16 @@ impl Impulses {
         let constraints = contact.constraints.iter();
         let massless: Vec<ConstraintKey> =
             (constraints.filter(|c| !has_mass(problem, c)).map(|c| c.key)).collect();
+        let sticks = |key: &ConstraintKey| {
+            let stuck = &self.sticking;
+            stuck.binary_search_by_key(key, |stuck| stuck.0).is_ok()
+        };
         // pairs that have impulses only because they are closed
         let is_free =
             |key: &ConstraintKey| !self.touches(*key) && massless.binary_search(key).is_err();
         let before = self.closed.iter().copied().filter(is_free);
         self.at_rest = !problem.has_impulses()
-            || contact.closed.keys().filter(is_free).eq(before)
+            || contact.closed.keys().filter(is_free).eq(before) && self.lent.iter().all(sticks)
             || self.changes >= SET_CHANGES;
         if !self.at_rest {
             self.closed.clear();
