@@ -90,6 +90,11 @@ FOUND = [
     ("balance", {"procedure": "quasi-static", "sequence": "contact removed", "contact": "node to surface", "connection": "rigid tie nodes", "load": "gravity"}),
     ("certificate", {"procedure": "quasi-static", "sequence": "contact removed", "contact": "both orders", "connection": "pin", "load": "face pressure", "amplitude": "smooth"}),
     ("certificate", {"family": "CPE8RH", "material": "rubber", "procedure": "events", "sequence": "released", "contact": "node surface", "interaction": "taumax", "connection": "kinematic coupling", "load": "rotation", "amplitude": "smooth"}),
+    ("certificate", {"family": "CAX8RH", "material": "metal", "procedure": "lemke", "sequence": "two loads", "contact": "general", "interaction": "wear and heat", "connection": "disc", "load": "gravity", "amplitude": "modulated"}),
+    ("certificate", {"family": "CPS6", "material": "rubber", "procedure": "no impulses", "sequence": "rest", "contact": "general surfaces", "interaction": "rough", "connection": "disc", "load": "centrifugal", "amplitude": "smooth", "output": "points"}),
+    ("certificate", {"family": "CPE6", "material": "kinematic metal", "procedure": "automatic", "sequence": "removed", "contact": "general nodes", "connection": "disc", "load": "centrifugal"}),
+    *((oracle, {"family": "CPE8RH", "material": "mooney", "procedure": "ss22", "sequence": "rest", "contact": "general", "interaction": "rough", "connection": "pre-tension", "amplitude": "total time", "output": "fields"}) for oracle in ("runs", "certificate")),
+    ("restarted", {"family": "CAX8", "material": "mooney", "procedure": "dynamic", "sequence": "removed", "contact": "general", "interaction": "taumax", "connection": "kinematic coupling", "load": "rotation", "amplitude": "periodic", "form": "restarted"}),
 ]
 """What decks of the arrays have failed, with the levels that are left of them."""
 
@@ -99,3 +104,9 @@ def test_what_arrays_have_found(oracle: str, levels: dict[str, str]) -> None:
     choice = {**SIMPLEST, **levels}
     assert allows(choice)
     assert judge("found", choice, program.binary(), oracle).failures == {}
+
+
+def test_an_amplitude_has_the_times_of_the_step_that_it_acts_in() -> None:
+    for sequence, end in (("rest", "1.0"), ("hold", "0.1")):
+        choice = {**SIMPLEST, "procedure": "dynamic", "sequence": sequence, "amplitude": "total time"}
+        assert f"TIME=TOTAL TIME\n0., 0., {end}, 1.\n" in Scene(choice).deck()

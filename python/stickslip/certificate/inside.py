@@ -42,7 +42,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
     recorded = result.history["time"], result.history.certificate["penetration"]
     gone: Gone = frozenset()
     before = result.frames[0].positions
-    fits = Fits(result)
+    fits, joined = Fits(result), _joined(result)
     for frame in result.frames:
         if fits.changes(frame):
             for name in ("penetration", "crossing"):
@@ -60,6 +60,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             if not contact.acts[fits.step(frame) - 1]:
                 continue
             found = _in_bodies(x, bodies, contact, result.body)
+            found = [one for one in found if not joined.get(one.node, set()).intersection(one.edge)]
             if contact.has_means:
                 crossed = max([crossed, *(one.depth for one in found)])
             found += _in_obstacles(x, bodies, obstacles, contact, gone)
@@ -72,6 +73,14 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
         if len(row) and row[-1] > 0:
             told = float(recorded[1][row[-1]])
             checks["crossing"].add(crossed - told, DEPTH + noise + 1e-6 * told, place)
+
+
+def _joined(result: Result) -> dict[int, set[int]]:
+    """Nodes at the place of each node that equations hold there, as at the ends of a pre-tension section: one vertex."""
+    places: dict[tuple[float, ...], set[int]] = {}
+    for node in result.read("model/constrained_nodes").tolist():
+        places.setdefault(tuple(result.coordinates[node].tolist()), set()).add(node)
+    return {node: nodes for nodes in places.values() for node in nodes if len(nodes) > 1}
 
 
 def _in_bodies(
