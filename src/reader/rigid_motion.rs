@@ -34,18 +34,19 @@ pub(crate) fn complete(
         .clone()
         .map(|(number, rigid)| turns(rigid, angle_dof(number, mesh), steps, velocity))
         .collect();
-    for ((number, rigid), turns) in all.zip(&turn) {
+    for ((number, rigid), turns) in all.clone().zip(&turn) {
         let angle = angle_dof(number, mesh);
         if *turns {
             complete_turning(rigid, angle, (mesh_index, supports), steps, cx);
             report_own_velocities(rigid, angle, mesh_index, (velocity, places), cx);
         } else {
             report_moments(rigid, angle, steps, cx);
-            for (index, step) in steps.iter_mut().enumerate() {
-                hold_angle(step, angle);
-                follow(rigid, (mesh_index, supports), (index + 1, step), cx);
-            }
         }
+    }
+    let held = all.zip(&turn).filter(|(_, turns)| !**turns);
+    let held: Vec<(usize, &Rigid)> = held.map(|(body, _)| body).collect();
+    for (index, step) in steps.iter_mut().enumerate() {
+        follow(&held, (mesh_index, supports), (index + 1, step), cx);
     }
     let body = |((number, rigid), turns): ((usize, &Rigid), bool)| RigidBody {
         number,
@@ -248,7 +249,11 @@ fn complete_turning(
                 return report_free(rigid, direction, index + 1, cx);
             }
         }
-        hold_angle(step, angle);
+        let place = (step.supports).binary_search_by_key(&angle, |support| support.dof);
+        if let Err(at) = place {
+            let (dof, motion) = (angle, STILL);
+            step.supports.insert(at, Support { dof, motion });
+        }
     }
 }
 
@@ -282,40 +287,38 @@ fn report_empty_coupling(
     false
 }
 
-/// Holds an angle in a step that does not prescribe it.
-fn hold_angle(step: &mut Step, angle: usize) {
-    let place = (step.supports).binary_search_by_key(&angle, |support| support.dof);
-    if let Err(at) = place {
-        let motion = SupportMotion::Rate {
-            rate: Rate::Velocity,
-            value: 0.0,
-            amplitude: None,
-        };
-        step.supports.insert(at, Support { dof: angle, motion });
-    }
-}
+/// The motion of an angle that stays where it is.
+const STILL: SupportMotion = SupportMotion::Rate {
+    rate: Rate::Velocity,
+    value: 0.0,
+    amplitude: None,
+};
 
-/// Adds the supports of the nodes of a rigid body to those of a step with its number: they move as the reference node.
+/// Adds to the supports of a step with its number those of the nodes and the angles of rigid bodies with their numbers: they move
+/// as their reference nodes, and do not turn.
 fn follow(
-    rigid: &Rigid,
+    held: &[(usize, &Rigid)],
     (mesh_index, places): (&MeshIndex, &Supports),
-    (number, step): (usize, &mut Step),
+    (step_number, step): (usize, &mut Step),
     cx: &mut Context,
 ) {
     let supports = step.supports.iter();
     let mut motions: BTreeMap<usize, SupportMotion> = supports
         .map(|support| (support.dof, support.motion))
         .collect();
-    for direction in 0..2 {
-        let Some(&motion) = motions.get(&(2 * rigid.reference + direction)) else {
-            report_free(rigid, direction, number, cx);
-            continue;
-        };
-        for &node in &rigid.nodes {
-            let dof = 2 * node + direction;
-            let other = motions.insert(dof, motion);
-            if other.is_some_and(|other| other != motion) {
-                return report_other_motion(rigid, dof, (mesh_index, places), cx);
+    for &(number, rigid) in held {
+        (motions.entry(angle_dof(number, &mesh_index.mesh))).or_insert(STILL);
+        for direction in 0..2 {
+            let Some(&motion) = motions.get(&(2 * rigid.reference + direction)) else {
+                report_free(rigid, direction, step_number, cx);
+                continue;
+            };
+            for &node in &rigid.nodes {
+                let dof = 2 * node + direction;
+                let other = motions.insert(dof, motion);
+                if other.is_some_and(|other| other != motion) {
+                    return report_other_motion(rigid, dof, (mesh_index, places), cx);
+                }
             }
         }
     }
