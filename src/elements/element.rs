@@ -115,7 +115,7 @@ impl AnyElement {
     pub fn variables(&self, law: &PlaneLaw) -> usize {
         let of_point = law.variables();
         // at the start all are zero
-        let is_metal = law.yield_stress(&vec![0.0; of_point]).is_some();
+        let is_metal = law.as_metal().is_some();
         let own = match self {
             AnyElement::Quad4Reduced(_) if is_metal => variables(2),
             AnyElement::Quad4Enhanced(_) => enhanced_strain::STRAINS,

@@ -13,14 +13,14 @@
 //! H is quadratic in the displacements, so that dH = F0m^T dq + dF0^T qm holds exactly between two configurations, and
 //! the force with Kh (H0 + H1)/2 at halfway does exactly the work of the hourglass energy.
 
-use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2};
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3};
 
 use super::enhanced_strain::Modes;
 use super::formulation::{
     Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
     determinant, green_lagrange, smaller, strain_displacement,
 };
-use super::hourglass::{Amplitudes, HourglassPotential};
+use super::hourglass::{Amplitudes, ModesInMotion, variables};
 use crate::materials::{Committed, Strains, StressAtPoints};
 
 /// One strain of the element and hourglass stiffness. All points of the quadrilateral have that strain: they give the
@@ -29,26 +29,18 @@ use crate::materials::{Committed, Strains, StressAtPoints};
 pub struct ReducedIntegration;
 
 /// What the hourglass modes of a configuration give, the potential of eq. (2.42) and its stress.
-struct Hourglass {
-    potential: HourglassPotential<2>,
-    /// H, at one configuration or at the start and at the end.
-    amplitudes: Amplitudes<2>,
-    /// Volume (length^3) and modulus E' of the plane (force/length^2).
-    sizes: [f64; 2],
+struct Hourglass<'a> {
+    modes: ModesInMotion<'a, 3, 2>,
     /// F0 and q at the displacements of the strain-displacement matrix.
     f: Matrix2<f64>,
     q: Vector2<f64>,
-    /// Stress f that does work on H (force).
-    stress: Vector2<f64>,
-    /// Energy, or work between two configurations (force length).
-    energy: f64,
 }
 
-impl Hourglass {
+impl<'a> Hourglass<'a> {
     fn new<const N: usize, const P: usize>(
         element: &Reference<N, P>,
         modes: &Modes<N, P>,
-        material: &impl StressAtPoints,
+        material: &'a impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> Self {
         let c = match configuration {
@@ -56,13 +48,10 @@ impl Hourglass {
             Configuration::At(_) if material.is_viscous() => Matrix3::zeros(),
             _ => material.initial_tangent(),
         };
-        let sizes = [element.volume(), c.m11 - c.m12 * c.m12 / c.m22];
-        let stiffness = stiffness(element, modes, &c);
-        let potential = HourglassPotential::new(stiffness, sizes, material.yielding(P));
         let of = |u: &SMatrix<f64, 2, N>| (Matrix2::identity() + u * modes.mean, u * modes.gamma);
         let h = |(f, q): (Matrix2<f64>, Vector2<f64>)| f.tr_mul(&q);
-        let (u, amplitudes) = match configuration {
-            Configuration::At(u) => (*u, Amplitudes::At(h(of(u)))),
+        let (ends, amplitudes) = match configuration {
+            Configuration::At(u) => ([u, u], Amplitudes::At(h(of(u)))),
             Configuration::Between(u0, u1) => {
                 let [h0, h1] = [u0, u1].map(|u| h(of(u)));
                 // the tangent of a viscosity is that by the mean of the strains: twice that by their change
@@ -70,18 +59,19 @@ impl Hourglass {
                     true => Amplitudes::Change(h0, h1),
                     false => Amplitudes::Between(h0, h1),
                 };
-                ((u0 + u1) / 2.0, amplitudes)
+                ([u0, u1], amplitudes)
             }
         };
-        let ((f, q), (stress, energy)) = (of(&u), potential.stress(&amplitudes));
+        let strains = ends.map(|u| {
+            let e = green_lagrange(&(u * modes.mean));
+            Vector3::new(e.m11, e.m22, 2.0 * e.m12)
+        });
+        let (stiffness, metal) = (stiffness(element, modes, &c), material.metal(P));
+        let (f, q) = of(&((ends[0] + ends[1]) / 2.0));
         Hourglass {
-            potential,
-            amplitudes,
-            sizes,
+            modes: ModesInMotion::new(stiffness, metal, element.volume(), strains, amplitudes),
             f,
             q,
-            stress,
-            energy,
         }
     }
 
@@ -133,6 +123,7 @@ fn center<const N: usize, const P: usize>(
 fn state<const N: usize, const P: usize>(
     modes: &Modes<N, P>,
     material: &impl StressAtPoints,
+    hourglass: &Hourglass,
     configuration: &Configuration<N>,
 ) -> PointState {
     let of = |u: &SMatrix<f64, 2, N>| u * modes.mean;
@@ -152,7 +143,10 @@ fn state<const N: usize, const P: usize>(
         h,
         strains,
         material_determinant: determinant(&h),
-        s: material.stress(0, &strains),
+        s: match hourglass.modes.metal_stress {
+            Some(s) => Matrix2::new(s.x, s.z, s.z, s.y),
+            None => material.stress(0, &strains),
+        },
         determinant: least,
     }
 }
@@ -165,7 +159,9 @@ impl ElementFormulation for ReducedIntegration {
         configuration: &Configuration<N>,
         mut visit: impl FnMut(usize, &PointState),
     ) {
-        let state = state(&Modes::new(element), material, configuration);
+        let modes = Modes::new(element);
+        let hourglass = Hourglass::new(element, &modes, material, configuration);
+        let state = state(&modes, material, &hourglass, configuration);
         for p in 0..P {
             visit(p, &state);
         }
@@ -178,9 +174,9 @@ impl ElementFormulation for ReducedIntegration {
         configuration: &Configuration<N>,
     ) -> (SMatrix<f64, 2, N>, f64) {
         let modes = Modes::new(element);
-        let state = state(&modes, material, configuration);
         let hourglass = Hourglass::new(element, &modes, material, configuration);
-        let Hourglass { f, q, stress, .. } = &hourglass;
+        let state = state(&modes, material, &hourglass, configuration);
+        let (f, q, stress) = (&hourglass.f, &hourglass.q, &hourglass.modes.stress);
         let force = state.f() * state.s * modes.mean.transpose() * element.volume()
             + q * (modes.mean * stress).transpose()
             + f * stress * modes.gamma.transpose();
@@ -203,20 +199,25 @@ impl ElementFormulation for ReducedIntegration {
         updated: &mut [f64],
     ) -> f64 {
         let modes = Modes::new(element);
-        let state = state(&modes, material, configuration);
+        let hourglass = Hourglass::new(element, &modes, material, configuration);
+        let strains = state(&modes, material, &hourglass, configuration).strains;
         let mut dissipated = 0.0;
-        for (p, point) in element.points.iter().enumerate() {
-            dissipated += material.update(p, &state.strains, updated) * point.volume;
-        }
-        let after = material.with(updated);
-        let Some((yield_stress, own)) = after.yielding(P) else {
+        let Some((metal, squares)) = hourglass.modes.metal() else {
+            for (p, point) in element.points.iter().enumerate() {
+                dissipated += material.update(p, &strains, updated) * point.volume;
+            }
             return dissipated;
         };
-        let strength = [yield_stress, after.used_strength(state.strains.end())];
-        let first = updated.len() - own.len();
-        let hourglass = Hourglass::new(element, &modes, material, configuration);
-        let (end, own) = (hourglass.amplitudes.end(), &mut updated[first..]);
-        dissipated + (hourglass.potential).update(end, hourglass.sizes, strength, own)
+        let (of_points, own) = updated.split_at_mut(updated.len() - variables(2));
+        let count = of_points.len() / P;
+        let mut part = 0.0;
+        for (z1, point) in of_points.chunks_exact_mut(count).zip(&element.points) {
+            let [of_point, flows] = metal.law.update(&strains, metal.of_point, squares, z1);
+            dissipated += of_point * point.volume;
+            part = flows;
+        }
+        hourglass.modes.update(part, own);
+        dissipated
     }
 
     fn hourglass_energy<const N: usize, const P: usize>(
@@ -224,28 +225,38 @@ impl ElementFormulation for ReducedIntegration {
         material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> f64 {
-        Hourglass::new(element, &Modes::new(element), material, configuration).energy
+        let modes = Modes::new(element);
+        (Hourglass::new(element, &modes, material, configuration).modes).energy
     }
 
     /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D^2 H, G the rows of dH, D^2 H_k = b_ak gamma_b + gamma_a b_bk
-    /// in both directions.
+    /// in both directions; in a metal C and Kh are those of one potential, with what they have in common.
     fn tangent<const N: usize, const P: usize, const D: usize>(
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
         configuration: &Configuration<N>,
     ) -> SMatrix<f64, D, D> {
         let modes = Modes::new(element);
+        let hourglass = Hourglass::new(element, &modes, material, configuration);
         let (point, state) = (
             center(element, &modes),
-            state(&modes, material, configuration),
+            state(&modes, material, &hourglass, configuration),
         );
         let b = strain_displacement::<N, D>(&point, &state.f());
-        let mut k = b.transpose() * (material.tangent(0, &state.strains) * b) * point.volume;
-        add_geometric(&mut k, &point, &state.s);
-        let hourglass = Hourglass::new(element, &modes, material, configuration);
         let rows = hourglass.rows::<N, P, D>(&modes);
-        k += rows.transpose() * (hourglass.potential.tangent(&hourglass.amplitudes) * rows);
-        let along = modes.mean * hourglass.stress;
+        let mut k = rows.transpose() * (hourglass.modes.stiffness() * rows);
+        match hourglass.modes.metal_tangent() {
+            None => {
+                k += b.transpose() * (material.tangent(0, &state.strains) * b) * point.volume;
+            }
+            Some(of_both) => {
+                let mixed = b.transpose() * (of_both.ey * rows);
+                k += b.transpose() * (of_both.ee * b) + rows.transpose() * (of_both.yy * rows);
+                k += mixed + mixed.transpose();
+            }
+        }
+        add_geometric(&mut k, &point, &state.s);
+        let along = modes.mean * hourglass.modes.stress;
         for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {
             let second = along[a] * modes.gamma[b] + modes.gamma[a] * along[b];
             for i in 0..2 {
@@ -260,7 +271,9 @@ impl ElementFormulation for ReducedIntegration {
 mod tests {
     use super::*;
     use crate::elements::enhanced_strain::EnhancedStrain;
-    use crate::elements::testing::{check_compressed, laws, quad};
+    use crate::elements::formulation::evaluate;
+    use crate::elements::testing::{Sample, check_compressed, laws, quad};
+    use crate::materials::{ConstitutiveLaw, Law, Plane, Plastic, SmallStrainModuli};
 
     #[test]
     fn elements_of_one_strain_fulfil_what_all_have_to() {
@@ -276,6 +289,58 @@ mod tests {
             let found = quad().tangent::<ReducedIntegration, 8>(&law, SMatrix::zeros());
             let exact = quad().tangent::<EnhancedStrain, 8>(&law, SMatrix::zeros());
             assert!((found - exact).norm() < 1e-13 * exact.norm());
+        }
+    }
+
+    #[test]
+    fn a_metal_keeps_its_force_and_its_energy_when_an_increment_is_committed() {
+        let metal = Law::Plastic(Plastic {
+            moduli: SmallStrainModuli {
+                young: 1000.0,
+                poisson: 0.3,
+            },
+            hardening: [[0.0, 2.0], [1.0, 2.1]].into(),
+            kinematic: 0.0,
+        });
+        let Sample { x, element } = quad();
+        let energy = |material: &Committed, u: &SMatrix<f64, 2, 4>| {
+            evaluate::<ReducedIntegration, 4, 4>(&element, material, u).energy
+        };
+        for law in [Plane::Strain, Plane::Stress].map(|plane| metal.in_plane(plane)) {
+            // drawn and bent
+            for [draw, bend] in [[0.2, 0.05], [0.02, 0.05], [0.0, 0.05], [0.3, 0.005]] {
+                let d = SMatrix::<f64, 2, 4>::from_fn(|i, a| {
+                    let side = if a % 2 == 0 { bend } else { -bend };
+                    [
+                        draw * x[(0, a)] + side,
+                        -draw * x[(1, a)] / 2.0 + side / 3.0,
+                    ][i]
+                });
+                let mut z = vec![0.0; 4 * law.variables() + variables(2)];
+                for step in 0..20 {
+                    let [u0, u1] = [step, step + 1].map(|k| d * (f64::from(k) / 20.0));
+                    let (increment, mut updated) = (Configuration::Between(u0, u1), z.clone());
+                    let material = Committed::new(&law, &z);
+                    let dissipated =
+                        ReducedIntegration::update(&element, &material, &increment, &mut updated);
+                    let after = Committed::new(&law, &updated);
+                    let force = |material: &Committed, configuration: &Configuration<4>| {
+                        ReducedIntegration::internal_force(&element, material, configuration).0
+                    };
+                    let work = force(&material, &increment).dot(&(u1 - u0));
+                    let change = energy(&after, &u1) - energy(&material, &u0) + dissipated;
+                    assert!(dissipated >= 0.0);
+                    assert!(
+                        (work - change).abs() < 1e-12 * work.abs(),
+                        "{work} {change}"
+                    );
+                    let end = Configuration::At(u1);
+                    let (before, after) = (force(&material, &end), force(&after, &end));
+                    let jump = (before - after).norm();
+                    assert!(jump < 1e-11 * before.norm(), "{draw} {bend} {step}: {jump}");
+                    z = updated;
+                }
+            }
         }
     }
 }

@@ -1,7 +1,9 @@
 //! What an element asks of a material at an integration point. Sections 2 and 4 of docs/theory.md.
 
-use nalgebra::{Matrix2, Matrix3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
 use smallvec::SmallVec;
+
+use super::Symmetric;
 
 /// Green-Lagrange strains at which a material is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,8 +106,8 @@ pub trait ConstitutiveLaw {
         0.0
     }
 
-    /// Yield stress of a metal (force/length^2).
-    fn yield_stress(&self, _z: &[f64]) -> Option<f64> {
+    /// The law of a metal as one.
+    fn as_metal(&self) -> Option<&dyn MetalLaw> {
         None
     }
 
@@ -114,11 +116,60 @@ pub trait ConstitutiveLaw {
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Logarithmic
     }
+}
 
-    /// Part of the yield stress that a strain uses of a metal, 1 where it flows.
-    fn used_strength(&self, _e: &Matrix2<f64>, _z: &[f64]) -> f64 {
-        0.0
-    }
+/// A potential W(E; m) of a metal whose element has hourglass modes, less the elastic energy of these, on strains
+/// (11, 22, 2*12) or (11, 22, 33, 2*12). m is what they add to q² (force^2/length^4), eq. (2.48).
+pub trait BentLaw<const N: usize> {
+    /// W at a second strain and m less that at the first ones, with `by` the difference of m and with a round-off that is
+    /// relative to the changes (force/length^2).
+    fn change(&self, z0: &[f64], ends: [&SVector<f64, N>; 2], modes: [f64; 2], by: f64) -> f64;
+
+    /// Derivatives of the potential.
+    fn state(&self, z0: &[f64], e: &SVector<f64, N>, modes: f64) -> BentState<N>;
+}
+
+/// Derivatives of a potential W(E; m).
+#[derive(Debug, Clone, Copy)]
+pub struct BentState<const N: usize> {
+    /// S (force/length^2).
+    pub stress: SVector<f64, N>,
+    /// C (force/length^2).
+    pub tangent: SMatrix<f64, N, N>,
+    /// dW/dm and d²W/dm².
+    pub by_modes: [f64; 2],
+    /// dS/dm.
+    pub stress_by_modes: SVector<f64, N>,
+}
+
+/// What the elements with hourglass modes ask of a metal.
+pub trait MetalLaw: BentLaw<3> + BentLaw<4> + std::fmt::Debug {
+    /// 3 mu and H_k (force/length^2).
+    fn moduli(&self) -> [f64; 2];
+
+    /// Internal variables at the end of the strains of an increment with m at its start and at its end, what is dissipated
+    /// (force/length^2), and the part r of the trial strain that flows.
+    fn update(&self, strains: &Strains, z0: &[f64], modes: [f64; 2], z1: &mut [f64]) -> [f64; 2];
+
+    /// As [`Self::update`] in a ring.
+    fn ring_update(
+        &self,
+        strains: &Strains<Symmetric>,
+        z0: &[f64],
+        modes: [f64; 2],
+        z1: &mut [f64],
+    ) -> [f64; 2];
+}
+
+/// A metal with the internal variables of a point, and those of the hourglass modes of its element.
+#[derive(Debug, Clone, Copy)]
+pub struct Metal<'a> {
+    /// The law.
+    pub law: &'a dyn MetalLaw,
+    /// Variables of the point.
+    pub of_point: &'a [f64],
+    /// Variables of the hourglass modes.
+    pub of_modes: &'a [f64],
 }
 
 /// A stress that follows from the strains at the integration points of one element: that of its
@@ -162,8 +213,8 @@ pub trait StressAtPoints {
         &[]
     }
 
-    /// Yield stress of a metal at the first point (force/length^2), and the variables behind those of the points.
-    fn yielding(&self, _points: usize) -> Option<(f64, &[f64])> {
+    /// A metal with its variables of the first point, and with those behind the points.
+    fn metal(&self, _points: usize) -> Option<Metal<'_>> {
         None
     }
 }

@@ -10,9 +10,9 @@ use smallvec::SmallVec;
 #[cfg(test)]
 use super::yielding::Yielding;
 use super::{
-    Across, ConstitutiveLaw, LawCard, NeoHooke, Plane, PlanePlastic, PlanePolynomial,
-    PlaneSaintVenantKirchhoff, Plastic, Polynomial, RingStressAtPoints, SaintVenantKirchhoff,
-    SmallStrainModuli, StrainMeasure, Strains, StressAtPoints, Symmetric,
+    Across, ConstitutiveLaw, LawCard, Metal, MetalLaw, NeoHooke, Plane, PlanePlastic,
+    PlanePolynomial, PlaneSaintVenantKirchhoff, Plastic, Polynomial, RingStressAtPoints,
+    SaintVenantKirchhoff, SmallStrainModuli, StrainMeasure, Strains, StressAtPoints, Symmetric,
 };
 
 /// Law of a material with the constants of the deck.
@@ -188,8 +188,8 @@ impl ConstitutiveLaw for PlaneLaw {
         of_each!(self, law => law.plastic_strain(z))
     }
 
-    fn yield_stress(&self, z: &[f64]) -> Option<f64> {
-        of_each!(self, law => law.yield_stress(z))
+    fn as_metal(&self) -> Option<&dyn MetalLaw> {
+        of_each!(self, law => law.as_metal())
     }
 
     fn convex_in(&self) -> StrainMeasure {
@@ -201,10 +201,6 @@ impl ConstitutiveLaw for PlaneLaw {
             #[cfg(test)]
             PlaneLaw::Yielding(_) => StrainMeasure::Green,
         }
-    }
-
-    fn used_strength(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
-        of_each!(self, law => ConstitutiveLaw::used_strength(law, e, z))
     }
 }
 
@@ -272,22 +268,21 @@ impl<'a, L: ConstitutiveLaw> Committed<'a, L> {
         self.law.across(e, self.at(point))
     }
 
-    /// Part of the yield stress that a strain of the first point uses, with its own variables.
-    pub fn used_strength(&self, e: &Matrix2<f64>) -> f64 {
-        self.law.used_strength(e, self.at(0))
-    }
-
     /// The variables behind those of the points.
     fn behind(&self, points: usize) -> &[f64] {
         let own = self.variables.get(points * self.law.variables()..);
         own.unwrap_or_default()
     }
 
-    /// The same with the yield stress of the first point, of a metal.
-    fn yielding_behind(&self, points: usize) -> Option<(f64, &[f64])> {
-        let yield_stress = self.law.yield_stress(self.at(0))?;
-        let own = self.behind(points);
-        (!own.is_empty()).then_some((yield_stress, own))
+    /// A metal with the variables of the first point and those behind all points, where there are some.
+    fn metal_with_modes(&self, points: usize) -> Option<Metal<'_>> {
+        let law = self.law.as_metal()?;
+        let of_modes = self.behind(points);
+        (!of_modes.is_empty()).then(|| Metal {
+            law,
+            of_point: self.at(0),
+            of_modes,
+        })
     }
 
     /// Accumulated plastic strain of a point.
@@ -343,8 +338,8 @@ impl<L: ConstitutiveLaw> StressAtPoints for Committed<'_, L> {
         self.behind(points)
     }
 
-    fn yielding(&self, points: usize) -> Option<(f64, &[f64])> {
-        self.yielding_behind(points)
+    fn metal(&self, points: usize) -> Option<Metal<'_>> {
+        self.metal_with_modes(points)
     }
 }
 
@@ -352,11 +347,6 @@ impl Committed<'_> {
     /// Stored energy W(E, z) of a point of a ring per volume (force/length^2).
     pub fn ring_energy(&self, point: usize, e: &Symmetric) -> f64 {
         self.law.of_ring().stored_energy(e, self.at(point))
-    }
-
-    /// As [`Self::used_strength`] of a ring.
-    pub fn ring_used_strength(&self, e: &Symmetric) -> f64 {
-        self.law.of_ring().used_strength(e, self.at(0))
     }
 
     /// As [`Self::update`] at a point of a ring.
@@ -387,8 +377,8 @@ impl RingStressAtPoints for Committed<'_> {
         self.behind(points)
     }
 
-    fn ring_yielding(&self, points: usize) -> Option<(f64, &[f64])> {
-        self.yielding_behind(points)
+    fn ring_metal(&self, points: usize) -> Option<Metal<'_>> {
+        self.metal_with_modes(points)
     }
 
     fn ring_stress(&self, point: usize, strains: &Strains<Symmetric>) -> Symmetric {

@@ -24,10 +24,14 @@ mod solid_laws;
 pub mod symmetric;
 mod viscosity;
 mod viscosity_lanes;
+mod yield_curve;
 #[cfg(test)]
 pub(crate) mod yielding;
 
-pub use constitutive_law::{Across, ConstitutiveLaw, StrainMeasure, Strains, StressAtPoints};
+pub use constitutive_law::{
+    Across, BentLaw, BentState, ConstitutiveLaw, Metal, MetalLaw, StrainMeasure, Strains,
+    StressAtPoints,
+};
 pub use hyperelastic::Hyperelastic;
 pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
 pub(crate) use law::in_lanes;

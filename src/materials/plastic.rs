@@ -3,14 +3,15 @@
 //! the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999). Section 2 of
 //! docs/theory.md, Plasticity.
 
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-use nalgebra::{Matrix2, Matrix3, Matrix4, Vector4};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Vector3, Vector4};
 
 use super::symmetric::{IDENTITY, Symmetric, contract};
 use super::{
-    Across, ConstitutiveLaw, Hyperelastic, LawCard, Plane, RingLaw, SaintVenantKirchhoff,
-    SmallStrainModuli, SolidHyperelastic, Strains,
+    Across, BentLaw, BentState, ConstitutiveLaw, Hyperelastic, LawCard, MetalLaw, Plane, RingLaw,
+    SaintVenantKirchhoff, SmallStrainModuli, SolidHyperelastic, Strains, yield_curve,
 };
 
 /// A metal, `*PLASTIC`.
@@ -141,13 +142,14 @@ impl Plastic {
         work
     }
 
-    /// da and the slope of sigma_y with q - (3 mu + H_k) da - sigma_y(a + da) = 0, linear on each segment.
-    fn slip(&self, q: f64, from: f64) -> (f64, f64) {
+    /// da and the slope of sigma_y with q - (3 mu + H_k) da - n² sigma_y(a + da) = 0, linear on each segment.
+    fn slip(&self, q: f64, from: f64, square: f64) -> (f64, f64) {
         let stiffness = 3.0 * self.shear() + self.kinematic;
         let mut found = (0.0, 0.0);
         for index in self.segment_at(from)..self.hardening.len() {
             let (start, stress, slope, end) = self.segment(index);
-            let slip = (q - stress - slope * (from - start)) / (stiffness + slope);
+            let at_start = stress + slope * (from - start);
+            let slip = (q - square * at_start) / (stiffness + square * slope);
             found = (slip, slope);
             if from + slip <= end {
                 break;
@@ -181,61 +183,130 @@ impl Plastic {
         deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
     }
 
-    /// Flow from a trial strain, which makes the potential of eq. (2.38) least.
-    fn flow(&self, strain: &Symmetric, state: &PlasticState) -> Flow {
+    /// Flow from a trial strain beside hourglass modes of a square m, which makes the potentials of eqs. (2.38) and (2.48)
+    /// least: (Q, H) of the trial goes to the nearest point sigma_y (w, z) of the yield curve.
+    fn flow(&self, strain: &Symmetric, state: &PlasticState, modes: f64) -> Flow {
         let xi = self.relative_stress(strain, state);
         let size = contract(&xi, &xi).sqrt();
-        let q = 1.5_f64.sqrt() * size;
-        if q <= self.yield_stress(state.slip) {
-            return Flow::default();
+        let trial = [1.5_f64.sqrt() * size, modes.sqrt()];
+        let elastic = Flow {
+            xi,
+            q: trial[0],
+            ..Flow::default()
+        };
+        if yield_curve::contains(trial, self.yield_stress(state.slip)) {
+            return elastic;
         }
-        let (slip, slope) = self.slip(q, state.slip);
-        let direction = xi / size;
+        let angle = match trial[1] > 0.0 {
+            true => self.yield_angle(trial, state.slip),
+            false => 0.0,
+        };
+        let at = Return::new(self, trial, state.slip, angle);
+        let (shear, stiffness) = (3.0 * self.shear(), 3.0 * self.shear() + self.kinematic);
+        let [by_strain, mixed, by_modes] = at.derivatives(stiffness);
+        // where there is next to nothing of the strain or of the modes, what is left of it is its derivative
+        let [has_strain, has_modes] = trial.map(|size| size > SMALL_SHARE * (trial[0] + trial[1]));
+        let own = match (has_strain, angle > 0.0) {
+            (false, _) => 0.0,
+            (true, false) => at.slip,
+            (true, true) => at.beyond()[0] / stiffness,
+        };
+        let left = [
+            match has_strain {
+                true => 1.0 - stiffness * own / trial[0],
+                false => by_strain,
+            },
+            match has_modes {
+                true => at.stress * at.point[1] / trial[1],
+                false => by_modes,
+            },
+        ];
+        let factor = shear / stiffness;
+        let part = match has_strain {
+            true => shear * own / trial[0],
+            false => factor * (1.0 - left[0]),
+        };
+        let over = |value: f64, by: f64, is_there: bool| match is_there {
+            true => factor * value / by,
+            false => 0.0,
+        };
         Flow {
-            slip,
-            strain: direction * (1.5_f64.sqrt() * slip),
-            direction,
-            size,
-            slope,
+            slip: at.slip,
+            own,
+            strain: match has_strain {
+                true => xi / size * (1.5_f64.sqrt() * own),
+                false => xi * (part / (2.0 * self.shear())),
+            },
+            parts: [part, factor * (1.0 - left[1])],
+            slopes: [
+                over(left[0] - by_strain, trial[0] * trial[0], has_strain),
+                over(-mixed, trial[0] * trial[1], has_strain && has_modes),
+                over(left[1] - by_modes, trial[1] * trial[1], has_modes),
+            ],
+            ..elastic
         }
     }
 
-    /// Changes of dE_p and of da between two trial strains of one state, from that of the trial strain, whose digits they
-    /// keep where both flow: with n_m the mean of both directions and |xi|_m that of both sizes,
+    /// Angle of the point of the yield curve to which a trial returns, by Newton's method between bounds.
+    fn yield_angle(&self, trial: [f64; 2], from: f64) -> f64 {
+        let (mut low, mut high) = (0.0, FRAC_PI_2);
+        let stiffness = 3.0 * self.shear() + self.kinematic;
+        let mut angle = trial[1].atan2(trial[0]);
+        for _ in 0..MOST_STEPS {
+            let at = Return::new(self, trial, from, angle);
+            let [rest, slope] = at.rest(stiffness);
+            match rest > 0.0 {
+                true => low = angle,
+                false => high = angle,
+            }
+            let newton = angle - rest / slope;
+            let next = match newton > low && newton < high {
+                true => newton,
+                false => (low + high) / 2.0,
+            };
+            let is_found = (next - angle).abs() <= ROUND_OFF * angle;
+            angle = next;
+            if is_found {
+                break;
+            }
+        }
+        angle
+    }
+
+    /// Changes of dE_p and of da between two flows from one state, from that of the trial strain, whose digits they keep where
+    /// both flow: with p = r Q/(3 mu),
     ///
     /// ```text
-    /// dxi = 2 mu dev dE_h = d|xi| n_m + |xi|_m dn,   d(dE_p) = sqrt(3/2) (d(da) n_m + (da0 + da1)/2 dn)
+    /// dQ = 3/2 (xi0 + xi1):dxi/(Q0 + Q1),   dr = 3 mu (dp (Q0 + Q1)/2 - (p0 + p1)/2 dQ)/(Q0 Q1)
+    /// d(dE_p) = ((r0 + r1) dxi + dr (xi0 + xi1))/(4 mu)
     /// ```
     fn flow_change(&self, change: &Symmetric, [start, end]: [&Flow; 2]) -> (Symmetric, f64) {
-        let slip = end.slip - start.slip;
-        if start.slip == 0.0 || end.slip == 0.0 {
+        let (slip, own) = (end.slip - start.slip, end.own - start.own);
+        if start.own == 0.0 || end.own == 0.0 {
             return (end.strain - start.strain, slip);
         }
-        let mean = (start.direction + end.direction) / 2.0;
-        let xi = deviator(change) * (2.0 * self.shear());
-        let turn = (xi - mean * (contract(&mean, &xi) / contract(&mean, &mean)))
-            / ((start.size + end.size) / 2.0);
-        let strain = mean * slip + turn * ((start.slip + end.slip) / 2.0);
-        (strain * 1.5_f64.sqrt(), slip)
+        let (xi, sum) = (deviator(change) * (2.0 * self.shear()), start.xi + end.xi);
+        let both = start.q + end.q;
+        let size = 1.5 * contract(&sum, &xi) / both;
+        let part = own * both / 2.0 - (start.own + end.own) / 2.0 * size;
+        let part = 3.0 * self.shear() * part / (start.q * end.q);
+        let flown = xi * (start.parts[0] + end.parts[0]) + sum * part;
+        (flown / (4.0 * self.shear()), slip)
     }
 
     /// Change of the stress T after the flow with the trial strain (force/length^2):
     ///
     /// ```text
-    /// dT = K tr dE I + 2 mu dev dE - 2 mu sqrt(3/2) (da' n + da dn)
-    /// da' = sqrt(3/2) 2 mu n:dE/(3 mu + H_k + H),   dn = 2 mu (dev dE - n n:dE)/|xi|
+    /// dT = K tr dE I + 2 mu dev dE - r dxi - dr/dQ/Q (3/2 xi:dxi) xi,   dxi = 2 mu dev dE
     /// ```
     fn stress_change(&self, change: &Symmetric, flow: &Flow) -> Symmetric {
         let elastic = self.elastic(change);
         if flow.slip == 0.0 {
             return elastic;
         }
-        let (shear, n) = (2.0 * self.shear(), &flow.direction);
-        let along = contract(n, change);
-        let root = 1.5_f64.sqrt();
-        let slip = root * shear * along / (3.0 * self.shear() + self.kinematic + flow.slope);
-        let turn = (deviator(change) - n * along) * (shear / flow.size);
-        elastic - (n * slip + turn * flow.slip) * (shear * root)
+        let xi = deviator(change) * (2.0 * self.shear());
+        let size = 1.5 * contract(&flow.xi, &xi);
+        elastic - xi * flow.parts[0] - flow.xi * (flow.slopes[0] * size)
     }
 
     /// Stored energy psi(E, z) (force/length^2).
@@ -245,17 +316,22 @@ impl Plastic {
             + self.kinematic / 3.0 * contract(&state.back, &state.back)
     }
 
-    /// psi(E) - Phi(E), which is zero unless the strain flows at once (force/length^2):
+    /// psi(E) - Phi(E), which is zero unless the strain flows at once beside modes of a square m (force/length^2):
     ///
     /// ```text
-    /// (T_h + T)/2 : dE_p - H_k/3 (2 A + dE_p):dE_p - int sigma_y da,   T_h = T without the flow
+    /// (T_h + T)/2 : dE_p - H_k/3 (2 A + dE_p):dE_p + (r_h - (1 + k) r_h²/2) m/(3 mu) - int sigma_y da,
+    /// T_h = T without the flow,   k = H_k/(3 mu)
     /// ```
-    fn released(&self, e: &Symmetric, state: &PlasticState) -> f64 {
+    fn released(&self, e: &Symmetric, state: &PlasticState, modes: f64) -> f64 {
         let strain = self.trial(e, state).strain;
-        let flow = self.flow(&strain, state);
+        let flow = self.flow(&strain, state, modes);
         let stress = self.elastic(&(strain * 2.0 - flow.strain)) / 2.0;
         let back = (state.back * 2.0 + flow.strain) * (self.kinematic / 3.0);
-        contract(&(stress - back), &flow.strain) - self.hardening_work(state.slip, flow.slip)
+        let shear = 3.0 * self.shear();
+        let part = flow.parts[1];
+        let kept = 1.0 - (1.0 + self.kinematic / shear) * part / 2.0;
+        contract(&(stress - back), &flow.strain) + part * kept * modes / shear
+            - self.hardening_work(state.slip, flow.slip)
     }
 
     /// The state after the flow of a strain, eq. (2.41), in the frame V of the new G, so that the trial strain there is E_e
@@ -264,9 +340,9 @@ impl Plastic {
     /// ```text
     /// K = V X^(-1/2) exp(E_e),  G = K K^T,  R = G^(-1/2) K,  A <- R (A + dE_p) R^T
     /// ```
-    fn updated(&self, e: &Symmetric, state: &PlasticState) -> PlasticState {
+    fn updated(&self, e: &Symmetric, state: &PlasticState, modes: f64) -> PlasticState {
         let trial = self.trial(e, state);
-        let flow = self.flow(&trial.strain, state);
+        let flow = self.flow(&trial.strain, state, modes);
         if flow.slip == 0.0 {
             return *state;
         }
@@ -321,14 +397,103 @@ struct Trial {
 struct Flow {
     /// da.
     slip: f64,
-    /// dE_p.
+    /// p = r Q/(3 mu), da without modes, and zero without a strain.
+    own: f64,
+    /// dE_p = r xi/(2 mu).
     strain: Symmetric,
-    /// n = xi/|xi|.
-    direction: Symmetric,
-    /// |xi| (force/length^2).
-    size: f64,
-    /// Slope of sigma_y at the end (force/length^2).
+    /// xi of the trial strain (force/length^2).
+    xi: Symmetric,
+    /// Q of the trial strain (force/length^2).
+    q: f64,
+    /// r and r_h, the parts of the trial strain and of the amplitudes of the modes that flow.
+    parts: [f64; 2],
+    /// dr/dQ/Q, dr/dH/H = dr_h/dQ/Q and dr_h/dH/H (length^4/force^2).
+    slopes: [f64; 3],
+}
+
+/// Share of Q and H below which one of them is taken as zero: the error of a ratio is the square of it.
+const SMALL_SHARE: f64 = 1e-8;
+
+/// A point of the yield curve and the flow that leads to it: with its place c = (w, z), derivatives by the angle and (Q, H) of
+/// the trial
+///
+/// ```text
+/// (Q, H).c - (3 mu + H_k) da - c.c sigma_y(a + da) = 0,   nearest: c'.((Q, H) - sigma_y c) = 0
+/// ```
+///
+/// the first of which is the work of the flow, sigma_y da.
+struct Return {
+    trial: [f64; 2],
+    /// c, c' and c''.
+    point: [f64; 2],
+    first: [f64; 2],
+    second: [f64; 2],
+    /// da, and sigma_y (force/length^2) with its slope at the end.
+    slip: f64,
+    stress: f64,
     slope: f64,
+}
+
+impl Return {
+    fn new(law: &Plastic, trial: [f64; 2], from: f64, angle: f64) -> Self {
+        let [point, first, second] = yield_curve::at(angle);
+        let (slip, slope) = law.slip(dot(trial, point), from, dot(point, point));
+        Return {
+            trial,
+            point,
+            first,
+            second,
+            slip,
+            stress: law.yield_stress(from + slip),
+            slope,
+        }
+    }
+
+    /// (Q, H) - sigma_y c.
+    fn beyond(&self) -> [f64; 2] {
+        [0, 1].map(|k| self.trial[k] - self.stress * self.point[k])
+    }
+
+    /// Derivatives of the second equation by the angle alone and of c.c/2.
+    fn curvature(&self) -> [f64; 2] {
+        let turn = dot(self.second, self.beyond()) - self.stress * dot(self.first, self.first);
+        [turn, dot(self.point, self.first)]
+    }
+
+    /// The left side of the second equation, and its derivative by the angle while the first holds.
+    fn rest(&self, stiffness: f64) -> [f64; 2] {
+        let [turn, half] = self.curvature();
+        let hardened = stiffness + self.slope * dot(self.point, self.point);
+        let along = dot(self.first, self.trial) - 2.0 * self.stress * half;
+        [
+            dot(self.first, self.beyond()),
+            turn - self.slope * half * along / hardened,
+        ]
+    }
+
+    /// Derivatives of q = sigma_y w by Q and H, and of h = sigma_y z by H.
+    fn derivatives(&self, stiffness: f64) -> [f64; 3] {
+        let [turn, half] = self.curvature();
+        let hardened = stiffness + self.slope * dot(self.point, self.point);
+        let determinant = turn + self.slope * self.stress * half * half / hardened;
+        // of the angle and of da, by Q and by H
+        let changes = [0, 1].map(|k| {
+            let angle =
+                (-self.first[k] + self.slope * half * self.point[k] / hardened) / determinant;
+            (
+                angle,
+                (self.point[k] - self.stress * half * angle) / hardened,
+            )
+        });
+        let of = |i: usize, (angle, slip): (f64, f64)| {
+            self.stress * self.first[i] * angle + self.slope * self.point[i] * slip
+        };
+        [of(0, changes[0]), of(0, changes[1]), of(1, changes[1])]
+    }
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
 }
 
 /// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first.
@@ -515,10 +680,75 @@ fn artanh_ratio(w: f64) -> f64 {
     root.atanh() / root
 }
 
-/// The potential Phi(E; z0) of an increment: stored energy and work of hardening after the flow.
+/// The potential Phi(E; z0) of an increment: stored energy and work of hardening after the flow; beside hourglass modes that
+/// of eq. (2.48) less their own.
 struct Potential<'a> {
     law: &'a Plastic,
     state: PlasticState,
+    /// m, the square of q of the modes (force^2/length^4).
+    modes: f64,
+}
+
+impl<'a> Potential<'a> {
+    fn new(law: &'a Plastic, state: PlasticState) -> Self {
+        Potential {
+            law,
+            state,
+            modes: 0.0,
+        }
+    }
+
+    fn flow(&self, trial: &Trial) -> Flow {
+        self.law.flow(&trial.strain, &self.state, self.modes)
+    }
+
+    /// Change from a strain and a square of the modes to another strain and m, which is more by `by`. dp is the change of
+    /// dE_p, and k = H_k/(3 mu):
+    ///
+    /// ```text
+    /// (T0 + T1)/2 : (dE_h - dp) + H_k/3 (2 A + dE_p0 + dE_p1):dp + int sigma_y da from a + da0 to a + da1
+    ///     - d((r_h - (1 + k) r_h²/2) m)/(3 mu)
+    /// ```
+    fn change(&self, [e0, e1]: [&Symmetric; 2], at_start: f64, by: f64) -> f64 {
+        let Potential { law, state, .. } = self;
+        let (start, end) = (law.trial(e0, state), law.trial(e1, state));
+        let flow0 = law.flow(&start.strain, state, at_start);
+        let flow1 = self.flow(&end);
+        let dy = between(&start.v, &(e1 - e0)) * 2.0;
+        let change = log_change(&start.y, &end.y, &dy);
+        let (flow, slip) = law.flow_change(&change, [&flow0, &flow1]);
+        let stress =
+            law.elastic(&(start.strain - flow0.strain)) + law.elastic(&(end.strain - flow1.strain));
+        let back = state.back * 2.0 + flow0.strain + flow1.strain;
+        let shear = 3.0 * law.shear();
+        let kept = 1.0 + law.kinematic / shear;
+        let [part0, part1] = [&flow0, &flow1].map(|flow| flow.parts[1]);
+        let of = |part: f64| part * (1.0 - kept * part / 2.0);
+        let of_modes = (of(part0) + of(part1)) / 2.0 * by
+            + (part1 - part0) * (1.0 - kept * (part0 + part1) / 2.0) * (at_start + self.modes)
+                / 2.0;
+        contract(&stress, &(change - flow)) / 2.0
+            + law.kinematic / 3.0 * contract(&back, &flow)
+            + law.hardening_work(state.slip + flow0.slip, slip)
+            - of_modes / shear
+    }
+
+    /// Derivatives by m: of the potential, twice, and of S, at a strain in all components.
+    ///
+    /// ```text
+    /// dW/dm = -r_h/(6 mu),   d²W/dm² = -dr_h/dH/H/(12 mu),   dT/dm = -dr/dH/H xi/2
+    /// ```
+    fn by_modes(&self, e: &Symmetric) -> ([f64; 2], Symmetric) {
+        let trial = self.law.trial(e, &self.state);
+        let flow = self.flow(&trial);
+        if flow.slip == 0.0 {
+            return ([0.0; 2], Symmetric::zeros());
+        }
+        let shear = 6.0 * self.law.shear();
+        let stress = flow.xi * (-flow.slopes[1] / 2.0);
+        let s = between(&trial.v, &trial.spectrum.log_derivative(&stress));
+        ([-flow.parts[1] / shear, -flow.slopes[2] / (2.0 * shear)], s)
+    }
 }
 
 impl SolidHyperelastic for Potential<'_> {
@@ -527,30 +757,15 @@ impl SolidHyperelastic for Potential<'_> {
         self.law.stored(&zero, &self.state) + self.energy_change(&zero, e)
     }
 
-    /// Phi(E1) - Phi(E0), eq. (2.40), dp being the change of dE_p and dx that of da:
-    ///
-    /// ```text
-    /// (T0 + T1)/2 : (dE_h - dp) + H_k/3 (2 A + dE_p0 + dE_p1):dp + int sigma_y da from a + da0 to a + da1
-    /// ```
+    /// Phi(E1) - Phi(E0), eq. (2.40).
     fn energy_change(&self, e0: &Symmetric, e1: &Symmetric) -> f64 {
-        let Potential { law, state } = self;
-        let (start, end) = (law.trial(e0, state), law.trial(e1, state));
-        let [flow0, flow1] = [&start, &end].map(|trial| law.flow(&trial.strain, state));
-        let dy = between(&start.v, &(e1 - e0)) * 2.0;
-        let change = log_change(&start.y, &end.y, &dy);
-        let (flow, slip) = law.flow_change(&change, [&flow0, &flow1]);
-        let stress =
-            law.elastic(&(start.strain - flow0.strain)) + law.elastic(&(end.strain - flow1.strain));
-        let back = state.back * 2.0 + flow0.strain + flow1.strain;
-        contract(&stress, &(change - flow)) / 2.0
-            + law.kinematic / 3.0 * contract(&back, &flow)
-            + law.hardening_work(state.slip + flow0.slip, slip)
+        self.change([e0, e1], self.modes, 0.0)
     }
 
     /// S = V (D ln(X) : T) V, eq. (2.39) (force/length^2).
     fn stress(&self, e: &Symmetric) -> Symmetric {
         let trial = self.law.trial(e, &self.state);
-        let flow = self.law.flow(&trial.strain, &self.state);
+        let flow = self.flow(&trial);
         let stress = self.law.elastic(&(trial.strain - flow.strain));
         between(&trial.v, &trial.spectrum.log_derivative(&stress))
     }
@@ -558,7 +773,7 @@ impl SolidHyperelastic for Potential<'_> {
     /// V (D ln : (dT/dE_h) : D ln + 2 D² ln : T) V, column by column (force/length^2).
     fn tangent(&self, e: &Symmetric) -> Matrix4<f64> {
         let trial = self.law.trial(e, &self.state);
-        let flow = self.law.flow(&trial.strain, &self.state);
+        let flow = self.flow(&trial);
         let stress = self.law.elastic(&(trial.strain - flow.strain));
         let mut tangent = Matrix4::zeros();
         for k in 0..4 {
@@ -592,17 +807,22 @@ const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl PlanePlastic {
     fn potential(&self, z0: &[f64]) -> PlanePotential<'_> {
+        self.beside(z0, 0.0)
+    }
+
+    /// The potential beside hourglass modes of a square m.
+    fn beside(&self, z0: &[f64], modes: f64) -> PlanePotential<'_> {
         PlanePotential {
             solid: Potential {
-                law: &self.law,
-                state: self.law.state(z0),
+                modes,
+                ..Potential::new(&self.law, self.law.state(z0))
             },
             plane: self.plane,
         }
     }
 
-    fn write_updated(&self, e: &Symmetric, z0: &[f64], z1: &mut [f64]) {
-        let state = self.law.updated(e, &self.law.state(z0));
+    fn write_updated(&self, e: &Symmetric, solid: &Potential, z1: &mut [f64]) {
+        let state = self.law.updated(e, &solid.state, solid.modes);
         z1[..COMPONENTS].copy_from_slice(state.g.as_slice());
         if self.law.has_back_strain() {
             z1[COMPONENTS..2 * COMPONENTS].copy_from_slice(state.back.as_slice());
@@ -612,15 +832,25 @@ impl PlanePlastic {
         }
     }
 
-    /// D of an increment that ends at a strain, from another in the energy-momentum form.
-    fn dissipated(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> f64 {
+    /// Strains in all components, beside modes of these squares.
+    fn complete(&self, strains: &Strains, z0: &[f64], modes: [f64; 2]) -> Strains<Symmetric> {
+        let [start, end] = modes.map(|modes| self.beside(z0, modes));
+        match strains {
+            Strains::At(e) => Strains::At(end.complete(e)),
+            Strains::Between(e0, e1) => Strains::Between(start.complete(e0), end.complete(e1)),
+        }
+    }
+
+    /// D of an increment that ends at a strain, from another in the energy-momentum form, beside modes of these squares.
+    fn dissipated(&self, strains: &Strains<Symmetric>, z0: &[f64], modes: [f64; 2]) -> f64 {
         let state = self.law.state(z0);
         let released = match strains {
             Strains::At(_) => 0.0,
-            Strains::Between(start, _) => self.law.released(start, &state),
+            Strains::Between(start, _) => self.law.released(start, &state, modes[0]),
         };
         let end = self.law.trial(strains.end(), &state).strain;
-        released + (self.law).hardening_work(state.slip, self.law.flow(&end, &state).slip)
+        let slip = self.law.flow(&end, &state, modes[1]).slip;
+        released + self.law.hardening_work(state.slip, slip)
     }
 }
 
@@ -729,7 +959,7 @@ impl ConstitutiveLaw for PlanePlastic {
 
     fn stress(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]) -> Matrix2<f64> {
         let potential = self.potential(z0);
-        self.write_updated(&potential.complete(strains.end()), z0, z1);
+        self.write_updated(&potential.complete(strains.end()), &potential.solid, z1);
         ConstitutiveLaw::stress(&potential, strains, &[], &mut [])
     }
 
@@ -742,14 +972,8 @@ impl ConstitutiveLaw for PlanePlastic {
     }
 
     fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64 {
-        let potential = self.potential(z0);
-        let strains = match strains {
-            Strains::At(e) => Strains::At(potential.complete(e)),
-            Strains::Between(e0, e1) => {
-                Strains::Between(potential.complete(e0), potential.complete(e1))
-            }
-        };
-        self.dissipated(&strains, z0)
+        let strains = self.complete(strains, z0, [0.0; 2]);
+        self.dissipated(&strains, z0, [0.0; 2])
     }
 
     fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across {
@@ -760,19 +984,16 @@ impl ConstitutiveLaw for PlanePlastic {
         self.law.state(z).slip
     }
 
-    fn yield_stress(&self, z: &[f64]) -> Option<f64> {
-        Some(self.law.yield_stress(self.law.state(z).slip))
-    }
-
-    fn used_strength(&self, e: &Matrix2<f64>, z: &[f64]) -> f64 {
-        RingLaw::used_strength(self, &self.potential(z).complete(e), z)
+    fn as_metal(&self) -> Option<&dyn MetalLaw> {
+        Some(self)
     }
 }
 
 impl RingLaw for PlanePlastic {
     fn stress(&self, strains: &Strains<Symmetric>, z0: &[f64], z1: &mut [f64]) -> Symmetric {
-        self.write_updated(strains.end(), z0, z1);
-        RingLaw::stress(&self.potential(z0).solid, strains, &[], &mut [])
+        let solid = self.potential(z0).solid;
+        self.write_updated(strains.end(), &solid, z1);
+        RingLaw::stress(&solid, strains, &[], &mut [])
     }
 
     fn tangent(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> Matrix4<f64> {
@@ -784,17 +1005,89 @@ impl RingLaw for PlanePlastic {
     }
 
     fn dissipation(&self, strains: &Strains<Symmetric>, z0: &[f64]) -> f64 {
-        self.dissipated(strains, z0)
+        self.dissipated(strains, z0, [0.0; 2])
+    }
+}
+
+impl MetalLaw for PlanePlastic {
+    fn moduli(&self) -> [f64; 2] {
+        [3.0 * self.law.shear(), self.law.kinematic]
     }
 
-    /// q/sigma_y of the trial strain.
-    fn used_strength(&self, e: &Symmetric, z: &[f64]) -> f64 {
-        let state = self.law.state(z);
-        let xi = self
-            .law
-            .relative_stress(&self.law.trial(e, &state).strain, &state);
-        (1.5 * contract(&xi, &xi)).sqrt() / self.law.yield_stress(state.slip)
+    fn update(&self, strains: &Strains, z0: &[f64], modes: [f64; 2], z1: &mut [f64]) -> [f64; 2] {
+        self.ring_update(&self.complete(strains, z0, modes), z0, modes, z1)
     }
+
+    fn ring_update(
+        &self,
+        strains: &Strains<Symmetric>,
+        z0: &[f64],
+        modes: [f64; 2],
+        z1: &mut [f64],
+    ) -> [f64; 2] {
+        let solid = self.beside(z0, modes[1]).solid;
+        self.write_updated(strains.end(), &solid, z1);
+        let flow = solid.flow(&self.law.trial(strains.end(), &solid.state));
+        [self.dissipated(strains, z0, modes), flow.parts[1]]
+    }
+}
+
+impl BentLaw<4> for PlanePlastic {
+    fn change(&self, z0: &[f64], ends: [&Vector4<f64>; 2], modes: [f64; 2], by: f64) -> f64 {
+        let [e0, e1] = ends.map(of_ring);
+        (self.beside(z0, modes[1]).solid).change([&e0, &e1], modes[0], by)
+    }
+
+    fn state(&self, z0: &[f64], e: &Vector4<f64>, modes: f64) -> BentState<4> {
+        let (e, own) = (of_ring(e), self.beside(z0, modes).solid);
+        let (by_modes, stress_by_modes) = own.by_modes(&e);
+        BentState {
+            stress: SolidHyperelastic::stress(&own, &e),
+            tangent: SolidHyperelastic::tangent(&own, &e),
+            by_modes,
+            stress_by_modes,
+        }
+    }
+}
+
+/// In plane stress the strain across changes with m: with S_m = dS/dm at that strain, d²W/dm² has -S_m33²/C_33 and dS/dm has
+/// -C_i3 S_m33/C_33 beside what stands in [`Potential`].
+impl BentLaw<3> for PlanePlastic {
+    fn change(&self, z0: &[f64], ends: [&Vector3<f64>; 2], modes: [f64; 2], by: f64) -> f64 {
+        let [start, end] = modes.map(|modes| self.beside(z0, modes));
+        let [e0, e1] = ends.map(of_plane);
+        (end.solid).change([&start.complete(&e0), &end.complete(&e1)], modes[0], by)
+    }
+
+    fn state(&self, z0: &[f64], e: &Vector3<f64>, modes: f64) -> BentState<3> {
+        let (plane, own) = (of_plane(e), self.beside(z0, modes));
+        let e = own.complete(&plane);
+        let ([slope, mut second], mut by_modes) = own.solid.by_modes(&e);
+        if self.plane == Plane::Stress {
+            let across = SolidHyperelastic::tangent(&own.solid, &e)
+                .column(2)
+                .into_owned();
+            second -= by_modes.z * by_modes.z / across.z;
+            by_modes -= across * (by_modes.z / across.z);
+        }
+        let stress = Hyperelastic::stress(&own, &plane);
+        BentState {
+            stress: Vector3::new(stress.m11, stress.m22, stress.m12),
+            tangent: Hyperelastic::tangent(&own, &plane),
+            by_modes: [slope, second],
+            stress_by_modes: Vector3::new(by_modes.x, by_modes.y, by_modes.w),
+        }
+    }
+}
+
+/// The tensor of strains (11, 22, 33, 2*12).
+fn of_ring(e: &Vector4<f64>) -> Symmetric {
+    Vector4::new(e.x, e.y, e.z, e.w / 2.0)
+}
+
+/// The tensor of strains (11, 22, 2*12).
+fn of_plane(e: &Vector3<f64>) -> Matrix2<f64> {
+    Matrix2::new(e.x, e.z / 2.0, e.z / 2.0, e.y)
 }
 
 #[cfg(test)]
@@ -816,9 +1109,13 @@ mod tests {
 
     fn states(law: &Plastic) -> Vec<PlasticState> {
         // some flow along one way and another
-        let first = law.updated(&(WAY * 3.0), &PlasticState::default());
+        let first = law.updated(&(WAY * 3.0), &PlasticState::default(), 0.0);
         let turned = Vector4::new(-0.02, 0.04, 0.01, -0.05);
-        vec![PlasticState::default(), first, law.updated(&turned, &first)]
+        vec![
+            PlasticState::default(),
+            first,
+            law.updated(&turned, &first, 0.0),
+        ]
     }
 
     #[test]
@@ -848,7 +1145,7 @@ mod tests {
         let across = Vector4::new(-0.3, 0.2, 0.1, 0.25);
         for law in &[0.0, 50.0].map(metal) {
             for state in states(law) {
-                let potential = Potential { law, state };
+                let potential = Potential::new(law, state);
                 let strains =
                     [0.0, 0.03, 0.7, 1.5].map(|part| WAY * part + across * (0.1 * part * part));
                 for (e0, e1) in strains
@@ -879,7 +1176,7 @@ mod tests {
         for law in [metal(0.0), metal(30.0)] {
             for state in states(&law) {
                 for size in [1e-3, 0.4, 3.5] {
-                    let (e, potential) = (WAY * size, Potential { law: &law, state });
+                    let (e, potential) = (WAY * size, Potential::new(&law, state));
                     let (s, c) = (
                         SolidHyperelastic::stress(&potential, &e),
                         SolidHyperelastic::tangent(&potential, &e),
@@ -890,7 +1187,7 @@ mod tests {
                         let (ahead, behind) = (e + unit * h, e - unit * h);
                         let slope = potential.energy_change(&behind, &ahead) / (2.0 * h);
                         // from a strain that flows the change is not that of the potential
-                        if law.flow(&law.trial(&e, &state).strain, &state).slip == 0.0 {
+                        if potential.flow(&law.trial(&e, &state)).slip == 0.0 {
                             let work = contract(&s, &unit);
                             assert!((slope - work).abs() < 1e-7 * c.norm(), "{slope} {work}");
                         } else {
@@ -944,7 +1241,11 @@ mod tests {
                     let digits = 1e-14 * (1.0 + stored(&e1, &z1));
                     assert!((work - change).abs() < digits, "{size}: {work} {change}");
                     // the end does not flow any more, and its stress is that of the return
-                    let after = law.flow(&law.trial(&e1, &law.state(&z1)).strain, &law.state(&z1));
+                    let after = law.flow(
+                        &law.trial(&e1, &law.state(&z1)).strain,
+                        &law.state(&z1),
+                        0.0,
+                    );
                     assert!(after.slip < 1e-14, "{}", after.slip);
                     let back = RingLaw::stress(&metal, &Strains::At(e1), &z1, &mut z1.clone());
                     let potential = metal.potential(&z0);
@@ -1016,7 +1317,7 @@ mod tests {
         let exact = 0.03 * (2.4 + 3.0) / 2.0 + 0.15 * 3.5 + 0.2 * 4.0;
         assert!((work - exact).abs() < 1e-14);
         // q beyond two segments
-        let (slip, _) = law.slip(300.0, 0.02);
+        let (slip, _) = law.slip(300.0, 0.02, 1.0);
         let rest = 300.0 - 3.0 * law.shear() * slip - law.yield_stress(0.02 + slip);
         assert!(rest.abs() < 1e-11);
     }

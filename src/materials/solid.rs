@@ -6,7 +6,7 @@ use nalgebra::{Matrix4, Vector4};
 
 use super::hyperelastic::{NO_CHANGE, NO_CHANGE_OF_TANGENT};
 use super::symmetric::{Symmetric, contract};
-use super::{StrainMeasure, Strains};
+use super::{Metal, StrainMeasure, Strains};
 
 /// A material with the internal variables z0 that the last accepted increment has committed, as
 /// [`super::ConstitutiveLaw`] in the components 11 (radial), 22 (axial), 33 (around the axis) and 12.
@@ -24,11 +24,6 @@ pub trait RingLaw {
 
     /// Energy D >= 0 dissipated on the way to the internal variables at the end of the strains (force/length^2).
     fn dissipation(&self, _strains: &Strains<Symmetric>, _z0: &[f64]) -> f64 {
-        0.0
-    }
-
-    /// As [`super::ConstitutiveLaw::used_strength`].
-    fn used_strength(&self, _e: &Symmetric, _z: &[f64]) -> f64 {
         0.0
     }
 }
@@ -63,8 +58,8 @@ pub trait RingStressAtPoints {
         &[]
     }
 
-    /// As [`super::StressAtPoints::yielding`].
-    fn ring_yielding(&self, _points: usize) -> Option<(f64, &[f64])> {
+    /// As [`super::StressAtPoints::metal`].
+    fn ring_metal(&self, _points: usize) -> Option<Metal<'_>> {
         None
     }
 }

@@ -78,7 +78,7 @@ def test_a_bar_in_cycles_has_the_bauschinger_effect(tmp_path: Path) -> None:
     assert tau[80] < -3.5
 
 
-@pytest.mark.parametrize(("kind", "expected"), [("CPE4R", 1.19), ("CPS4R", 1.17)])
+@pytest.mark.parametrize(("kind", "expected"), [("CPE4R", 1.22), ("CPS4R", 1.21)])
 def test_a_cantilever_of_reduced_elements_flows_as_a_whole(tmp_path: Path, kind: str, expected: float) -> None:
     """Force of the tip at a tenth of the length, in those of the full moment: CPE8R has 1.166, CPS8R 1.132, elastic hourglass
     modes 2.2. The modes hold a small part of the energy, in the history of the model as in its elements and fields."""

@@ -15,15 +15,15 @@
 //!
 //! y is quadratic in the displacements, so that dy = (dy/du at halfway) du exactly.
 
-use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix2, SMatrix, SVector, Vector2, Vector4};
 
 use super::enhanced::{Enhanced, STRAINS};
 use super::points::{Gradient, OfPoints, RingPoint, StrainPath};
-use super::stresses::size;
+use super::stresses::{StrainRows, size};
 use crate::elements::formulation::smaller;
-use crate::elements::hourglass::{Amplitudes, HourglassPotential};
+use crate::elements::hourglass::{Amplitudes, ModesInMotion, variables};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
-use crate::materials::{Committed, RingStressAtPoints, Symmetric};
+use crate::materials::{RingStressAtPoints, Strains, Symmetric};
 
 /// Number of nodes, and of points at which E_33 changes.
 const POINTS: usize = 4;
@@ -46,14 +46,7 @@ pub(super) struct RingHourglass {
 /// The hourglass modes in a motion.
 pub(super) struct RingModes<'a> {
     of: &'a RingHourglass,
-    potential: HourglassPotential<MODES>,
-    /// y, at one configuration or at the start and at the end.
-    amplitudes: Amplitudes<MODES>,
-    /// Volume (length^3) and modulus E' of the section (force/length^2).
-    sizes: [f64; 2],
-    /// Stress that does work on y (force, or force length for E_33).
-    stress: ModeAmplitudes,
-    energy: f64,
+    modes: ModesInMotion<'a, 4, MODES>,
     /// F0 and q halfway.
     f: Matrix2<f64>,
     q: Vector2<f64>,
@@ -104,21 +97,18 @@ impl RingHourglass {
     }
 
     /// The modes of eq. (2.44) between displacements of the nodes at the start and at the end of an increment, or at one configuration.
-    pub fn modes(
-        &self,
-        material: &impl RingStressAtPoints,
+    pub fn modes<'a>(
+        &'a self,
+        material: &'a impl RingStressAtPoints,
         ends: [[Vector2<f64>; MAX_NODES]; 2],
         is_increment: bool,
-    ) -> RingModes<'_> {
+    ) -> RingModes<'a> {
         let is_viscous = material.ring_is_viscous();
         let c = match is_viscous && !is_increment {
             // a viscosity has no stress at one configuration
             true => nalgebra::Matrix4::zeros(),
             false => material.ring_initial_tangent(),
         };
-        let sizes = [self.mean.volume, c.m11 - c.m12 * c.m12 / c.m22];
-        let yielding = material.ring_yielding(1);
-        let potential = HourglassPotential::new(self.stiffness(&c), sizes, yielding);
         let of_point = |point: &RingPoint| {
             let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
             StrainPath::new(start, end)
@@ -144,14 +134,14 @@ impl RingHourglass {
             (true, true) => Amplitudes::Change(y0, y1),
             (true, false) => Amplitudes::Between(y0, y1),
         };
-        let (stress, energy) = potential.stress(&amplitudes);
+        let strains = ends.each_ref().map(|u| {
+            let e = self.mean.displacement_gradient(u).strain();
+            Vector4::new(e.x, e.y, e.z, 2.0 * e.w)
+        });
+        let (stiffness, metal) = (self.stiffness(&c), material.ring_metal(1));
         RingModes {
             of: self,
-            potential,
-            amplitudes,
-            sizes,
-            stress,
-            energy,
+            modes: ModesInMotion::new(stiffness, metal, self.mean.volume, strains, amplitudes),
             f: (f0 + f1) / 2.0,
             q: (q0 + q1) / 2.0,
             paths,
@@ -186,17 +176,23 @@ impl RingHourglass {
 impl RingModes<'_> {
     /// Stored energy, or work of an increment (force length).
     pub fn energy(&self) -> f64 {
-        self.energy
+        self.modes.energy
     }
 
-    /// Writes the variables of a metal's modes behind those of the point, as that is after the increment, and returns
-    /// what is dissipated (force length).
-    pub fn update(&self, after: &Committed, e: &Symmetric, own: &mut [f64]) -> f64 {
-        let Some((yield_stress, _)) = after.ring_yielding(1) else {
-            return 0.0;
-        };
-        let strength = [yield_stress, after.ring_used_strength(e)];
-        (self.potential).update(self.amplitudes.end(), self.sizes, strength, own)
+    /// S of a metal (force/length^2).
+    pub fn metal_stress(&self) -> Option<Symmetric> {
+        self.modes.metal_stress
+    }
+
+    /// Writes the variables of a metal's point and of its modes, and returns what is dissipated (force length); none of
+    /// another material.
+    pub fn update(&self, strains: &Strains<Symmetric>, updated: &mut [f64]) -> Option<f64> {
+        let (metal, squares) = self.modes.metal()?;
+        let (of_point, own) = updated.split_at_mut(updated.len() - variables(MODES));
+        let law = metal.law;
+        let [dissipated, part] = law.ring_update(strains, metal.of_point, squares, of_point);
+        self.modes.update(part, own);
+        Some(dissipated * self.of.mean.volume)
     }
 
     /// Smallest determinant at the four points.
@@ -230,15 +226,25 @@ impl RingModes<'_> {
     /// Adds dy.f.
     pub fn add_force(&self, force: &mut [f64; MAX_DOFS]) {
         for (force, row) in force.iter_mut().zip(self.rows()) {
-            *force += row.dot(&self.stress);
+            *force += row.dot(&self.modes.stress);
         }
     }
 
     /// Adds dy.Kh dy + f.D²y, D²H_k = b_ak gamma_b + gamma_a b_bk in both directions, D²E_33 = h_a h_b/R² in that of the
     /// radius.
-    pub fn add_tangent(&self, k: &mut [f64]) {
+    /// Of a metal, with the rows of dE in `strains`, that of its point too.
+    pub fn add_tangent(&self, strains: &StrainRows, k: &mut [f64]) {
         let (d, rows) = (size(k), self.rows());
-        let stiffness = self.potential.tangent(&self.amplitudes);
+        if let Some(of_both) = self.modes.metal_tangent() {
+            for (col, (e, y)) in strains.iter().zip(&rows).enumerate() {
+                let stress = of_both.ee * e + of_both.ey * y;
+                let of_modes = of_both.ey.tr_mul(e) + of_both.yy * y;
+                for (row, (e, y)) in strains.iter().zip(&rows).enumerate() {
+                    k[col * d + row] += e.dot(&stress) + y.dot(&of_modes);
+                }
+            }
+        }
+        let stiffness = self.modes.stiffness();
         let RingHourglass {
             mean,
             points,
@@ -251,12 +257,13 @@ impl RingModes<'_> {
                 k[col * d + row] += of_row.dot(&stress);
             }
         }
-        let along = |a: usize| mean.gradient[a].dot(&self.stress.fixed_rows::<2>(0).into_owned());
+        let along =
+            |a: usize| mean.gradient[a].dot(&self.modes.stress.fixed_rows::<2>(0).into_owned());
         for (a, b) in (0..POINTS).flat_map(|a| (0..POINTS).map(move |b| (a, b))) {
             let second = along(a) * enhanced.gamma[b] + enhanced.gamma[a] * along(b);
             let square = |p: usize| points[p].around[a] * points[p].around[b];
             let mean = self.of.mean_of(square);
-            let around = (0..POINTS).map(|p| self.stress[2 + p] * (square(p) - mean));
+            let around = (0..POINTS).map(|p| self.modes.stress[2 + p] * (square(p) - mean));
             k[2 * a * d + 2 * b] += second + around.sum::<f64>();
             k[(2 * a + 1) * d + 2 * b + 1] += second;
         }

@@ -14,7 +14,7 @@ use nalgebra::{Matrix4, Vector2, Vector4};
 
 use self::dilatation::RingDilatation;
 use self::enhanced::Enhanced;
-use self::hourglass::{MODES, RingHourglass};
+use self::hourglass::{MODES, RingHourglass, RingModes};
 use self::points::{Gradient, OfPoints, RingPoint, StrainPath, ring_points, section};
 use self::stresses::{Compatible, StrainRows, Stresses, add_products, size};
 use super::formulation::{ElementResult, PointResult, PointResults, smaller};
@@ -100,7 +100,8 @@ impl Ring {
         motion: Motion,
     ) -> (ElementVector, f64) {
         let (mut force, paths) = ([0.0; MAX_DOFS], self.paths(motion));
-        let stresses = self.stresses(material, &self.compatible(&paths, motion));
+        let modes = self.modes(material, motion);
+        let stresses = self.stresses(material, &self.compatible(&paths, motion), modes.as_ref());
         for ((point, path), s) in self.points.iter().zip(&paths).zip(&stresses.s) {
             let piola = path.halfway.f() * section(s) * point.volume;
             let hoop = path.halfway.stretch_around() * s.z * point.volume;
@@ -117,12 +118,13 @@ impl Ring {
                 let q = enhanced.q_halfway(self.ends(motion));
                 enhanced.add_force(&self.points, q, &stresses.s, &mut force);
             }
-            RingFormulation::Reduced(hourglass) => {
-                let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
-                modes.add_force(&mut force);
-                determinant = smaller(determinant, modes.determinant());
-            }
-            RingFormulation::Displacement | RingFormulation::RingDilatation(_) => {}
+            RingFormulation::Reduced(_)
+            | RingFormulation::Displacement
+            | RingFormulation::RingDilatation(_) => {}
+        }
+        if let Some(modes) = &modes {
+            modes.add_force(&mut force);
+            determinant = smaller(determinant, modes.determinant());
         }
         (force, determinant)
     }
@@ -134,7 +136,8 @@ impl Ring {
         let d = 2 * self.nodes.len();
         let k = &mut whole[..d * d];
         let compatible = self.compatible(&paths, motion);
-        let stresses = self.stresses(material, &compatible);
+        let modes = self.modes(material, motion);
+        let stresses = self.stresses(material, &compatible, modes.as_ref());
         let mut rows = self.rows(&paths);
         let c = |p: usize| material.ring_tangent(p, &stresses.tangent_at[p]);
         match &self.formulation {
@@ -149,12 +152,13 @@ impl Ring {
                 }
                 enhanced.add_geometric(&self.points, &stresses.s, k);
             }
-            RingFormulation::Reduced(hourglass) => {
+            RingFormulation::Reduced(_) if stress_of_metal(modes.as_ref()).is_some() => {}
+            RingFormulation::Reduced(_) | RingFormulation::Displacement => {
                 self.add_material(c, &rows, k);
-                let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
-                modes.add_tangent(k);
             }
-            RingFormulation::Displacement => self.add_material(c, &rows, k),
+        }
+        if let Some(modes) = &modes {
+            modes.add_tangent(&rows[0], k);
         }
         for (point, s) in self.points.iter().zip(&stresses.s) {
             add_geometric(point, s, k);
@@ -176,20 +180,25 @@ impl Ring {
     /// Work of the stress on the strains of a motion from its start to its end (force length).
     pub fn work(&self, material: &impl RingStressAtPoints, motion: Motion) -> f64 {
         let compatible = self.compatible(&self.paths(motion), motion);
-        let stresses = self.stresses(material, &compatible);
+        let modes = self.modes(material, motion);
+        let stresses = self.stresses(material, &compatible, modes.as_ref());
         let changes = compatible.end.iter().zip(&compatible.start);
         let all = self.points.iter().zip(&stresses.s).zip(changes);
         let terms = all.map(|((point, s), (e1, e0))| contract(s, &(e1 - e0)) * point.volume);
-        terms.sum::<f64>() + self.hourglass_energy(material, motion)
+        terms.sum::<f64>() + modes.map_or(0.0, |modes| modes.energy())
     }
 
-    /// Stored energy of the hourglass modes, or the work of their viscous stress (force length).
-    fn hourglass_energy(&self, material: &impl RingStressAtPoints, motion: Motion) -> f64 {
+    /// The hourglass modes in a motion.
+    fn modes<'a>(
+        &'a self,
+        material: &'a impl RingStressAtPoints,
+        motion: Motion,
+    ) -> Option<RingModes<'a>> {
         match &self.formulation {
-            RingFormulation::Reduced(hourglass) => hourglass
-                .modes(material, self.ends(motion), motion.start.is_some())
-                .energy(),
-            _ => 0.0,
+            RingFormulation::Reduced(hourglass) => {
+                Some(hourglass.modes(material, self.ends(motion), motion.start.is_some()))
+            }
+            _ => None,
         }
     }
 
@@ -200,7 +209,8 @@ impl Ring {
     /// ```
     pub fn evaluate(&self, material: &Committed, u: &[f64]) -> ElementResult {
         let mut result = ElementResult::of_points(self.at_points(material, u).into_iter());
-        result.hourglass_energy = self.hourglass_energy(material, Motion::at(u, &[]));
+        let modes = self.modes(material, Motion::at(u, &[]));
+        result.hourglass_energy = modes.map_or(0.0, |modes| modes.energy());
         result.energy += result.hourglass_energy;
         result
     }
@@ -209,7 +219,8 @@ impl Ring {
     pub fn at_points(&self, material: &Committed, u: &[f64]) -> PointResults {
         let motion = Motion::at(u, &[]);
         let paths = self.paths(motion);
-        let stresses = self.stresses(material, &self.compatible(&paths, motion));
+        let modes = self.modes(material, motion);
+        let stresses = self.stresses(material, &self.compatible(&paths, motion), modes.as_ref());
         let of_point = |(p, point): (usize, &RingPoint)| {
             let of_material = stresses.of_material.as_ref();
             let s = of_material.map_or(&stresses.s[p], |of| &of.stresses[p]);
@@ -234,7 +245,11 @@ impl Ring {
     /// (force length).
     pub fn update(&self, material: &Committed, motion: Motion, updated: &mut [f64]) -> f64 {
         let compatible = self.compatible(&self.paths(motion), motion);
-        let stresses = self.stresses(material, &compatible);
+        let modes = self.modes(material, motion);
+        let stresses = self.stresses(material, &compatible, modes.as_ref());
+        if let Some(dissipated) = modes.and_then(|m| m.update(&stresses.strains[0], updated)) {
+            return dissipated;
+        }
         let mut dissipated = 0.0;
         for (p, point) in self.points.iter().enumerate() {
             dissipated += material.ring_update(p, &stresses.strains[p], updated) * point.volume;
@@ -242,13 +257,6 @@ impl Ring {
         match &self.formulation {
             RingFormulation::Enhanced(enhanced) if compatible.is_increment => {
                 enhanced.update(&self.points, (material, updated), &compatible, &stresses)
-            }
-            RingFormulation::Reduced(hourglass) => {
-                let modes = hourglass.modes(material, self.ends(motion), motion.start.is_some());
-                let before = updated.to_vec();
-                let first = before.len().saturating_sub(self.own_variables(true));
-                let (after, own) = (material.with(&before), &mut updated[first..]);
-                dissipated + modes.update(&after, stresses.strains[0].end(), own)
             }
             _ => dissipated,
         }
@@ -304,7 +312,12 @@ impl Ring {
         compatible
     }
 
-    fn stresses(&self, material: &impl RingStressAtPoints, compatible: &Compatible) -> Stresses {
+    fn stresses(
+        &self,
+        material: &impl RingStressAtPoints,
+        compatible: &Compatible,
+        modes: Option<&RingModes>,
+    ) -> Stresses {
         match &self.formulation {
             RingFormulation::RingDilatation(dilatation) => {
                 dilatation.stresses(&self.points, material, compatible)
@@ -313,7 +326,7 @@ impl Ring {
                 enhanced.stresses(&self.points, material, compatible)
             }
             RingFormulation::Displacement | RingFormulation::Reduced(_) => {
-                Stresses::of_displacements(material, compatible)
+                Stresses::of_displacements(material, compatible, stress_of_metal(modes))
             }
         }
     }
@@ -341,6 +354,11 @@ impl Ring {
             add_products(rows, &(c(p) * point.volume), k);
         }
     }
+}
+
+/// S of the one point of a metal with hourglass modes.
+fn stress_of_metal(modes: Option<&RingModes>) -> Option<Symmetric> {
+    modes.and_then(RingModes::metal_stress)
 }
 
 /// Adds v S : D²E of a point, the part of the stress in eq. (2.34).
@@ -546,44 +564,63 @@ mod tests {
             kinematic: 0.0,
         });
         let law = metal.in_plane(Plane::Revolution);
-        let is_enhanced = |ring: &Ring| matches!(ring.formulation, RingFormulation::Enhanced(_));
-        let (ring, mesh) = rings()
-            .into_iter()
-            .find(|(ring, _)| is_enhanced(ring))
-            .expect("one");
-        // squeezed along the axis, and bent in its section
-        for [squeeze, bend_x, bend_y] in [[0.3, 0.0, 0.2], [0.9, 0.0, 0.2], [0.3, 0.3, -0.2]] {
-            let moved = |(a, x): (usize, &[f64; 2])| {
-                let side = if a % 2 == 0 { 1.0 } else { -1.0 };
-                let radial = squeeze * x[0] + bend_x * side;
-                [radial, -0.7 * squeeze * x[1] + bend_y * side]
-            };
-            let d: Vec<f64> = mesh
-                .coordinates
-                .iter()
-                .enumerate()
-                .flat_map(moved)
-                .collect();
-            let at =
-                |step: u32| -> Vec<f64> { d.iter().map(|d| d * f64::from(step) / 40.0).collect() };
-            let mut z = vec![0.0; ring.points() * law.variables() + ring.own_variables(true)];
-            for step in 0..40 {
-                let (u0, u1) = (at(step), at(step + 1));
-                let between = Motion {
-                    start: Some(&u0),
-                    ..Motion::at(&u1, &[])
+        let has_own_strains = |(ring, _): &(Ring, Mesh)| {
+            let formulation = &ring.formulation;
+            matches!(
+                formulation,
+                RingFormulation::Enhanced(_) | RingFormulation::Reduced(_)
+            )
+        };
+        for (ring, mesh) in rings().into_iter().filter(has_own_strains) {
+            // squeezed along the axis, and bent in its section
+            for [squeeze, bend_x, bend_y] in [[0.3, 0.0, 0.2], [0.9, 0.0, 0.2], [0.3, 0.3, -0.2]] {
+                let moved = |(a, x): (usize, &[f64; 2])| {
+                    let side = if a % 2 == 0 { 1.0 } else { -1.0 };
+                    let radial = squeeze * x[0] + bend_x * side;
+                    [radial, -0.7 * squeeze * x[1] + bend_y * side]
                 };
-                let mut updated = z.clone();
-                ring.update(&Committed::new(&law, &z), between, &mut updated);
-                let [before, after] = [&z, &updated].map(|z| {
-                    let material = Committed::new(&law, z);
-                    ring.force(&material, Motion::at(&u1, &[])).0
-                });
-                let most = before.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
-                let jumps = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
-                let jump = jumps.fold(0.0, f64::max);
-                assert!(jump < 1e-9 * most, "{squeeze} {step}: {jump} of {most}");
-                z = updated;
+                let d: Vec<f64> = mesh
+                    .coordinates
+                    .iter()
+                    .enumerate()
+                    .flat_map(moved)
+                    .collect();
+                let at = |step: u32| -> Vec<f64> {
+                    d.iter().map(|d| d * f64::from(step) / 40.0).collect()
+                };
+                let mut z = vec![0.0; ring.points() * law.variables() + ring.own_variables(true)];
+                for step in 0..40 {
+                    let (u0, u1) = (at(step), at(step + 1));
+                    let between = Motion {
+                        start: Some(&u0),
+                        ..Motion::at(&u1, &[])
+                    };
+                    let mut updated = z.clone();
+                    let start = Committed::new(&law, &z);
+                    let dissipated = ring.update(&start, between, &mut updated);
+                    let force = ring.force(&start, between).0;
+                    let works = force
+                        .iter()
+                        .zip(u1.iter().zip(&u0))
+                        .map(|(f, (u1, u0))| f * (u1 - u0));
+                    let energy =
+                        |z: &[f64], u: &[f64]| ring.evaluate(&Committed::new(&law, z), u).energy;
+                    let change = energy(&updated, &u1) - energy(&z, &u0) + dissipated;
+                    let work: f64 = works.sum();
+                    assert!(
+                        (work - change).abs() < 1e-9 * work.abs(),
+                        "{squeeze} {step}: {work} {change}"
+                    );
+                    let [before, after] = [&z, &updated].map(|z| {
+                        let material = Committed::new(&law, z);
+                        ring.force(&material, Motion::at(&u1, &[])).0
+                    });
+                    let most = before.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+                    let jumps = before.iter().zip(&after).map(|(a, b)| (a - b).abs());
+                    let jump = jumps.fold(0.0, f64::max);
+                    assert!(jump < 1e-9 * most, "{squeeze} {step}: {jump} of {most}");
+                    z = updated;
+                }
             }
         }
     }

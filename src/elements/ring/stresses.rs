@@ -74,12 +74,16 @@ pub(super) struct Stresses {
 }
 
 impl Stresses {
-    /// Those of the law at the strains of the displacements.
-    pub fn of_displacements(material: &impl RingStressAtPoints, compatible: &Compatible) -> Self {
+    /// Those of the law at the strains of the displacements, or that of the one point of a metal with hourglass modes.
+    pub fn of_displacements(
+        material: &impl RingStressAtPoints,
+        compatible: &Compatible,
+        of_metal: Option<Symmetric>,
+    ) -> Self {
         let strains = compatible.strains(compatible.start.iter(), compatible.end.iter());
-        let stresses = strains.iter().enumerate();
+        let stress = |(p, e)| of_metal.unwrap_or_else(|| material.ring_stress(p, e));
         Stresses {
-            s: stresses.map(|(p, e)| material.ring_stress(p, e)).collect(),
+            s: strains.iter().enumerate().map(stress).collect(),
             tangent_at: strains.clone(),
             strains,
             of_material: None,
