@@ -78,10 +78,11 @@ def test_a_bar_in_cycles_has_the_bauschinger_effect(tmp_path: Path) -> None:
     assert tau[80] < -3.5
 
 
-@pytest.mark.parametrize(("kind", "expected"), [("CPE4R", 1.22), ("CPS4R", 1.21)])
-def test_a_cantilever_of_reduced_elements_flows_as_a_whole(tmp_path: Path, kind: str, expected: float) -> None:
-    """Force of the tip at a tenth of the length, in those of the full moment: CPE8R has 1.166, CPS8R 1.132, elastic hourglass
-    modes 2.2. The modes hold a small part of the energy, in the history of the model as in its elements and fields."""
+@pytest.mark.parametrize(("kind", "enhanced"), [("CPE4R", 1.219), ("CPS4R", 1.179)])
+def test_a_cantilever_of_reduced_elements_flows_as_a_whole(tmp_path: Path, kind: str, enhanced: float) -> None:
+    """Force of the tip at a tenth of the length, in those of the full moment, beside that of the same mesh of CPE4I and CPS4I.
+    CPE8R has 1.166 and CPS8R 1.132, CPE8R of four layers 1.12, elastic hourglass modes 2.2. The modes hold a small part of the
+    energy, in the history of the model as in its elements and fields."""
     mesh = grid(kind, 20, 2, lambda x, y: (10.0 * x, y))
     deck = Deck.titled("cantilever")
     deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
@@ -94,7 +95,7 @@ def test_a_cantilever_of_reduced_elements_flows_as_a_whole(tmp_path: Path, kind:
     result = solved(tmp_path, deck)
     force = result.history.nodes["NRIGHT"]["RF"][-1, :, 1].sum()
     strength = 2.0 * (2.0 / 3.0**0.5 if kind[2] == "E" else 1.0)
-    assert force * 10.0 / (strength / 4.0) == pytest.approx(expected, abs=0.02)
+    assert 1.0 < force * 10.0 / (strength / 4.0) / enhanced < 1.06
     modes = result.history.energy["hourglass"]
     assert np.allclose(modes, result.history.elements["BODY"]["ELHE"].sum(axis=1), rtol=1e-12)
     assert result.frames[-1]["ELHE"].sum() == pytest.approx(modes[-1], rel=1e-12)
