@@ -213,10 +213,11 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         dyn MetalLaw + 'a: BentLaw<N>,
     {
         let (m, half) = self.square(&at.y);
-        let state = BentLaw::<N>::state(self.metal.law, self.metal.of_point, &at.e, m);
+        let (law, of_point) = (self.metal.law, self.metal.of_point);
+        let (stress, by_modes) = BentLaw::<N>::stress(law, of_point, &at.e, m);
         Joint {
-            e: state.stress * self.volume,
-            y: half * (2.0 * state.by_modes[0] * self.volume),
+            e: stress * self.volume,
+            y: half * (2.0 * by_modes * self.volume),
         }
     }
 
@@ -225,7 +226,7 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         dyn MetalLaw + 'a: BentLaw<N>,
     {
         let (m, half) = self.square(&at.y);
-        let state = BentLaw::<N>::state(self.metal.law, self.metal.of_point, &at.e, m);
+        let state = BentLaw::<N>::tangent(self.metal.law, self.metal.of_point, &at.e, m);
         let [first, second] = state.by_modes;
         JointTangent {
             ee: state.tangent * self.volume,

@@ -125,15 +125,16 @@ pub trait BentLaw<const N: usize> {
     /// relative to the changes (force/length^2).
     fn change(&self, z0: &[f64], ends: [&SVector<f64, N>; 2], modes: [f64; 2], by: f64) -> f64;
 
-    /// Derivatives of the potential.
-    fn state(&self, z0: &[f64], e: &SVector<f64, N>, modes: f64) -> BentState<N>;
+    /// S (force/length^2) and dW/dm.
+    fn stress(&self, z0: &[f64], e: &SVector<f64, N>, modes: f64) -> (SVector<f64, N>, f64);
+
+    /// Second derivatives of the potential.
+    fn tangent(&self, z0: &[f64], e: &SVector<f64, N>, modes: f64) -> BentTangent<N>;
 }
 
-/// Derivatives of a potential W(E; m).
+/// Second derivatives of a potential W(E; m), and the first by m.
 #[derive(Debug, Clone, Copy)]
-pub struct BentState<const N: usize> {
-    /// S (force/length^2).
-    pub stress: SVector<f64, N>,
+pub struct BentTangent<const N: usize> {
     /// C (force/length^2).
     pub tangent: SMatrix<f64, N, N>,
     /// dW/dm and d²W/dm².

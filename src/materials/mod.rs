@@ -29,7 +29,7 @@ mod yield_curve;
 pub(crate) mod yielding;
 
 pub use constitutive_law::{
-    Across, BentLaw, BentState, ConstitutiveLaw, Metal, MetalLaw, StrainMeasure, Strains,
+    Across, BentLaw, BentTangent, ConstitutiveLaw, Metal, MetalLaw, StrainMeasure, Strains,
     StressAtPoints,
 };
 pub use hyperelastic::Hyperelastic;

@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, Vector3, Vector4};
 
 use super::symmetric::{IDENTITY, Symmetric, contract};
 use super::{
-    Across, BentLaw, BentState, ConstitutiveLaw, Hyperelastic, LawCard, MetalLaw, Plane, RingLaw,
+    Across, BentLaw, BentTangent, ConstitutiveLaw, Hyperelastic, LawCard, MetalLaw, Plane, RingLaw,
     SaintVenantKirchhoff, SmallStrainModuli, SolidHyperelastic, Strains, yield_curve,
 };
 
@@ -414,8 +414,8 @@ struct Flow {
 /// Share of Q and H below which one of them is taken as zero: the error of a ratio is the square of it.
 const SMALL_SHARE: f64 = 1e-8;
 
-/// A point of the yield curve and the flow that leads to it: with its place c = (w, z), derivatives by the angle and (Q, H) of
-/// the trial
+/// A point of the yield curve and the flow that leads to it, eq. (2.49): with its place c = (w, z), derivatives by the angle and
+/// (Q, H) of the trial
 ///
 /// ```text
 /// (Q, H).c - (3 mu + H_k) da - c.c sigma_y(a + da) = 0,   nearest: c'.((Q, H) - sigma_y c) = 0
@@ -902,6 +902,36 @@ impl PlanePotential<'_> {
     }
 }
 
+impl PlanePotential<'_> {
+    /// S at a strain in all components, in plane stress less what is left across of it.
+    fn stress_at(&self, e: &Symmetric) -> Symmetric {
+        let s = SolidHyperelastic::stress(&self.solid, e);
+        match self.plane {
+            Plane::Strain | Plane::Revolution => s,
+            Plane::Stress => {
+                let across = SolidHyperelastic::tangent(&self.solid, e)
+                    .column(2)
+                    .into_owned();
+                s - across * (s.z / across.z)
+            }
+        }
+    }
+
+    /// C at a strain in all components.
+    fn tangent_at(&self, e: &Symmetric) -> Matrix3<f64> {
+        let c = SolidHyperelastic::tangent(&self.solid, e);
+        const PLANE: [usize; 3] = [0, 1, 3];
+        let condensed = match self.plane {
+            Plane::Strain | Plane::Revolution => 0.0,
+            Plane::Stress => 1.0 / c[(2, 2)],
+        };
+        Matrix3::from_fn(|i, j| {
+            let (i, j) = (PLANE[i], PLANE[j]);
+            c[(i, j)] - c[(i, 2)] * c[(2, j)] * condensed
+        })
+    }
+}
+
 impl Hyperelastic for PlanePotential<'_> {
     fn stored_energy(&self, e: &Matrix2<f64>) -> f64 {
         self.solid.law.stored(&self.complete(e), &self.solid.state)
@@ -912,30 +942,11 @@ impl Hyperelastic for PlanePotential<'_> {
     }
 
     fn stress(&self, e: &Matrix2<f64>) -> Matrix2<f64> {
-        let e = self.complete(e);
-        let s = SolidHyperelastic::stress(&self.solid, &e);
-        in_plane(&match self.plane {
-            Plane::Strain | Plane::Revolution => s,
-            Plane::Stress => {
-                let across = SolidHyperelastic::tangent(&self.solid, &e)
-                    .column(2)
-                    .into_owned();
-                s - across * (s.z / across.z)
-            }
-        })
+        in_plane(&self.stress_at(&self.complete(e)))
     }
 
     fn tangent(&self, e: &Matrix2<f64>) -> Matrix3<f64> {
-        let c = SolidHyperelastic::tangent(&self.solid, &self.complete(e));
-        const PLANE: [usize; 3] = [0, 1, 3];
-        let condensed = match self.plane {
-            Plane::Strain | Plane::Revolution => 0.0,
-            Plane::Stress => 1.0 / c[(2, 2)],
-        };
-        Matrix3::from_fn(|i, j| {
-            let (i, j) = (PLANE[i], PLANE[j]);
-            c[(i, j)] - c[(i, 2)] * c[(2, j)] * condensed
-        })
+        self.tangent_at(&self.complete(e))
     }
 
     fn across(&self, e: &Matrix2<f64>) -> Across {
@@ -1038,11 +1049,15 @@ impl BentLaw<4> for PlanePlastic {
         (self.beside(z0, modes[1]).solid).change([&e0, &e1], modes[0], by)
     }
 
-    fn state(&self, z0: &[f64], e: &Vector4<f64>, modes: f64) -> BentState<4> {
+    fn stress(&self, z0: &[f64], e: &Vector4<f64>, modes: f64) -> (Vector4<f64>, f64) {
+        let (e, own) = (of_ring(e), self.beside(z0, modes).solid);
+        (SolidHyperelastic::stress(&own, &e), own.by_modes(&e).0[0])
+    }
+
+    fn tangent(&self, z0: &[f64], e: &Vector4<f64>, modes: f64) -> BentTangent<4> {
         let (e, own) = (of_ring(e), self.beside(z0, modes).solid);
         let (by_modes, stress_by_modes) = own.by_modes(&e);
-        BentState {
-            stress: SolidHyperelastic::stress(&own, &e),
+        BentTangent {
             tangent: SolidHyperelastic::tangent(&own, &e),
             by_modes,
             stress_by_modes,
@@ -1059,21 +1074,24 @@ impl BentLaw<3> for PlanePlastic {
         (end.solid).change([&start.complete(&e0), &end.complete(&e1)], modes[0], by)
     }
 
-    fn state(&self, z0: &[f64], e: &Vector3<f64>, modes: f64) -> BentState<3> {
-        let (plane, own) = (of_plane(e), self.beside(z0, modes));
-        let e = own.complete(&plane);
+    fn stress(&self, z0: &[f64], e: &Vector3<f64>, modes: f64) -> (Vector3<f64>, f64) {
+        let own = self.beside(z0, modes);
+        let e = own.complete(&of_plane(e));
+        let s = own.stress_at(&e);
+        (Vector3::new(s.x, s.y, s.w), own.solid.by_modes(&e).0[0])
+    }
+
+    fn tangent(&self, z0: &[f64], e: &Vector3<f64>, modes: f64) -> BentTangent<3> {
+        let own = self.beside(z0, modes);
+        let e = own.complete(&of_plane(e));
         let ([slope, mut second], mut by_modes) = own.solid.by_modes(&e);
         if self.plane == Plane::Stress {
-            let across = SolidHyperelastic::tangent(&own.solid, &e)
-                .column(2)
-                .into_owned();
-            second -= by_modes.z * by_modes.z / across.z;
-            by_modes -= across * (by_modes.z / across.z);
+            let c = SolidHyperelastic::tangent(&own.solid, &e);
+            second -= by_modes.z * by_modes.z / c.m33;
+            by_modes -= c.column(2) * (by_modes.z / c.m33);
         }
-        let stress = Hyperelastic::stress(&own, &plane);
-        BentState {
-            stress: Vector3::new(stress.m11, stress.m22, stress.m12),
-            tangent: Hyperelastic::tangent(&own, &plane),
+        BentTangent {
+            tangent: own.tangent_at(&e),
             by_modes: [slope, second],
             stress_by_modes: Vector3::new(by_modes.x, by_modes.y, by_modes.w),
         }
