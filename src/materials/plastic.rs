@@ -183,7 +183,7 @@ impl Plastic {
         deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
     }
 
-    /// Flow from a trial strain beside hourglass modes of a square m, which makes the potentials of eqs. (2.38) and (2.48)
+    /// Flow from a trial strain beside hourglass modes of a square m, which makes the potentials of eq. (2.38) and eq. (2.48)
     /// least: (Q, H) of the trial goes to the nearest point sigma_y (w, z) of the yield curve.
     fn flow(&self, strain: &Symmetric, state: &PlasticState, modes: f64) -> Flow {
         let xi = self.relative_stress(strain, state);
