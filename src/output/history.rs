@@ -16,7 +16,7 @@ use super::model_group::contact_names;
 use super::strain::SmallStrainElements;
 use crate::dynamics::{
     BodyResult, ContactOnBody, ContactResultant, Energy, IncrementReport, Landing, Momentum,
-    ReturnedImpulse, RigidReaction, SolverCounts, Touch,
+    ReturnedImpulse, RigidReaction, SolverCounts, Touch, rigid_inertia,
 };
 use crate::elements::{
     ConnectorState, ElementInertia, ElementResult, Elements, LocalResult, MeanGradient,
@@ -404,7 +404,8 @@ impl<'m> History<'m> {
         let own = move |r: &IncrementReport, each: &mut dyn FnMut(&RigidReaction)| {
             r.rigid.get(k).into_iter().for_each(each);
         };
-        if body.turns {
+        let [mass, _] = rigid_inertia(self.model)[k];
+        if body.turns || mass > 0.0 {
             self.table(at, &[], &TURNING, own)?;
         }
         self.table(at, &[], &REACTION, own)

@@ -42,7 +42,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
     recorded = result.history["time"], result.history.certificate["penetration"]
     gone: Gone = frozenset()
     before = result.frames[0].positions
-    fits, joined = Fits(result), _joined(result)
+    fits, vertex = Fits(result), _vertices(result)
     for frame in result.frames:
         if fits.changes(frame):
             for name in ("penetration", "crossing"):
@@ -60,14 +60,14 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             if not contact.acts[fits.step(frame) - 1]:
                 continue
             found = _in_bodies(x, bodies, contact, result.body)
-            found = [one for one in found if not joined.get(one.node, set()).intersection(one.edge)]
+            found = [one for one in found if vertex[one.node] not in vertex[list(one.edge)]]
             if contact.has_means:
                 crossed = max([crossed, *(one.depth for one in found)])
             found += _in_obstacles(x, bodies, obstacles, contact, gone)
             depth = max([depth, *(one.depth for one in found)])
             count += len(contact.slaves)
             if not contact.has_means:
-                crossed = max(crossed, _crossed(x, contact))
+                crossed = max(crossed, _crossed(x, contact, vertex))
         checks["penetration"].add(depth, limit + noise, place)
         row = np.flatnonzero(recorded[0] == frame.time)
         if len(row) and row[-1] > 0:
@@ -75,12 +75,15 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             checks["crossing"].add(crossed - told, DEPTH + noise + 1e-6 * told, place)
 
 
-def _joined(result: Result) -> dict[int, set[int]]:
-    """Nodes at the place of each node that equations hold there, as at the ends of a pre-tension section: one vertex."""
-    places: dict[tuple[float, ...], set[int]] = {}
-    for node in result.read("model/constrained_nodes").tolist():
-        places.setdefault(tuple(result.coordinates[node].tolist()), set()).add(node)
-    return {node: nodes for nodes in places.values() for node in nodes if len(nodes) > 1}
+def _vertices(result: Result) -> Integers:
+    """A number for each node: nodes that equations hold at one place, as at the ends of a pre-tension section, are one vertex."""
+    numbers = np.arange(len(result.coordinates))
+    held = result.read("model/constrained_nodes")
+    _, first, of_place = np.unique(
+        result.coordinates[held], axis=0, return_index=True, return_inverse=True
+    )
+    numbers[held] = held[first][of_place.ravel()]
+    return numbers
 
 
 def _in_bodies(
@@ -117,13 +120,13 @@ def _in_obstacles(
     return found
 
 
-def _crossed(x: Array, contact: Contact) -> float:
+def _crossed(x: Array, contact: Contact, vertex: Integers) -> float:
     """How far faces of the slave surface cross master segments, eq. (10.6)."""
     masters = Profile(contact.segments[:, 0], contact.segments[:, 1])
     own = contact.faces[np.isin(contact.faces, contact.slaves).all(axis=1)]
     worst = 0.0
     for first in range(0, len(own), EDGES):
         nodes, after = own[first : first + EDGES].T
-        depth = crossings(x, Profile(nodes, after), masters)
+        depth = crossings(x, Profile(nodes, after), masters, vertex)
         worst = max(worst, float(depth.max(initial=0.0)))
     return worst

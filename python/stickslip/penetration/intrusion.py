@@ -162,10 +162,16 @@ def _deepest(found: list[Intrusion]) -> Intrusion | None:
     return deepest if deepest and deepest.depth > 0.0 else None
 
 
-def crossings(position: Array, one: Outline | Profile, two: Outline | Profile) -> Array:
+def crossings(
+    position: Array,
+    one: Outline | Profile,
+    two: Outline | Profile,
+    vertex: Integers | None = None,
+) -> Array:
     """Depths of the edges that cross by more than LIMIT; within one outline each pair counts once.
 
-    The depth is the distance of the nearest of the four ends from the other edge, in its lengths.
+    The depth is the distance of the nearest of the four ends from the other edge, in its lengths. Edges whose ends
+    are one vertex, a number for each node, do not cross.
     """
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
@@ -175,6 +181,11 @@ def crossings(position: Array, one: Outline | Profile, two: Outline | Profile) -
     if one is two:
         apart = (one.nodes[rows] != two.after[columns]) & (one.after[rows] != two.nodes[columns])
         keep = (rows < columns) & apart
+        rows, columns = rows[keep], columns[keep]
+    if vertex is not None:
+        ends = [vertex[nodes] for nodes in (one.nodes, one.after)]
+        others = [vertex[nodes] for nodes in (two.nodes, two.after)]
+        keep = np.all([end[rows] != other[columns] for end in ends for other in others], axis=0)
         rows, columns = rows[keep], columns[keep]
     a, b, c, d = a[rows], b[rows], c[columns], d[columns]
     depth = np.minimum(_heights(a, b, c, d), _heights(c, d, a, b))
