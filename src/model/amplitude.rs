@@ -81,6 +81,15 @@ impl Amplitude {
         self.value_and_rate(t)[1]
     }
 
+    /// Derivative at `t`; where it jumps, that of the interval after it.
+    pub fn rate_after(&self, t: f64) -> f64 {
+        match &self.curve {
+            Curve::Linear(points) => rate_after_point(points, t, |x| [x, 1.0]),
+            Curve::SmoothStep(points) => rate_after_point(points, t, smooth_step),
+            Curve::Signal { .. } => self.rate(t),
+        }
+    }
+
     /// First and second integral at `t` (time, time^2), from the first point or the start of the signal.
     pub fn integrals(&self, t: f64) -> [f64; 2] {
         match &self.curve {
@@ -306,6 +315,18 @@ fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f
     [value, (q.1 - p.1) / (q.0 - p.0) * slope]
 }
 
+/// Slope of a table in the interval that `t` lies in or begins; none before the first and from the last point on.
+fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> f64 {
+    let t = at_point(points, t);
+    let next = points.partition_point(|p| p.0 <= t);
+    if next == 0 || next == points.len() {
+        return 0.0;
+    }
+    let (p, q) = (points[next - 1], points[next]);
+    let [_, slope] = step((t - p.0) / (q.0 - p.0));
+    (q.1 - p.1) / (q.0 - p.0) * slope
+}
+
 /// The time of the point of a table that `t` is but for round-off, else `t`: on which side of a kink an
 /// increment ends does not depend on the unit of time.
 fn at_point(points: &[(f64, f64)], t: f64) -> f64 {
@@ -364,9 +385,13 @@ mod tests {
             ] {
                 assert_eq!(amplitude.at(t), amplitude.at(time), "{t}");
                 assert_eq!(amplitude.rate(t), amplitude.rate(time), "{t}");
+                assert_eq!(amplitude.rate_after(t), amplitude.rate_after(time), "{t}");
             }
         }
         assert_eq!(table.rate(0.3), 1.0 / (0.3 - 0.1));
+        let after = [0.0, 0.1, 0.3, 0.5, 0.7, 1.0].map(|t| table.rate_after(t));
+        let [first, second] = [1.0 / (0.3 - 0.1), 4.0 / (0.7 - 0.3)];
+        assert_eq!(after, [0.0, first, second, second, 0.0, 0.0]);
     }
 
     fn signal(signal: Signal) -> Amplitude {

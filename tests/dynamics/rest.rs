@@ -202,3 +202,37 @@ fn a_load_far_away_does_not_underflow_at_a_contact() {
         assert_eq!(keep.cutbacks.len(), 0);
     }
 }
+
+#[test]
+fn a_motion_that_ends_with_a_static_step_gives_the_next_step_no_velocity() {
+    let (nodes, elements) = block([0.0, 0.0], [1.0, 1.0], (2, 2), (1, 1));
+    let motions = [
+        "*BOUNDARY, AMPLITUDE=A\nTOP, 2, 2, -0.01\n",
+        "*BOUNDARY, AMPLITUDE=A\n20, 2, 2, -0.01\n",
+    ];
+    let rigid = "*NODE\n20, .5, 1.\n*RIGID BODY, TIE NSET=TOP, REF NODE=20\n";
+    for definition in ["TABULAR", "SMOOTH STEP"] {
+        for (body, motion) in ["", rigid].into_iter().zip(motions) {
+            let held = if body.is_empty() {
+                ""
+            } else {
+                "20, 1, 1\n20, 6, 6\n"
+            };
+            let text = format!(
+                "*NODE\n{nodes}*NSET, NSET=FOOT\n1, 2, 3\n*NSET, NSET=TOP\n7, 8, 9\n\
+                 *ELEMENT, TYPE=CPE4, ELSET=E\n{elements}*SOLID SECTION, ELSET=E, MATERIAL=M\n\
+                 *MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.e3\n{body}\
+                 *AMPLITUDE, NAME=A, TIME=TOTAL TIME, DEFINITION={definition}\n0., 0., .6, .3, 1., 1.\n\
+                 *BOUNDARY\nFOOT, 1, 2\n{held}\
+                 *STEP, NLGEOM\n*STATIC\n0.5, 1.\n{motion}*END STEP\n\
+                 *STEP, NLGEOM\n*DYNAMIC, DIRECT\n1.e-3, 2.e-2\n*END STEP\n"
+            );
+            let (keep, _) = run_to_end(&model(&text));
+            for report in &keep.reports {
+                let energy = &report.energy;
+                let is_at_rest = energy.kinetic <= 1e-20 * energy.strain;
+                assert!(is_at_rest, "{definition} {body}: {:e}", energy.kinetic);
+            }
+        }
+    }
+}

@@ -25,10 +25,14 @@ impl TimePoint {
         amplitude.at(self.of(amplitude.time))
     }
 
-    /// Rate of an amplitude.
+    /// Rate of an amplitude; where it jumps, that of what went before, at the start of a step that of the step itself.
     pub fn amplitude_rate(&self, model: &Model, index: usize) -> f64 {
         let amplitude = &model.amplitudes[index];
-        amplitude.rate(self.of(amplitude.time))
+        let t = self.of(amplitude.time);
+        match self.step == 0.0 {
+            true => amplitude.rate_after(t),
+            false => amplitude.rate(t),
+        }
     }
 
     /// Value of an amplitude, or 1, with its first and second integral since the start of the step
