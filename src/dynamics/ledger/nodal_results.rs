@@ -142,9 +142,12 @@ impl MeanCoefficient {
         self.sums[1] += pn * (mu - self.first);
     }
 
-    /// NaN where no force was added.
+    /// NaN where no force was added: that of the language, since 0/0 has a sign that depends on the processor.
     fn value(&self) -> f64 {
-        self.first + self.sums[1] / self.sums[0]
+        match self.sums[0] == 0.0 {
+            true => f64::NAN,
+            false => self.first + self.sums[1] / self.sums[0],
+        }
     }
 }
 
@@ -436,6 +439,17 @@ mod tests {
             ..QuadraticMotion::default()
         };
         impact_time(&[s, rest(1.0), rest(-1.0)], dt)
+    }
+
+    #[test]
+    fn a_mean_of_no_force_has_the_bits_of_nan_itself() {
+        let mut mean = MeanCoefficient::default();
+        assert_eq!(mean.value().to_bits(), f64::NAN.to_bits());
+        mean.add(0.3, 0.0);
+        assert_eq!(mean.value().to_bits(), f64::NAN.to_bits());
+        mean.add(0.3, 2.0);
+        mean.add(0.1, 2.0);
+        assert!((mean.value() - 0.2).abs() < 1e-15);
     }
 
     #[test]
