@@ -101,8 +101,10 @@ impl<'m> History<'m> {
         history.create_hinges(&at)?;
         history.create_events(&at)?;
         let surfaces = group(&at, "rigid")?;
-        for (k, body) in model.rigid_bodies.iter().enumerate() {
-            history.create_rigid(&group(&surfaces, &body.name)?, k, body)?;
+        let inertia = rigid_inertia(model);
+        for (k, (body, [mass, _])) in model.rigid_bodies.iter().zip(inertia).enumerate() {
+            let moves = body.turns || mass > 0.0;
+            history.create_rigid(&group(&surfaces, &body.name)?, k, (body, moves))?;
         }
         let nodes = group(&at, "nodes")?;
         for (asked, set) in requested(&model.sets.history, &model.sets.nodes) {
@@ -387,8 +389,13 @@ impl<'m> History<'m> {
         })
     }
 
-    /// `/history/rigid/<SURFACE>`: a rigid surface at its reference node.
-    fn create_rigid(&mut self, at: &Group, k: usize, body: &RigidBody) -> hdf5::Result<()> {
+    /// `/history/rigid/<SURFACE>`: a rigid body at its reference node; its angle and its energy where it turns or has a mass.
+    fn create_rigid(
+        &mut self,
+        at: &Group,
+        k: usize,
+        (body, moves): (&RigidBody, bool),
+    ) -> hdf5::Result<()> {
         let node = body.reference;
         let label = self.model.mesh.node_labels[node] as i64;
         let text = ("1", "node number of the reference node");
@@ -404,8 +411,7 @@ impl<'m> History<'m> {
         let own = move |r: &IncrementReport, each: &mut dyn FnMut(&RigidReaction)| {
             r.rigid.get(k).into_iter().for_each(each);
         };
-        let [mass, _] = rigid_inertia(self.model)[k];
-        if body.turns || mass > 0.0 {
+        if moves {
             self.table(at, &[], &TURNING, own)?;
         }
         self.table(at, &[], &REACTION, own)

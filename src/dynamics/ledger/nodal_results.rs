@@ -142,7 +142,7 @@ impl MeanCoefficient {
         self.sums[1] += pn * (mu - self.first);
     }
 
-    /// NaN where no force was added: that of the language, since 0/0 has a sign that depends on the processor.
+    /// NaN where no force was added. It is not computed: the sign of 0/0 depends on the processor.
     fn value(&self) -> f64 {
         match self.sums[0] == 0.0 {
             true => f64::NAN,

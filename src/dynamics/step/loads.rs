@@ -25,7 +25,7 @@ impl TimePoint {
         amplitude.at(self.of(amplitude.time))
     }
 
-    /// Rate of an amplitude; where it jumps, that of what went before, at the start of a step that of the step itself.
+    /// Rate of an amplitude. Where the rate jumps, it is that before the jump; at the start of a step, that behind it.
     pub fn amplitude_rate(&self, model: &Model, index: usize) -> f64 {
         let amplitude = &model.amplitudes[index];
         let t = self.of(amplitude.time);
