@@ -1066,7 +1066,7 @@ impl BentLaw<4> for PlanePlastic {
 }
 
 /// In plane stress the strain across changes with m: with S_m = dS/dm at that strain, d²W/dm² has -S_m33²/C_33 and dS/dm has
-/// -C_i3 S_m33/C_33 beside what stands in [`Potential`].
+/// -C_i3 S_m33/C_33 beside what the stress at fixed strain gives.
 impl BentLaw<3> for PlanePlastic {
     fn change(&self, z0: &[f64], ends: [&Vector3<f64>; 2], modes: [f64; 2], by: f64) -> f64 {
         let [start, end] = modes.map(|modes| self.beside(z0, modes));
