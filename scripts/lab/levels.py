@@ -366,18 +366,6 @@ KNOWN: list[Known] = [
         "of first order in its length",
         {"material": ["kinematic metal"]},
     ),
-    Known(
-        "certificate",
-        "the contact forces of a thrown ring and a disc have a moment of 1.2e-5 of their size times their arm; the cause is not "
-        "found",
-        {
-            "family": ["CAX8RH"],
-            "procedure": ["redistributed"],
-            "contact": ["adjusted"],
-            "connection": ["disc"],
-            "load": ["thrown"],
-        },
-    ),
 ]
 
 

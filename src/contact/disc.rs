@@ -242,7 +242,7 @@ struct DiscRows {
     gap: f64,
     scale: f64,
     kappa: f64,
-    /// Tangential rows of the centre alone, force and derivative.
+    /// Rows of the way of the centre along the master, which does not turn with the disc: force and derivative.
     of_centre: [DiscRow; 2],
 }
 
@@ -405,6 +405,8 @@ impl AtArc {
 /// g  = |r| - R - rho,   Bn = 2 r_m/(l0 + l1), or r_1/l1 of end rows
 /// Dt = (r_0 x r_1)/m - m (rho T_s + R T_e)/(rho + R)                  eq. (3.24)
 /// ```
+///
+/// The way of the centre is (r_0 x r_1)/m - m T_e.
 fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
     let own = AtArc::new(places, radius, arc);
     let [r0, r1] = own.r;
@@ -422,23 +424,23 @@ fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
     // dm = w (r_m/m).dr_1
     let dm = own.middle * (own.part / own.m);
     let slope = J * r0 / own.m - dm * (r0.perp(&r1) / (own.m * own.m));
-    let of_centre = [to_r * along, to_r * slope].map(|row| row * own.sign);
-    let force = of_centre[0] - couples(s.force, e.force) * own.sign;
-    let derivative =
-        of_centre[1] - (to_r * dm * own.turn() + couples(s.derivative, e.derivative)) * own.sign;
+    let force = to_r * along - couples(s.force, e.force);
+    let derivative = to_r * (slope - dm * own.turn()) - couples(s.derivative, e.derivative);
+    let way = to_r * along - to_e * e.force * own.m;
+    let change_of_way = to_r * (slope - dm * e.value) - to_e * e.derivative * own.m;
     DiscRows {
         force: RowPair {
             normal: (to_r * normal * own.sign).into(),
-            tangential: force.into(),
+            tangential: (force * own.sign).into(),
         },
         derivative: RowPair {
             normal: (to_r * r1 * (own.sign / l1)).into(),
-            tangential: derivative.into(),
+            tangential: (derivative * own.sign).into(),
         },
         gap: own.sign * l1 - arc.radius,
         scale: radius + arc.radius.abs(),
         kappa: 0.0,
-        of_centre,
+        of_centre: [way * own.sign, change_of_way * own.sign],
     }
 }
 
@@ -485,9 +487,10 @@ pub(super) fn change(
             let change = J * (own.part / own.m) - along * dm.transpose() / own.m;
             let [r, arm, e] = own.maps;
             k += r.transpose() * (normal * pn + change * (pt + leaning)) * r * own.sign;
-            for ((map, turn), share) in [arm, e].iter().zip(&own.turns).zip(own.shares) {
+            let couples = [own.shares[0] * pt, own.shares[1] * pt + leaning];
+            for ((map, turn), couple) in [arm, e].iter().zip(&own.turns).zip(couples) {
                 let of_turn = turn.change * own.m * map + turn.force * dm.transpose() * r;
-                k -= map.transpose() * of_turn * (own.sign * share * pt);
+                k -= map.transpose() * of_turn * (own.sign * couple);
             }
         }
     }
@@ -516,8 +519,8 @@ mod tests {
     const U0: [f64; 8] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.04, -0.02];
     const U1: [f64; 8] = [-0.2, -0.15, 0.3, 0.2, 0.25, -0.3, -0.1, 0.3];
 
-    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole.
-    fn sources() -> [PairTarget; 4] {
+    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole, and at each of them behind a rise.
+    fn sources() -> [PairTarget; 8] {
         let arc = |beta: f64, radius: f64| MasterArc {
             place: [0.5, beta],
             radius,
@@ -528,7 +531,7 @@ mod tests {
             Some(arc(-0.7, 1.9)),
             Some(arc(0.4, -2.1)),
         ];
-        arcs.map(|arc| PairTarget {
+        let [a, b, c, d] = arcs.map(|arc| PairTarget {
             nodes: [0, 1, 2, 3],
             round: Some(Round {
                 radius: 0.8,
@@ -536,7 +539,28 @@ mod tests {
                 from: None,
             }),
             ..testing::face()
-        })
+        });
+        let [e, f, g, h] = [&a, &b, &c, &d].map(|source| behind_a_rise(source.clone()));
+        [a, b, c, d, e, f, g, h]
+    }
+
+    /// The disc comes from an arc that it was behind, and is 0.02 in front of the feature at the start.
+    fn behind_a_rise(mut source: PairTarget) -> PairTarget {
+        let at = between(RowForm::End, &U0, &U0);
+        source.allowed[0] = 0.02 - Constraint::new(source.clone(), &at).gap;
+        if let Some(round) = &mut source.round {
+            round.from = Some(Feature {
+                nodes: [1, 2],
+                arc: Some(MasterArc {
+                    place: [0.5, 0.0],
+                    radius: 100.0,
+                }),
+            });
+        }
+        let at = between(RowForm::DiscreteGradient, &U0, &U1);
+        let rows = rows(&source, source.round.as_ref().expect("a disc"), &at);
+        assert!(rows.kappa.abs() > 1e-2, "{} {source:?}", rows.kappa);
+        source
     }
 
     fn between<'a>(form: RowForm, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
@@ -572,8 +596,13 @@ mod tests {
         for source in sources() {
             let at = between(RowForm::DiscreteGradient, &U0, &U1);
             let found = Constraint::new(source.clone(), &at);
-            let start = Constraint::new(source, &between(RowForm::End, &U0, &U0));
-            assert!((found.start_gap - start.gap).abs() < 1e-14);
+            let rise = match source.round.as_ref().and_then(|round| round.from) {
+                Some(_) => 0.02,
+                None => 0.0,
+            };
+            let start = Constraint::new(source.clone(), &between(RowForm::End, &U0, &U0));
+            let counted = start.gap + source.allowed[0] - rise;
+            assert!((found.start_gap - counted).abs() < 1e-14);
         }
     }
 

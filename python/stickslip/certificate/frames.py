@@ -49,9 +49,6 @@ SLIP = 1e-8
 CONE = 1e-8
 """Forces outside of the cone, as a part of the largest force of the frame."""
 
-AREA = 1e-2
-"""Change of the area of a node in an increment, as a part of it: the file tells pressures of its middle or end."""
-
 HEAT = 1e-10
 """Difference of sums over nodes from sums over pairs that is round-off."""
 
@@ -112,8 +109,11 @@ class Frames:
         self.checks = checks
         self.elements = Elements(result)
         self.contacts = contacts(result)
+        middles = self.elements.middles()
+        self.middles = np.array(list(middles), np.int64)
+        """Nodes between the corners of sides."""
         self.means = {
-            contact.name: Means(contact, contact.faces, result.coordinates, self.elements.middles(), is_axisymmetric(result))
+            contact.name: Means(contact, contact.faces, result.coordinates, middles, is_axisymmetric(result))
             for contact in self.contacts
             if contact.has_means and not np.array_equal(contact.faces, contact.segments)
         }
@@ -748,10 +748,38 @@ class Frames:
                 if slip is not None and increment.dt > 0.0:
                     least, most = law.bounds(abs(slip[0]), slip[1], pressure, increment.dt)
         if law is not None and law.depends_on_pressure:
-            # the pressure of the law is that of the area at the start
-            bound += AREA * most * normal / self.force_scale
+            if increment.start is None:
+                self.checks["cone"].skip("friction that depends on pressure is left out where the file does not tell the start")
+                return
+            # the pressure of the law is that of the area at the start, the file's that of the end
+            f = frame["CONTACT_FORCE"][node]
+            n = normal * f - tangential * np.array([-f[1], f[0]])
+            change = self._stretch((increment.start, frame["U"]), contact, node, n)
+            bound += change * most * normal / self.force_scale
         outside = max(abs(tangential) - most * normal, least * normal - abs(tangential), -normal)
         self.checks["cone"].add(outside / self.force_scale, bound, at)
+
+    def _stretch(self, u: tuple[Array, Array], contact: Contact, node: int, n: Array) -> float:
+        """The change of the area of a node against a force along n, eq. (9.8), from displacements to others, as a part of it."""
+        faces = contact.faces if len(contact.faces) else self.result.boundary
+        faces = faces[(faces == node).any(axis=1)]
+        if not len(faces):
+            return 0.0
+        own, other = faces == node, faces != node
+        # the radius at a third of the face, on a side with a node between its corners at the node
+        is_curved = np.isin(faces, self.middles).any(axis=1)[:, None]
+        place = np.where(is_curved, own, (2.0 * own + other) / 3.0)
+
+        def area(u: Array) -> float:
+            ends = (self.result.coordinates + u)[faces]
+            e = ends[:, 1] - ends[:, 0]
+            sizes = np.maximum(n[1] * e[:, 0] - n[0] * e[:, 1], 0.0)
+            if is_axisymmetric(self.result):
+                sizes *= (place * ends[:, :, 0]).sum(axis=1)
+            return float(sizes.sum())
+
+        sizes = [area(displacements) for displacements in u]
+        return max(sizes) / min(sizes) - 1.0 if min(sizes) > 0.0 else np.inf
 
     def _cones(
         self, frame: Frame, increment: Increment, touches: list[Touch], corners: set[int]

@@ -22,7 +22,7 @@ use crate::dynamics::step::{
     StiffnessForm, Workspace, sum, write_difference, write_sum,
 };
 use crate::elements::{Motion, Updated};
-use crate::linear::largest;
+use crate::linear::{larger, largest};
 
 /// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
 const PATIENCE: usize = 25;
@@ -37,6 +37,9 @@ const CORRECTION_HALVINGS: i32 = 6;
 
 /// Relative difference of lengths between which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
+/// Friction beside that of the law at the end of the last pass, as a part of the largest normal force: a tenth of what the
+/// certificate allows.
+const OWN_FRICTION: f64 = 1e-10;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even
 /// if others hold them now.
@@ -610,11 +613,36 @@ impl<'m> Attempt<'_, 'm> {
         trace.worst = scales.worst(&errors, &residual.values, dof_of, position);
         trace.add(report, pass.contact);
         self.workspace.meter.count_pass(report.residual);
-        let has_converged = scales.converged(&errors) && scales.closes_gaps(pass.contact, du);
+        let has_converged = scales.converged(&errors)
+            && scales.closes_gaps(pass.contact, du)
+            && self.obeys_friction(pass);
         if has_converged {
             self.workspace.k().check()?;
         }
         Ok(has_converged)
+    }
+
+    /// Whether the friction of a pass is that of the law at the slip rates and pressures that the pass leads to, which change
+    /// the coefficient that it had.
+    fn obeys_friction(&self, pass: &Pass) -> bool {
+        if !pass
+            .contact
+            .acting()
+            .any(|(constraint, _)| constraint.mu_varies)
+        {
+            return true;
+        }
+        let (problem, [_, d, du]) = (self.problem, pass.displacements);
+        let increment = (&self.start.u[..], &sum(d, du)[..], self.interval);
+        let outside =
+            (problem.frictions).outside(problem.coordinates, increment, pass.contact.acting());
+        let largest = pass
+            .contact
+            .acting()
+            .fold(0.0, |most, (_, pair)| larger(most, pair.force[0]));
+        outside
+            .iter()
+            .all(|&outside| outside <= OWN_FRICTION * largest)
     }
 
     /// Motion and forces at the end of a converged increment d from the vectors of its last pass; whether their

@@ -259,8 +259,8 @@ pub(crate) fn contact_resultants(
     }
     let acting = solved.contact.forces.acting();
     let increment = (u0, &solved.d[..], interval);
-    let bounds = (problem.frictions).bounds(problem.coordinates, increment, acting.clone());
-    for ((constraint, pair), [least, most]) in acting.zip(bounds) {
+    let outside = (problem.frictions).outside(problem.coordinates, increment, acting.clone());
+    for ((constraint, pair), outside) in acting.zip(outside) {
         let contact = constraint.key.contact();
         let r = &mut resultants[contact];
         let [pn, pt] = pair.force;
@@ -274,7 +274,6 @@ pub(crate) fn contact_resultants(
         r.tangential += pt;
         r.closed += 1;
         r.sticking += usize::from(pair.state == ContactState::Stick);
-        let outside = larger(pt.abs() - most * pn, least * pn - pt.abs());
         r.cone_violation = larger(r.cone_violation, outside);
         largest_normal[contact] = larger(largest_normal[contact], pn);
         coefficients[contact].add(constraint.mu, pn);

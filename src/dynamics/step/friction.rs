@@ -5,6 +5,7 @@ use super::loads::{Interval, TimePoint};
 use super::slave_faces::SlaveFaces;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, position};
 use crate::lcp::ContactState;
+use crate::linear::larger;
 use crate::model::{FormerFriction, Friction, Model, Step};
 
 /// Part of a slip that passes leave of it.
@@ -131,6 +132,21 @@ impl<'m> Frictions<'m> {
             }
         };
         pairs.map(of_pair).collect()
+    }
+
+    /// Friction of every closed pair beyond that of the law, or below it where the pair slips (force), as [`Self::bounds`].
+    pub fn outside<'c>(
+        &self,
+        x: &[[f64; 2]],
+        increment: (&[f64], &[f64], Interval),
+        pairs: impl Iterator<Item = (&'c Constraint, &'c ClosedPair)> + Clone,
+    ) -> Vec<f64> {
+        let bounds = self.bounds(x, increment, pairs.clone());
+        let of_pair = |((_, pair), [least, most]): ((_, &ClosedPair), [f64; 2])| {
+            let [pn, pt] = pair.force;
+            larger(pt.abs() - most * pn, least * pn - pt.abs())
+        };
+        pairs.zip(bounds).map(of_pair).collect()
     }
 
     /// N of eq. (3.13) over the dofs of all nodes from the forces Pn of constraints, none where no pressure counts.
