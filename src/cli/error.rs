@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use thiserror::Error;
 
+use crate::archive::ArchiveError;
 use crate::output::{
     CheckpointError, FileError, MemoryError, NameError, OutputError, SummaryError, reason,
 };
@@ -75,6 +76,14 @@ pub(super) enum CliError {
     Broken {
         /// Why, with the file.
         source: io::Error,
+        /// Which results can be read.
+        kept: Option<String>,
+    },
+    /// The checkpoint of an earlier job does not fit the model of the deck.
+    #[error("cannot go on from the checkpoint: {source}{}", after(kept))]
+    OfAnotherModel {
+        /// What does not fit.
+        source: ArchiveError,
         /// Which results can be read.
         kept: Option<String>,
     },

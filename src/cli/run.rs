@@ -1,7 +1,6 @@
 //! The subcommand `run`: from the deck to the finished result files, however the run ends.
 
 use std::error::Error;
-use std::io;
 use std::time::Duration;
 
 use super::args::{COMMIT, NUMBER, PROFILE, RunArgs, VERSION, processors};
@@ -173,18 +172,18 @@ fn solve(
         Some((earlier, extension)) => resume(model, &earlier.solver, extension, writer),
         None => (numerics.solve)(model, writer),
     };
-    let solved = solved.map_err(|error| match error {
-        RunError::Observer(error) => error,
-        RunError::Checkpoint(error) => io::Error::other(error),
-    });
-    let finished = solved.and_then(|summary| writer.finish(&summary).map(|()| summary.outcome));
+    let finished =
+        solved.and_then(|summary| Ok(writer.finish(&summary).map(|()| summary.outcome)?));
     match finished {
         Ok(Outcome::Finished) => Ok(Exit::Finished),
         Ok(Outcome::Stopped(_)) => Ok(Exit::Stopped),
         Ok(Outcome::Interrupted) => Ok(signals::exit(interrupt)),
-        Err(source) => {
+        Err(error) => {
             let kept = writer.kept();
-            let error = CliError::Broken { source, kept };
+            let error = match error {
+                RunError::Observer(source) => CliError::Broken { source, kept },
+                RunError::Checkpoint(source) => CliError::OfAnotherModel { source, kept },
+            };
             // The first error is reported below; completing the files may fail as well.
             let _ = writer.detail(&format!("error: {error}"));
             let _ = writer.abandon(error.exit() as u8);
@@ -253,6 +252,8 @@ fn override_steps(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::io;
+
     use super::super::args::{Args, Command};
     use super::*;
     use crate::diagnostics::Sources;

@@ -7,7 +7,8 @@ use std::collections::{HashMap, HashSet};
 use super::context::Context;
 use crate::diagnostics::Code;
 use crate::model::{
-    Contact, ContactChanges, ContactFormulation, Mesh, Model, Surface, SurfaceKind,
+    Contact, ContactChanges, ContactFormulation, FrictionChange, Mesh, Model, Step, Surface,
+    SurfaceKind,
 };
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, length};
 
@@ -50,9 +51,48 @@ pub(super) fn choose(model: &mut Model, cx: &mut Context) {
         contact.formulation = ContactFormulation::SurfaceToSurface;
         left_out.insert(other);
     }
+    if !left_out.is_empty() {
+        leave_out(&left_out, model);
+    }
+}
+
+/// Takes contacts, which others stand for, out of a model and out of what its steps change.
+fn leave_out(left_out: &HashSet<usize>, model: &mut Model) {
     let all = std::mem::take(&mut model.contacts).into_iter().enumerate();
-    let stay = all.filter(|(number, _)| !left_out.contains(number));
-    model.contacts = stay.map(|(_, contact)| contact).collect();
+    let (numbers, stay): (Vec<usize>, Vec<Contact>) =
+        all.filter(|(number, _)| !left_out.contains(number)).unzip();
+    model.contacts = stay;
+    let place = |number: usize| numbers.binary_search(&number).ok();
+    for step in &mut model.steps {
+        let ContactChanges { removed, friction } = &mut step.contacts;
+        *removed = removed.iter().filter_map(|&number| place(number)).collect();
+        friction.retain_mut(|change| {
+            let place = place(change.contact);
+            place.inspect(|&place| change.contact = place).is_some()
+        });
+        // those of contacts that have become one have no interference
+        step.interferences.retain_mut(|load| {
+            let place = place(load.at.contact);
+            place.inspect(|&place| load.at.contact = place).is_some()
+        });
+    }
+}
+
+/// Whether all steps do the same to two contacts.
+fn are_changed_alike(pair: [usize; 2], steps: &[Step]) -> bool {
+    steps.iter().all(|step| {
+        let [one, other] = pair.map(|number| {
+            let of_contact = |change: &&FrictionChange| change.contact == number;
+            let friction = step.contacts.friction.iter().find(of_contact);
+            let is_removed = step.contacts.removed.contains(&number);
+            (
+                is_removed,
+                friction.map(|change| (&change.friction, &change.from)),
+            )
+        });
+        let mut interferences = step.interferences.iter();
+        one == other && !interferences.any(|load| pair.contains(&load.at.contact))
+    })
 }
 
 /// Warns of pairs in both orders whose friction differs: the forces of both add up, each by its own law.
@@ -110,8 +150,6 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
     let mut first = HashMap::new();
     let mut both = Vec::new();
     let bodies = LazyCell::new(|| model.mesh.bodies());
-    let are_changed = (model.steps.iter())
-        .any(|step| step.contacts != ContactChanges::default() || !step.interferences.is_empty());
     for (number, contact) in model.contacts.iter().enumerate() {
         if contact.is_self_contact() {
             continue;
@@ -140,7 +178,7 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
             contacts,
             formulation: contact.formulation,
             lying: lying([p, q]) + lying([q, p]),
-            becomes_one: !are_changed && may_be_one(pair, model),
+            becomes_one: are_changed_alike(contacts, &model.steps) && may_be_one(pair, model),
         });
     }
     both

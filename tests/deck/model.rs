@@ -1287,11 +1287,19 @@ fn pairs_in_both_orders_become_one_where_many_faces_lie_on_each_other() {
     assert_eq!(contacts(25, 0.01, &other_law), two(NodeToSegment));
     let changed = |card: &str| {
         let deck = strips(25, 0.01, &open).replace("*END STEP", &format!("{card}*END STEP"));
-        read(&deck).0.contacts.len()
+        let model = read(&deck).0;
+        let changes = model.steps[0].contacts.clone();
+        (
+            model.contacts.len(),
+            changes.removed,
+            changes.friction.len(),
+        )
     };
-    assert_eq!(changed(""), 1);
-    assert_eq!(
-        changed("*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nTOP, FOOT\n"),
-        2
-    );
+    assert_eq!(changed(""), (1, vec![], 0));
+    // what a step does to both it does to the one, and what it does to one of both needs its own pair
+    let remove = "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nTOP, FOOT\n";
+    assert_eq!(changed(remove).0, 2);
+    assert_eq!(changed(&format!("{remove}FOOT, TOP\n")), (1, vec![0], 0));
+    let friction = "*CHANGE FRICTION, INTERACTION=DRY\n*FRICTION\n.1\n";
+    assert_eq!(changed(friction), (1, vec![], 1));
 }

@@ -509,3 +509,70 @@ fn a_deck_goes_on_from_the_end_of_another_job_in_the_same_bits() {
     let name = "/history/energy/kinetic";
     assert!(rows > 200 && all[name].ends_with(&whole[name][..two]));
 }
+
+/// Two blocks, one on the other, with pairs from surface to surface in both orders, which are one contact.
+const BOTH_ORDERS: &str = "\
+*NODE
+1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n5, 0., 1.\n6, 1., 1.\n7, 1., 2.\n8, 0., 2.
+*ELEMENT, TYPE=CPE4, ELSET=ALL
+1, 1, 2, 3, 4\n2, 5, 6, 7, 8
+*MATERIAL, NAME=M
+*ELASTIC
+1000., .3
+*DENSITY
+1.
+*SOLID SECTION, ELSET=ALL, MATERIAL=M
+*SURFACE, NAME=LOW
+1, S3
+*SURFACE, NAME=HIGH
+2, S1
+*SURFACE INTERACTION, NAME=DRY
+*FRICTION
+.3
+*CONTACT PAIR, INTERACTION=DRY, TYPE=SURFACE TO SURFACE
+LOW, HIGH\nHIGH, LOW
+*BOUNDARY
+1, 1, 2\n2, 1, 2
+*RESTART, WRITE, FREQUENCY=100
+*STEP, NLGEOM
+*DYNAMIC, DIRECT
+0.01, 0.02
+*CLOAD
+7, 2, -1.\n8, 2, -1.
+*END STEP
+";
+
+#[test]
+fn a_later_job_changes_pairs_in_both_orders_alike_or_says_that_it_is_of_another_model() {
+    let place = TempDir::new().expect("folder");
+    fs::write(place.path().join("first.inp"), BOTH_ORDERS).expect("deck");
+    assert_done(&program(place.path(), &["run", "-q", "first.inp"]));
+    let second = |changes: &str| {
+        let deck = format!(
+            "*RESTART, READ\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n.01, .02\n{changes}*END STEP\n"
+        );
+        fs::write(place.path().join("second.inp"), deck).expect("deck");
+        let words = [
+            "run",
+            "-q",
+            "--overwrite",
+            "second.inp",
+            "--oldjob",
+            "first",
+        ];
+        program(place.path(), &words)
+    };
+    assert_done(&second(
+        "*CHANGE FRICTION, INTERACTION=DRY\n*FRICTION\n.1\n",
+    ));
+    let remove = "*MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nLOW, HIGH\n";
+    assert_done(&second(&format!("{remove}HIGH, LOW\n")));
+    // one of both orders goes: the model has two contacts then
+    let output = second(remove);
+    assert_eq!(output.status.code(), Some(4));
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        text.contains("cannot go on from the checkpoint: it is of another model"),
+        "{text}"
+    );
+}

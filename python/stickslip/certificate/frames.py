@@ -486,7 +486,7 @@ class Frames:
         told[self.constrained] = told[self.loaded] = False
         told[np.isin(self.elements.of_node, np.flatnonzero(self.flows))] = False
         told &= self.elements.of_node >= 0
-        self._take_fading(residual, frame, increment)
+        told[self._fading(residual, frame, increment)] = False
         residual = self._without_weight(residual, told)
         size = np.abs(residual).max(axis=1)
         largest = np.maximum(np.abs(internal), np.maximum(np.abs(inertia), np.abs(force)))
@@ -506,20 +506,22 @@ class Frames:
         if not len(nodes):
             check.skip("no node is free of supports and loads")
 
-    def _take_fading(self, residual: Array, frame: Frame, increment: Increment) -> None:
-        """Takes out the forces of removed supports and contacts, which fade until the end of a static or quasi-static step."""
+    def _fading(self, residual: Array, frame: Frame, increment: Increment) -> Flags:
+        """Nodes with forces of removed supports and contacts, which fade until the end of a static or quasi-static step."""
+        fade = np.zeros(len(residual), np.bool_)
         row, step = increment.row, self.step
         is_end = row + 1 == len(step) or step[row + 1] != step[row]
         if increment.step == 0 or is_end or increment.scheme not in (0, EULER):
-            return
-        free = frame["RF"][self.supported] == 0.0
-        if (residual[self.supported][free] != 0.0).any():
-            residual[self.supported] = np.where(free, 0.0, residual[self.supported])
+            return fade
+        free = (frame["RF"][self.supported] == 0.0) & (residual[self.supported] != 0.0)
+        if free.any():
+            fade[self.supported[free.any(axis=1)]] = True
             self.checks["equilibrium"].skip("reactions of supports that a step removes fade until its end")
         for contact in self.contacts:
             if contact.acts[increment.step - 1] and not contact.acts[increment.step]:
-                residual[contact.slaves] = residual[contact.segments.ravel()] = 0.0
+                fade[contact.slaves] = fade[contact.segments.ravel()] = True
                 self.checks["equilibrium"].skip("forces of contacts that a step removes fade until its end")
+        return fade
 
     def _without_weight(self, residual: Array, told: Flags) -> Array:
         """Takes out the body forces: the accelerations of their patterns that fit best."""
