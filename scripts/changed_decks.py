@@ -340,7 +340,8 @@ def _turned_supports(deck: Deck, matrix: Array) -> Deck:
     """Supports in turned axes."""
     before = supports(deck)
     follows_axes = _follows_axes(matrix)
-    references = {card.parameters["REFNODE"] for card in deck.find("RIGIDBODY")}
+    kinds = ("RIGIDBODY", "COUPLING", "KINEMATICCOUPLING")
+    references = {card.parameters["REFNODE"] for kind in kinds for card in deck.find(kind)}
     nodes = {node for held in before for node, _ in held.now}
     indirect = {
         node
@@ -348,7 +349,7 @@ def _turned_supports(deck: Deck, matrix: Array) -> Deck:
         if not follows_axes and any(_turned_pair(node, held.now, matrix) is None for held in before)
     }
     if indirect & references:
-        raise Unchangeable("a rigid surface has supports that do not move alike")
+        raise Unchangeable("a reference node has supports that do not move alike")
     masses = {card.parameters.get("CONTACTMASS") for card in deck.find("STICKSLIP")}
     if indirect and "REDISTRIBUTED" in masses:
         raise Unchangeable("nodes of equations keep their mass")
