@@ -230,14 +230,15 @@ impl Plastic {
             true => factor * value / by,
             false => 0.0,
         };
+        let flown = factor * (1.0 - left[1]);
         Flow {
-            slip: at.slip,
+            slip: at.point[0] * own + at.point[1] * flown * trial[1] / shear,
             own,
             strain: match has_strain {
                 true => xi / size * (1.5_f64.sqrt() * own),
                 false => xi * (part / (2.0 * self.shear())),
             },
-            parts: [part, factor * (1.0 - left[1])],
+            parts: [part, flown],
             slopes: [
                 over(left[0] - by_strain, trial[0] * trial[0], has_strain),
                 over(-mixed, trial[0] * trial[1], has_strain && has_modes),
@@ -395,7 +396,7 @@ struct Trial {
 /// Flow of an increment.
 #[derive(Default)]
 struct Flow {
-    /// da.
+    /// da = w p + z p_h of eq. (2.49), p_h = r_h H/(3 mu): with this sum of the parts that flow, their round-off does no work.
     slip: f64,
     /// p = r Q/(3 mu), da without modes, and zero without a strain.
     own: f64,

@@ -236,3 +236,34 @@ fn a_motion_that_ends_with_a_static_step_gives_the_next_step_no_velocity() {
         }
     }
 }
+
+/// Elements with one integration point flow in a static step, strain and hourglass modes, and then rest on their yield curve.
+#[test]
+fn reduced_metals_that_have_flowed_rest_in_whole_increments() {
+    let (nodes, elements) = block([1.0, 0.0], [1.0, 1.0], (2, 2), (1, 1));
+    for (family, thickness) in [("CPE4R", "1.\n"), ("CPS4R", "1.\n"), ("CAX4R", "")] {
+        // a back strain leaves the stress of an increment in the frame of its start
+        for (hardening, left) in [("ISOTROPIC", 1e-20), ("KINEMATIC", 1e-15)] {
+            let text = format!(
+                "*NODE\n{nodes}*NSET, NSET=FOOT\n1, 2, 3\n*NSET, NSET=TOP\n7, 8, 9\n\
+                 *ELEMENT, TYPE={family}, ELSET=E\n{elements}*SOLID SECTION, ELSET=E, MATERIAL=M\n{thickness}\
+                 *MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n*PLASTIC, HARDENING={hardening}\n2., 0.\n12., .2\n\
+                 *DENSITY\n1.\n*BOUNDARY\nFOOT, 1, 2\n\
+                 *STEP, NLGEOM\n*STATIC\n.25, 1.\n*BOUNDARY\nTOP, 1, 1, .03\n*END STEP\n\
+                 *STEP, NLGEOM\n*DYNAMIC, DIRECT\n.01, .1\n*END STEP\n"
+            );
+            let (keep, _) = run_to_end(&model(&text));
+            let rest: Vec<_> = (keep.reports.iter().filter(|report| report.time > 1.0)).collect();
+            assert_eq!(rest.len(), 10, "{family} {hardening}");
+            for report in rest {
+                let energy = &report.energy;
+                assert!(energy.material_dissipation > 0.0);
+                assert!(
+                    energy.kinetic <= left * energy.strain,
+                    "{family} {hardening} {:e}",
+                    energy.kinetic
+                );
+            }
+        }
+    }
+}
