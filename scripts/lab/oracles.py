@@ -55,6 +55,9 @@ CONTACTS = "history/contact/"
 OF_CONTACTS = ("CONTACT_STATUS", "FRICTION_COEFFICIENT", "SLIP")
 """Fields of contacts that decisions make."""
 
+OF_WORK = ("friction_dissipation", "numerical_dissipation", "FRICTION_WORK", "FRICTION_HEAT", "WEAR")
+"""Sums of friction work: where an increment ends without force, that of pairs that slide to no force, but not of open ones."""
+
 ON_SLAVE = ("force", "moment", "impulse", "impulse_sum")
 """What acts on the slave surface of a contact."""
 
@@ -242,7 +245,7 @@ def _has_answer(seen: Seen, name: str) -> NDArray[np.bool_]:
         return np.ones(seen.rows, np.bool_)
     values = seen.by_row(name)
     group, _, own = name.rpartition("/")
-    if own in OF_CONTACTS:
+    if own in (*OF_CONTACTS, *OF_WORK):
         force = seen.by_row("VTKHDF/PointData/CONTACT_FORCE")
     elif group.startswith(CONTACTS) and (values.dtype.kind != "f" or own == "friction_coefficient"):
         force = seen[f"{group}/force"]
@@ -464,24 +467,29 @@ def restarted(trial: Trial) -> str | None:
 
 
 def finer_family(trial: Trial) -> str | None:
-    """Another family on a finer mesh stores the same energy within the error of the mesh."""
-    kind = trial.scene.kind[:3] + "8"
-    fine = Scene({**trial.choice, "family": kind}, refined=2)
-    # linear triangles lock in bending
-    return _near_energy(
-        trial, trial.good("fine", fine).result, 0.6 if "3" in trial.scene.kind else 0.35
+    """Another family stores the same energy on a finer mesh, within the error of the mesh."""
+    own, other = (
+        trial.good(name, Scene({**trial.choice, "family": kind}, refined=2)).result
+        for name, kind in (("fine", trial.scene.kind), ("other", trial.scene.kind[:3] + "8"))
     )
+    # linear triangles lock in bending
+    return _near_energies(own, other, 0.6 if "3" in trial.scene.kind else 0.35)
+
+
+SHORT = 50
+"""Increments in which metals and friction follow their path."""
 
 
 def slowly(trial: Trial) -> str | None:
-    """A slow motion ends where the static step does."""
-    slow = Scene({**trial.choice, "procedure": "quasi-static"}, slowed=20.0)
-    return _near_energy(trial, trial.good("slow", slow).result, 0.02)
+    """A slow motion ends where the static step does, both in increments whose error is small."""
+    static = trial.good("static", Scene(trial.choice, parts=SHORT)).result
+    slow = Scene({**trial.choice, "procedure": "quasi-static"}, slowed=20.0, parts=SHORT)
+    return _near_energies(static, trial.good("slow", slow).result, 0.02)
 
 
-def _near_energy(trial: Trial, other: Path, tolerance: float) -> str | None:
-    with Result(other) as result:
-        a, b = (float(one.read("history/energy/strain")[-1]) for one in (trial.result, result))
+def _near_energies(one: Path, other: Path, tolerance: float) -> str | None:
+    with Result(one) as first, Result(other) as second:
+        a, b = (float(result.read("history/energy/strain")[-1]) for result in (first, second))
     scale = max(abs(a), abs(b))
     is_near = abs(a - b) <= tolerance * scale or scale < 1e-12
     return None if is_near else f"strain energy {a:.4g} against {b:.4g}"

@@ -93,6 +93,8 @@ class Scene:
     """Inner radius of bodies of revolution."""
     slowed: float = 1.0
     """Durations of dynamic steps are multiplied by this."""
+    parts: int = 0
+    """Least number of increments of a static or quasi-static step; none where the solver chooses."""
     is_halved: bool = False
     """Whether the only step is two of half its length."""
     zero_for_removed: bool = False
@@ -521,6 +523,8 @@ class Scene:
         procedure = PROCEDURES[self.choice["procedure"]]
         if self.slowed != 1.0 and self.choice["procedure"] not in STATIC:
             procedure = _slowed(procedure, self.slowed)
+        if self.parts and self.choice["procedure"] in SLOW:
+            procedure = _in_parts(procedure, self.parts)
         first, sequence = self._loads(1.0), self.choice["sequence"]
         if self.choice["contact"] == "interference":
             first += card("CONTACT INTERFERENCE, SHRINK", ("UPPER_BOTTOM", "LOWER_TOP"))
@@ -711,6 +715,15 @@ def _slowed(procedure: Procedure, factor: float) -> Procedure:
         card="\n".join([head, ", ".join(times), *rest]),
         duration=procedure.duration * factor,
     )
+
+
+def _in_parts(procedure: Procedure, parts: int) -> Procedure:
+    """A procedure of at least so many increments."""
+    head, _, *rest = procedure.card.split("\n")
+    largest = procedure.duration / parts
+    row = f"{largest!r}, {procedure.duration!r}"
+    row += "" if "DIRECT" in head else f", , {largest!r}"
+    return replace(procedure, card="\n".join([head, row, *rest]))
 
 
 def _halved(procedure: Procedure) -> Procedure:

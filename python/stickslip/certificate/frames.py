@@ -633,7 +633,8 @@ class Frames:
                 if not is_corner and gaps[node] <= NEAR * self._edge and (told or not on_master.whole):
                     beyond = gaps[node] - nearest
                     stored = (beyond if node in elsewhere else abs(beyond)) / self._edge
-                    self.checks["gap"].add(stored, TOUCH + noise, f"GAP, {at}")
+                    bound = LEFT if mean.moved or on_master.moved else TOUCH
+                    self.checks["gap"].add(stored, bound + noise, f"GAP, {at}")
                 # what is left at the ends of masters, eq. (7.9)
                 is_exact = told and not mean.moved and node not in means.corners
                 bound = GAP if is_exact else LEFT
