@@ -277,9 +277,9 @@ impl Impulses {
         self.at_rest && self.are_exact
     }
 
-    /// Takes over the pairs in contact after a pass; whether they are the same as before, those that have the impulse of their
-    /// force still stick, and the impulses are theirs. After
-    /// some changes the set is kept: impulses of any set take energy, never give it.
+    /// Takes over the pairs in contact after a pass. Says whether the pairs are the same as before, those that have the impulse of
+    /// their force still stick, and the impulses are theirs. After some changes it keeps its set of pairs: impulses of any
+    /// set take energy, and never give it.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
         self.sticking = match problem.unknowns.turning.are_driven() {
             true => Vec::new(),
