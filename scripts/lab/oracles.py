@@ -633,7 +633,8 @@ def reactions(trial: Trial) -> str | None:
     has_support = result.node_labels != BOLT
     reaction = result.frames[-1]["RF"][has_support].sum(axis=0)[:2]
     mass = result.read("model/bodies/mass").sum()
-    if trial.is_one("connection", "rigid nodes", "rigid tie nodes", "rigid elements", "disc"):
+    # a body with rigid elements has the point mass of their reference node
+    if trial.is_one("connection", "rigid nodes", "rigid tie nodes", "disc"):
         mass += 0.3
     full = FORCE * (1.0 if not trial.is_one("amplitude", "decaying") else 1.0 - np.exp(-4.0))
     applied = {
