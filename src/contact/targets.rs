@@ -433,7 +433,8 @@ impl SlaveNode<'_> {
 
     /// The neighbour, round a convex corner near the node, of a segment that the surface of the
     /// node does not face. Where a corner slides over a corner, only the face that the surface of
-    /// the node faces constrains it; behind the other the node's own body would lie.
+    /// the node faces constrains it; behind the other the node's own body would lie. The node, or half of a face of its own,
+    /// was over that face at the start: beside a punch no node is under it, however long the lines of the punch are.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;
@@ -445,9 +446,10 @@ impl SlaveNode<'_> {
         let after = self.surfaces.next[i]
             .filter(|&j| (1.0 - p.xi) * p.length <= near && self.corner_sine(i, j) > STRAIGHT_SINE);
         let constrains = |&j: &usize| {
-            let start = self.project_at_start(j);
-            let was_near = (-near..=start.length + near).contains(&(start.xi * start.length));
-            was_near && self.was_in_front(j) && !self.is_own(j) && self.is_opposite(j) == Some(true)
+            let mut held = self.held_by.iter().flat_map(ContactTarget::segments);
+            let is_faced = self.is_opposite(j) == Some(true)
+                || (held.any(|held| held == j) && self.faced_at_start(j) > self.faced_at_start(i));
+            is_faced && self.was_over(j) && self.was_in_front(j) && !self.is_own(j)
         };
         before.filter(constrains).or(after.filter(constrains))
     }
@@ -639,6 +641,18 @@ impl SlaveNode<'_> {
         Some(adjacent.iter().all(is_in_front))
     }
 
+    /// Least sine by which a neighbour of the node was in front of the parallel to a segment through the node at the start:
+    /// more for the segment that its surface faced better.
+    fn faced_at_start(&self, segment: usize) -> f64 {
+        let (node, normal) = (self.start_position(), self.project_at_start(segment).normal);
+        let sine = |adjacent: usize| {
+            let r = difference(node, self.start.of(adjacent));
+            dot(r, normal) / r[0].hypot(r[1])
+        };
+        let adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
+        adjacent.map(sine).fold(1.0, f64::min)
+    }
+
     /// Whether the node was in front of the line of a segment at the start.
     pub(crate) fn was_in_front(&self, segment: usize) -> bool {
         let p = self.project_at_start(segment);
@@ -672,6 +686,20 @@ impl SlaveNode<'_> {
     /// concave corner counts (length).
     pub(crate) fn corner_reach(&self, segment: usize, p: &Projection) -> f64 {
         CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
+    }
+
+    /// Whether the node, or the middle of a face of its own, was over a segment at the start.
+    fn was_over(&self, segment: usize) -> bool {
+        let [a, b] = self.surfaces.segments[segment].map(|n| self.start.of(n));
+        // but for round-off: nodes of matching meshes are at the ends
+        let is_over = |s: [f64; 2]| (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&project(s, a, b).xi);
+        let node = self.start_position();
+        let middle = |n: usize| {
+            let [x, y] = self.start.of(n);
+            [f64::midpoint(node[0], x), f64::midpoint(node[1], y)]
+        };
+        let adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
+        is_over(node) || adjacent.map(middle).any(is_over)
     }
 
     /// Displacement of the node relative to a segment since the start (length).

@@ -1,5 +1,7 @@
 //! Static steps: bodies that contact alone holds, loads that have no equilibrium, steps in any order.
 
+use std::fmt::Write;
+
 use crate::blocks::Keep;
 use stickslip::deck;
 use stickslip::diagnostics::{Diagnostics, Sources};
@@ -329,6 +331,45 @@ fn a_fit_on_matching_nodes_is_pressed_apart_alike_on_both_sides() {
                 on_matching_nodes(side, [1e3, 0.3, 0.3], (0.01, pairs), &steps)
             });
             assert_mirrored(decks, &format!("{procedure} {pairs}"));
+        }
+    }
+}
+
+/// Of the nodes at a sharp corner of a punch those under it are held, however steep the surface becomes beside it, and those
+/// beside it are free, however long the lines of the punch are.
+#[test]
+fn nodes_under_a_punch_are_held_and_nodes_beside_it_are_free() {
+    let x = [0.0, 0.5, 0.9375, 1.0, 1.0625, 1.125, 1.5, 2.0];
+    let mut nodes = String::from("*NODE\n");
+    let mut elements = String::from("*ELEMENT, TYPE=CPE4, ELSET=E\n");
+    for (j, y) in [-1.0, -0.25, -0.0625, 0.0].iter().enumerate() {
+        for (i, x) in x.iter().enumerate() {
+            let n = 10 * j + i + 1;
+            writeln!(nodes, "{n}, {x:?}, {y:?}").expect("text");
+            if i < 7 && j < 3 {
+                writeln!(elements, "{n}, {n}, {}, {}, {}", n + 1, n + 11, n + 10).expect("text");
+            }
+        }
+    }
+    let pressed = |height: f64, depth: f64| {
+        run_deck(&format!(
+            "{nodes}{elements}*NSET, NSET=BASE, GENERATE\n1, 8\n*NSET, NSET=AXIS\n1, 11, 21, 31\n\
+             *ELSET, ELSET=TOP, GENERATE\n21, 27\n*SURFACE, NAME=GROUND\nTOP, S3\n*NODE\n99, 0., 1.\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n\
+             *SURFACE, NAME=PUNCH, TYPE=SEGMENTS\nSTART, 1., {height:?}\nLINE, 1., 0.\nLINE, -1., 0.\n\
+             *RIGID BODY, ANALYTICAL SURFACE=PUNCH, REF NODE=99\n\
+             *SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nGROUND, PUNCH\n\
+             *STEP\n*STATIC\n.25, 1.\n*BOUNDARY\nBASE, 2, 2\nAXIS, 1, 1\n99, 1, 1\n99, 2, 2, -{depth:?}\n*END STEP\n"
+        ))
+    };
+    for (height, depth) in [(0.2, 0.02), (1.0, 0.02), (50.0, 0.02), (1.0, 0.15)] {
+        let (keep, failure) = pressed(height, depth);
+        assert_eq!(failure, None, "{height} {depth}");
+        for report in keep.reports.iter().skip(1) {
+            let force = |i: usize| report.nodal.contact_force[2 * (24 + i) + 1];
+            let is_closed: Vec<bool> = (0..8).map(|i| force(i) != 0.0).collect();
+            let under = [true, true, true, true, false, false, false, false];
+            assert_eq!(is_closed, under, "{height} {depth} {}", report.time);
         }
     }
 }
