@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import changed_decks as changed
 import h5py
@@ -245,16 +246,25 @@ def _has_answer(seen: Seen, name: str) -> NDArray[np.bool_]:
         return np.ones(seen.rows, np.bool_)
     values = seen.by_row(name)
     group, _, own = name.rpartition("/")
-    if own in (*OF_CONTACTS, *OF_WORK):
-        force = seen.by_row("VTKHDF/PointData/CONTACT_FORCE")
-    elif group.startswith(CONTACTS) and (values.dtype.kind != "f" or own == "friction_coefficient"):
-        force = seen[f"{group}/force"]
-    elif group == f"{CONTACTS}ALL_EXTERIOR" and own in ON_SLAVE:
+    is_field = name.startswith("VTKHDF/")
+    if group == f"{CONTACTS}ALL_EXTERIOR" and own in ON_SLAVE:
         return np.zeros(len(values), np.bool_)
+    if is_field and own in (*OF_CONTACTS, *OF_WORK):
+        size = np.abs(seen.by_row("VTKHDF/PointData/CONTACT_FORCE")).reshape(len(values), -1).max(axis=1)
+    elif not is_field and (own in OF_WORK or _is_decision(group, own, values)):
+        names = [each for each in seen.data if each.startswith(CONTACTS) and each.endswith("/force")]
+        if group.startswith(CONTACTS):
+            names = [f"{group}/force"]
+        forces = [np.abs(seen[each]).max(axis=1) for each in names]
+        size = np.max(forces, axis=0) if forces else np.ones(len(values))
     else:
         return np.ones(len(values), np.bool_)
-    size = np.abs(force).reshape(len(force), -1).max(axis=1)
     return size > SAME * size.max()
+
+
+def _is_decision(group: str, own: str, values: NDArray[Any]) -> bool:
+    """Whether a history of a contact counts pairs, or is of closed ones."""
+    return group.startswith(CONTACTS) and (values.dtype.kind != "f" or own == "friction_coefficient")
 
 
 def _noisy(trial: Trial) -> Seen:
