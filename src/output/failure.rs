@@ -586,6 +586,7 @@ pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
         let [slave, a, b] = [slave, a, b].map(|node| model.node_name(node));
         lines.push(format!("         at node {slave} on the segment {a}-{b}"));
     }
+    lines.extend(unbalanced_lines(&failure.cause, model));
     lines
 }
 
