@@ -20,7 +20,7 @@ use super::tolerances::{
     STRAIGHT_SINE,
 };
 use crate::linear::largest;
-use crate::vectors::{angle, cross, difference, dot};
+use crate::vectors::{angle, cross, difference, dot, length};
 
 /// What a slave node must not penetrate: a segment, or the corner at its end.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -449,7 +449,8 @@ impl SlaveNode<'_> {
             let mut held = self.held_by.iter().flat_map(ContactTarget::segments);
             let is_faced = self.is_opposite(j) == Some(true)
                 || (held.any(|held| held == j) && self.faced_at_start(j) > self.faced_at_start(i));
-            is_faced && self.was_over(j) && self.was_in_front(j) && !self.is_own(j)
+            let near = near.min(self.corner_reach(j, &self.project(j)));
+            is_faced && self.was_over(j, near) && self.was_in_front(j) && !self.is_own(j)
         };
         before.filter(constrains).or(after.filter(constrains))
     }
@@ -688,18 +689,21 @@ impl SlaveNode<'_> {
         CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
     }
 
-    /// Whether the node, or the middle of a face of its own, was over a segment at the start.
-    fn was_over(&self, segment: usize) -> bool {
+    /// Whether the node was over a segment at the start, or near its end (length) with half of a face of its own over it.
+    fn was_over(&self, segment: usize, near: f64) -> bool {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.start.of(n));
-        // but for round-off: nodes of matching meshes are at the ends
-        let is_over = |s: [f64; 2]| (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&project(s, a, b).xi);
+        let is_over =
+            |s: [f64; 2], reach: f64| (-reach..=1.0 + reach).contains(&project(s, a, b).xi);
         let node = self.start_position();
         let middle = |n: usize| {
             let [x, y] = self.start.of(n);
             [f64::midpoint(node[0], x), f64::midpoint(node[1], y)]
         };
-        let adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
-        is_over(node) || adjacent.map(middle).any(is_over)
+        let mut adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
+        // but for round-off: nodes of matching meshes are at the ends
+        is_over(node, CLOSED_GAP)
+            || (is_over(node, near / length(difference(a, b)))
+                && adjacent.any(|n| is_over(middle(n), CLOSED_GAP)))
     }
 
     /// Displacement of the node relative to a segment since the start (length).
