@@ -683,7 +683,7 @@ class Scene:
                 text += card(f"DLOAD{amplitude}", *rows)
             case "centrifugal":
                 axis = (0.0, 0.0, 0.0, 0.0, 1.0, 0.0) if ring else (0.0, 8.0, 0.0, 0.0, 0.0, 1.0)
-                text += card(f"DLOAD{amplitude}", ("UPPER", "CENTRIF", 0.5 * scale, *axis))
+                text += card(f"DLOAD{amplitude}", ("UPPER", "CENTRIF", (0.25 if ring else 0.5) * scale, *axis))
             case "motion":
                 across = (
                     []
