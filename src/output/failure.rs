@@ -10,12 +10,15 @@ use crate::dynamics::{
 use crate::elements::ElementResult;
 use crate::lcp::LcpError;
 use crate::linear::LinearError;
-use crate::model::{Bodies, Model, Procedure, RigidBody, Set, Step};
+use crate::model::{Bodies, Model, Procedure, RigidBody, RigidProfile, Set, Step, SurfaceKind};
+use crate::vectors::{cross, difference, length};
 
 /// Pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
 /// Part of the area between the sides of a corner at which its element is crushed there.
 const CRUSHED_CORNER: f64 = 0.01;
+/// Sine of the angle by which a sharp corner of a rigid surface turns at least.
+const SHARP_SINE: f64 = 0.1;
 
 /// Increment, time, cause, worst place, advice, halvings and the passes; `u` and `elements` are the last
 /// converged displacement and the results of the elements there.
@@ -402,7 +405,7 @@ pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
     let step = model.steps.get(failure.step.wrapping_sub(1))?;
     let is_static = step.procedure == Procedure::Static;
     let with_limit = |own: &str| match is_static && may_be_at_limit(&failure.cause) {
-        true => format!("{own}; {}", limit_advice(step)),
+        true => format!("{own}; {}", limit_advice(step, model)),
         false => own.to_owned(),
     };
     let text = match (&failure.cause, failure.course.as_deref()) {
@@ -419,7 +422,7 @@ pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
             )
         }
         (_, Some(Course::Alternating(all))) => with_limit(alternation_advice(all)?),
-        (Cause::NotConverged | Cause::Diverged, _) if is_static => limit_advice(step),
+        (Cause::NotConverged | Cause::Diverged, _) if is_static => limit_advice(step, model),
         (cause, _) => with_limit(cause_advice(cause, model)?),
     };
     Some(match has_halvings_left(failure, step) {
@@ -438,7 +441,7 @@ fn may_be_at_limit(cause: &Cause) -> bool {
 }
 
 /// The ways out of a static step whose equilibria end.
-fn limit_advice(step: &Step) -> String {
+fn limit_advice(step: &Step, model: &Model) -> String {
     let is_loaded = !(step.point_loads.is_empty()
         && step.body_forces.is_empty()
         && step.centrifugal_forces.is_empty()
@@ -448,10 +451,33 @@ fn limit_advice(step: &Step) -> String {
         true => ", or prescribe a displacement in place of the load",
         false => "",
     };
+    let rounded = match has_sharp_die(model) {
+        true => {
+            "; where a body bends round a sharp corner of a rigid surface, round the corner by an arc"
+        }
+        false => "",
+    };
     format!(
         "where equilibrium ends, as at a limit of the load, of friction or before a body snaps, go on with \
-         *DYNAMIC, APPLICATION=QUASI-STATIC from the last increment{held}"
+         *DYNAMIC, APPLICATION=QUASI-STATIC from the last increment{held}{rounded}"
     )
+}
+
+/// Whether a contact has a drawn rigid surface with a sharp corner.
+fn has_sharp_die(model: &Model) -> bool {
+    let mut masters = (model.contacts.iter()).map(|contact| &model.surfaces[contact.master].kind);
+    masters.any(|kind| match kind {
+        SurfaceKind::Rigid(profile) => is_sharp(profile, &model.mesh.coordinates),
+        SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => false,
+    })
+}
+
+/// Whether a profile has a sharp corner, as chords of arcs have none.
+fn is_sharp(profile: &RigidProfile, x: &[[f64; 2]]) -> bool {
+    profile.segments.windows(2).any(|pair| {
+        let [e, f] = [pair[0], pair[1]].map(|[from, to]| difference(x[from], x[to]));
+        pair[0][1] == pair[1][0] && cross(e, f).abs() > SHARP_SINE * length(e) * length(f)
+    })
 }
 
 /// Whether only the deck's least increment kept a stopped run from halving its increment again.
@@ -609,6 +635,22 @@ mod tests {
         ContactChanges, Element, ElementType, Incrementation, Increments, Load, Mesh, PointLoad,
         Procedure, Set, Settings, Variation,
     };
+
+    #[test]
+    fn a_corner_of_a_die_is_sharp_and_chords_of_an_arc_are_not() {
+        let profile = RigidProfile {
+            segments: vec![[0, 1], [1, 2]],
+            ..RigidProfile::default()
+        };
+        let turned = |angle: f64| [[0.0, 0.0], [1.0, 0.0], [1.0 + angle.cos(), angle.sin()]];
+        assert!(is_sharp(&profile, &turned(0.2)));
+        assert!(!is_sharp(&profile, &turned(1.0_f64.to_radians())));
+        let apart = RigidProfile {
+            segments: vec![[0, 1], [2, 0]],
+            ..RigidProfile::default()
+        };
+        assert!(!is_sharp(&apart, &turned(1.0)));
+    }
 
     #[test]
     fn a_crushed_corner_at_a_contact_is_named() {
