@@ -448,7 +448,8 @@ impl SlaveNode<'_> {
         let constrains = |&j: &usize| {
             let mut held = self.held_by.iter().flat_map(ContactTarget::segments);
             let is_faced = self.is_opposite(j) == Some(true)
-                || (held.any(|held| held == j) && self.faced_at_start(j) > self.faced_at_start(i));
+                || (held.any(|held| held == j)
+                    && self.faced_at_start(j) > self.faced_at_start(i) + STRAIGHT_SINE);
             let near = near.min(self.corner_reach(j, &self.project(j)));
             is_faced && self.was_over(j, near) && self.was_in_front(j) && !self.is_own(j)
         };

@@ -64,6 +64,9 @@ NEAR = 0.5
 LEFT = 0.02
 """Mean gap that the motion of points may leave, in lengths; and what corners have means for."""
 
+MOVED = 1e-6
+"""Error of `GAP` of means whose points have changed their segment, in lengths."""
+
 FORCE = 1e-9
 """Contact forces below this part of the largest one are none."""
 
@@ -633,7 +636,7 @@ class Frames:
                 if not is_corner and gaps[node] <= NEAR * self._edge and (told or not on_master.whole):
                     beyond = gaps[node] - nearest
                     stored = (beyond if node in elsewhere else abs(beyond)) / self._edge
-                    bound = LEFT if mean.moved or on_master.moved else TOUCH
+                    bound = MOVED if mean.moved or on_master.moved else TOUCH
                     self.checks["gap"].add(stored, bound + noise, f"GAP, {at}")
                 # what is left at the ends of masters, eq. (7.9)
                 is_exact = told and not mean.moved and node not in means.corners
