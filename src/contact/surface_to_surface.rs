@@ -678,7 +678,7 @@ pub(super) fn change(
         let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
         let mut lean = Vector6::zeros();
         if at.form == RowForm::End {
-            // the couple has the height of its point, which follows the gap of the point and that of the constraint
+            // the couple has a height, which changes with the gap of its point and with the gap of the constraint
             lean = column(couple(&rows.projection)) * pt;
             own += lean * column(rows.derivative.normal).transpose();
         }

@@ -433,8 +433,8 @@ impl SlaveNode<'_> {
 
     /// The neighbour, round a convex corner near the node, of a segment that the surface of the
     /// node does not face. Where a corner slides over a corner, only the face that the surface of
-    /// the node faces constrains it; behind the other the node's own body would lie. The node, or half of a face of its own,
-    /// was over that face at the start: beside a punch no node is under it, however long the lines of the punch are.
+    /// the node faces constrains it; behind the other the node's own body would lie. At the start the node was over that
+    /// face, or near its end with half of a face of its own over it: a long line of a punch holds no node beside the punch.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;

@@ -37,8 +37,8 @@ const CORRECTION_HALVINGS: i32 = 6;
 
 /// Relative difference of lengths between which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
-/// Friction beside that of the law at the end of the last pass, as a part of the largest normal force: a tenth of what the
-/// certificate allows.
+/// Largest error of the friction after the last pass, as a part of the largest normal force. It is a tenth of the bound of
+/// the certificate.
 const OWN_FRICTION: f64 = 1e-10;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even
