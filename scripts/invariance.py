@@ -74,6 +74,9 @@ def rotation(angle: float) -> Array:
     return np.array([[cos(angle), -sin(angle)], [sin(angle), cos(angle)]])
 
 
+FIRST_FRAMES = 10
+"""Frames of a run whose velocities bound the speed of a boost."""
+
 QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 MIRROR = np.array([[-1.0, 0.0], [0.0, 1.0]])
 
@@ -88,9 +91,11 @@ def _turned(matrix: Array) -> Callable[[Deck, Seen], Form]:
 
 
 def _boosted(deck: Deck, base: Seen) -> Form:
-    # no faster than the model, and no further than its size: displacements lose no digits
-    way = changed.size(deck) / base["history/time"][base.rows - 1]
-    speed = min(float(np.abs(base["VTKHDF/PointData/V"]).max()) or way, way)
+    # no faster than the model, and no further than its size: displacements lose no digits. The run may have been stopped
+    # for its time, which depends on the machine: only its first frames count.
+    way = changed.size(deck) / (deck.duration or 1.0)
+    velocities = base["VTKHDF/PointData/V"][: FIRST_FRAMES * base.nodes]
+    speed = min(float(np.abs(velocities).max()) or way, way)
     velocity = np.array([0.6, -0.8]) * speed
     return Form(changed.boosted(deck, velocity), Change(velocity=velocity))
 

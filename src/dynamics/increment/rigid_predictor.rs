@@ -1,9 +1,12 @@
 //! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with
-//! finite rotation. Section 4 of docs/theory.md, Predictor.
+//! finite rotation; bodies whose supports all move alike move with them. Section 4 of docs/theory.md, Predictor.
 
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::vectors::{cross, difference};
+
+/// Displacement increments of two supports that differ by this part of their displacements are alike: they differ by round-off.
+const ALIKE: f64 = 64.0 * f64::EPSILON;
 
 /// Sums over the nodes of a body.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,13 +38,18 @@ pub(super) fn rigid_predictor(
     let mut d = vec![0.0; start.u.len()];
     let is_prescribed = |dof: usize| problem.unknowns.is_prescribed(dof);
     (problem.unknowns.turning).predict(&start.v, interval.dt, &mut d, is_prescribed);
-    let holds = holds(problem);
-    let all_are_held = holds.iter().all(|&hold| hold == Hold::Held);
-    if all_are_held || start.v.iter().all(|&v| v == 0.0) {
+    if start.v.iter().all(|&v| v == 0.0) {
         return d;
     }
     let (body_of, dt) = (problem.parts.of_nodes(), interval.dt);
-    let motions = motions(problem, &holds, start, interval);
+    let holds = holds(problem);
+    let prescribed = (problem.unknowns).prescribed_increment([&start.u; 2], interval.end);
+    let motions = motions(problem, &holds, start, dt, &prescribed);
+    let of_supports = of_supports(problem, &start.u, &prescribed);
+    let leading = problem.unknowns.turning.leading();
+    leading
+        .filter(|&dof| is_prescribed(dof))
+        .for_each(|dof| d[dof] = prescribed[dof]);
     for (node, &body) in body_of.iter().enumerate() {
         let RigidMotion {
             mass,
@@ -50,8 +58,17 @@ pub(super) fn rigid_predictor(
             momentum,
             inertia,
         } = motions[body];
+        if holds[body] == Hold::Held {
+            let of_nodes = 0..problem.model.mesh.node_count();
+            for i in (0..2).filter(|_| of_nodes.contains(&node)) {
+                if let Shift::Alike(shift) = of_supports[body][i] {
+                    d[2 * node + i] = shift;
+                }
+            }
+            continue;
+        }
         // without mass there is no motion to go on with
-        if holds[body] == Hold::Held || !(mass > 0.0 && inertia > 0.0) {
+        if !(mass > 0.0 && inertia > 0.0) {
             continue;
         }
         let (sin, cos) = (2.0 * (momentum / inertia * dt / 2.0).atan()).sin_cos();
@@ -59,20 +76,50 @@ pub(super) fn rigid_predictor(
         d[2 * node] = shift[0] + (cos - 1.0) * x - sin * y;
         d[2 * node + 1] = shift[1] + sin * x + (cos - 1.0) * y;
     }
+    problem.unknowns.follow(&mut d);
     d
 }
 
-/// Rigid motion of every body.
+/// What the supports of a body do along an axis in an increment.
+#[derive(Debug, Clone, Copy, Default)]
+enum Shift {
+    /// There are none.
+    #[default]
+    Unsupported,
+    /// All have this displacement increment (length).
+    Alike(f64),
+    /// They have several.
+    Unlike,
+}
+
+/// Displacement increments of the supports of every body along both axes: those of `prescribed`, over all dofs.
+fn of_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> Vec<[Shift; 2]> {
+    let mut shifts = vec![[Shift::Unsupported; 2]; problem.parts.bodies()];
+    let of_nodes = 0..2 * problem.model.mesh.node_count();
+    let supports = problem.unknowns.prescribed();
+    for dof in supports.filter(|dof| of_nodes.contains(dof)) {
+        let shift = &mut shifts[problem.parts.of_nodes()[dof / 2]][dof % 2];
+        let least = ALIKE * (u0[dof].abs() + prescribed[dof].abs());
+        *shift = match *shift {
+            Shift::Unsupported => Shift::Alike(prescribed[dof]),
+            Shift::Alike(other) if (prescribed[dof] - other).abs() <= least => Shift::Alike(other),
+            _ => Shift::Unlike,
+        };
+    }
+    shifts
+}
+
+/// Rigid motion of every body in an increment of length `dt`; `prescribed` are the increments of the supports.
 fn motions(
     problem: &StepProblem,
     holds: &[Hold],
     start: &State,
-    interval: Interval,
+    dt: f64,
+    prescribed: &[f64],
 ) -> Vec<RigidMotion> {
     let body_of = problem.parts.of_nodes();
     let mut motions = vec![RigidMotion::default(); holds.len()];
     let mut rates = start.v.clone();
-    let prescribed = (problem.unknowns).prescribed_increment([&start.u; 2], interval.end);
     for (node, &body) in body_of.iter().enumerate() {
         let motion = &mut motions[body];
         let (m, x) = (problem.mass.shares[node], problem.position(&start.u, node));
@@ -84,7 +131,7 @@ fn motions(
     }
     let with_mass = motions.iter_mut().zip(holds);
     for (motion, &hold) in with_mass.filter(|(motion, _)| motion.mass > 0.0) {
-        let (mass, dt) = (motion.mass, interval.dt);
+        let mass = motion.mass;
         motion.pole = motion.pole.map(|sum| sum / mass);
         motion.shift = motion.shift.map(|sum| dt * sum / mass);
         if let Hold::Pinned(pin) = hold {
@@ -98,7 +145,7 @@ fn motions(
         let r = difference(motions[body].pole, problem.position(&start.u, node));
         for i in 0..2 {
             arms[2 * node + i] = r[i];
-            rates[2 * node + i] -= motions[body].shift[i] / interval.dt;
+            rates[2 * node + i] -= motions[body].shift[i] / dt;
         }
     }
     let (p, weighted) = (problem.mass.times(&rates), problem.mass.times(&arms));
