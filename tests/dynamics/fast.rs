@@ -13,7 +13,7 @@ use crate::blocks::{
     Block, Keep, PAPER, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw,
 };
 use stickslip::dynamics::{Cause, Cutback};
-use stickslip::model::{Model, Scheme, Settings};
+use stickslip::model::{Model, Scheme, Settings, SupportMotion};
 
 /// Length of an element.
 const SIZE: f64 = 0.25;
@@ -155,5 +155,40 @@ fn a_body_whose_nodes_are_far_in_the_passes_lands_in_its_first_increment() {
         let depth = bodies.depth(&keep);
         assert!(touch(&keep) && depth < 1e-9 * SIZE, "{scheme:?} {depth:e}");
         assert_eq!(summary.cutbacks, 0, "{scheme:?}");
+    }
+}
+
+#[test]
+fn a_bullet_meets_the_same_forces_in_every_frame() {
+    let (dt, count) = (0.02, 12);
+    for scheme in [PAPER, Scheme::EnergyMomentum] {
+        // forces in every increment, seen from a frame that moves with -w
+        let seen = |w: [f64; 2]| -> Vec<[f64; 2]> {
+            let mut bodies = Bodies::new(0.25, 0.4, 0.3);
+            let Bodies {
+                model,
+                plate,
+                block,
+            } = &mut bodies;
+            throw(model, plate, w, 0.0, [0.0; 2]);
+            throw(model, block, [w[0], w[1] - 40.0], 0.0, [0.0; 2]);
+            bodies.step(scheme, dt, count);
+            for support in &mut bodies.model.steps[0].supports {
+                let to = w[support.dof % 2] * dt * count as f64;
+                support.motion = SupportMotion::Ramp { to };
+            }
+            let (keep, _) = run_to_end(&bodies.model);
+            keep.reports.iter().map(|r| r.contacts[0].force).collect()
+        };
+        let at_rest = seen([0.0; 2]);
+        let largest = (at_rest.iter()).fold(0.0, |all: f64, f| all.max(f[0].hypot(f[1])));
+        assert!(largest > 0.0, "it hits the plate");
+        for w in (1..=20).map(|i| [0.6 * f64::from(i), -0.8 * f64::from(i)]) {
+            for (force, own) in at_rest.iter().zip(seen(w)) {
+                let difference = (force[0] - own[0]).hypot(force[1] - own[1]);
+                let is_same = difference < 1e-7 * largest;
+                assert!(is_same, "{scheme:?} {w:?}: {own:?} in place of {force:?}");
+            }
+        }
     }
 }

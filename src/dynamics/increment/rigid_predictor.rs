@@ -1,5 +1,5 @@
 //! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with
-//! finite rotation; bodies whose supports all move alike move with them. Section 4 of docs/theory.md, Predictor.
+//! finite rotation; the others move with the supports of the model where these all move alike. Section 4 of docs/theory.md, Predictor.
 
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
@@ -22,22 +22,21 @@ struct RigidMotion {
     inertia: f64,
 }
 
-/// Displacement increment, over all dofs, of the bodies that may move as rigid bodies; zero elsewhere.
+/// Displacement increment, over all dofs, of the bodies that may move as rigid bodies:
 ///
 /// ```text
 /// d = shift + (R - 1) r,  R the rotation by 2 atan(omega dt/2),  omega = H/I
 /// ```
 ///
 /// r from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about
-/// this configuration: from U0 a body that turns by the angle phi would be stretched by phi²/2.
+/// this configuration: from U0 a body that turns by the angle phi would be stretched by phi²/2. The other bodies have the
+/// increment that all supports of the model share, or zero.
 pub(super) fn rigid_predictor(
     problem: &StepProblem,
     start: &State,
     interval: Interval,
 ) -> Vec<f64> {
     let mut d = vec![0.0; start.u.len()];
-    let is_prescribed = |dof: usize| problem.unknowns.is_prescribed(dof);
-    (problem.unknowns.turning).predict(&start.v, interval.dt, &mut d, is_prescribed);
     if start.v.iter().all(|&v| v == 0.0) {
         return d;
     }
@@ -45,11 +44,7 @@ pub(super) fn rigid_predictor(
     let holds = holds(problem);
     let prescribed = (problem.unknowns).prescribed_increment([&start.u; 2], interval.end);
     let motions = motions(problem, &holds, start, dt, &prescribed);
-    let of_supports = of_supports(problem, &start.u, &prescribed);
-    let leading = problem.unknowns.turning.leading();
-    leading
-        .filter(|&dof| is_prescribed(dof))
-        .for_each(|dof| d[dof] = prescribed[dof]);
+    let of_supports = of_all_supports(problem, &start.u, &prescribed);
     for (node, &body) in body_of.iter().enumerate() {
         let RigidMotion {
             mass,
@@ -59,11 +54,8 @@ pub(super) fn rigid_predictor(
             inertia,
         } = motions[body];
         if holds[body] == Hold::Held {
-            let of_nodes = 0..problem.model.mesh.node_count();
-            for i in (0..2).filter(|_| of_nodes.contains(&node)) {
-                if let Shift::Alike(shift) = of_supports[body][i] {
-                    d[2 * node + i] = shift;
-                }
+            if node < problem.model.mesh.node_count() {
+                (0..2).for_each(|i| d[2 * node + i] = of_supports[i]);
             }
             continue;
         }
@@ -76,37 +68,28 @@ pub(super) fn rigid_predictor(
         d[2 * node] = shift[0] + (cos - 1.0) * x - sin * y;
         d[2 * node + 1] = shift[1] + sin * x + (cos - 1.0) * y;
     }
+    let is_prescribed = |dof: usize| problem.unknowns.is_prescribed(dof);
+    (problem.unknowns.turning).predict(&start.v, dt, &mut d, is_prescribed);
     problem.unknowns.follow(&mut d);
     d
 }
 
-/// What the supports of a body do along an axis in an increment.
-#[derive(Debug, Clone, Copy, Default)]
-enum Shift {
-    /// There are none.
-    #[default]
-    Unsupported,
-    /// All have this displacement increment (length).
-    Alike(f64),
-    /// They have several.
-    Unlike,
-}
-
-/// Displacement increments of the supports of every body along both axes: those of `prescribed`, over all dofs.
-fn of_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> Vec<[Shift; 2]> {
-    let mut shifts = vec![[Shift::Unsupported; 2]; problem.parts.bodies()];
-    let of_nodes = 0..2 * problem.model.mesh.node_count();
-    let supports = problem.unknowns.prescribed();
-    for dof in supports.filter(|dof| of_nodes.contains(dof)) {
-        let shift = &mut shifts[problem.parts.of_nodes()[dof / 2]][dof % 2];
-        let least = ALIKE * (u0[dof].abs() + prescribed[dof].abs());
-        *shift = match *shift {
-            Shift::Unsupported => Shift::Alike(prescribed[dof]),
-            Shift::Alike(other) if (prescribed[dof] - other).abs() <= least => Shift::Alike(other),
-            _ => Shift::Unlike,
+/// Displacement increment along both axes that all supports of the model share, of those of `prescribed`, over all dofs: zero
+/// where they move otherwise.
+fn of_all_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> [f64; 2] {
+    let nodes = problem.model.mesh.node_count();
+    [0, 1].map(|axis| {
+        let supports = problem.unknowns.prescribed();
+        let mut along = supports.filter(|dof| dof / 2 < nodes && dof % 2 == axis);
+        let Some(first) = along.next().map(|dof| prescribed[dof]) else {
+            return 0.0;
         };
-    }
-    shifts
+        let is_alike = |dof: usize| {
+            let least = ALIKE * (u0[dof].abs() + prescribed[dof].abs());
+            (prescribed[dof] - first).abs() <= least
+        };
+        if along.all(is_alike) { first } else { 0.0 }
+    })
 }
 
 /// Rigid motion of every body in an increment of length `dt`; `prescribed` are the increments of the supports.
