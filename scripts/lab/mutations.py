@@ -35,18 +35,21 @@ class Mutation:
     def apply(self, root: Path) -> None:
         """Puts the fault into a copy of the source."""
         path = root / self.file
-        text = path.read_text()
+        path.write_text(self.put_into(path.read_text()))
+
+    def put_into(self, text: str) -> str:
+        """The text of the file with the fault."""
         if text.count(self.right) != 1:
             raise Fault(f"{self.file} has not one place like this: {self.right}")
-        path.write_text(text.replace(self.right, self.wrong))
+        return text.replace(self.right, self.wrong)
 
 
 MUTATIONS = [
     Mutation(
         "a weight of a mean is left out",
         "src/contact/surface_to_surface.rs",
-        "gap += point.weight * rows.projection.gap;",
-        "gap += rows.projection.gap;",
+        "map(|q| q.weight * q.gap(at))",
+        "map(|q| q.gap(at))",
     ),
     Mutation(
         "a coupling turns the other way",

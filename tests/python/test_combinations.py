@@ -7,8 +7,10 @@ import pytest
 from lab.combinations import SEED, SHORT, decks_of, judge, judge_all
 from lab.covering import Covering, pairs_of
 from lab.levels import FACTORS, SIMPLEST, allows
+from lab.mutations import MUTATIONS, Mutation
 from lab.scene import Scene
 from lab.single import SINGLE
+from repository import ROOT
 from stickslip import program
 
 
@@ -54,6 +56,12 @@ def test_decks_are_small_and_the_same_each_time() -> None:
         scene = Scene(choice)
         assert scene.deck() == Scene(choice).deck()
         assert sum(len(body.mesh.elements) for body in scene.bodies) <= 150
+
+
+@pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda mutation: mutation.name)
+def test_mutations_have_their_places(mutation: Mutation) -> None:
+    text = (ROOT / mutation.file).read_text()
+    assert mutation.put_into(text) != text
 
 
 @pytest.mark.parametrize("family", ["CPE4I", "CPE8RH"])
