@@ -81,13 +81,34 @@ QUARTER = np.array([[0.0, -1.0], [1.0, 0.0]])
 MIRROR = np.array([[-1.0, 0.0], [0.0, 1.0]])
 
 
+def _keeps_its_axis(deck: Deck) -> bool:
+    """Whether its bodies are bodies of revolution: only a motion along their axis leaves them as they are."""
+    cards = deck.find("ELEMENT")
+    return any(card.parameters.get("TYPE", "").upper().startswith("CAX") for card in cards)
+
+
+def _along(deck: Deck, vector: Array) -> Array:
+    """A vector, of bodies of revolution its part along their axis."""
+    return vector * [0.0, 1.0] if _keeps_its_axis(deck) else vector
+
+
 def _moved(deck: Deck, _: Seen) -> Form:
-    shift = np.array([0.7, -0.9]) * changed.size(deck)
+    shift = _along(deck, np.array([0.7, -0.9])) * changed.size(deck)
     return Form(changed.moved(deck, shift), Change(shift=shift))
 
 
 def _turned(matrix: Array) -> Callable[[Deck, Seen], Form]:
-    return lambda deck, _: Form(changed.turned(deck, matrix), Change(matrix=matrix))
+    def form(deck: Deck, _: Seen) -> Form:
+        if _keeps_its_axis(deck):
+            raise Unchangeable("bodies of revolution keep their axis")
+        return Form(changed.turned(deck, matrix), Change(matrix=matrix))
+
+    return form
+
+
+def _mirrored(deck: Deck, _: Seen) -> Form:
+    matrix = -MIRROR if _keeps_its_axis(deck) else MIRROR
+    return Form(changed.turned(deck, matrix), Change(matrix=matrix))
 
 
 def _boosted(deck: Deck, base: Seen) -> Form:
@@ -96,7 +117,7 @@ def _boosted(deck: Deck, base: Seen) -> Form:
     way = changed.size(deck) / (deck.duration or 1.0)
     velocities = base["VTKHDF/PointData/V"][: FIRST_FRAMES * base.nodes]
     speed = min(float(np.abs(velocities).max()) or way, way)
-    velocity = np.array([0.6, -0.8]) * speed
+    velocity = _along(deck, np.array([0.6, -0.8])) * speed
     return Form(changed.boosted(deck, velocity), Change(velocity=velocity))
 
 
@@ -124,7 +145,7 @@ FORMS: dict[str, Callable[[Deck, Seen], Form]] = {
     "moved": _moved,
     "turned by 90 degrees": _turned(QUARTER),
     "turned by 0.3 rad": _turned(rotation(0.3)),
-    "mirrored": _turned(MIRROR),
+    "mirrored": _mirrored,
     "boosted": _boosted,
     "renumbered": _renumbered,
     "reordered": lambda deck, _: Form(changed.reordered(deck), Change()),

@@ -26,6 +26,8 @@ DECKS = (
     "verification/convergence/blocks_16_mu03_p2",
     # supports of one direction, damping
     "verification/damping/em_beta_long",
+    # bodies of revolution
+    "input/disc_spring/disc_spring_mu014",
 )
 
 ENOUGH = 0.5
