@@ -22,7 +22,7 @@ REPORTED_NEARBY = ("CONTACT_STATUS", "GAP", "min_gap")
 """Reported of nodes near a segment; how near depends on ways and passes of the increment."""
 
 LEFT_OUT = re.compile(
-    r"history/solver/(?!converged)\w+|history/certificate/.*|history/(impacts|returns|touches)/.*|.*/points/.*|.*/(labels|node|BODY)"
+    r"history/solver/(?!converged)\w+|history/(certificate/.*|energy/round_off)|history/(impacts|returns|touches)/.*|.*/points/.*|.*/(labels|node|BODY)"
 )
 """Work and errors of the solver, and numbers; impacts are compared by themselves."""
 
