@@ -69,8 +69,8 @@ def moved(deck: Deck, shift: Array) -> Deck:
     return with_points(deck, lambda point: point + shift)
 
 
-def noisy(deck: Deck, largest: float) -> Deck:
-    """The deck with random numbers up to `largest` added to all coordinates.
+def noisy(deck: Deck, largest: Array | float) -> Deck:
+    """The deck with random numbers up to `largest` added to all coordinates: of all directions, or of each.
 
     A negative number gives the same ones with the other sign: what is decided by a tie is decided
     otherwise by one of both.

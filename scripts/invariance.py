@@ -231,7 +231,9 @@ def _judge(sample: Sample, settings: Settings, folder: Path, verdict: Verdict) -
     grown: dict[str, Array] = {}
     ends_alike = True
     for sign in (1.0, -1.0):
-        noisy = changed.noisy(deck, sign * NOISE * changed.size(deck))
+        # nodes on the axis stay there
+        largest = _along(deck, np.full(2, sign * NOISE * changed.size(deck)))
+        noisy = changed.noisy(deck, largest)
         ended, seen = _seen(settings.program, noisy, folder / f"noise{sign}", longer)
         ends_alike &= not _other_ends(first, ended, base, seen)
         _add(grown, deviations(base, seen, Change(), theta, set()))
