@@ -122,10 +122,11 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         material: &impl StressAtPoints,
         compatible: [Matrix2<f64>; P],
     ) -> Measured<P> {
-        let mean = Self::mean_of(element, &compatible);
+        let strain = Self::mean_of(element, &compatible);
+        let measure = material.convex_in();
         Measured {
             compatible,
-            mean: MeanStrain::new(mean, material.convex_in().second_order()),
+            mean: MeanStrain { strain, measure },
         }
     }
 
@@ -165,7 +166,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         k
     }
 
-    /// Derivatives of the energy by alpha, sum v M:(S + Z) and K_aa, this times a factor, at strains of the material.
+    /// Derivatives of the energy by alpha, sum v M:T and K_aa, this times a factor, at strains of the material.
     fn derivatives(
         &self,
         element: &Reference<N, P>,
@@ -177,14 +178,14 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let (s, c) = (material.stresses(strains), material.tangents(strains));
         let (mut slope, mut stiffness) = (Vector4::zeros(), Matrix4::zeros());
         for (p, point) in element.points.iter().enumerate() {
-            let [z, _] = measured.mean.conjugate(&linear[p], &s[p]);
-            let stress = (s[p] + z) * point.volume;
+            let [stress, _] = measured.mean.conjugate(&linear[p], &s[p]);
+            let stress = stress * point.volume;
             slope += Vector4::from_fn(|k, _| self.strains[p][k].dot(&stress));
             let own = self.strains[p].map(|m| Columns::new(measured, &linear[p], m, None));
             add_products(
                 &own,
                 &own,
-                (&s[p], &(c[p] * factor)),
+                (&linear[p], &s[p], &(c[p] * factor)),
                 measured,
                 |k, l, value| {
                     stiffness[(k, l)] += value * point.volume;
@@ -239,7 +240,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         zero(derivatives, last).unwrap_or(Vector4::from_element(f64::NAN))
     }
 
-    /// Stresses that do work on the strains of the displacements, S + Z less the mean of Z + Y, from those of the material.
+    /// Stresses that do work on the strains of the displacements, T less the mean of R, from those of the material.
     fn stresses(
         &self,
         element: &Reference<N, P>,
@@ -249,8 +250,8 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let linear = self.linear(&measured.compatible, alpha);
         let conjugate: [[Matrix2<f64>; 2]; P] =
             std::array::from_fn(|p| measured.mean.conjugate(&linear[p], &of_material[p]));
-        let mean = Self::mean_of(element, &conjugate.map(|[z, y]| z + y));
-        std::array::from_fn(|p| of_material[p] + conjugate[p][0] - mean)
+        let mean = Self::mean_of(element, &conjugate.map(|[_, on_mean]| on_mean));
+        conjugate.map(|[on_all, _]| on_all - mean)
     }
 
     /// sum v (W(E1) - W(E0)) between strains with alpha, the displacement strains of which change by `changes`. Its round-off
@@ -320,14 +321,14 @@ impl Columns {
 fn add_products<const P: usize>(
     left: &[Columns],
     right: &[Columns],
-    (s, c): (&Matrix2<f64>, &Matrix3<f64>),
+    (linear, s, c): (&Matrix2<f64>, &Matrix2<f64>, &Matrix3<f64>),
     measured: &Measured<P>,
     mut add: impl FnMut(usize, usize, f64),
 ) {
     for (l, right) in right.iter().enumerate() {
         let (stress, second) = (
             c * right.first,
-            measured.mean.second_stress(&right.second, s),
+            measured.mean.second_stress(linear, &right.second, s),
         );
         for (k, left) in left.iter().enumerate() {
             add(k, l, left.first.dot(&stress) + left.second.dot(&second));
@@ -587,7 +588,7 @@ impl ElementFormulation for EnhancedStrain {
                 Columns::new(measured, &linear[p], rows[p][j], Some(of_mean[j]))
             });
             let own = modes.strains[p].map(|m| Columns::new(measured, &linear[p], m, None));
-            let at = (&states.of_material[p], &c[p]);
+            let at = (&linear[p], &states.of_material[p], &c[p]);
             let v = point.volume;
             add_products(
                 &of_displacements,

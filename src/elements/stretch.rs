@@ -3,29 +3,37 @@
 //!
 //! # Derivation
 //!
-//! With the mean Ebar of the displacement strains, Cbar = I + 2 Ebar and P = Cbar^-1, what an element has beside its mean
-//! is A = E + M alpha - Ebar. Its strain is Ebar + A in the measure of Green and Lagrange. Cbar exp(2 P A) is additive in
-//! logarithmic strains instead; up to its second order
+//! With the mean Ebar of the displacement strains and Cbar = I + 2 Ebar, what an element has beside its mean is
+//! A = E + M alpha - Ebar. Its strain is Ebar + A in the measure of Green and Lagrange. Cbar exp(2 Cbar^-1 A) is additive
+//! in logarithmic strains instead. Cayley's approximation of the exponential agrees with it up to the second order:
 //!
 //! ```text
-//! E_g = Ebar + A + k A P A,   k = 1, or 0 in the measure of Green and Lagrange
+//! I + 2 E_g = Cbar (1 - Q)^-1 (1 + Q),   Q = Cbar^-1 A
+//! E_g = Ebar + A + A H A,   H = (Cbar - A)^-1, or 0 in the measure of Green and Lagrange
 //! ```
 //!
-//! whose derivatives follow from d(A P A) = dA P A + A P dA - 2 A P dEbar P A.
+//! It is singular where Cbar + A is. The displacements, whose strain is linear in q (eq. 2.27), turn a point of a
+//! parallelogram inside out there, so that the material feels it. With N = H A, W = 1 + N and dH = -H (2 dEbar - dA) H
+//! the derivatives are
+//!
+//! ```text
+//! dE_g  = dEbar + W^T dA W - 2 N^T dEbar N = dEbar + dA + dA N + N^T B,   B = dA W - 2 dEbar N
+//! d²E_g = B_1^T H B_2 + its transpose
+//! ```
 
 use nalgebra::SMatrix;
+
+use crate::materials::StrainMeasure;
 
 /// A tensor in D directions.
 pub(super) type Tensor<const D: usize> = SMatrix<f64, D, D>;
 
-/// Mean strain of an element in a measure.
+/// Mean strain of an element, and the measure in which strains are added to it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MeanStrain<const D: usize> {
-    strain: Tensor<D>,
-    /// P
-    inverse: Tensor<D>,
-    /// k
-    second: f64,
+    /// Ebar
+    pub strain: Tensor<D>,
+    pub measure: StrainMeasure,
 }
 
 /// The difference between two symmetric tensors has the round-off of their product; half of it and its transpose has not.
@@ -41,74 +49,76 @@ pub(super) struct Variation<const D: usize> {
 }
 
 impl<const D: usize> MeanStrain<D> {
-    /// Of a mean of strains; `second` is k. NaN where the mean has turned inside out.
-    pub fn new(strain: Tensor<D>, second: f64) -> Self {
-        let inverse = match second > 0.0 {
-            true => (Tensor::identity() + strain * 2.0).try_inverse(),
-            false => Some(Tensor::zeros()),
+    /// A and H of E + M alpha. H is NaN where the point or the mean has turned inside out.
+    fn beside(&self, linear: &Tensor<D>) -> [Tensor<D>; 2] {
+        let a = linear - self.strain;
+        let h = match self.measure {
+            StrainMeasure::Green => Some(Tensor::zeros()),
+            StrainMeasure::Logarithmic => {
+                let mean = Tensor::identity() + self.strain * 2.0;
+                let both = [mean + a, mean - a].map(|c| c.cholesky());
+                let all_positive = both.iter().all(Option::is_some);
+                let inverse = (mean - a).try_inverse();
+                inverse.filter(|_| all_positive).map(symmetric)
+            }
         };
-        let inverse = symmetric(inverse.unwrap_or(Tensor::from_element(f64::NAN)));
-        MeanStrain {
-            strain,
-            inverse,
-            second,
-        }
+        [a, h.unwrap_or(Tensor::from_element(f64::NAN))]
     }
 
     /// E_g from E + M alpha.
     pub fn strain(&self, linear: &Tensor<D>) -> Tensor<D> {
-        let a = linear - self.strain;
-        linear + symmetric(a * self.inverse * a) * self.second
+        let [a, h] = self.beside(linear);
+        linear + symmetric(a * h * a)
     }
 
-    /// E_g at the end less that at the start, whose E + M alpha has changed by `change` and whose mean by `of_mean`, with a
-    /// round-off that is relative to these changes:
+    /// E_g at the end less that at the start, whose E + M alpha has changed by `at_point` and whose mean by `of_mean`, with
+    /// a round-off that is relative to these changes:
     ///
     /// ```text
-    /// A1 P1 A1 - A0 P0 A0 = dA P1 A1 + A0 dP A1 + A0 P0 dA,   dP = -2 P1 dEbar P0
+    /// A1 H1 A1 - A0 H0 A0 = dA H1 A1 + A0 dH A1 + A0 H0 dA,   dH = -H1 (2 dEbar - dA) H0
     /// ```
     pub fn change(
         [start, end]: [&Self; 2],
         [linear0, linear1]: [&Tensor<D>; 2],
         Variation { at_point, of_mean }: &Variation<D>,
     ) -> Tensor<D> {
-        let (a0, a1) = (linear0 - start.strain, linear1 - end.strain);
-        let (p0, p1) = (start.inverse, end.inverse);
-        let (da, dp) = (at_point - of_mean, p1 * of_mean * p0 * -2.0);
-        at_point + symmetric(da * p1 * a1 + a0 * dp * a1 + a0 * p0 * da) * end.second
+        let ([a0, h0], [a1, h1]) = (start.beside(linear0), end.beside(linear1));
+        let da = at_point - of_mean;
+        let dh = h1 * (da - of_mean * 2.0) * h0;
+        at_point + symmetric(da * h1 * a1 + a0 * dh * a1 + a0 * h0 * da)
     }
 
-    /// What does work on E + M alpha at a point beside the stress S on E_g, and what does none on the mean, so that the
-    /// sum of both does work on A alone:
+    /// What a stress S on E_g does work on:
     ///
     /// ```text
-    /// Z = k (P A S + S A P),   Y = 2 k P A S A P,   S:dE_g = (S + Z):(dE + M dalpha) - (Z + Y):dEbar
+    /// S:dE_g = T:(dE + M dalpha) - R:dEbar,   T = W S W^T,   R = T - S + 2 N S N^T
     /// ```
     pub fn conjugate(&self, linear: &Tensor<D>, s: &Tensor<D>) -> [Tensor<D>; 2] {
-        let pa = self.inverse * (linear - self.strain);
-        let half = pa * s * self.second;
-        [
-            half + half.transpose(),
-            symmetric(half * pa.transpose()) * 2.0,
-        ]
+        let [a, h] = self.beside(linear);
+        let n = h * a;
+        let half = n * s;
+        let square = symmetric(half * n.transpose());
+        let more = half + half.transpose() + square;
+        [s + more, more + square * 2.0]
     }
 
-    /// dE_g of a variation, and B = dA - 2 dEbar P A, with which S : d²E_g = 2 k tr(S B_1^T P B_2).
+    /// dE_g of a variation, and its B.
     pub fn variation(
         &self,
         linear: &Tensor<D>,
         Variation { at_point, of_mean }: &Variation<D>,
     ) -> [Tensor<D>; 2] {
-        let pa = self.inverse * (linear - self.strain);
+        let [a, h] = self.beside(linear);
+        let n = h * a;
         let da = at_point - of_mean;
-        let b = da - of_mean * pa * 2.0;
-        let half = (da - pa.transpose() * of_mean) * pa;
-        [at_point + (half + half.transpose()) * self.second, b]
+        let b = da + (da - of_mean * 2.0) * n;
+        [at_point + symmetric(da * n + n.transpose() * b), b]
     }
 
-    /// k (P B S + its transpose), whose product with another B is S : d²E_g.
-    pub fn second_stress(&self, b: &Tensor<D>, s: &Tensor<D>) -> Tensor<D> {
-        self.inverse * b * s * (2.0 * self.second)
+    /// 2 H B S, whose product with another B is S : d²E_g.
+    pub fn second_stress(&self, linear: &Tensor<D>, b: &Tensor<D>, s: &Tensor<D>) -> Tensor<D> {
+        let [_, h] = self.beside(linear);
+        h * b * s * 2.0
     }
 }
 
@@ -123,41 +133,65 @@ mod tests {
     const OF_MEAN: Matrix3<f64> = Matrix3::new(0.1, 0.3, 0.0, 0.3, -0.2, 0.0, 0.0, 0.0, 0.2);
     const STRESS: Matrix3<f64> = Matrix3::new(2.0, 0.7, 0.0, 0.7, -1.0, 0.0, 0.0, 0.0, 1.3);
 
+    fn mean(strain: Matrix3<f64>) -> MeanStrain<3> {
+        let measure = StrainMeasure::Logarithmic;
+        MeanStrain { strain, measure }
+    }
+
     #[test]
     fn derivatives_are_those_of_the_strain() {
-        let at = |t: f64| MeanStrain::new(MEAN + OF_MEAN * t, 1.0).strain(&(LINEAR + WAY * t));
-        let mean = MeanStrain::new(MEAN, 1.0);
+        let at = |t: f64| mean(MEAN + OF_MEAN * t).strain(&(LINEAR + WAY * t));
+        let start = mean(MEAN);
         let variation = Variation {
             at_point: WAY,
             of_mean: OF_MEAN,
         };
-        let ([first, b], h) = (mean.variation(&LINEAR, &variation), 1e-4);
+        let ([first, b], h) = (start.variation(&LINEAR, &variation), 1e-4);
         assert!((first - (at(h) - at(-h)) / (2.0 * h)).norm() < 1e-7);
-        let [z, y] = mean.conjugate(&LINEAR, &STRESS);
-        let work = (STRESS + z).dot(&WAY) - (z + y).dot(&OF_MEAN);
+        let [on_all, on_mean] = start.conjugate(&LINEAR, &STRESS);
+        let work = on_all.dot(&WAY) - on_mean.dot(&OF_MEAN);
         assert!((work - STRESS.dot(&first)).abs() < 1e-14);
         let second = (at(h) - at(0.0) * 2.0 + at(-h)) / (h * h);
-        let found = mean.second_stress(&b, &STRESS).dot(&b);
+        let found = start.second_stress(&LINEAR, &b, &STRESS).dot(&b);
         assert!((found - STRESS.dot(&second)).abs() < 1e-6);
         for size in [0.3, 1e-4] {
-            let (end, step) = (MeanStrain::new(MEAN + OF_MEAN * size, 1.0), WAY * size);
+            let (end, step) = (mean(MEAN + OF_MEAN * size), WAY * size);
             let variation = Variation {
                 at_point: step,
                 of_mean: OF_MEAN * size,
             };
-            let found = MeanStrain::change([&mean, &end], [&LINEAR, &(LINEAR + step)], &variation);
+            let found = MeanStrain::change([&start, &end], [&LINEAR, &(LINEAR + step)], &variation);
             assert!((found - (at(size) - at(0.0))).norm() < 1e-14);
         }
     }
 
     #[test]
     fn logarithms_of_stretches_are_added_up_to_the_second_order() {
-        let mean = MeanStrain::new(Matrix3::from_diagonal(&Vector3::new(1.5, -0.3, 0.0)), 1.0);
+        let mean = mean(Matrix3::from_diagonal(&Vector3::new(1.5, -0.3, 0.0)));
         let logarithm = |e: f64| (1.0 + 2.0 * e).ln() / 2.0;
         for size in [1e-2, 1e-3] {
             let linear = Matrix3::from_diagonal(&Vector3::new(1.5 + 4.0 * size, -0.3, 0.0));
             let found = logarithm(mean.strain(&linear)[0]) - logarithm(1.5) - size;
             assert!(found.abs() < size * size * size, "{found}");
         }
+    }
+
+    #[test]
+    fn the_material_feels_that_displacements_turn_a_point_inside_out() {
+        // bent in its plane, a bar of the stretch F has F + q s at s, and the strain that is linear in q
+        let stretch: f64 = 1.3;
+        let strain = |f: f64| Matrix3::from_diagonal(&Vector3::new((f * f - 1.0) / 2.0, 0.1, 0.2));
+        let of = |qs: f64| {
+            let linear = strain(stretch) + Matrix3::from_diagonal(&Vector3::x()) * stretch * qs;
+            let c = mean(strain(stretch)).strain(&linear) * 2.0 + Matrix3::identity();
+            c.determinant()
+        };
+        let all: Vec<f64> = (0..20)
+            .map(|i| of(-stretch * f64::from(i) / 20.0))
+            .collect();
+        assert!(all.windows(2).all(|pair| pair[1] < pair[0]), "{all:?}");
+        let last = of(-stretch * (1.0 - 1e-12));
+        assert!(last > 0.0 && last < 1e-11, "{last}");
+        assert!(of(-1.01 * stretch).is_nan());
     }
 }

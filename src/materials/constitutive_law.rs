@@ -32,16 +32,6 @@ pub enum StrainMeasure {
     Logarithmic,
 }
 
-impl StrainMeasure {
-    /// k of C0 + 2 A + 2 k A C0^-1 A, in which strains A are added to C0 in this measure up to their second order.
-    pub fn second_order(self) -> f64 {
-        match self {
-            StrainMeasure::Green => 0.0,
-            StrainMeasure::Logarithmic => 1.0,
-        }
-    }
-}
-
 /// What happens across the thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Across {

@@ -38,17 +38,16 @@ pub(super) fn mean_of(points: &[RingPoint], values: &[Symmetric]) -> Symmetric {
 }
 
 impl AtStrains {
-    /// Stresses that do work on the strains of the displacements, S + Z less the mean of Z + Y.
+    /// Stresses that do work on the strains of the displacements, T less the mean of R.
     pub fn of_displacements(&self, points: &[RingPoint]) -> OfPoints<Symmetric> {
         let conjugate = self.linear.iter().zip(&self.stresses).map(|(linear, s)| {
-            let [z, y] = self.mean.conjugate(linear, &tensor(s));
-            [components(&z), components(&y)]
+            let both = self.mean.conjugate(linear, &tensor(s));
+            both.map(|stress| components(&stress))
         });
         let conjugate: OfPoints<[Symmetric; 2]> = conjugate.collect();
-        let both: OfPoints<Symmetric> = conjugate.iter().map(|[z, y]| z + y).collect();
-        let mean = mean_of(points, &both);
-        let all = self.stresses.iter().zip(&conjugate);
-        all.map(|(s, [z, _])| s + z - mean).collect()
+        let on_mean: OfPoints<Symmetric> = conjugate.iter().map(|[_, r]| *r).collect();
+        let mean = mean_of(points, &on_mean);
+        conjugate.iter().map(|[t, _]| t - mean).collect()
     }
 
     /// dE_g (11, 22, 33, 2*12) and B of S : d²E_g at a point, from the change of E + M alpha and that of the mean.
@@ -61,9 +60,8 @@ impl AtStrains {
 
     /// dE_g C dE_g + S : d²E_g of a change at a point beside another.
     pub fn product(&self, p: usize, c: &Matrix4<f64>, left: &Column, right: &Column) -> f64 {
-        let second = self
-            .mean
-            .second_stress(&right.1, &tensor(&self.stresses[p]));
+        let s = tensor(&self.stresses[p]);
+        let second = self.mean.second_stress(&self.linear[p], &right.1, &s);
         left.0.dot(&(c * right.0)) + left.1.dot(&second)
     }
 }

@@ -172,10 +172,13 @@ impl Enhanced {
         material: &impl RingStressAtPoints,
         compatible: &[Symmetric],
     ) -> Measured {
-        let mean = tensor(&mean_of(points, compatible));
+        let mean = MeanStrain {
+            strain: tensor(&mean_of(points, compatible)),
+            measure: material.ring_convex_in(),
+        };
         Measured {
             compatible: compatible.into(),
-            mean: MeanStrain::new(mean, material.ring_convex_in().second_order()),
+            mean,
         }
     }
 
@@ -207,7 +210,7 @@ impl Enhanced {
         (self.strains[p].each_ref()).map(|m| at.column(p, m, &Symmetric::zeros()))
     }
 
-    /// Derivatives of the energy by alpha, sum v M:(S + Z) and K_aa, this times a factor, at strains of the material.
+    /// Derivatives of the energy by alpha, sum v M:T and K_aa, this times a factor, at strains of the material.
     fn derivatives(
         &self,
         points: &[RingPoint],

@@ -572,21 +572,18 @@ mod tests {
             )
         };
         for (ring, mesh) in rings().into_iter().filter(has_own_strains) {
-            // squeezed along the axis, and bent in its section
-            for [squeeze, bend_x, bend_y] in [[0.3, 0.0, 0.2], [0.9, 0.0, 0.2], [0.3, 0.3, -0.2]] {
-                let moved = |(a, x): (usize, &[f64; 2])| {
-                    let side = if a % 2 == 0 { 1.0 } else { -1.0 };
-                    let radial = squeeze * x[0] + bend_x * side;
-                    [radial, -0.7 * squeeze * x[1] + bend_y * side]
-                };
-                let d: Vec<f64> = mesh
-                    .coordinates
-                    .iter()
-                    .enumerate()
-                    .flat_map(moved)
-                    .collect();
+            // squeezed along the axis at a constant volume, and bent in its section
+            for [squeeze, bend_x, bend_y] in [[0.3, 0.0, 0.2], [0.6, 0.0, 0.2], [0.3, 0.2, -0.2]] {
                 let at = |step: u32| -> Vec<f64> {
-                    d.iter().map(|d| d * f64::from(step) / 40.0).collect()
+                    let part = f64::from(step) / 40.0;
+                    let wider = 1.0 + squeeze * part;
+                    let moved = |(a, x): (usize, &[f64; 2])| {
+                        let side = if a % 2 == 0 { part } else { -part };
+                        let radial = (wider - 1.0) * x[0] + bend_x * side;
+                        [radial, (1.0 / (wider * wider) - 1.0) * x[1] + bend_y * side]
+                    };
+                    let all = mesh.coordinates.iter().enumerate();
+                    all.flat_map(moved).collect()
                 };
                 let mut z = vec![0.0; ring.points() * law.variables() + ring.own_variables(true)];
                 for step in 0..40 {
