@@ -533,10 +533,12 @@ impl SlaveNode<'_> {
             return None;
         }
         let turn = self.corner_sine(i, j);
+        let own = self.own_normals();
+        let in_hollow = own.is_some_and(|[before, after]| angle(before, after) < -STRAIGHT_SINE);
         let corner = Corner {
             next: j,
-            weight: match turn > STRAIGHT_SINE {
-                true => self.common_weight([p.normal, q.normal])?,
+            weight: match turn > STRAIGHT_SINE && !in_hollow {
+                true => common_normal([p.normal, q.normal], own?)?,
                 false => self.vertex_weight(turn, [(i, &p), (j, &q)])?,
             },
         };
@@ -554,22 +556,22 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Weight w of the second segment at a corner, for which the blend of both normals is the common normal.
-    fn common_weight(&self, normals: [[f64; 2]; 2]) -> Option<f64> {
+    /// Normals before and after the slave node on its own surface.
+    fn own_normals(&self) -> Option<[[f64; 2]; 2]> {
         let [before, after] = self.surfaces.adjacent[self.slave]?;
         let at = |n: usize| self.now.of(n);
         let own = [[before, self.node()], [self.node(), after]];
-        let own = own.map(|[a, b]| project(at(a), at(a), at(b)).normal);
-        common_normal(normals, own)
+        Some(own.map(|[a, b]| project(at(a), at(a), at(b)).normal))
     }
 
-    /// The same at the vertex of a face or of a gentle hollow, where the gaps to both segments are the same: the normal of
-    /// either one would lean to its side, and round-off would choose it. None where the gaps differ, the hollow is deeper, or
-    /// the node was behind one of them.
+    /// Weight w of the second segment at the vertex of a face or of a gentle hollow, and at a gentle corner that meets a node in
+    /// a hollow, as a pin does in a bore, where the gaps to both segments are the same: the normal of either one would lean to
+    /// its side, and round-off would choose it. None where the gaps differ, the turn is larger, or the node was behind one of
+    /// them.
     fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {
         let round_off = position_round_off(self.position());
         let least = (CLOSED_GAP * p.length.min(q.length)).max(round_off);
-        let is_vertex = turn >= -GENTLE_SINE
+        let is_vertex = (-GENTLE_SINE..=SLIDING_SINE).contains(&turn)
             && (p.gap - q.gap).abs() <= least
             && [i, j].iter().all(|&i| self.was_in_front(i));
         is_vertex.then_some(0.5)
@@ -851,8 +853,7 @@ impl Corner {
 /// after the slave node on its own surface. A normal that separates the two corners lies in the
 /// normal cone between `normals` and in the cone between the opposites of `own`; the common normal
 /// is the middle of their intersection. Flush blocks meet with the normal of their faces, corners
-/// with that of their bisectors. A node in a concave corner has no common normal with a sharp one; with a vertex of a
-/// surface that turns gently, as that of a pin in a bore, it has the middle of both cones.
+/// with that of their bisectors. A node in a concave corner has no common normal.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let opposite = own.map(|n| [-n[0], -n[1]]);
@@ -862,14 +863,11 @@ pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> 
         return None;
     }
     let from = angle(n, opposite[0]);
-    let mut cone = [from, from + angle(opposite[0], opposite[1])];
-    if cone[1] < cone[0] - CONE_MISS {
-        if width.sin() > SLIDING_SINE || width.cos() < 0.0 {
-            return None; // the slave node is in a concave corner
-        }
-        cone.reverse();
+    let to = from + angle(opposite[0], opposite[1]);
+    if to < from - CONE_MISS {
+        return None; // the slave node is in a concave corner
     }
-    let (low, high) = (cone[0].max(0.0), cone[1].min(width));
+    let (low, high) = (from.max(0.0), to.min(width));
     if low > high + CONE_MISS {
         return None;
     }
@@ -952,25 +950,6 @@ mod corner_tests {
             "a concave corner"
         );
         assert_eq!(common_normal([UP, RIGHT], [LEFT, DOWN]), None, "not convex");
-        let blunt = |[x, y]: [f64; 2], side: f64| [side * x, y].map(|e| e / x.hypot(y));
-        let pin = [1.0, -1.0].map(|side| blunt([0.6, 1.0], side));
-        let bore = [1.0, -1.0].map(|side| blunt([0.6, -1.0], side));
-        assert_eq!(
-            common_normal(pin, bore),
-            None,
-            "concave, of more than 30 degrees"
-        );
-    }
-
-    #[test]
-    fn a_node_in_a_bore_meets_a_vertex_of_a_pin_with_the_normal_between() {
-        let unit = |[x, y]: [f64; 2]| [x, y].map(|e| e / x.hypot(y));
-        let pin = [[0.1, 1.0], [-0.1, 1.0]].map(unit);
-        for turn in [0.0, 0.02, 0.1, 0.15] {
-            let bore = [[turn, -1.0], [-turn, -1.0]].map(unit);
-            let weight = common_normal(pin, bore).unwrap_or(f64::NAN);
-            assert!((weight - 0.5).abs() < 1e-14, "{turn} {weight}");
-        }
         let nowhere = [f64::NAN; 2];
         assert_eq!(common_normal([RIGHT, nowhere], [LEFT, DOWN]), None);
     }

@@ -245,6 +245,46 @@ fn a_node_at_a_vertex_of_a_face_meets_both_its_segments() {
     assert_eq!(segments(&targets(0.02, 0.0)), [0, 1], "in a hollow corner");
 }
 
+/// In a bore around a pin a node at a vertex of the pin has no normal that parts it from either side. It meets the vertex with
+/// the normal in the middle, and beside it the segment that it is on: a limit at a distance that nodes of fits slide would
+/// give neighbours other normals.
+#[test]
+fn a_node_in_a_bore_meets_a_vertex_of_the_pin_in_the_middle() {
+    let targets = |[pin, bore]: [f64; 2], x: f64| {
+        let at = vec![
+            [1.0, -pin],
+            [0.0, 0.0],
+            [-1.0, -pin],
+            [x - 1.0, -bore],
+            [x, 0.0],
+            [x + 1.0, -bore],
+        ];
+        let (pin, bore) = (vec![[0, 1], [1, 2]], [[3, 4], [4, 5]]);
+        let surfaces = ContactSurfaces::new(vec![4], &bore, pin);
+        targets_of(&surfaces, &at, &at)
+    };
+    for turn in [[0.05, 0.03], [0.1, 0.08], [0.2, 0.2]] {
+        for x in [0.0, 1e-13, -1e-13] {
+            let [target] = targets(turn, x)[..] else {
+                panic!("{turn:?} {x}");
+            };
+            let corner = target.corner.map(|corner| (corner.next, corner.weight));
+            assert_eq!(
+                (target.segment, corner),
+                (0, Some((1, 0.5))),
+                "{turn:?} {x}"
+            );
+        }
+        for (x, segment) in [(1e-6, 0), (-1e-6, 1)] {
+            assert_eq!(
+                targets(turn, x),
+                [ContactTarget::face(segment)],
+                "{turn:?} {x}"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_mesh_that_starts_a_little_inside_is_held() {
     assert_eq!(beside_square([0.5, 0.999], [0.5, 0.998]), [2]);
