@@ -24,7 +24,7 @@ use super::formulation::{
     determinant, displacement_gradient, green_lagrange, smaller, strain_displacement,
 };
 use super::local_solution::{LAST_STEP, least, zero};
-use super::stretch::{MeanStrain, Variation};
+use super::stretch::{AddedStrain, MeanStrain, Variation};
 use crate::materials::{Committed, Strains, StressAtPoints};
 
 /// Number of strains of the element.
@@ -130,15 +130,9 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         }
     }
 
-    /// E + M alpha at all points.
-    fn linear(&self, compatible: &[Matrix2<f64>; P], alpha: &Vector4<f64>) -> [Matrix2<f64>; P] {
-        std::array::from_fn(|p| compatible[p] + self.strain(p, alpha))
-    }
-
     /// Strains of the material at all points, with the element's own.
-    fn enhanced(&self, measured: &Measured<P>, alpha: &Vector4<f64>) -> [Matrix2<f64>; P] {
-        let linear = self.linear(&measured.compatible, alpha);
-        linear.map(|linear| measured.mean.strain(&linear))
+    fn enhanced(&self, measured: &Measured<P>, alpha: &Vector4<f64>) -> [AddedStrain<2>; P] {
+        std::array::from_fn(|p| (measured.mean).add(measured.compatible[p] + self.strain(p, alpha)))
     }
 
     fn strain(&self, p: usize, alpha: &Vector4<f64>) -> Matrix2<f64> {
@@ -171,26 +165,20 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         &self,
         element: &Reference<N, P>,
         material: &impl StressAtPoints,
-        (measured, alpha): (&Measured<P>, &Vector4<f64>),
+        enhanced: &[AddedStrain<2>; P],
         (strains, factor): (&[Strains; P], f64),
     ) -> (Vector4<f64>, Matrix4<f64>) {
-        let linear = self.linear(&measured.compatible, alpha);
         let (s, c) = (material.stresses(strains), material.tangents(strains));
         let (mut slope, mut stiffness) = (Vector4::zeros(), Matrix4::zeros());
         for (p, point) in element.points.iter().enumerate() {
-            let [stress, _] = measured.mean.conjugate(&linear[p], &s[p]);
+            let [stress, _] = enhanced[p].conjugate(&s[p]);
             let stress = stress * point.volume;
             slope += Vector4::from_fn(|k, _| self.strains[p][k].dot(&stress));
-            let own = self.strains[p].map(|m| Columns::new(measured, &linear[p], m, None));
-            add_products(
-                &own,
-                &own,
-                (&linear[p], &s[p], &(c[p] * factor)),
-                measured,
-                |k, l, value| {
-                    stiffness[(k, l)] += value * point.volume;
-                },
-            );
+            let own = self.strains[p].map(|m| Columns::new(&enhanced[p], m, None));
+            let at = (&enhanced[p], &s[p], &(c[p] * factor));
+            add_products(&own, &own, at, |k, l, value| {
+                stiffness[(k, l)] += value * point.volume;
+            });
         }
         (slope, stiffness)
     }
@@ -206,8 +194,8 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let last = LAST_STEP * largest(&measured.compatible) + f64::EPSILON;
         let derivatives = |alpha: &Vector4<f64>| {
             let e = self.enhanced(measured, alpha);
-            let strains = (&e.map(Strains::At), 1.0);
-            self.derivatives(element, material, (measured, alpha), strains)
+            let strains = e.map(|e| Strains::At(e.strain()));
+            self.derivatives(element, material, &e, (&strains, 1.0))
         };
         let change = |from: &Vector4<f64>, to: &Vector4<f64>| {
             let none = [Matrix2::zeros(); P];
@@ -234,8 +222,8 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let last = LAST_STEP * largest(&change) + f64::EPSILON * largest(e1) + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Vector4<f64>| {
             let e = self.enhanced(end, alpha);
-            let strains = std::array::from_fn(|p| Strains::Between(e0[p], e[p]));
-            self.derivatives(element, viscosity, (end, alpha), (&strains, 0.5))
+            let strains = std::array::from_fn(|p| Strains::Between(e0[p], e[p].strain()));
+            self.derivatives(element, viscosity, &e, (&strains, 0.5))
         };
         zero(derivatives, last).unwrap_or(Vector4::from_element(f64::NAN))
     }
@@ -244,12 +232,11 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     fn stresses(
         &self,
         element: &Reference<N, P>,
-        (measured, alpha): (&Measured<P>, &Vector4<f64>),
+        enhanced: &[AddedStrain<2>; P],
         of_material: &[Matrix2<f64>; P],
     ) -> [Matrix2<f64>; P] {
-        let linear = self.linear(&measured.compatible, alpha);
         let conjugate: [[Matrix2<f64>; 2]; P] =
-            std::array::from_fn(|p| measured.mean.conjugate(&linear[p], &of_material[p]));
+            std::array::from_fn(|p| enhanced[p].conjugate(&of_material[p]));
         let mean = Self::mean_of(element, &conjugate.map(|[_, on_mean]| on_mean));
         conjugate.map(|[on_all, _]| on_all - mean)
     }
@@ -264,17 +251,14 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         changes: &[Matrix2<f64>; P],
     ) -> f64 {
         let (e0, e1) = (self.enhanced(start, alpha0), self.enhanced(end, alpha1));
-        let strains: [Strains; P] = std::array::from_fn(|p| Strains::Between(e0[p], e1[p]));
+        let strains: [Strains; P] =
+            std::array::from_fn(|p| Strains::Between(e0[p].strain(), e1[p].strain()));
         let s = material.stresses(&strains);
-        let linear0 = self.linear(&start.compatible, alpha0);
-        let linear1 = self.linear(&end.compatible, alpha1);
         let of_mean = Self::mean_of(element, changes);
         let of_point = |(p, point): (usize, &IntegrationPoint<N>)| {
             let at_point = changes[p] + self.strain(p, &(*alpha1 - *alpha0));
             let variation = Variation { at_point, of_mean };
-            let means = [&start.mean, &end.mean];
-            let change = MeanStrain::change(means, [&linear0[p], &linear1[p]], &variation);
-            s[p].dot(&change) * point.volume
+            s[p].dot(&e1[p].change(&e0[p], &variation)) * point.volume
         };
         element.points.iter().enumerate().map(of_point).sum()
     }
@@ -301,15 +285,14 @@ struct Columns {
 
 impl Columns {
     /// From the change of E + M alpha at the point, and of the mean where the displacements change.
-    fn new<const P: usize>(
-        measured: &Measured<P>,
-        linear: &Matrix2<f64>,
+    fn new(
+        enhanced: &AddedStrain<2>,
         at_point: Matrix2<f64>,
         of_mean: Option<Matrix2<f64>>,
     ) -> Self {
         let of_mean = of_mean.unwrap_or_default();
         let variation = Variation { at_point, of_mean };
-        let [first, second] = measured.mean.variation(linear, &variation);
+        let [first, second] = enhanced.variation(&variation);
         Columns {
             first: as_strain(&first),
             second,
@@ -318,18 +301,14 @@ impl Columns {
 }
 
 /// dE_g C dE_g + S : d²E_g at a point for each of some changes and each of others.
-fn add_products<const P: usize>(
+fn add_products(
     left: &[Columns],
     right: &[Columns],
-    (linear, s, c): (&Matrix2<f64>, &Matrix2<f64>, &Matrix3<f64>),
-    measured: &Measured<P>,
+    (enhanced, s, c): (&AddedStrain<2>, &Matrix2<f64>, &Matrix3<f64>),
     mut add: impl FnMut(usize, usize, f64),
 ) {
     for (l, right) in right.iter().enumerate() {
-        let (stress, second) = (
-            c * right.first,
-            measured.mean.second_stress(linear, &right.second, s),
-        );
+        let (stress, second) = (c * right.first, enhanced.second_stress(&right.second, s));
         for (k, left) in left.iter().enumerate() {
             add(k, l, left.first.dot(&stress) + left.second.dot(&second));
         }
@@ -366,10 +345,9 @@ fn committed<const P: usize>(material: &impl StressAtPoints) -> Vector4<f64> {
 /// What a configuration gives at all points.
 struct States<const P: usize> {
     states: [PointState; P],
-    /// Strains of the displacements and alpha at which the material has its tangent.
-    measured: Measured<P>,
-    alpha: Vector4<f64>,
-    /// Strains of the material there.
+    /// Strains at which the material has its tangent.
+    enhanced: [AddedStrain<2>; P],
+    /// The same for the material.
     tangent_at: [Strains; P],
     /// Its stresses there (force/length^2).
     of_material: [Matrix2<f64>; P],
@@ -391,39 +369,38 @@ fn states<const N: usize, const P: usize>(
     let solved = |compatible: [Matrix2<f64>; P]| {
         let measured = modes.measured(element, material, compatible);
         let alpha = modes.least(element, material, (&measured, first));
-        let strains = modes.enhanced(&measured, &alpha);
-        (measured, alpha, strains)
+        let enhanced = modes.enhanced(&measured, &alpha);
+        (measured, alpha, enhanced)
     };
     let mut work = None;
-    let (measured, alpha, strains, tangent_at): (_, _, [Strains; P], [Strains; P]);
+    let at = |enhanced: &[AddedStrain<2>; P]| enhanced.map(|e| Strains::At(e.strain()));
+    let (enhanced, strains, tangent_at): (_, [Strains; P], [Strains; P]);
     match configuration {
         Configuration::At(_) => {
-            let end;
-            (measured, alpha, end) = solved(c1);
-            strains = end.map(Strains::At);
+            (_, _, enhanced) = solved(c1);
+            strains = at(&enhanced);
             tangent_at = strains;
         }
         Configuration::Between(..) if material.is_viscous() => {
-            measured = modes.measured(element, material, c1);
-            alpha = modes.of_rates(element, material, (&c0, &measured));
-            let end = modes.enhanced(&measured, &alpha);
-            strains = std::array::from_fn(|p| Strains::Between(c0[p], end[p]));
+            let end = modes.measured(element, material, c1);
+            let alpha = modes.of_rates(element, material, (&c0, &end));
+            enhanced = modes.enhanced(&end, &alpha);
+            strains = std::array::from_fn(|p| Strains::Between(c0[p], enhanced[p].strain()));
             tangent_at = strains;
         }
         Configuration::Between(..) => {
-            let (start, alpha0, strains0) = solved(c0);
-            let (end, alpha1, strains1) = solved(c1);
-            let middle;
-            (measured, alpha, middle) = solved(std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0));
-            strains = std::array::from_fn(|p| Strains::Between(strains0[p], strains1[p]));
-            tangent_at = middle.map(Strains::At);
+            let (start, alpha0, e0) = solved(c0);
+            let (end, alpha1, e1) = solved(c1);
+            (_, _, enhanced) = solved(std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0));
+            strains = std::array::from_fn(|p| Strains::Between(e0[p].strain(), e1[p].strain()));
+            tangent_at = at(&enhanced);
             let changes = std::array::from_fn(|p| c1[p] - c0[p]);
             let ends = [(&start, &alpha0), (&end, &alpha1)];
             work = Some(modes.energy_change(element, material, &ends, &changes));
         }
     }
     let of_material = material.stresses(&tangent_at);
-    let mut s = modes.stresses(element, (&measured, &alpha), &of_material);
+    let mut s = modes.stresses(element, &enhanced, &of_material);
     if let Some(mut f) = work {
         let mut squares = 0.0;
         for (p, point) in element.points.iter().enumerate() {
@@ -453,8 +430,7 @@ fn states<const N: usize, const P: usize>(
     });
     States {
         states,
-        measured,
-        alpha,
+        enhanced,
         tangent_at,
         of_material,
     }
@@ -481,7 +457,7 @@ fn stored<const N: usize, const P: usize>(
     let e = modes.enhanced(measured, alpha);
     let points = element.points.iter().enumerate();
     points
-        .map(|(p, point)| material.stored_energy(p, &e[p]) * point.volume)
+        .map(|(p, point)| material.stored_energy(p, &e[p].strain()) * point.volume)
         .sum()
 }
 
@@ -566,7 +542,6 @@ impl ElementFormulation for EnhancedStrain {
     ) -> SMatrix<f64, D, D> {
         let modes = Modes::new(element);
         let states = states(&modes, element, material, configuration);
-        let measured = &states.measured;
         let q = hourglass(&modes, configuration);
         let along_q = SMatrix::<f64, 1, D>::from_fn(|_, j| q[j % 2] * modes.gamma[j / 2]);
         let rows: [[Matrix2<f64>; D]; P] = std::array::from_fn(|p| {
@@ -578,33 +553,24 @@ impl ElementFormulation for EnhancedStrain {
         });
         let of_mean: [Matrix2<f64>; D] =
             std::array::from_fn(|j| Modes::mean_of(element, &std::array::from_fn(|p| rows[p][j])));
-        let linear = modes.linear(&measured.compatible, &states.alpha);
         let c = material.tangents(&states.tangent_at);
         let (mut k, mut mixed) = (SMatrix::<f64, D, D>::zeros(), SMatrix::<f64, D, 4>::zeros());
         let mut stiffness = Matrix4::zeros();
         for (p, point) in element.points.iter().enumerate() {
             let (slope, state) = (modes.slope[p], &states.states[p]);
-            let of_displacements: [Columns; D] = std::array::from_fn(|j| {
-                Columns::new(measured, &linear[p], rows[p][j], Some(of_mean[j]))
-            });
-            let own = modes.strains[p].map(|m| Columns::new(measured, &linear[p], m, None));
-            let at = (&linear[p], &states.of_material[p], &c[p]);
+            let enhanced = &states.enhanced[p];
+            let of_displacements: [Columns; D] =
+                std::array::from_fn(|j| Columns::new(enhanced, rows[p][j], Some(of_mean[j])));
+            let own = modes.strains[p].map(|m| Columns::new(enhanced, m, None));
+            let at = (enhanced, &states.of_material[p], &c[p]);
             let v = point.volume;
-            add_products(
-                &of_displacements,
-                &of_displacements,
-                at,
-                measured,
-                |i, j, value| {
-                    k[(i, j)] += value * v;
-                },
-            );
-            add_products(&of_displacements, &own, at, measured, |i, j, value| {
+            add_products(&of_displacements, &of_displacements, at, |i, j, value| {
+                k[(i, j)] += value * v;
+            });
+            add_products(&of_displacements, &own, at, |i, j, value| {
                 mixed[(i, j)] += value * v;
             });
-            add_products(&own, &own, at, measured, |i, j, value| {
-                stiffness[(i, j)] += value * v
-            });
+            add_products(&own, &own, at, |i, j, value| stiffness[(i, j)] += value * v);
             add_geometric(&mut k, point, &state.s);
             let stress = slope.dot(&(state.s * slope)) * v;
             for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {

@@ -48,44 +48,63 @@ pub(super) struct Variation<const D: usize> {
     pub of_mean: Tensor<D>,
 }
 
+/// A strain of an element at a point beside its mean.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AddedStrain<const D: usize> {
+    /// E + M alpha
+    linear: Tensor<D>,
+    /// A
+    beside: Tensor<D>,
+    /// H, NaN where the point or the mean has turned inside out.
+    h: Tensor<D>,
+    /// N
+    n: Tensor<D>,
+}
+
 impl<const D: usize> MeanStrain<D> {
-    /// A and H of E + M alpha. H is NaN where the point or the mean has turned inside out.
-    fn beside(&self, linear: &Tensor<D>) -> [Tensor<D>; 2] {
-        let a = linear - self.strain;
+    /// Adds what E + M alpha has beside the mean.
+    pub fn add(&self, linear: Tensor<D>) -> AddedStrain<D> {
+        let beside = linear - self.strain;
         let h = match self.measure {
             StrainMeasure::Green => Some(Tensor::zeros()),
             StrainMeasure::Logarithmic => {
                 let mean = Tensor::identity() + self.strain * 2.0;
-                let both = [mean + a, mean - a].map(|c| c.cholesky());
+                let both = [mean + beside, mean - beside].map(|c| c.cholesky());
                 let all_positive = both.iter().all(Option::is_some);
-                let inverse = (mean - a).try_inverse();
+                let inverse = (mean - beside).try_inverse();
                 inverse.filter(|_| all_positive).map(symmetric)
             }
         };
-        [a, h.unwrap_or(Tensor::from_element(f64::NAN))]
+        let h = h.unwrap_or(Tensor::from_element(f64::NAN));
+        AddedStrain {
+            linear,
+            beside,
+            h,
+            n: h * beside,
+        }
+    }
+}
+
+impl<const D: usize> AddedStrain<D> {
+    /// E_g
+    pub fn strain(&self) -> Tensor<D> {
+        self.linear + symmetric(self.beside * self.n)
     }
 
-    /// E_g from E + M alpha.
-    pub fn strain(&self, linear: &Tensor<D>) -> Tensor<D> {
-        let [a, h] = self.beside(linear);
-        linear + symmetric(a * h * a)
-    }
-
-    /// E_g at the end less that at the start, whose E + M alpha has changed by `at_point` and whose mean by `of_mean`, with
-    /// a round-off that is relative to these changes:
+    /// E_g less that at the start of a variation, with a round-off that is relative to the variation:
     ///
     /// ```text
     /// A1 H1 A1 - A0 H0 A0 = dA H1 A1 + A0 dH A1 + A0 H0 dA,   dH = -H1 (2 dEbar - dA) H0
     /// ```
     pub fn change(
-        [start, end]: [&Self; 2],
-        [linear0, linear1]: [&Tensor<D>; 2],
+        &self,
+        start: &Self,
         Variation { at_point, of_mean }: &Variation<D>,
     ) -> Tensor<D> {
-        let ([a0, h0], [a1, h1]) = (start.beside(linear0), end.beside(linear1));
         let da = at_point - of_mean;
-        let dh = h1 * (da - of_mean * 2.0) * h0;
-        at_point + symmetric(da * h1 * a1 + a0 * dh * a1 + a0 * h0 * da)
+        let dh = self.h * (da - of_mean * 2.0) * start.h;
+        let before = start.n.transpose();
+        at_point + symmetric(da * self.n + start.beside * dh * self.beside + before * da)
     }
 
     /// What a stress S on E_g does work on:
@@ -93,32 +112,24 @@ impl<const D: usize> MeanStrain<D> {
     /// ```text
     /// S:dE_g = T:(dE + M dalpha) - R:dEbar,   T = W S W^T,   R = T - S + 2 N S N^T
     /// ```
-    pub fn conjugate(&self, linear: &Tensor<D>, s: &Tensor<D>) -> [Tensor<D>; 2] {
-        let [a, h] = self.beside(linear);
-        let n = h * a;
-        let half = n * s;
-        let square = symmetric(half * n.transpose());
+    pub fn conjugate(&self, s: &Tensor<D>) -> [Tensor<D>; 2] {
+        let half = self.n * s;
+        let square = symmetric(half * self.n.transpose());
         let more = half + half.transpose() + square;
         [s + more, more + square * 2.0]
     }
 
     /// dE_g of a variation, and its B.
-    pub fn variation(
-        &self,
-        linear: &Tensor<D>,
-        Variation { at_point, of_mean }: &Variation<D>,
-    ) -> [Tensor<D>; 2] {
-        let [a, h] = self.beside(linear);
-        let n = h * a;
+    pub fn variation(&self, Variation { at_point, of_mean }: &Variation<D>) -> [Tensor<D>; 2] {
         let da = at_point - of_mean;
-        let b = da + (da - of_mean * 2.0) * n;
-        [at_point + symmetric(da * n + n.transpose() * b), b]
+        let b = da + (da - of_mean * 2.0) * self.n;
+        let first = at_point + symmetric(da * self.n + self.n.transpose() * b);
+        [first, b]
     }
 
     /// 2 H B S, whose product with another B is S : d²E_g.
-    pub fn second_stress(&self, linear: &Tensor<D>, b: &Tensor<D>, s: &Tensor<D>) -> Tensor<D> {
-        let [_, h] = self.beside(linear);
-        h * b * s * 2.0
+    pub fn second_stress(&self, b: &Tensor<D>, s: &Tensor<D>) -> Tensor<D> {
+        self.h * b * s * 2.0
     }
 }
 
@@ -140,27 +151,28 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_strain() {
-        let at = |t: f64| mean(MEAN + OF_MEAN * t).strain(&(LINEAR + WAY * t));
-        let start = mean(MEAN);
+        let at = |t: f64| mean(MEAN + OF_MEAN * t).add(LINEAR + WAY * t).strain();
+        let start = mean(MEAN).add(LINEAR);
         let variation = Variation {
             at_point: WAY,
             of_mean: OF_MEAN,
         };
-        let ([first, b], h) = (start.variation(&LINEAR, &variation), 1e-4);
+        let ([first, b], h) = (start.variation(&variation), 1e-4);
         assert!((first - (at(h) - at(-h)) / (2.0 * h)).norm() < 1e-7);
-        let [on_all, on_mean] = start.conjugate(&LINEAR, &STRESS);
+        let [on_all, on_mean] = start.conjugate(&STRESS);
         let work = on_all.dot(&WAY) - on_mean.dot(&OF_MEAN);
         assert!((work - STRESS.dot(&first)).abs() < 1e-14);
         let second = (at(h) - at(0.0) * 2.0 + at(-h)) / (h * h);
-        let found = start.second_stress(&LINEAR, &b, &STRESS).dot(&b);
+        let found = start.second_stress(&b, &STRESS).dot(&b);
         assert!((found - STRESS.dot(&second)).abs() < 1e-6);
         for size in [0.3, 1e-4] {
-            let (end, step) = (mean(MEAN + OF_MEAN * size), WAY * size);
+            let step = WAY * size;
+            let end = mean(MEAN + OF_MEAN * size).add(LINEAR + step);
             let variation = Variation {
                 at_point: step,
                 of_mean: OF_MEAN * size,
             };
-            let found = MeanStrain::change([&start, &end], [&LINEAR, &(LINEAR + step)], &variation);
+            let found = end.change(&start, &variation);
             assert!((found - (at(size) - at(0.0))).norm() < 1e-14);
         }
     }
@@ -171,7 +183,7 @@ mod tests {
         let logarithm = |e: f64| (1.0 + 2.0 * e).ln() / 2.0;
         for size in [1e-2, 1e-3] {
             let linear = Matrix3::from_diagonal(&Vector3::new(1.5 + 4.0 * size, -0.3, 0.0));
-            let found = logarithm(mean.strain(&linear)[0]) - logarithm(1.5) - size;
+            let found = logarithm(mean.add(linear).strain()[0]) - logarithm(1.5) - size;
             assert!(found.abs() < size * size * size, "{found}");
         }
     }
@@ -183,7 +195,7 @@ mod tests {
         let strain = |f: f64| Matrix3::from_diagonal(&Vector3::new((f * f - 1.0) / 2.0, 0.1, 0.2));
         let of = |qs: f64| {
             let linear = strain(stretch) + Matrix3::from_diagonal(&Vector3::x()) * stretch * qs;
-            let c = mean(strain(stretch)).strain(&linear) * 2.0 + Matrix3::identity();
+            let c = mean(strain(stretch)).add(linear).strain() * 2.0 + Matrix3::identity();
             c.determinant()
         };
         let all: Vec<f64> = (0..20)

@@ -4,16 +4,14 @@
 use nalgebra::{Matrix3, Matrix4, Vector4};
 
 use super::points::{OfPoints, RingPoint, as_strain};
-use crate::elements::stretch::{MeanStrain, Tensor, Variation};
+use crate::elements::stretch::{AddedStrain, Tensor, Variation};
 use crate::materials::Symmetric;
 
 /// Where the material of an element has its stresses and its tangents.
 #[derive(Debug, Clone)]
 pub(super) struct AtStrains {
-    /// Mean of the strains of the displacements.
-    pub mean: MeanStrain<3>,
-    /// E + M alpha at all points.
-    pub linear: OfPoints<Tensor<3>>,
+    /// Strains of the element at all points.
+    pub enhanced: OfPoints<AddedStrain<3>>,
     /// Stresses of the material there (force/length^2).
     pub stresses: OfPoints<Symmetric>,
 }
@@ -40,8 +38,8 @@ pub(super) fn mean_of(points: &[RingPoint], values: &[Symmetric]) -> Symmetric {
 impl AtStrains {
     /// Stresses that do work on the strains of the displacements, T less the mean of R.
     pub fn of_displacements(&self, points: &[RingPoint]) -> OfPoints<Symmetric> {
-        let conjugate = self.linear.iter().zip(&self.stresses).map(|(linear, s)| {
-            let both = self.mean.conjugate(linear, &tensor(s));
+        let conjugate = self.enhanced.iter().zip(&self.stresses).map(|(e, s)| {
+            let both = e.conjugate(&tensor(s));
             both.map(|stress| components(&stress))
         });
         let conjugate: OfPoints<[Symmetric; 2]> = conjugate.collect();
@@ -54,14 +52,14 @@ impl AtStrains {
     pub fn column(&self, p: usize, at_point: &Symmetric, of_mean: &Symmetric) -> Column {
         let [at_point, of_mean] = [at_point, of_mean].map(tensor);
         let variation = Variation { at_point, of_mean };
-        let [first, second] = self.mean.variation(&self.linear[p], &variation);
+        let [first, second] = self.enhanced[p].variation(&variation);
         (as_strain(&components(&first)), second)
     }
 
     /// dE_g C dE_g + S : d²E_g of a change at a point beside another.
     pub fn product(&self, p: usize, c: &Matrix4<f64>, left: &Column, right: &Column) -> f64 {
         let s = tensor(&self.stresses[p]);
-        let second = self.mean.second_stress(&self.linear[p], &right.1, &s);
+        let second = self.enhanced[p].second_stress(&right.1, &s);
         left.0.dot(&(c * right.0)) + left.1.dot(&second)
     }
 }

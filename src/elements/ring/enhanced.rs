@@ -9,7 +9,7 @@ use super::stresses::{Compatible, StrainRows, Stresses, energy_change, size};
 use crate::elements::enhanced_strain::{alternating, finite_or, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
-use crate::elements::stretch::{MeanStrain, Variation};
+use crate::elements::stretch::{AddedStrain, MeanStrain, Variation};
 use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
 
 /// Number of strains of the element.
@@ -35,6 +35,11 @@ const NODES: usize = 4;
 struct Measured {
     compatible: OfPoints<Symmetric>,
     mean: MeanStrain<3>,
+}
+
+/// Strains of the material.
+fn of_material(enhanced: &[AddedStrain<3>]) -> OfPoints<Symmetric> {
+    enhanced.iter().map(|e| components(&e.strain())).collect()
 }
 
 impl Enhanced {
@@ -183,25 +188,22 @@ impl Enhanced {
     }
 
     /// Strains of the material at all points, with the element's own.
-    fn enhanced(&self, measured: &Measured, alpha: &Alpha) -> OfPoints<Symmetric> {
+    fn enhanced(&self, measured: &Measured, alpha: &Alpha) -> OfPoints<AddedStrain<3>> {
         let linear = self.linear(&measured.compatible, alpha);
-        let of_point = |linear| components(&measured.mean.strain(&tensor(linear)));
+        let of_point = |linear| measured.mean.add(tensor(linear));
         linear.iter().map(of_point).collect()
     }
 
     /// The material at strains.
     fn at(
-        &self,
         material: &impl RingStressAtPoints,
-        (measured, alpha): (&Measured, &Alpha),
+        enhanced: OfPoints<AddedStrain<3>>,
         strains: impl Fn(usize) -> Strains<Symmetric>,
     ) -> AtStrains {
-        let linear = self.linear(&measured.compatible, alpha);
         let stress = |p: usize| material.ring_stress(p, &strains(p));
         AtStrains {
-            mean: measured.mean,
-            stresses: (0..linear.len()).map(stress).collect(),
-            linear: linear.iter().map(tensor).collect(),
+            stresses: (0..enhanced.len()).map(stress).collect(),
+            enhanced,
         }
     }
 
@@ -215,10 +217,10 @@ impl Enhanced {
         &self,
         points: &[RingPoint],
         material: &impl RingStressAtPoints,
-        (measured, alpha): (&Measured, &Alpha),
+        enhanced: OfPoints<AddedStrain<3>>,
         (strains, factor): (impl Fn(usize) -> Strains<Symmetric>, f64),
     ) -> (Alpha, StrainStiffness) {
-        let at = self.at(material, (measured, alpha), &strains);
+        let at = Self::at(material, enhanced, &strains);
         let (mut slope, mut stiffness) = (Alpha::zeros(), StrainStiffness::zeros());
         for (p, point) in points.iter().enumerate() {
             let own = self.own_columns(&at, p);
@@ -250,8 +252,9 @@ impl Enhanced {
         let last = LAST_STEP * largest(&measured.compatible) + f64::EPSILON;
         let derivatives = |alpha: &Alpha| {
             let e = self.enhanced(measured, alpha);
-            let strains = (|p: usize| Strains::At(e[p]), 1.0);
-            self.derivatives(points, material, (measured, alpha), strains)
+            let of_material = of_material(&e);
+            let strains = |p: usize| Strains::At(of_material[p]);
+            self.derivatives(points, material, e, (strains, 1.0))
         };
         let none = OfPoints::from_elem(Symmetric::zeros(), points.len());
         let change = |from: &Alpha, to: &Alpha| {
@@ -273,8 +276,9 @@ impl Enhanced {
         let last = LAST_STEP * change + round_off + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Alpha| {
             let e = self.enhanced(end, alpha);
-            let strains = |p: usize| Strains::Between(start[p], e[p]);
-            self.derivatives(points, viscosity, (end, alpha), (strains, 0.5))
+            let of_material = of_material(&e);
+            let strains = |p: usize| Strains::Between(start[p], of_material[p]);
+            self.derivatives(points, viscosity, e, (strains, 0.5))
         };
         zero(derivatives, last).unwrap_or(Alpha::from_element(f64::NAN))
     }
@@ -288,20 +292,17 @@ impl Enhanced {
         changes: &[Symmetric],
     ) -> f64 {
         let of_mean = tensor(&mean_of(points, changes));
-        let [linear0, linear1] = [(start, alpha0), (end, alpha1)]
-            .map(|(measured, alpha)| self.linear(&measured.compatible, alpha));
+        let [e0, e1] = [self.enhanced(start, alpha0), self.enhanced(end, alpha1)];
         let at_points = self.linear(changes, &(alpha1 - alpha0));
         let of_point = |(p, change): (usize, &Symmetric)| {
             let variation = Variation {
                 at_point: tensor(change),
                 of_mean,
             };
-            let linear = [&tensor(&linear0[p]), &tensor(&linear1[p])];
-            let means = [&start.mean, &end.mean];
-            components(&MeanStrain::change(means, linear, &variation))
+            components(&e1[p].change(&e0[p], &variation))
         };
         let changes: OfPoints<Symmetric> = at_points.iter().enumerate().map(of_point).collect();
-        let ends = [self.enhanced(start, alpha0), self.enhanced(end, alpha1)];
+        let ends = [&e0, &e1].map(|e| of_material(e));
         energy_change(points, material, between(&ends), &changes)
     }
 
@@ -316,34 +317,33 @@ impl Enhanced {
         let solved = |compatible: &[Symmetric]| {
             let measured = self.measured(points, material, compatible);
             let alpha = self.least(points, material, (&measured, first));
-            let strains = self.enhanced(&measured, &alpha);
-            (measured, alpha, strains)
+            let enhanced = self.enhanced(&measured, &alpha);
+            (measured, alpha, enhanced)
         };
         let (strains, tangent_at): (OfPoints<Strains<Symmetric>>, OfPoints<Strains<Symmetric>>);
-        let (measured, alpha);
+        let at = |e: &OfPoints<AddedStrain<3>>| of_material(e).into_iter().map(Strains::At);
+        let enhanced;
         let mut work = None;
         if !compatible.is_increment {
-            let end;
-            (measured, alpha, end) = solved(&compatible.end);
-            strains = end.into_iter().map(Strains::At).collect();
+            (_, _, enhanced) = solved(&compatible.end);
+            strains = at(&enhanced).collect();
             tangent_at = strains.clone();
         } else if material.ring_is_viscous() {
-            measured = self.measured(points, material, &compatible.end);
-            alpha = self.of_rates(points, material, (&compatible.start, &measured));
-            let end = self.enhanced(&measured, &alpha);
-            strains = compatible.strains(compatible.start.iter(), end.iter());
+            let end = self.measured(points, material, &compatible.end);
+            let alpha = self.of_rates(points, material, (&compatible.start, &end));
+            enhanced = self.enhanced(&end, &alpha);
+            strains = compatible.strains(compatible.start.iter(), of_material(&enhanced).iter());
             tangent_at = strains.clone();
         } else {
-            let (start, alpha0, strains0) = solved(&compatible.start);
-            let (end, alpha1, strains1) = solved(&compatible.end);
-            let middle;
-            (measured, alpha, middle) = solved(&compatible.halfway());
-            strains = compatible.strains(strains0.iter(), strains1.iter());
-            tangent_at = middle.into_iter().map(Strains::At).collect();
+            let (start, alpha0, e0) = solved(&compatible.start);
+            let (end, alpha1, e1) = solved(&compatible.end);
+            (_, _, enhanced) = solved(&compatible.halfway());
+            strains = compatible.strains(of_material(&e0).iter(), of_material(&e1).iter());
+            tangent_at = at(&enhanced).collect();
             let ends = [(&start, &alpha0), (&end, &alpha1)];
             work = Some(self.energy_change(points, material, ends, &compatible.changes()));
         }
-        let at = self.at(material, (&measured, &alpha), |p| tangent_at[p]);
+        let at = Self::at(material, enhanced, |p| tangent_at[p]);
         let mut s = at.of_displacements(points);
         if let Some(work) = work {
             compatible.do_work(work, points, &mut s);
@@ -431,7 +431,7 @@ impl Enhanced {
                 }
             });
             let stored = |material: &Committed, measured: &Measured, alpha: &Alpha| -> f64 {
-                let e = self.enhanced(measured, alpha);
+                let e = of_material(&self.enhanced(measured, alpha));
                 let energies = points.iter().zip(&e).enumerate();
                 energies
                     .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
