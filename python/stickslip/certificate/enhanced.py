@@ -51,7 +51,7 @@ class Beside:
         self.mean = self._mean_of(strain)
         one = np.eye(strain.shape[-1])
         self.inverse = np.zeros_like(self.mean)
-        """k P"""
+        """Cbar^-1, or 0 in the measure of Green and Lagrange."""
         if law != SAINT_VENANT_KIRCHHOFF:
             self.inverse = np.linalg.inv(one + 2.0 * self.mean)
 
@@ -60,23 +60,25 @@ class Beside:
 
     def strain(self, linear: Array) -> Array:
         """E_g of E + M alpha."""
-        a = linear - self.mean
-        return linear + a @ self.inverse @ a
+        a, q, w = self._beside(linear)
+        return linear + a @ w @ q
 
     def on_modes(self, linear: Array, stress: Array) -> Array:
-        """S + Z, which does work on E + M alpha."""
-        return stress + self._beside(linear, stress)[0]
+        """T = W S W^T, which does work on E + M alpha."""
+        _, _, w = self._beside(linear)
+        return w @ stress @ w.swapaxes(2, 3)
 
     def on_displacements(self, linear: Array, stress: Array) -> Array:
-        """S + Z less the mean of Z + Y, which does work on E."""
-        z, y = self._beside(linear, stress)
-        return stress + z - self._mean_of(z + y)
+        """T less the mean of R = T - S + 2 Q T Q^T, which does work on E."""
+        _, q, _ = self._beside(linear)
+        t = self.on_modes(linear, stress)
+        return t - self._mean_of(t - stress + 2.0 * q @ t @ q.swapaxes(2, 3))
 
-    def _beside(self, linear: Array, stress: Array) -> tuple[Array, Array]:
-        """Z and Y."""
-        turned = self.inverse @ (linear - self.mean)
-        half = turned @ stress
-        return half + half.swapaxes(2, 3), 2.0 * half @ turned.swapaxes(2, 3)
+    def _beside(self, linear: Array) -> tuple[Array, Array, Array]:
+        """A, Q = Cbar^-1 A and W = (1 - Q)^-1."""
+        a = linear - self.mean
+        q = self.inverse @ a
+        return a, q, np.linalg.inv(np.eye(a.shape[-1]) - q)
 
 
 class EnhancedBlock(Block):
