@@ -280,7 +280,7 @@ class EnhancedRingBlock(CondensedBlock):
         return _strain(self.beside(strain, self.law).strain(self.own(strain, self.stress_at, self.law)))
 
     def conjugate(self, strain: Strain) -> Strain:
-        """S + Z less the mean of Z + Y."""
+        """T less the mean of R."""
         beside, linear = self.beside(strain, self.law), self.own(strain, self.stress_at, self.law)
         stress = _whole(*self.stress_at(_strain(beside.strain(linear))))
         return _parts(beside.on_displacements(linear, stress))
