@@ -1,8 +1,8 @@
 //! The model written back as a flat deck: one file without includes and assembly, every card and
 //! setting in full, numbers in the shortest form that reads as the same number.
 //!
-//! The deck reads as the same model but for the places of its contacts in the text and the instances
-//! of parts, whose nodes and elements have the numbers of the mesh. Two kinds of names are made up, as the model does not keep those of the deck: of interactions and of time points.
+//! The deck reads as the same model but for the places of its contacts in the text, the reason why a pair is from surface to
+//! surface, which it tells, and the instances of parts, whose nodes and elements have the numbers of the mesh. Two kinds of names are made up, as the model does not keep those of the deck: of interactions and of time points.
 
 mod lines;
 mod model;
@@ -23,8 +23,8 @@ pub fn flat_deck(model: &Model) -> String {
     lines.text()
 }
 
-/// What a deck reads otherwise than this model, but for the places of its contacts and the instances of parts; none where
-/// it reads as the same.
+/// What a deck reads otherwise than this model, but for the places and reasons of its contacts and the instances of parts; none
+/// where it reads as the same.
 pub fn difference(text: &str, model: &Model) -> Option<String> {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
     let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
@@ -86,6 +86,9 @@ fn flat(mut model: Model) -> Model {
     for contact in &mut model.contacts {
         contact.span = Span::default();
         contact.interaction.name.clear();
+        if !contact.is_self_contact() {
+            contact.lying_faces = None;
+        }
     }
     model
 }

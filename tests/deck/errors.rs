@@ -261,7 +261,7 @@ fn faulty(code: Code) -> Source {
 }
 
 /// Two rows of so many elements, one on the other, with pairs in both orders.
-fn on_each_other(elements: usize) -> String {
+pub fn on_each_other(elements: usize) -> String {
     let (mut nodes, mut faces) = (String::new(), [String::new(), String::new()]);
     for (row, faces) in faces.iter_mut().enumerate() {
         for i in 0..=elements {
