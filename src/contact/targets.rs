@@ -564,10 +564,10 @@ impl SlaveNode<'_> {
         Some(own.map(|[a, b]| project(at(a), at(a), at(b)).normal))
     }
 
-    /// Weight w of the second segment at the vertex of a face or of a gentle hollow, and at a gentle corner that meets a node in
-    /// a hollow, as a pin does in a bore, where the gaps to both segments are the same: the normal of either one would lean to
-    /// its side, and round-off would choose it. None where the gaps differ, the turn is larger, or the node was behind one of
-    /// them.
+    /// Weight w of the second segment at a vertex: of a face, of a gentle hollow, or of a gentle corner that meets a node in a
+    /// hollow of its own face, as a pin meets a bore. The gaps to both segments are the same there. The normal of one segment
+    /// would lean to its side, and round-off would choose the segment. None where the gaps differ, where the turn is larger,
+    /// and where the node was behind one of the segments.
     fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {
         let round_off = position_round_off(self.position());
         let least = (CLOSED_GAP * p.length.min(q.length)).max(round_off);
@@ -852,8 +852,8 @@ impl Corner {
 /// `normals` are those of the segments before and after a convex corner, `own` those before and
 /// after the slave node on its own surface. A normal that separates the two corners lies in the
 /// normal cone between `normals` and in the cone between the opposites of `own`; the common normal
-/// is the middle of their intersection. Flush blocks meet with the normal of their faces, corners
-/// with that of their bisectors. A node in a concave corner has no common normal.
+/// is the middle of their intersection. Flush blocks meet with the normal of their faces. Two corners meet
+/// with the normal between their bisectors. A node in a concave corner has no common normal.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let opposite = own.map(|n| [-n[0], -n[1]]);
