@@ -10,8 +10,13 @@ use nalgebra::{SMatrix, SVector};
 
 use super::displacement::Displacement;
 use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
-use crate::materials::lanes::{LANES, Lanes, Positive, SymmetricLanes};
-use crate::materials::{LawInLanes, StrainChange, TangentLanes};
+use crate::materials::number::{LANES, Positive};
+use crate::materials::{Across, Lanes, Number, StrainChange, Strains, StressAtPoints};
+
+/// A symmetric tensor of several elements.
+pub type SymmetricLanes = crate::materials::Symmetric<Lanes>;
+/// A tangent of several elements.
+pub type TangentLanes = crate::materials::Tangent<Lanes>;
 
 /// A tensor of the plane, row by row.
 pub type TensorLanes = [[Lanes; 2]; 2];
@@ -51,7 +56,7 @@ pub enum Deformation {
     /// Displacement gradient H.
     At(TensorLanes),
     /// H of the mid configuration and the strains of start and end.
-    Between(TensorLanes, StrainChange),
+    Between(TensorLanes, StrainChange<Lanes>),
 }
 
 impl<const N: usize> BlockMotion<N> {
@@ -90,10 +95,16 @@ impl Deformation {
 
     /// Second Piola-Kirchhoff stress, eq. (2.3), or energy-momentum stress, eq. (4.8).
     #[inline(always)]
-    pub fn stress(&self, law: &impl LawInLanes) -> SymmetricLanes {
+    pub fn stress(&self, p: usize, law: &impl LaneLaw) -> SymmetricLanes {
+        law.stress_at(p, &self.strains())
+    }
+
+    /// Strains at which the material is evaluated.
+    #[inline(always)]
+    fn strains(&self) -> Strains<Lanes> {
         match self {
-            Self::At(h) => law.stress(&green_lagrange(h)),
-            Self::Between(_, change) => law.mean_stress(change),
+            Self::At(h) => Strains::At(green_lagrange(h)),
+            Self::Between(_, change) => Strains::Between(*change),
         }
     }
 }
@@ -176,12 +187,13 @@ pub fn determinant(h: &TensorLanes) -> Lanes {
 #[inline(always)]
 pub fn green_lagrange(h: &TensorLanes) -> SymmetricLanes {
     let [xx, yy, xy] = half_of_square(h);
-    [h[0][0] + xx, h[1][1] + yy, (h[0][1] + h[1][0]) * 0.5 + xy]
+    let shear = (h[0][1] + h[1][0]) * 0.5 + xy;
+    in_plane([h[0][0] + xx, h[1][1] + yy, shear])
 }
 
 /// Of F0 = F - G and F1 = F + G, F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = F^T G + G^T F.
 #[inline(always)]
-fn strain_change(h: &TensorLanes, g: &TensorLanes) -> StrainChange {
+fn strain_change(h: &TensorLanes, g: &TensorLanes) -> StrainChange<Lanes> {
     let (e, square, f) = (
         green_lagrange(h),
         half_of_square(g),
@@ -189,18 +201,24 @@ fn strain_change(h: &TensorLanes, g: &TensorLanes) -> StrainChange {
     );
     let product = |i: usize, j: usize| f[0][i] * g[0][j] + f[1][i] * g[1][j];
     StrainChange {
-        mean: [e[0] + square[0], e[1] + square[1], e[2] + square[2]],
-        half: [
+        mean: in_plane([e.x + square[0], e.y + square[1], e.w + square[2]]),
+        half: in_plane([
             product(0, 0),
             product(1, 1),
             (product(0, 1) + product(1, 0)) * 0.5,
-        ],
+        ]),
     }
 }
 
-/// A^T A/2.
+/// A tensor of the components 11, 22 and 12.
 #[inline(always)]
-fn half_of_square(a: &TensorLanes) -> SymmetricLanes {
+pub fn in_plane([x, y, w]: [Lanes; 3]) -> SymmetricLanes {
+    SymmetricLanes::new(x, y, Lanes::ZERO, w)
+}
+
+/// A^T A/2, components 11, 22 and 12.
+#[inline(always)]
+fn half_of_square(a: &TensorLanes) -> [Lanes; 3] {
     let product = |i: usize, j: usize| (a[0][i] * a[0][j] + a[1][i] * a[1][j]) * 0.5;
     [product(0, 0), product(1, 1), product(0, 1)]
 }
@@ -214,16 +232,10 @@ pub fn plus(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
     ]
 }
 
-/// A symmetric tensor times a number.
-#[inline(always)]
-pub fn scaled(&[xx, yy, xy]: &SymmetricLanes, factor: Lanes) -> SymmetricLanes {
-    [xx * factor, yy * factor, xy * factor]
-}
-
 /// A S with a symmetric S.
 #[inline(always)]
-pub fn times_symmetric(a: &TensorLanes, &[xx, yy, xy]: &SymmetricLanes) -> TensorLanes {
-    let row = |[x, y]: [Lanes; 2]| [x * xx + y * xy, x * xy + y * yy];
+pub fn times_symmetric(a: &TensorLanes, s: &SymmetricLanes) -> TensorLanes {
+    let row = |[x, y]: [Lanes; 2]| [x * s.x + y * s.w, x * s.w + y * s.y];
     [row(a[0]), row(a[1])]
 }
 
@@ -301,27 +313,29 @@ pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 impl Deformation {
     /// Tangent of [`Self::stress`] in Voigt order.
     #[inline(always)]
-    fn tangent(&self, law: &impl LawInLanes) -> TangentLanes {
-        match self {
-            Self::At(h) => law.tangent(&green_lagrange(h)),
-            Self::Between(_, change) => law.mean_tangent(change),
-        }
+    fn tangent(&self, p: usize, law: &impl LaneLaw) -> TangentLanes {
+        law.tangent_at(p, &self.strains())
     }
 }
+
+/// A material of elements of the plane side by side.
+pub trait LaneLaw: StressAtPoints<Lanes, false> {}
+
+impl<L: StressAtPoints<Lanes, false>> LaneLaw for L {}
 
 /// How force, tangent and results of elements side by side follow from their motion.
 pub trait BlockFormulation {
     /// Internal force, eq. (2.5) (force), and whether det F is positive at all points.
     fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive);
 
     /// Adds the symmetric tangent (force/length): entries [a][b] with a <= b.
     fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     );
@@ -329,7 +343,7 @@ pub trait BlockFormulation {
     /// Results of the elements at displacements.
     fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES];
 }
@@ -339,15 +353,15 @@ impl BlockFormulation for Displacement {
     #[inline(always)]
     fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
         let mut positive = Positive::default();
-        let mut points = [([[Lanes::ZERO; 2]; 2], [Lanes::ZERO; 3]); P];
+        let mut points = [([[Lanes::ZERO; 2]; 2], SymmetricLanes::default()); P];
         let u = motion.derivatives::<S, P>();
         for p in 0..P {
             let deformation = block.deformation(p, &u, &mut positive);
-            let s = scaled(&deformation.stress(law), block.volume[p]);
+            let s = deformation.stress(p, law).times(block.volume[p]);
             points[p] = (*deformation.h(), s);
         }
         (block.nodal_forces::<S>(|p| points[p]), positive)
@@ -360,20 +374,16 @@ impl BlockFormulation for Displacement {
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     ) {
         let u = motion.derivatives::<S, P>();
         for p in 0..P {
             let deformation = block.deformation(p, &u, &mut Positive::default());
-            let s = scaled(&deformation.stress(law), block.volume[p]);
-            let c = deformation.tangent(law);
-            let c = [
-                scaled(&c[0], block.volume[p]),
-                scaled(&c[1], block.volume[p]),
-                scaled(&c[2], block.volume[p]),
-            ];
+            let s = deformation.stress(p, law).times(block.volume[p]);
+            let c = deformation.tangent(p, law);
+            let c = TangentLanes::of(|i, j| c.0[i][j] * block.volume[p]);
             let a = elasticity(&deformation_gradient(deformation.h()), &s, &c);
             add_products(k, &block.gradients::<S>(p), &a);
         }
@@ -382,7 +392,7 @@ impl BlockFormulation for Displacement {
     #[inline(always)]
     fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES] {
         let u = motion.derivatives::<S, P>();
@@ -394,9 +404,9 @@ impl BlockFormulation for Displacement {
                 h,
                 strain,
                 determinant: determinant(&h),
-                s: law.stress(&strain),
+                s: law.stress_at(p, &Strains::At(strain)),
             };
-            sums.add(law, &point, block.volume[p]);
+            sums.add(p, law, &point, block.volume[p]);
         }
         sums.results()
     }
@@ -430,16 +440,15 @@ pub fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elas
         for k in 0..2 {
             let along = [x, y][k];
             let across = [y, x][k];
-            let ds = |i: usize| c[i][k] * along + c[i][2] * across;
-            let ds = [ds(0), ds(1), ds(2)];
+            let ds = |i: usize| c.0[i][k] * along + c.0[i][3] * across;
+            let ds = in_plane([ds(0), ds(1), ds(3)]);
             for i in 0..2 {
                 a[i][2 * j + k] = times(&ds, &f[i]);
             }
         }
     }
-    let [xx, yy, xy] = *s;
     for i in 0..2 {
-        let geometric = [[xx, xy], [xy, yy]];
+        let geometric = [[s.x, s.w], [s.w, s.y]];
         for k in 0..2 {
             a[i][2 * i + k][0] += geometric[k][0];
             a[i][2 * i + k][1] += geometric[k][1];
@@ -450,8 +459,8 @@ pub fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elas
 
 /// S v with a symmetric S.
 #[inline(always)]
-fn times(&[xx, yy, xy]: &SymmetricLanes, &[x, y]: &[Lanes; 2]) -> [Lanes; 2] {
-    [xx * x + xy * y, xy * x + yy * y]
+fn times(s: &SymmetricLanes, &[x, y]: &[Lanes; 2]) -> [Lanes; 2] {
+    [s.x * x + s.w * y, s.w * x + s.y * y]
 }
 
 /// Adds g_a . A . g_b for a <= b.
@@ -487,9 +496,11 @@ pub struct ResultPoint {
 #[derive(Clone, Copy)]
 pub struct Sums {
     energy: Lanes,
-    stress: SymmetricLanes,
+    /// Components 11, 22 and 12.
+    stress: [Lanes; 3],
     across: Lanes,
-    strain: SymmetricLanes,
+    /// Components 11, 22 and 12.
+    strain: [Lanes; 3],
     volume: Lanes,
     /// Largest absolute principal strain so far.
     principal: [f64; LANES],
@@ -511,19 +522,19 @@ impl Sums {
 
     /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz/J.
     #[inline(always)]
-    pub fn add(&mut self, law: &impl LawInLanes, point: &ResultPoint, weight: Lanes) {
+    pub fn add(&mut self, p: usize, law: &impl LaneLaw, point: &ResultPoint, weight: Lanes) {
         let (h, e) = (&point.h, green_lagrange(&point.h));
         let f = deformation_gradient(h);
-        let [stretch, stress] = law.across(&point.strain);
+        let Across { stretch, stress } = law.across_at(p, &point.strain);
         let sigma = times_transposed(&times_symmetric(&f, &point.s), &f);
         let over_j = weight / (determinant(h) * stretch);
-        self.energy += law.stored_energy(&point.strain) * weight;
+        self.energy += law.energy_at(p, &point.strain) * weight;
         self.stress[0] += sigma[0][0] * over_j;
         self.stress[1] += sigma[1][1] * over_j;
         self.stress[2] += sigma[0][1] * over_j;
         self.across += stress * stretch / point.determinant * weight;
-        for (sum, e) in self.strain.iter_mut().zip(&e) {
-            *sum += *e * weight;
+        for (sum, e) in self.strain.iter_mut().zip([e.x, e.y, e.w]) {
+            *sum += e * weight;
         }
         self.volume += weight;
         self.take_principal(&e);
@@ -535,9 +546,9 @@ impl Sums {
     /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
     /// ```
     #[inline(always)]
-    fn take_principal(&mut self, &[xx, yy, xy]: &SymmetricLanes) {
-        let (mean, half) = ((xx + yy) * 0.5, (xx - yy) * 0.5);
-        let shear = (half * half + xy * xy).sqrt();
+    fn take_principal(&mut self, e: &SymmetricLanes) {
+        let (mean, half) = ((e.x + e.y) * 0.5, (e.x - e.y) * 0.5);
+        let shear = (half * half + e.w * e.w).sqrt();
         for (lane, most) in self.principal.iter_mut().enumerate() {
             let strain = mean.0[lane].abs() + shear.0[lane];
             *most = -smaller(-*most, -strain);
@@ -554,7 +565,7 @@ impl Sums {
     #[inline(always)]
     fn result(&self, lane: usize) -> ElementResult {
         let volume = self.volume.0[lane];
-        let means = |sums: &SymmetricLanes| {
+        let means = |sums: &[Lanes; 3]| {
             [
                 sums[0].0[lane] / volume,
                 sums[1].0[lane] / volume,

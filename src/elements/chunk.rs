@@ -13,12 +13,12 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block::{
-    BlockFormulation, BlockMotion, ElementBlock, IntegratedShape, MatrixLanes, NodalLanes,
+    BlockFormulation, BlockMotion, ElementBlock, IntegratedShape, LaneLaw, MatrixLanes, NodalLanes,
 };
 use super::formulation::ElementResult;
 use super::solid::{Motion, TangentPart, take_positive_part};
-use crate::materials::lanes::{LANES, Lanes, Positive};
-use crate::materials::{LawInLanes, PlaneLaw, Viscosity, in_lanes};
+use crate::materials::number::{LANES, Positive};
+use crate::materials::{Lanes, PlaneLaw, Viscosity, in_lanes};
 
 /// Elements of a chunk at most.
 pub const MAX_CHUNK: usize = 1024;
@@ -142,7 +142,7 @@ where
 
     fn write_tangents_of(
         &self,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         number: usize,
         motion: Motion,
         tangents: &mut [f64],
@@ -173,7 +173,7 @@ where
     fn sweep(
         &self,
         sums: &mut [[f64; 2]],
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: impl Fn(&ElementBlock<N, P>) -> BlockMotion<N>,
     ) -> Positive {
         let mut positive = Positive::default();
@@ -321,7 +321,7 @@ impl<const N: usize, const P: usize, S, F, L> WithSimd for ForceSweep<'_, N, P, 
 where
     S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
-    L: LawInLanes,
+    L: LaneLaw,
 {
     type Output = Positive;
 
@@ -349,7 +349,7 @@ impl<const N: usize, const P: usize, S, F, L> WithSimd for Evaluation<'_, N, P, 
 where
     S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
-    L: LawInLanes,
+    L: LaneLaw,
 {
     type Output = Vec<(usize, ElementResult)>;
 
@@ -379,7 +379,7 @@ impl<const N: usize, const P: usize, S, F, L> WithSimd for Tangents<'_, N, P, S,
 where
     S: IntegratedShape<N, P> + Sync,
     F: BlockFormulation + Sync,
-    L: LawInLanes,
+    L: LaneLaw,
 {
     type Output = ();
 

@@ -5,7 +5,7 @@ use nalgebra::SMatrix;
 
 use super::formulation::{
     Configuration, ElementFormulation, PointState, Reference, add_geometric, determinant,
-    displacement_gradient, green_lagrange, smaller, strain_displacement,
+    displacement_gradient, green_lagrange, of_plane, smaller, strain_displacement, voigt,
 };
 use crate::materials::{Strains, StressAtPoints};
 
@@ -39,7 +39,7 @@ impl ElementFormulation for Displacement {
         let mut k = SMatrix::<f64, D, D>::zeros();
         for (p, point) in element.points.iter().enumerate() {
             let state = state(element, p, material, configuration);
-            let c = material.tangent(p, &state.strains);
+            let c = voigt(&material.tangent_at(p, &state.strains));
             let b = strain_displacement::<N, D>(point, &state.f());
             k += b.transpose() * (c * b) * point.volume;
             add_geometric(&mut k, point, &state.s);
@@ -60,25 +60,27 @@ fn state<const N: usize, const P: usize>(
     match configuration {
         Configuration::At(u) => {
             let h = displacement_gradient(point, u);
-            let (strains, determinant) = (Strains::At(green_lagrange(&h)), determinant(&h));
+            let (strains, determinant) =
+                (Strains::At(of_plane(&green_lagrange(&h))), determinant(&h));
             PointState {
                 h,
                 strains,
                 material_determinant: determinant,
-                s: material.stress(p, &strains),
+                s: material.stress_at(p, &strains).in_plane(),
                 determinant,
             }
         }
         Configuration::Between(u0, u1) => {
             let [h0, h1] = [u0, u1].map(|u| displacement_gradient(point, u));
-            let strains = Strains::Between(green_lagrange(&h0), green_lagrange(&h1));
+            let [e0, e1] = [h0, h1].map(|h| of_plane(&green_lagrange(&h)));
+            let strains = Strains::between(&e0, &e1);
             let h = (h0 + h1) / 2.0;
             let mid = determinant(&h);
             PointState {
                 h,
                 strains,
                 material_determinant: mid,
-                s: material.stress(p, &strains),
+                s: material.stress_at(p, &strains).in_plane(),
                 determinant: smaller(mid, determinant(&h1)),
             }
         }

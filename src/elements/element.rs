@@ -15,9 +15,7 @@ use super::shapes::{
 };
 use super::solid::{ElementMatrix, ElementVector, MAX_NODES, Motion, Solid, TangentPart};
 use super::{block, enhanced_strain, formulation};
-use crate::materials::{
-    Committed, ConstitutiveLaw, PlaneLaw, RingStressAtPoints, StressAtPoints, Viscosity,
-};
+use crate::materials::{Committed, PlaneLaw, StressAtPoints, Viscosity};
 use crate::model::{ElementType, Formulation, Model, Shape, Thickness};
 
 /// An element of any type.
@@ -115,7 +113,7 @@ impl AnyElement {
     pub fn variables(&self, law: &PlaneLaw) -> usize {
         let of_point = law.variables();
         // at the start all are zero
-        let is_metal = law.as_metal().is_some();
+        let is_metal = law.is_metal();
         let own = match self {
             AnyElement::Quad4Reduced(_) if is_metal => variables(2),
             AnyElement::Quad4Enhanced(_) => enhanced_strain::STRAINS,
@@ -126,18 +124,14 @@ impl AnyElement {
     }
 
     /// Internal force with the smallest determinant of the deformation gradient.
-    pub fn force(
-        &self,
-        material: &(impl StressAtPoints + RingStressAtPoints),
-        motion: Motion,
-    ) -> (ElementVector, f64) {
+    pub fn force(&self, material: &impl StressAtPoints, motion: Motion) -> (ElementVector, f64) {
         with_element!(self, element => element.force(material, motion))
     }
 
     /// Tangent, or its positive part.
     pub fn tangent(
         &self,
-        material: &(impl StressAtPoints + RingStressAtPoints),
+        material: &impl StressAtPoints,
         motion: Motion,
         part: TangentPart,
     ) -> ElementMatrix {
@@ -148,11 +142,7 @@ impl AnyElement {
     }
 
     /// Work of the stress on the strains of a motion from its start to its end (force length).
-    pub fn work(
-        &self,
-        material: &(impl StressAtPoints + RingStressAtPoints),
-        motion: Motion,
-    ) -> f64 {
+    pub fn work(&self, material: &impl StressAtPoints, motion: Motion) -> f64 {
         with_element!(self, element => element.work(material, motion))
     }
 

@@ -21,7 +21,8 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3, Ve
 
 use super::formulation::{
     Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
-    determinant, displacement_gradient, green_lagrange, smaller, strain_displacement,
+    determinant, displacement_gradient, green_lagrange, of_plane, smaller, strain_displacement,
+    voigt,
 };
 use super::local_solution::{LAST_STEP, least, zero};
 use super::stretch::{AddedStrain, MeanStrain, Variation};
@@ -168,14 +169,15 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         enhanced: &[AddedStrain<2>; P],
         (strains, factor): (&[Strains; P], f64),
     ) -> (Vector4<f64>, Matrix4<f64>) {
-        let (s, c) = (material.stresses(strains), material.tangents(strains));
+        let s: [Matrix2<f64>; P] = stresses_at(material, strains);
         let (mut slope, mut stiffness) = (Vector4::zeros(), Matrix4::zeros());
         for (p, point) in element.points.iter().enumerate() {
             let [stress, _] = enhanced[p].conjugate(&s[p]);
             let stress = stress * point.volume;
             slope += Vector4::from_fn(|k, _| self.strains[p][k].dot(&stress));
             let own = self.strains[p].map(|m| Columns::new(&enhanced[p], m, None));
-            let at = (&enhanced[p], &s[p], &(c[p] * factor));
+            let c = voigt(&material.tangent_at(p, &strains[p]));
+            let at = (&enhanced[p], &s[p], &(c * factor));
             add_products(&own, &own, at, |k, l, value| {
                 stiffness[(k, l)] += value * point.volume;
             });
@@ -194,7 +196,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let last = LAST_STEP * largest(&measured.compatible) + f64::EPSILON;
         let derivatives = |alpha: &Vector4<f64>| {
             let e = self.enhanced(measured, alpha);
-            let strains = e.map(|e| Strains::At(e.strain()));
+            let strains = e.map(|e| Strains::At(of_plane(&e.strain())));
             self.derivatives(element, material, &e, (&strains, 1.0))
         };
         let change = |from: &Vector4<f64>, to: &Vector4<f64>| {
@@ -222,7 +224,7 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         let last = LAST_STEP * largest(&change) + f64::EPSILON * largest(e1) + f64::MIN_POSITIVE;
         let derivatives = |alpha: &Vector4<f64>| {
             let e = self.enhanced(end, alpha);
-            let strains = std::array::from_fn(|p| Strains::Between(e0[p], e[p].strain()));
+            let strains = std::array::from_fn(|p| between(&e0[p], &e[p].strain()));
             self.derivatives(element, viscosity, &e, (&strains, 0.5))
         };
         zero(derivatives, last).unwrap_or(Vector4::from_element(f64::NAN))
@@ -252,8 +254,8 @@ impl<const N: usize, const P: usize> Modes<N, P> {
     ) -> f64 {
         let (e0, e1) = (self.enhanced(start, alpha0), self.enhanced(end, alpha1));
         let strains: [Strains; P] =
-            std::array::from_fn(|p| Strains::Between(e0[p].strain(), e1[p].strain()));
-        let s = material.stresses(&strains);
+            std::array::from_fn(|p| between(&e0[p].strain(), &e1[p].strain()));
+        let s = stresses_at(material, &strains);
         let of_mean = Self::mean_of(element, changes);
         let of_point = |(p, point): (usize, &IntegrationPoint<N>)| {
             let at_point = changes[p] + self.strain(p, &(*alpha1 - *alpha0));
@@ -262,6 +264,19 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         };
         element.points.iter().enumerate().map(of_point).sum()
     }
+}
+
+/// The strains of a material from one to another.
+fn between(e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Strains {
+    Strains::between(&of_plane(e0), &of_plane(e1))
+}
+
+/// Stresses of a material at strains of all points (force/length^2).
+fn stresses_at<const P: usize>(
+    material: &impl StressAtPoints,
+    strains: &[Strains; P],
+) -> [Matrix2<f64>; P] {
+    std::array::from_fn(|p| material.stress_at(p, &strains[p]).in_plane())
 }
 
 /// Strains of the displacements of all points, and their mean in the measure of a material.
@@ -373,7 +388,7 @@ fn states<const N: usize, const P: usize>(
         (measured, alpha, enhanced)
     };
     let mut work = None;
-    let at = |enhanced: &[AddedStrain<2>; P]| enhanced.map(|e| Strains::At(e.strain()));
+    let at = |enhanced: &[AddedStrain<2>; P]| enhanced.map(|e| Strains::At(of_plane(&e.strain())));
     let (enhanced, strains, tangent_at): (_, [Strains; P], [Strains; P]);
     match configuration {
         Configuration::At(_) => {
@@ -385,21 +400,21 @@ fn states<const N: usize, const P: usize>(
             let end = modes.measured(element, material, c1);
             let alpha = modes.of_rates(element, material, (&c0, &end));
             enhanced = modes.enhanced(&end, &alpha);
-            strains = std::array::from_fn(|p| Strains::Between(c0[p], enhanced[p].strain()));
+            strains = std::array::from_fn(|p| between(&c0[p], &enhanced[p].strain()));
             tangent_at = strains;
         }
         Configuration::Between(..) => {
             let (start, alpha0, e0) = solved(c0);
             let (end, alpha1, e1) = solved(c1);
             (_, _, enhanced) = solved(std::array::from_fn(|p| (c0[p] + c1[p]) / 2.0));
-            strains = std::array::from_fn(|p| Strains::Between(e0[p].strain(), e1[p].strain()));
+            strains = std::array::from_fn(|p| between(&e0[p].strain(), &e1[p].strain()));
             tangent_at = at(&enhanced);
             let changes = std::array::from_fn(|p| c1[p] - c0[p]);
             let ends = [(&start, &alpha0), (&end, &alpha1)];
             work = Some(modes.energy_change(element, material, &ends, &changes));
         }
     }
-    let of_material = material.stresses(&tangent_at);
+    let of_material = stresses_at(material, &tangent_at);
     let mut s = modes.stresses(element, &enhanced, &of_material);
     if let Some(mut f) = work {
         let mut squares = 0.0;
@@ -418,7 +433,7 @@ fn states<const N: usize, const P: usize>(
         let point = &element.points[p];
         let [h0, h1] = u.map(|u| displacement_gradient(point, u));
         let h = (h0 + h1) / 2.0;
-        let own = Matrix2::identity() + strains[p].end() * 2.0;
+        let own = Matrix2::identity() + strains[p].end().in_plane() * 2.0;
         let least = smaller(determinant(&h), determinant(&h1));
         PointState {
             h,
@@ -457,7 +472,7 @@ fn stored<const N: usize, const P: usize>(
     let e = modes.enhanced(measured, alpha);
     let points = element.points.iter().enumerate();
     points
-        .map(|(p, point)| material.stored_energy(p, &e[p].strain()) * point.volume)
+        .map(|(p, point)| material.energy_at(p, &of_plane(&e[p].strain())) * point.volume)
         .sum()
 }
 
@@ -475,8 +490,9 @@ impl ElementFormulation for EnhancedStrain {
         let (mut of_points, mut work) = (0.0, 0.0);
         for (p, (point, state)) in element.points.iter().zip(&states).enumerate() {
             of_points += material.update(p, &state.strains, updated) * point.volume;
-            if let Strains::Between(e0, e1) = state.strains {
-                work += material.stress(p, &state.strains).dot(&(e1 - e0)) * point.volume;
+            if let Strains::Between(change) = state.strains {
+                let s = material.stress_at(p, &state.strains);
+                work += s.contract::<false>(&change.change()) * point.volume;
             }
         }
         let (Configuration::Between(u0, u1), Some(own)) =
@@ -553,7 +569,6 @@ impl ElementFormulation for EnhancedStrain {
         });
         let of_mean: [Matrix2<f64>; D] =
             std::array::from_fn(|j| Modes::mean_of(element, &std::array::from_fn(|p| rows[p][j])));
-        let c = material.tangents(&states.tangent_at);
         let (mut k, mut mixed) = (SMatrix::<f64, D, D>::zeros(), SMatrix::<f64, D, 4>::zeros());
         let mut stiffness = Matrix4::zeros();
         for (p, point) in element.points.iter().enumerate() {
@@ -562,7 +577,8 @@ impl ElementFormulation for EnhancedStrain {
             let of_displacements: [Columns; D] =
                 std::array::from_fn(|j| Columns::new(enhanced, rows[p][j], Some(of_mean[j])));
             let own = modes.strains[p].map(|m| Columns::new(enhanced, m, None));
-            let at = (enhanced, &states.of_material[p], &c[p]);
+            let c = voigt(&material.tangent_at(p, &states.tangent_at[p]));
+            let at = (enhanced, &states.of_material[p], &c);
             let v = point.volume;
             add_products(&of_displacements, &of_displacements, at, |i, j, value| {
                 k[(i, j)] += value * v;
@@ -591,7 +607,7 @@ mod tests {
     use super::*;
     use crate::elements::formulation::evaluate;
     use crate::elements::testing::{check_compressed, displacements, laws, quad};
-    use crate::materials::{Committed, ConstitutiveLaw, Law, Plane, Plastic, SmallStrainModuli};
+    use crate::materials::{Committed, Law, Plane, Plastic, SmallStrainModuli};
 
     #[test]
     fn elements_with_enhanced_strains_fulfil_what_all_have_to() {

@@ -4,10 +4,10 @@
 //! strain energy, Cauchy stress and Green-Lagrange strain averaged over the element, the von Mises stress of these
 //! averages, largest principal strain. Sections 2 and 4 of docs/theory.md (paper eq. 12).
 
-use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, SVector, Vector3};
 use smallvec::SmallVec;
 
-use crate::materials::{Across, Committed, Strains, StressAtPoints};
+use crate::materials::{Across, Committed, Strains, StressAtPoints, Symmetric, Tangent};
 
 /// How strains and stresses at the integration points follow from the displacements of an element.
 /// Chosen at compile time: a sweep has no dispatch within an element.
@@ -82,9 +82,9 @@ pub fn work<F: ElementFormulation, const N: usize, const P: usize>(
 ) -> f64 {
     let mut work = F::hourglass_energy(element, material, configuration);
     F::for_each_state(element, material, configuration, |p, state| {
-        if let Strains::Between(e0, e1) = state.strains {
-            let s = material.stress(p, &state.strains);
-            work += s.dot(&(e1 - e0)) * element.points[p].volume;
+        if let Strains::Between(change) = state.strains {
+            let s = material.stress_at(p, &state.strains);
+            work += s.contract::<false>(&change.change()) * element.points[p].volume;
         }
     });
     work
@@ -291,6 +291,18 @@ pub fn green_lagrange(h: &Matrix2<f64>) -> Matrix2<f64> {
     (h + h.transpose() + h.transpose() * h) / 2.0
 }
 
+/// A strain of the plane with all its components.
+#[inline]
+pub(super) fn of_plane(e: &Matrix2<f64>) -> Symmetric {
+    Symmetric::of_plane(e, 0.0)
+}
+
+/// A tangent in Voigt order (11, 22, 2*12).
+pub(super) fn voigt(c: &Tangent) -> Matrix3<f64> {
+    const PLANE: [usize; 3] = [0, 1, 3];
+    Matrix3::from_fn(|i, j| c.0[PLANE[i]][PLANE[j]])
+}
+
 /// det F = det(I + H).
 #[inline]
 pub(super) fn determinant(h: &Matrix2<f64>) -> f64 {
@@ -366,9 +378,9 @@ impl PointResult {
     /// sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz / J.
     pub fn new(state: &PointState, material: &Committed, point: usize) -> Self {
         let (f, e) = (state.f(), state.strains.end());
-        let Across { stretch, stress } = material.across(point, e);
+        let Across { stretch, stress } = material.across_at(point, &e);
         PointResult {
-            energy: material.stored_energy(point, e),
+            energy: material.energy_at(point, &e),
             sigma: f * state.s * f.transpose() / (state.determinant * stretch),
             across: stress * stretch / state.material_determinant,
             strain: green_lagrange(&state.h),

@@ -15,9 +15,9 @@
 //! The least energy over the flow is V W(E; m) + (y - y_p).Kh (y - y_p)/2 but for a constant. Of W an element knows the
 //! derivatives by E and by m, which is quadratic in y.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
-use crate::materials::{BentLaw, Metal, MetalLaw};
+use crate::materials::{Metal, StrainChange, Symmetric};
 
 /// Amplitudes of the modes in a motion.
 #[derive(Debug, Clone, Copy)]
@@ -91,16 +91,21 @@ impl<const M: usize> HourglassPotential<M> {
     }
 }
 
-/// Strain (with twice the shear) and amplitudes, or what does work on them.
+/// The tensor of strains (11, 22, 33, 2*12).
+fn tensor(e: &Vector4<f64>) -> Symmetric {
+    Symmetric::new(e.x, e.y, e.z, e.w / 2.0)
+}
+
+/// Strain (11, 22, 33, 2*12) and amplitudes, or what does work on them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Joint<const N: usize, const M: usize> {
+pub(super) struct Joint<const M: usize> {
     /// Of the point.
-    pub e: SVector<f64, N>,
+    pub e: Vector4<f64>,
     /// Of the modes.
     pub y: SVector<f64, M>,
 }
 
-impl<const N: usize, const M: usize> Joint<N, M> {
+impl<const M: usize> Joint<M> {
     fn combined(&self, a: f64, other: &Self, b: f64) -> Self {
         Joint {
             e: self.e * a + other.e * b,
@@ -115,17 +120,17 @@ impl<const N: usize, const M: usize> Joint<N, M> {
 
 /// Second derivatives by strain and amplitudes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct JointTangent<const N: usize, const M: usize> {
+pub(super) struct JointTangent<const M: usize> {
     /// By the strain twice.
-    pub ee: SMatrix<f64, N, N>,
+    pub ee: Matrix4<f64>,
     /// By the strain and the amplitudes.
-    pub ey: SMatrix<f64, N, M>,
+    pub ey: SMatrix<f64, 4, M>,
     /// By the amplitudes twice.
     pub yy: SMatrix<f64, M, M>,
 }
 
-impl<const N: usize, const M: usize> JointTangent<N, M> {
-    fn of(&self, n: &Joint<N, M>) -> Joint<N, M> {
+impl<const M: usize> JointTangent<M> {
+    fn of(&self, n: &Joint<M>) -> Joint<M> {
         Joint {
             e: self.ee * n.e + self.ey * n.y,
             y: self.ey.tr_mul(&n.e) + self.yy * n.y,
@@ -133,7 +138,7 @@ impl<const N: usize, const M: usize> JointTangent<N, M> {
     }
 
     /// Adds factor (a b + b a)/2.
-    fn add_product(&mut self, a: &Joint<N, M>, b: &Joint<N, M>, factor: f64) {
+    fn add_product(&mut self, a: &Joint<M>, b: &Joint<M>, factor: f64) {
         let half = factor / 2.0;
         self.ee += (a.e * b.e.transpose() + b.e * a.e.transpose()) * half;
         self.ey += (a.e * b.y.transpose() + b.e * a.y.transpose()) * half;
@@ -143,16 +148,16 @@ impl<const N: usize, const M: usize> JointTangent<N, M> {
 
 /// Strain and amplitudes at one configuration, or at the start and at the end of an increment.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum JointPath<const N: usize, const M: usize> {
+pub(super) enum JointPath<const M: usize> {
     /// At one configuration.
-    At(Joint<N, M>),
+    At(Joint<M>),
     /// At the start and at the end of an increment.
-    Between(Joint<N, M>, Joint<N, M>),
+    Between(Joint<M>, Joint<M>),
 }
 
-impl<const N: usize, const M: usize> JointPath<N, M> {
+impl<const M: usize> JointPath<M> {
     /// Those of strains with the amplitudes of the modes.
-    pub fn new([e0, e1]: [SVector<f64, N>; 2], amplitudes: &Amplitudes<M>) -> Self {
+    pub fn new([e0, e1]: [Vector4<f64>; 2], amplitudes: &Amplitudes<M>) -> Self {
         match *amplitudes {
             Amplitudes::At(y) => JointPath::At(Joint { e: e1, y }),
             Amplitudes::Between(y0, y1) | Amplitudes::Change(y0, y1) => {
@@ -198,48 +203,43 @@ impl<'a, const M: usize> BentMetal<'a, M> {
     }
 
     /// Change of the potential, with a round-off that is relative to the motion.
-    fn change<const N: usize>(&self, start: &Joint<N, M>, end: &Joint<N, M>) -> f64
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    fn change(&self, start: &Joint<M>, end: &Joint<M>) -> f64 {
         let ((m0, half0), (m1, half1)) = (self.square(&start.y), self.square(&end.y));
         let by = (half0 + half1).dot(&(end.y - start.y));
-        let (ends, of_point) = ([&start.e, &end.e], self.metal.of_point);
-        self.volume * BentLaw::<N>::change(self.metal.law, of_point, ends, [m0, m1], by)
+        let strains = StrainChange::between(&tensor(&start.e), &tensor(&end.e));
+        let (law, of_point) = (self.metal.law, self.metal.of_point);
+        self.volume * law.change(of_point, &strains, [m0, m1], by)
     }
 
-    fn stress_at<const N: usize>(&self, at: &Joint<N, M>) -> Joint<N, M>
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    fn stress_at(&self, at: &Joint<M>) -> Joint<M> {
         let (m, half) = self.square(&at.y);
         let (law, of_point) = (self.metal.law, self.metal.of_point);
-        let (stress, by_modes) = BentLaw::<N>::stress(law, of_point, &at.e, m);
+        let (stress, by_modes) = law.bent_stress(of_point, &tensor(&at.e), m);
         Joint {
-            e: stress * self.volume,
+            e: Vector4::from(stress.components()) * self.volume,
             y: half * (2.0 * by_modes * self.volume),
         }
     }
 
-    fn tangent_at<const N: usize>(&self, at: &Joint<N, M>) -> JointTangent<N, M>
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    fn tangent_at(&self, at: &Joint<M>) -> JointTangent<M> {
         let (m, half) = self.square(&at.y);
-        let state = BentLaw::<N>::tangent(self.metal.law, self.metal.of_point, &at.e, m);
+        let (law, of_point) = (self.metal.law, self.metal.of_point);
+        let state = law.bent_tangent(of_point, &tensor(&at.e), m);
         let [first, second] = state.by_modes;
         JointTangent {
-            ee: state.tangent * self.volume,
-            ey: state.stress_by_modes * half.transpose() * (2.0 * self.volume),
+            ee: state.tangent.matrix() * self.volume,
+            ey: Vector4::from(state.stress_by_modes.components())
+                * half.transpose()
+                * (2.0 * self.volume),
             yy: self.modes.stiffness * (2.0 * self.shear() * first)
                 + half * half.transpose() * (4.0 * self.volume * second),
         }
     }
 
     /// Metric of strain and amplitudes: 3 mu V and Kh (energy).
-    fn metric<const N: usize>(&self, n: &Joint<N, M>) -> Joint<N, M> {
+    fn metric(&self, n: &Joint<M>) -> Joint<M> {
         let mut e = n.e * (self.volume * self.shear());
-        e[N - 1] /= 2.0;
+        e.w /= 2.0;
         Joint {
             e,
             y: self.modes.stiffness * n.y,
@@ -257,10 +257,7 @@ impl<'a, const M: usize> BentMetal<'a, M> {
     /// ```text
     /// D'(mean) + phi/(n.m) m,   phi = D(end) - D(start) - D'(mean).n
     /// ```
-    pub fn stress<const N: usize>(&self, path: &JointPath<N, M>) -> Joint<N, M>
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    pub fn stress(&self, path: &JointPath<M>) -> Joint<M> {
         let (start, end) = match path {
             JointPath::At(at) => return self.stress_at(at),
             JointPath::Between(start, end) => (start, end),
@@ -283,10 +280,7 @@ impl<'a, const M: usize> BentMetal<'a, M> {
     /// ```text
     /// D''(mean) + 2 phi/(n.m) (metric - 2 m m/(n.m)) + (m g + g m)/(n.m)
     /// ```
-    pub fn tangent<const N: usize>(&self, path: &JointPath<N, M>) -> JointTangent<N, M>
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    pub fn tangent(&self, path: &JointPath<M>) -> JointTangent<M> {
         let (start, end) = match path {
             JointPath::At(at) => return self.tangent_at(at),
             JointPath::Between(start, end) => (start, end),
@@ -302,8 +296,8 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         let half = tangent.of(&n);
         let g = (self.stress_at(end).combined(1.0, &stress, -1.0)).combined(1.0, &half, -0.5);
         let factor = 2.0 * phi / squared;
-        for k in 0..N {
-            let shear = if k + 1 == N { 0.5 } else { 1.0 };
+        for k in 0..4 {
+            let shear = if k == 3 { 0.5 } else { 1.0 };
             tangent.ee[(k, k)] += factor * self.volume * self.shear() * shear;
         }
         tangent.yy += self.modes.stiffness * factor;
@@ -332,28 +326,25 @@ impl<'a, const M: usize> BentMetal<'a, M> {
 
 /// The modes of an element in a motion, with the strain of its point where that is a metal.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ModesInMotion<'a, const N: usize, const M: usize> {
+pub(super) struct ModesInMotion<'a, const M: usize> {
     potential: HourglassPotential<M>,
     amplitudes: Amplitudes<M>,
-    bent: Option<(BentMetal<'a, M>, JointPath<N, M>)>,
+    bent: Option<(BentMetal<'a, M>, JointPath<M>)>,
     /// S of a metal (force/length^2).
-    pub metal_stress: Option<SVector<f64, N>>,
+    pub metal_stress: Option<Vector4<f64>>,
     /// Stress that does work on the amplitudes.
     pub stress: SVector<f64, M>,
     /// Stored energy of the modes, or the work of their stress (force length).
     pub energy: f64,
 }
 
-impl<'a, const N: usize, const M: usize> ModesInMotion<'a, N, M>
-where
-    dyn MetalLaw + 'a: BentLaw<N>,
-{
+impl<'a, const M: usize> ModesInMotion<'a, M> {
     /// Those of a stiffness Kh, of an element with a volume (length^3) and with strains of its point at the start and at the end.
     pub fn new(
         stiffness: SMatrix<f64, M, M>,
         metal: Option<Metal<'a>>,
         volume: f64,
-        strains: [SVector<f64, N>; 2],
+        strains: [Vector4<f64>; 2],
         amplitudes: Amplitudes<M>,
     ) -> Self {
         let potential = HourglassPotential::new(stiffness, metal.as_ref());
@@ -380,7 +371,7 @@ where
     }
 
     /// The tangent of V S of a metal and of what its flow adds to the stress of the modes.
-    pub fn metal_tangent(&self) -> Option<JointTangent<N, M>> {
+    pub fn metal_tangent(&self) -> Option<JointTangent<M>> {
         self.bent.as_ref().map(|(bent, path)| bent.tangent(path))
     }
 
@@ -401,13 +392,13 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::{ConstitutiveLaw, Plane, PlanePlastic, Plastic, SmallStrainModuli};
-    use nalgebra::{Matrix2, Vector2, Vector3, Vector4};
+    use crate::materials::{Flow, Plane, PlanePlastic, Plastic, SmallStrainModuli};
+    use nalgebra::{Matrix2, Vector2};
 
     const VOLUME: f64 = 0.7;
     const YOUNG: f64 = 1000.0;
     const RING: Vector4<f64> = Vector4::new(2.0, -1.2, -0.5, 0.9);
-    const PLANE: Vector3<f64> = Vector3::new(2.0, -1.2, 0.9);
+    const PLANE: Vector4<f64> = Vector4::new(2.0, -1.2, 0.0, 0.9);
     const BENT: Vector2<f64> = Vector2::new(0.03, -0.02);
 
     /// States in units of about what flows first: at rest, of the strain alone, with hardly a mode, of the modes alone, with
@@ -425,15 +416,15 @@ mod tests {
         [6.0, 9.0],
     ];
 
-    fn joint<const N: usize>(way: SVector<f64, N>, [e, y]: [f64; 2]) -> Joint<N, 2> {
+    fn joint(way: Vector4<f64>, [e, y]: [f64; 2]) -> Joint<2> {
         Joint {
             e: way * (e * 1e-3),
             y: BENT * y,
         }
     }
 
-    /// Metals with and without a back stress, with their variables after some flow, and those of the modes.
-    fn metals(units: f64) -> Vec<(PlanePlastic, [f64; 2])> {
+    /// Metals with and without a back stress, with their variables after some flow, those of the modes, and a way of strains.
+    fn metals(units: f64) -> Vec<(PlanePlastic, [f64; 2], Vector4<f64>)> {
         let law = |kinematic| Plastic {
             moduli: SmallStrainModuli {
                 young: YOUNG * units,
@@ -444,9 +435,14 @@ mod tests {
                 .into(),
             kinematic: kinematic * units,
         };
-        let all = [Plane::Strain, Plane::Stress].map(|plane| {
+        let ways = [
+            (Plane::Revolution, RING),
+            (Plane::Strain, PLANE),
+            (Plane::Stress, PLANE),
+        ];
+        let all = ways.map(|(plane, way)| {
             [(0.0, [0.0; 2]), (40.0, [0.002, -0.003])]
-                .map(|(kinematic, flown)| (law(kinematic).in_plane(plane), flown))
+                .map(|(kinematic, flown)| (law(kinematic).in_plane(plane), flown, way))
         });
         all.into_iter().flatten().collect()
     }
@@ -455,7 +451,7 @@ mod tests {
         const AT_REST: [f64; 9] = [0.0; 9];
         let metal = Metal {
             law,
-            of_point: &AT_REST[..ConstitutiveLaw::variables(law)],
+            of_point: &AT_REST[..Flow::variables(law)],
             of_modes,
         };
         let stiffness = Matrix2::new(3.0, 0.4, 0.4, 2.0) * units;
@@ -463,46 +459,42 @@ mod tests {
         BentMetal::new(&modes, metal, VOLUME)
     }
 
-    fn unit<const N: usize>(j: usize) -> Joint<N, 2> {
+    fn unit(j: usize) -> Joint<2> {
         let mut unit = Joint {
             e: SVector::zeros(),
             y: Vector2::zeros(),
         };
-        match j < N {
+        match j < 4 {
             true => unit.e[j] = 1.0,
-            false => unit.y[j - N] = 1.0,
+            false => unit.y[j - 4] = 1.0,
         }
         unit
     }
 
     /// Steps of difference quotients by strains and by amplitudes.
-    fn step<const N: usize>(j: usize) -> f64 {
-        if j < N { 1e-8 } else { 1e-7 }
+    fn step(j: usize) -> f64 {
+        if j < 4 { 1e-8 } else { 1e-7 }
+    }
+
+    /// Components of strain and amplitudes that are free: not the strain across the plane.
+    fn numbers(way: &Vector4<f64>) -> Vec<usize> {
+        (0..6).filter(|&j| j != 2 || way.z != 0.0).collect()
     }
 
     /// Derivatives of the whole potential, of strain and modes.
-    fn whole<'a, const N: usize>(
-        bent: &BentMetal<'a, 2>,
-        at: &Joint<N, 2>,
-    ) -> (Joint<N, 2>, JointTangent<N, 2>)
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    fn whole(bent: &BentMetal<2>, at: &Joint<2>) -> (Joint<2>, JointTangent<2>) {
         let (mut stress, mut tangent) = (bent.stress_at(at), bent.tangent_at(at));
         stress.y += bent.modes.stress(&Amplitudes::At(at.y));
         tangent.yy += bent.modes.stiffness;
         (stress, tangent)
     }
 
-    fn check_potential<'a, const N: usize>(bent: &BentMetal<'a, 2>, way: SVector<f64, N>)
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    fn check_potential(bent: &BentMetal<2>, way: Vector4<f64>) {
         let start = joint(way, [0.0; 2]);
         for at in SHARES.map(|share| joint(way, share)) {
             let (stress, tangent) = whole(bent, &at);
-            for j in 0..N + 2 {
-                let (unit, h) = (unit::<N>(j), step::<N>(j));
+            for j in numbers(&way) {
+                let (unit, h) = (unit(j), step(j));
                 let [ahead, behind] = [h, -h].map(|h| at.combined(1.0, &unit, h));
                 let change = bent.change(&start, &ahead) - bent.change(&start, &behind);
                 let (slope, exact) = (change / (2.0 * h), bent.stress_at(&at).dot(&unit));
@@ -526,10 +518,7 @@ mod tests {
         }
     }
 
-    fn check_increments<'a, const N: usize>(bent: &BentMetal<'a, 2>, way: SVector<f64, N>)
-    where
-        dyn MetalLaw + 'a: BentLaw<N>,
-    {
+    fn check_increments(bent: &BentMetal<2>, way: Vector4<f64>) {
         let joints = SHARES.map(|share| joint(way, share));
         for (start, end) in joints
             .iter()
@@ -547,19 +536,23 @@ mod tests {
                 continue;
             }
             let tangent = bent.tangent(&path);
-            let columns: Vec<_> = (0..N + 2)
+            let columns: Vec<_> = (0..6)
                 .map(|j| {
                     let of = |h: f64| {
-                        let end = end.combined(1.0, &unit::<N>(j), h);
+                        let end = end.combined(1.0, &unit(j), h);
                         bent.stress(&JointPath::Between(*start, end))
                     };
-                    let h = step::<N>(j);
+                    let h = step(j);
                     of(h).combined(1.0 / h, &of(-h), -1.0 / h)
                 })
                 .collect();
-            for (i, j) in (0..N + 2).flat_map(|i| (0..N + 2).map(move |j| (i, j))) {
+            let numbers = numbers(&way);
+            for (i, j) in numbers
+                .iter()
+                .flat_map(|&i| numbers.iter().map(move |&j| (i, j)))
+            {
                 let slope = (columns[j].dot(&unit(i)) + columns[i].dot(&unit(j))) / 2.0;
-                let found = unit::<N>(i).dot(&tangent.of(&unit(j)));
+                let found = unit(i).dot(&tangent.of(&unit(j)));
                 assert!(
                     (slope - found).abs() < 1e-4 * VOLUME * YOUNG,
                     "{start:?} {end:?} {i} {j}: {slope} {found}"
@@ -570,17 +563,15 @@ mod tests {
 
     #[test]
     fn strain_and_modes_of_a_metal_have_one_convex_potential() {
-        for (law, flown) in metals(1.0) {
-            check_potential(&bent(&law, &flown, 1.0), PLANE);
-            check_potential(&bent(&law, &flown, 1.0), RING);
+        for (law, flown, way) in metals(1.0) {
+            check_potential(&bent(&law, &flown, 1.0), way);
         }
     }
 
     #[test]
     fn the_stress_of_an_increment_does_the_work_of_the_potential() {
-        for (law, flown) in metals(1.0) {
-            check_increments(&bent(&law, &flown, 1.0), PLANE);
-            check_increments(&bent(&law, &flown, 1.0), RING);
+        for (law, flown, way) in metals(1.0) {
+            check_increments(&bent(&law, &flown, 1.0), way);
         }
     }
 
@@ -588,11 +579,11 @@ mod tests {
     fn units_that_differ_by_a_power_of_two_change_no_bit() {
         let stresses = |units: f64| {
             let mut all = Vec::new();
-            for (law, flown) in metals(units) {
+            for (law, flown, way) in metals(units) {
                 let bent = bent(&law, &flown, units);
                 for share in SHARES {
-                    let start = joint(PLANE, [0.7, 0.2]);
-                    let s = bent.stress(&JointPath::Between(start, joint(PLANE, share)));
+                    let start = joint(way, [0.7, 0.2]);
+                    let s = bent.stress(&JointPath::Between(start, joint(way, share)));
                     all.extend(s.e.iter().chain(&s.y).map(|s| s / units));
                 }
             }
@@ -624,8 +615,8 @@ mod tests {
         };
         let modes = HourglassPotential::new(stiffness, Some(&metal));
         let bent = BentMetal::new(&modes, metal, 1.0);
-        let at: Joint<3, 2> = Joint {
-            e: Vector3::zeros(),
+        let at: Joint<2> = Joint {
+            e: Vector4::zeros(),
             y: Vector2::new(30.0, 40.0),
         };
         let found = whole(&bent, &at).0.y.norm();

@@ -13,7 +13,8 @@ use nalgebra::{Matrix2, SMatrix, SVector, Vector3};
 
 use super::formulation::{
     Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
-    determinant, displacement_gradient, green_lagrange, smaller, strain_displacement,
+    determinant, displacement_gradient, green_lagrange, of_plane, smaller, strain_displacement,
+    voigt,
 };
 use crate::materials::{Strains, StressAtPoints};
 
@@ -140,15 +141,16 @@ fn stresses<const N: usize, const P: usize>(
     // theta - 1 = int (J - 1) dOmega / V
     let theta = [0, 1].map(|i| mean(&|p| motions[p].dilatation[i]));
     let strains: [Strains; P] = std::array::from_fn(|p| {
-        let [e0, e1] = motions[p].material_strain(theta);
+        let [e0, e1] = motions[p].material_strain(theta).map(|e| of_plane(&e));
         match configuration {
             Configuration::At(_) => Strains::At(e1),
-            Configuration::Between(..) => Strains::Between(e0, e1),
+            Configuration::Between(..) => Strains::between(&e0, &e1),
         }
     });
-    let s = material.stresses(&strains);
-    let mut stresses: [PointStress; P] =
-        std::array::from_fn(|p| motions[p].stress(theta, strains[p], s[p]));
+    let mut stresses: [PointStress; P] = std::array::from_fn(|p| {
+        let s = material.stress_at(p, &strains[p]).in_plane();
+        motions[p].stress(theta, strains[p], s)
+    });
     // a = S : C_m/2 / (J0 J1),  A = int a J_m dOmega / V
     let shared = mean(&|p| stresses[p].kirchhoff() * stresses[p].inverse_j);
     for stress in &mut stresses {
@@ -196,16 +198,16 @@ impl ElementFormulation for MeanDilatation {
         for (point, dj) in element.points.iter().zip(&dj) {
             dtheta += dj * (point.volume / element.volume());
         }
-        let c = material.tangents(&stresses.each_ref().map(|stress| stress.strains));
         let mut k = SMatrix::<f64, D, D>::zeros();
         for (p, point) in element.points.iter().enumerate() {
             let stress = &stresses[p];
+            let c = voigt(&material.tangent_at(p, &stress.strains));
             // Dr = (J_m Dtheta - theta_m DJ)/(J0 J1), DEbar = r B + C/2 Dr
             let dr = dtheta * stress.inverse_j - dj[p] * stress.theta_over_jj;
             let half_c = &stress.half_c;
             let half_c = Vector3::new(half_c.m11, half_c.m22, 2.0 * half_c.m12);
             let b_bar = b[p] * stress.ratio + half_c * dr.transpose();
-            k += b_bar.transpose() * (c[p] * b_bar) * point.volume;
+            k += b_bar.transpose() * (c * b_bar) * point.volume;
             // S : D2Ebar without the second derivatives of J and theta
             let s = b[p].transpose() * work_conjugate(&stress.s)
                 - dj[p] * (stress.kirchhoff() * stress.inverse_j);

@@ -7,16 +7,14 @@
 use std::array::from_fn;
 
 use super::block::{
-    BlockFormulation, BlockMotion, Derivatives, ElementBlock, IntegratedShape, MatrixLanes,
-    NodalLanes, ResultPoint, Sums, TensorLanes, add_products, deformation_gradient, determinant,
-    elasticity, green_lagrange, plus, scaled,
+    BlockFormulation, BlockMotion, Derivatives, ElementBlock, IntegratedShape, LaneLaw,
+    MatrixLanes, NodalLanes, ResultPoint, Sums, SymmetricLanes, TangentLanes, TensorLanes,
+    add_products, deformation_gradient, determinant, elasticity, green_lagrange, in_plane, plus,
 };
 use super::formulation::ElementResult;
 use super::mean_dilatation::MeanDilatation;
-use crate::materials::lanes::{
-    LANES, Lanes, Positive, StrainChange, SymmetricLanes, combined, contract, times,
-};
-use crate::materials::{LawInLanes, TangentLanes};
+use crate::materials::number::{LANES, Positive};
+use crate::materials::{Lanes, Number, StrainChange, Strains};
 
 /// An integration point with mean quantities of the motion. Start and end are the same at one configuration.
 #[derive(Clone, Copy, Default)]
@@ -54,17 +52,17 @@ impl PointLanes {
         let strains = ends.map(|h| green_lagrange(&h));
         let [[xx, xy], [yx, yy]] = deformation_gradient(&h);
         let over_j = Lanes::all(1.0) / determinant(&h);
-        let mean = combined(&strains[0], &strains[1], |e0, e1| (e0 + e1) * 0.5);
+        let mean = strains[0].with(&strains[1], |e0, e1| (e0 + e1) * 0.5);
         PointLanes {
             h,
             strains,
             dilatation: ends.map(|[[xx, xy], [yx, yy]]| xx + yy + (xx * yy - xy * yx)),
-            half_c: [mean[0] + 0.5, mean[1] + 0.5, mean[2]],
-            k: [
+            half_c: in_plane([mean.x + 0.5, mean.y + 0.5, mean.w]),
+            k: in_plane([
                 (xy * xy + yy * yy) * over_j,
                 (xx * xx + yx * yx) * over_j,
                 (xx * xy + yx * yy) * over_j * -1.0,
-            ],
+            ]),
             ..PointLanes::default()
         }
     }
@@ -78,28 +76,37 @@ impl PointLanes {
         let excess: [Lanes; 2] =
             from_fn(|i| (theta[i] - self.dilatation[i]) * [j1, j0][i] * inverse);
         for (e, excess) in self.strains.iter_mut().zip(excess) {
-            let [xx, yy, xy] = *e;
-            *e = [
-                xx + (xx + 0.5) * excess,
-                yy + (yy + 0.5) * excess,
-                xy + xy * excess,
-            ];
+            *e = in_plane([
+                e.x + (e.x + 0.5) * excess,
+                e.y + (e.y + 0.5) * excess,
+                e.w + e.w * excess,
+            ]);
         }
         self.ratio = (excess[0] + excess[1]) * 0.5 + 1.0;
         self.inverse_j = (j0 + j1) * 0.5 * inverse;
         self.theta_over_jj = ((theta[0] + theta[1]) * 0.5 + 1.0) * inverse;
     }
 
+    /// Strains at which the material is evaluated.
+    #[inline(always)]
+    fn strains_in<const N: usize>(&self, motion: &BlockMotion<N>) -> Strains<Lanes> {
+        let [e0, e1] = &self.strains;
+        match motion {
+            BlockMotion::At(_) => Strains::At(*e1),
+            BlockMotion::Between(..) => Strains::Between(StrainChange::between(e0, e1)),
+        }
+    }
+
     /// S : C_m/2, the mean Kirchhoff stress of the material in the plane over theta/J.
     #[inline(always)]
     fn kirchhoff(&self) -> Lanes {
-        contract(&self.s, &self.half_c)
+        self.s.contract::<false>(&self.half_c)
     }
 
     /// Stress that does work on the strain of the displacements, eq. (2.11).
     #[inline(always)]
     fn effective(&self) -> SymmetricLanes {
-        combined(&self.s, &self.k, |s, k| s * self.ratio + k * self.pressure)
+        (self.s).with(&self.k, |s, k| s * self.ratio + k * self.pressure)
     }
 }
 
@@ -107,7 +114,7 @@ impl PointLanes {
 #[inline(always)]
 fn stresses<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     block: &ElementBlock<N, P>,
-    law: &impl LawInLanes,
+    law: &impl LaneLaw,
     motion: &BlockMotion<N>,
     positive: &mut Positive,
 ) -> ([PointLanes; P], [Lanes; P]) {
@@ -136,13 +143,9 @@ fn stresses<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     }
     // a = S : C_m/2 / (J0 J1),  A = int a J_m dOmega / V
     let mut shared = Lanes::ZERO;
-    for (point, weight) in points.iter_mut().zip(weights) {
+    for (p, (point, weight)) in points.iter_mut().zip(weights).enumerate() {
         point.take_volume(theta);
-        let [e0, e1] = &point.strains;
-        point.s = match motion {
-            BlockMotion::At(_) => law.stress(e1),
-            BlockMotion::Between(..) => law.mean_stress(&StrainChange::between(e0, e1)),
-        };
+        point.s = law.stress_at(p, &point.strains_in(motion));
         shared += point.kirchhoff() * point.inverse_j * weight;
     }
     for point in &mut points {
@@ -155,13 +158,13 @@ impl BlockFormulation for MeanDilatation {
     #[inline(always)]
     fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
         let mut positive = Positive::default();
         let (points, _) = stresses::<S, N, P>(block, law, motion, &mut positive);
         let force = block.nodal_forces::<S>(|p| {
-            let s = scaled(&points[p].effective(), block.volume[p]);
+            let s = points[p].effective().times(block.volume[p]);
             (points[p].h, s)
         });
         (force, positive)
@@ -178,33 +181,31 @@ impl BlockFormulation for MeanDilatation {
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     ) {
         let (points, weights) = stresses::<S, N, P>(block, law, motion, &mut Positive::default());
-        let mut mixed = [[Lanes::ZERO; 3]; P];
+        let mut mixed = [SymmetricLanes::default(); P];
         let mut of_square = Lanes::ZERO;
         for p in 0..P {
             let (point, volume) = (&points[p], block.volume[p]);
             let (r, alpha, beta) = (point.ratio, point.inverse_j, point.theta_over_jj);
-            let [e0, e1] = &point.strains;
-            let c = match motion {
-                BlockMotion::At(_) => law.tangent(e1),
-                BlockMotion::Between(..) => law.mean_tangent(&StrainChange::between(e0, e1)),
-            };
-            let y = times(&c, &point.half_c);
-            let kappa = contract(&y, &point.half_c);
+            let c = law.tangent_at(p, &point.strains_in(motion));
+            let y = c.times::<false>(&point.half_c);
+            let kappa = y.contract::<false>(&point.half_c);
             let half = beta * kappa * 0.5;
             let of_k = point.kirchhoff() * alpha + half;
-            let z: SymmetricLanes = from_fn(|i| r * y[i] + point.s[i] - of_k * point.k[i]);
-            mixed[p] = from_fn(|i| (z[i] - half * point.k[i]) * alpha * volume);
+            let z = y.map(|y| r * y) + point.s - point.k.times(of_k);
+            mixed[p] = z.with(&point.k, |z, k| (z - half * k) * alpha * volume);
             of_square += alpha * alpha * kappa * volume;
             let (of_c, of_z) = (r * r * volume, beta * volume);
-            let c: TangentLanes = from_fn(|i| {
-                from_fn(|j| c[i][j] * of_c - (z[i] * point.k[j] + point.k[i] * z[j]) * of_z)
+            let (z, of_volume) = (z.components(), point.k.components());
+            let c = TangentLanes::of(|i, j| {
+                let both = z[i] * of_volume[j] + of_volume[i] * z[j];
+                c.0[i][j] * of_c - both * of_z
             });
-            let s = scaled(&point.s, r * volume);
+            let s = point.s.times(r * volume);
             let mut a = elasticity(&deformation_gradient(&point.h), &s, &c);
             // J = F_xx F_yy - F_xy F_yx
             let pressure = point.pressure * volume;
@@ -214,7 +215,7 @@ impl BlockFormulation for MeanDilatation {
             a[1][1][0] = a[1][1][0] - pressure;
             add_products(k, &block.gradients::<S>(p), &a);
         }
-        let theta = block.nodal_forces::<S>(|p| (points[p].h, scaled(&points[p].k, weights[p])));
+        let theta = block.nodal_forces::<S>(|p| (points[p].h, points[p].k.times(weights[p])));
         let mut x = block.nodal_forces::<S>(|p| (points[p].h, mixed[p]));
         for i in 0..2 {
             for a in 0..N {
@@ -235,7 +236,7 @@ impl BlockFormulation for MeanDilatation {
     #[inline(always)]
     fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         block: &ElementBlock<N, P>,
-        law: &impl LawInLanes,
+        law: &impl LaneLaw,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES] {
         let (points, weights) = stresses::<S, N, P>(block, law, motion, &mut Positive::default());
@@ -251,7 +252,7 @@ impl BlockFormulation for MeanDilatation {
                 determinant: theta,
                 s: points[p].effective(),
             };
-            sums.add(law, &point, block.volume[p]);
+            sums.add(p, law, &point, block.volume[p]);
         }
         sums.results()
     }

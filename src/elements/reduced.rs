@@ -13,12 +13,12 @@
 //! H is quadratic in the displacements, so that dH = F0m^T dq + dF0^T qm holds exactly between two configurations, and
 //! the force with Kh (H0 + H1)/2 at halfway does exactly the work of the hourglass energy.
 
-use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector3};
+use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector4};
 
 use super::enhanced_strain::Modes;
 use super::formulation::{
     Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
-    determinant, green_lagrange, smaller, strain_displacement,
+    determinant, green_lagrange, of_plane, smaller, strain_displacement, voigt,
 };
 use super::hourglass::{Amplitudes, ModesInMotion, variables};
 use crate::materials::{Committed, Strains, StressAtPoints};
@@ -30,7 +30,7 @@ pub struct ReducedIntegration;
 
 /// What the hourglass modes of a configuration give, the potential of eq. (2.42) and its stress.
 struct Hourglass<'a> {
-    modes: ModesInMotion<'a, 3, 2>,
+    modes: ModesInMotion<'a, 2>,
     /// F0 and q at the displacements of the strain-displacement matrix.
     f: Matrix2<f64>,
     q: Vector2<f64>,
@@ -46,7 +46,7 @@ impl<'a> Hourglass<'a> {
         let c = match configuration {
             // a viscosity has no stress at one configuration
             Configuration::At(_) if material.is_viscous() => Matrix3::zeros(),
-            _ => material.initial_tangent(),
+            _ => voigt(&material.initial_tangent()),
         };
         let of = |u: &SMatrix<f64, 2, N>| (Matrix2::identity() + u * modes.mean, u * modes.gamma);
         let h = |(f, q): (Matrix2<f64>, Vector2<f64>)| f.tr_mul(&q);
@@ -64,7 +64,7 @@ impl<'a> Hourglass<'a> {
         };
         let strains = ends.map(|u| {
             let e = green_lagrange(&(u * modes.mean));
-            Vector3::new(e.m11, e.m22, 2.0 * e.m12)
+            Vector4::new(e.m11, e.m22, 0.0, 2.0 * e.m12)
         });
         let (stiffness, metal) = (stiffness(element, modes, &c), material.metal(P));
         let (f, q) = of(&((ends[0] + ends[1]) / 2.0));
@@ -130,12 +130,17 @@ fn state<const N: usize, const P: usize>(
     let (h, strains, least) = match configuration {
         Configuration::At(u) => {
             let h = of(u);
-            (h, Strains::At(green_lagrange(&h)), determinant(&h))
+            (
+                h,
+                Strains::At(of_plane(&green_lagrange(&h))),
+                determinant(&h),
+            )
         }
         Configuration::Between(u0, u1) => {
             let [h0, h1] = [u0, u1].map(of);
             let h = (h0 + h1) / 2.0;
-            let strains = Strains::Between(green_lagrange(&h0), green_lagrange(&h1));
+            let [e0, e1] = [h0, h1].map(|h| of_plane(&green_lagrange(&h)));
+            let strains = Strains::between(&e0, &e1);
             (h, strains, smaller(determinant(&h), determinant(&h1)))
         }
     };
@@ -144,8 +149,8 @@ fn state<const N: usize, const P: usize>(
         strains,
         material_determinant: determinant(&h),
         s: match hourglass.modes.metal_stress {
-            Some(s) => Matrix2::new(s.x, s.z, s.z, s.y),
-            None => material.stress(0, &strains),
+            Some(s) => Matrix2::new(s.x, s.w, s.w, s.y),
+            None => material.stress_at(0, &strains).in_plane(),
         },
         determinant: least,
     }
@@ -247,9 +252,15 @@ impl ElementFormulation for ReducedIntegration {
         let mut k = rows.transpose() * (hourglass.modes.stiffness() * rows);
         match hourglass.modes.metal_tangent() {
             None => {
-                k += b.transpose() * (material.tangent(0, &state.strains) * b) * point.volume;
+                let c = voigt(&material.tangent_at(0, &state.strains));
+                k += b.transpose() * (c * b) * point.volume;
             }
             Some(of_both) => {
+                let b = SMatrix::<f64, 4, D>::from_fn(|i, j| match i {
+                    2 => 0.0,
+                    3 => b[(2, j)],
+                    _ => b[(i, j)],
+                });
                 let mixed = b.transpose() * (of_both.ey * rows);
                 k += b.transpose() * (of_both.ee * b) + rows.transpose() * (of_both.yy * rows);
                 k += mixed + mixed.transpose();
@@ -273,7 +284,7 @@ mod tests {
     use crate::elements::enhanced_strain::EnhancedStrain;
     use crate::elements::formulation::evaluate;
     use crate::elements::testing::{Sample, check_compressed, laws, quad};
-    use crate::materials::{ConstitutiveLaw, Law, Plane, Plastic, SmallStrainModuli};
+    use crate::materials::{Law, Plane, Plastic, SmallStrainModuli};
 
     #[test]
     fn elements_of_one_strain_fulfil_what_all_have_to() {

@@ -11,7 +11,7 @@ use super::formulation::ShapeFunctions;
 use super::mean_dilatation::MeanDilatation;
 use super::reduced::ReducedIntegration;
 use super::solid::{MAX_NODES, Solid};
-use crate::materials::lanes::Lanes;
+use crate::materials::Lanes;
 use crate::model::{self, ElementType, Formulation};
 
 /// T3 in the displacement formulation (CPE3, CPS3).

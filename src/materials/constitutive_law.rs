@@ -1,27 +1,9 @@
 //! What an element asks of a material at an integration point. Sections 2 and 4 of docs/theory.md.
 
-use nalgebra::{Matrix2, Matrix3, SMatrix, SVector};
-use smallvec::SmallVec;
-
-use super::Symmetric;
-
-/// Green-Lagrange strains at which a material is evaluated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Strains<E = Matrix2<f64>> {
-    /// One strain.
-    At(E),
-    /// Those of start and end of an increment, in the energy-momentum form.
-    Between(E, E),
-}
-
-impl<E> Strains<E> {
-    /// The strain at the end.
-    pub fn end(&self) -> &E {
-        match self {
-            Strains::At(e) | Strains::Between(_, e) => e,
-        }
-    }
-}
+use super::hyperelastic::Hyperelastic;
+use super::number::Number;
+use super::strains::{StrainChange, Strains};
+use super::symmetric::{Symmetric, Tangent};
 
 /// Measures of strain in which energies are convex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,109 +14,60 @@ pub enum StrainMeasure {
     Logarithmic,
 }
 
-/// What happens across the thickness.
+/// What happens across the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Across {
-    /// Stretch F_zz.
-    pub stretch: f64,
-    /// Second Piola-Kirchhoff stress S_zz (force/length^2).
-    pub stress: f64,
+pub struct Across<T = f64> {
+    /// Stretch F_33.
+    pub stretch: T,
+    /// Second Piola-Kirchhoff stress S_33 (force/length^2).
+    pub stress: T,
 }
 
-/// A material in the plane. From the strains of an iterate and the internal variables z0 that the last accepted
+/// A law with internal variables. From the strains of an iterate and the internal variables z0 that the last accepted
 /// increment has committed follow the stress, its tangent and the internal variables z1 of the iterate, by a local
-/// solution (return mapping) where the law needs one.
+/// solution (return mapping).
 ///
 /// Energies are per reference volume (force/length^2), the stored one apart from the dissipated one.
-pub trait ConstitutiveLaw {
+pub trait Flow {
     /// Number of internal variables at a point.
-    fn variables(&self) -> usize {
-        0
-    }
+    fn variables(&self) -> usize;
 
-    /// Second Piola-Kirchhoff stress S, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2), and z1 at the
-    /// end of the strains, which is written to `z1`.
-    fn stress(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]) -> Matrix2<f64>;
+    /// Second Piola-Kirchhoff stress S, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2).
+    fn stress(&self, strains: &Strains, z0: &[f64]) -> Symmetric;
+
+    /// Writes z1 at the end of the strains.
+    fn update(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]);
 
     /// Tangent dS/dE of [`Self::stress`], or the symmetric part of 2 dS/dE1 in the energy-momentum form, z1 following
-    /// the strain, in Voigt order (force/length^2).
-    fn tangent(&self, strains: &Strains, z0: &[f64]) -> Matrix3<f64>;
-
-    /// Stresses of the points of an element, all of one kind of strains and with their z0 one after the other
-    /// (force/length^2).
-    fn stresses(&self, strains: &[Strains], z0: &[f64], s: &mut [Matrix2<f64>]) {
-        let count = self.variables();
-        let mut z1: SmallVec<[f64; 8]> = SmallVec::from_elem(0.0, count);
-        for (p, (strains, s)) in strains.iter().zip(s).enumerate() {
-            let z0 = &z0[p * count..(p + 1) * count];
-            z1.copy_from_slice(z0);
-            *s = self.stress(strains, z0, &mut z1);
-        }
-    }
-
-    /// Tangents of the points of an element, as [`Self::stresses`].
-    fn tangents(&self, strains: &[Strains], z0: &[f64], c: &mut [Matrix3<f64>]) {
-        let count = self.variables();
-        for (p, (strains, c)) in strains.iter().zip(c).enumerate() {
-            *c = self.tangent(strains, &z0[p * count..(p + 1) * count]);
-        }
-    }
+    /// the strain, on strains (11, 22, 33, 2*12) (force/length^2).
+    fn tangent(&self, strains: &Strains, z0: &[f64]) -> Tangent;
 
     /// Stored energy W(E, z).
-    fn stored_energy(&self, e: &Matrix2<f64>, z: &[f64]) -> f64;
+    fn stored_energy(&self, e: &Symmetric, z: &[f64]) -> f64;
 
     /// Energy D >= 0 dissipated on the way from z0 to the z1 of the strains.
-    fn dissipation(&self, _strains: &Strains, _z0: &[f64]) -> f64 {
-        0.0
-    }
+    fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64;
 
-    /// Stretch and stress across the thickness.
-    fn across(&self, e: &Matrix2<f64>, z: &[f64]) -> Across;
+    /// Stretch and stress across the plane.
+    fn across(&self, e: &Symmetric, z: &[f64]) -> Across;
 
     /// Accumulated plastic strain.
-    fn plastic_strain(&self, _z: &[f64]) -> f64 {
-        0.0
+    fn plastic_strain(&self, z: &[f64]) -> f64;
+
+    /// The measure of strain in which the potential of an increment is convex.
+    fn convex_in(&self) -> StrainMeasure {
+        StrainMeasure::Logarithmic
     }
 
     /// The law of a metal as one.
     fn as_metal(&self) -> Option<&dyn MetalLaw> {
         None
     }
-
-    /// The measure of strain in which the potential of the stress is convex: that of logarithms where the law fulfils Hill's
-    /// inequality.
-    fn convex_in(&self) -> StrainMeasure {
-        StrainMeasure::Logarithmic
-    }
 }
 
-/// A potential W(E; m) of a metal whose element has hourglass modes, less the elastic energy of these, on strains
-/// (11, 22, 2*12) or (11, 22, 33, 2*12). m is what they add to q² (force^2/length^4), eq. (2.48).
-pub trait BentLaw<const N: usize> {
-    /// W at a second strain and m less that at the first ones, with `by` the difference of m and with a round-off that is
-    /// relative to the changes (force/length^2).
-    fn change(&self, z0: &[f64], ends: [&SVector<f64, N>; 2], modes: [f64; 2], by: f64) -> f64;
-
-    /// S (force/length^2) and dW/dm.
-    fn stress(&self, z0: &[f64], e: &SVector<f64, N>, modes: f64) -> (SVector<f64, N>, f64);
-
-    /// Second derivatives of the potential.
-    fn tangent(&self, z0: &[f64], e: &SVector<f64, N>, modes: f64) -> BentTangent<N>;
-}
-
-/// Second derivatives of a potential W(E; m), and the first by m.
-#[derive(Debug, Clone, Copy)]
-pub struct BentTangent<const N: usize> {
-    /// C (force/length^2).
-    pub tangent: SMatrix<f64, N, N>,
-    /// dW/dm and d²W/dm².
-    pub by_modes: [f64; 2],
-    /// dS/dm.
-    pub stress_by_modes: SVector<f64, N>,
-}
-
-/// What the elements with hourglass modes ask of a metal.
-pub trait MetalLaw: BentLaw<3> + BentLaw<4> + std::fmt::Debug {
+/// What the elements with hourglass modes ask of a metal: a potential W(E; m) less the elastic energy of these. m is what they
+/// add to q² (force^2/length^4), eq. (2.48).
+pub trait MetalLaw: std::fmt::Debug {
     /// 3 mu and H_k (force/length^2).
     fn moduli(&self) -> [f64; 2];
 
@@ -142,14 +75,26 @@ pub trait MetalLaw: BentLaw<3> + BentLaw<4> + std::fmt::Debug {
     /// (force/length^2), and the part r of the trial strain that flows.
     fn update(&self, strains: &Strains, z0: &[f64], modes: [f64; 2], z1: &mut [f64]) -> [f64; 2];
 
-    /// As [`Self::update`] in a ring.
-    fn ring_update(
-        &self,
-        strains: &Strains<Symmetric>,
-        z0: &[f64],
-        modes: [f64; 2],
-        z1: &mut [f64],
-    ) -> [f64; 2];
+    /// W at a second strain and m less that at the first ones, with `by` the difference of m and with a round-off that is
+    /// relative to the changes (force/length^2).
+    fn change(&self, z0: &[f64], strains: &StrainChange, modes: [f64; 2], by: f64) -> f64;
+
+    /// S (force/length^2) and dW/dm.
+    fn bent_stress(&self, z0: &[f64], e: &Symmetric, modes: f64) -> (Symmetric, f64);
+
+    /// Second derivatives of the potential.
+    fn bent_tangent(&self, z0: &[f64], e: &Symmetric, modes: f64) -> BentTangent;
+}
+
+/// Second derivatives of a potential W(E; m), and the first by m.
+#[derive(Debug, Clone, Copy)]
+pub struct BentTangent {
+    /// C (force/length^2).
+    pub tangent: Tangent,
+    /// dW/dm and d²W/dm².
+    pub by_modes: [f64; 2],
+    /// dS/dm.
+    pub stress_by_modes: Symmetric,
 }
 
 /// A metal with the internal variables of a point, and those of the hourglass modes of its element.
@@ -163,24 +108,20 @@ pub struct Metal<'a> {
     pub of_modes: &'a [f64],
 }
 
-/// A stress that follows from the strains at the integration points of one element: that of its
-/// material, or that of its viscosity.
-pub trait StressAtPoints {
-    /// Second Piola-Kirchhoff stress at a point (force/length^2).
-    fn stress(&self, point: usize, strains: &Strains) -> Matrix2<f64>;
+/// A stress that follows from the strains at the integration points of elements: that of their material, or that of its
+/// viscosity.
+pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
+    /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2).
+    fn stress_at(&self, point: usize, strains: &Strains<T>) -> Symmetric<T>;
 
-    /// Tangent of [`Self::stress`] at a point, as [`ConstitutiveLaw::tangent`] (force/length^2).
-    fn tangent(&self, point: usize, strains: &Strains) -> Matrix3<f64>;
+    /// Tangent of [`Self::stress_at`] at a point, or the symmetric part of twice its derivative by E1 (force/length^2).
+    fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T>;
 
-    /// Stresses of all points, all of one kind of strains.
-    fn stresses<const P: usize>(&self, strains: &[Strains; P]) -> [Matrix2<f64>; P] {
-        std::array::from_fn(|p| self.stress(p, &strains[p]))
-    }
+    /// Stored energy W at a point (force/length^2).
+    fn energy_at(&self, point: usize, e: &Symmetric<T>) -> T;
 
-    /// Tangents of all points, all of one kind of strains.
-    fn tangents<const P: usize>(&self, strains: &[Strains; P]) -> [Matrix3<f64>; P] {
-        std::array::from_fn(|p| self.tangent(p, &strains[p]))
-    }
+    /// Stretch and stress across the plane at a point.
+    fn across_at(&self, point: usize, e: &Symmetric<T>) -> Across<T>;
 
     /// Whether the stress is that of a change of the strains, without a stored energy.
     fn is_viscous(&self) -> bool {
@@ -189,12 +130,10 @@ pub trait StressAtPoints {
 
     /// Tangent at no strain without internal variables; that of no change of the strains where the stress is that of a
     /// change (force/length^2).
-    fn initial_tangent(&self) -> Matrix3<f64> {
-        let zero = Matrix2::zeros();
-        self.tangent(0, &Strains::Between(zero, zero))
-    }
+    fn initial_tangent(&self) -> Tangent<T>;
 
-    /// As [`ConstitutiveLaw::convex_in`]; that of a viscosity is quadratic in the strains of Green and Lagrange.
+    /// The measure of strain in which the potential of the stress is convex: that of logarithms where the law fulfils Hill's
+    /// inequality. That of a viscosity is quadratic in the strains of Green and Lagrange.
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Green
     }
@@ -207,5 +146,69 @@ pub trait StressAtPoints {
     /// A metal with its variables of the first point, and with those behind the points.
     fn metal(&self, _points: usize) -> Option<Metal<'_>> {
         None
+    }
+}
+
+/// The stresses of an elastic law.
+pub struct Elastic<'a, L>(pub &'a L);
+
+impl<T: Number, const HOOP: bool, L: Hyperelastic<T, HOOP>> StressAtPoints<T, HOOP>
+    for Elastic<'_, L>
+{
+    #[inline(always)]
+    fn stress_at(&self, _point: usize, strains: &Strains<T>) -> Symmetric<T> {
+        self.0.stress_of(strains)
+    }
+
+    #[inline(always)]
+    fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {
+        self.0.tangent_of(strains)
+    }
+
+    #[inline(always)]
+    fn energy_at(&self, _point: usize, e: &Symmetric<T>) -> T {
+        self.0.energy(e)
+    }
+
+    #[inline(always)]
+    fn across_at(&self, _point: usize, e: &Symmetric<T>) -> Across<T> {
+        self.0.across(e)
+    }
+
+    fn initial_tangent(&self) -> Tangent<T> {
+        self.0.tangent(&Symmetric::zeros())
+    }
+
+    fn convex_in(&self) -> StrainMeasure {
+        self.0.convex_in()
+    }
+}
+
+/// Stresses that are evaluated for one element after the other.
+pub struct OneByOne<S>(pub S);
+
+impl<T: Number, const HOOP: bool, S: StressAtPoints> StressAtPoints<T, HOOP> for OneByOne<S> {
+    fn stress_at(&self, point: usize, strains: &Strains<T>) -> Symmetric<T> {
+        Symmetric::of_lanes(|lane| self.0.stress_at(point, &strains.lane(lane)))
+    }
+
+    fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T> {
+        Tangent::of_lanes(|lane| self.0.tangent_at(point, &strains.lane(lane)))
+    }
+
+    fn energy_at(&self, point: usize, e: &Symmetric<T>) -> T {
+        T::of_lanes(|lane| self.0.energy_at(point, &e.lane(lane)))
+    }
+
+    fn across_at(&self, point: usize, e: &Symmetric<T>) -> Across<T> {
+        let of = |lane: usize| self.0.across_at(point, &e.lane(lane));
+        Across {
+            stretch: T::of_lanes(|lane| of(lane).stretch),
+            stress: T::of_lanes(|lane| of(lane).stress),
+        }
+    }
+
+    fn initial_tangent(&self) -> Tangent<T> {
+        Tangent::of_lanes(|_| self.0.initial_tangent())
     }
 }

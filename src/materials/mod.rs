@@ -3,45 +3,46 @@
 //! docs/theory.md.
 //!
 //! A deformation gradient F enters through E = (F^T F - I)/2 alone, so that every material is
-//! objective; det F > 0 is checked by the elements. Symmetric tensors of the plane are 2 x 2
-//! matrices; tangents act on strains in Voigt order (E_xx, E_yy, 2 E_xy). A [`Law`] has the constants
-//! of the deck, a [`PlaneLaw`] is the same reduced to the plane of the elements; in bodies of revolution it has the
-//! components of a [`Symmetric`] tensor.
+//! objective; det F > 0 is checked by the elements. A material point has the components 11, 22, 33 and 12 of a
+//! [`Symmetric`] tensor: 33 is across the plane, or around the axis of a body of revolution. Laws are written once, in any
+//! [`Number`]: that of one element, or those of several side by side. A [`Law`] has the constants
+//! of the deck, a [`PlaneLaw`] is the same in the plane of the elements.
 
 mod constitutive_law;
 mod hyperelastic;
-pub mod lanes;
+mod invariants;
 mod law;
 mod law_card;
 mod neo_hooke;
-mod neo_hooke_lanes;
+pub mod number;
 mod plane;
+mod plane_stress;
 mod plastic;
 mod polynomial;
 mod saint_venant_kirchhoff;
-mod solid;
-mod solid_laws;
+mod spectrum;
+mod strains;
 pub mod symmetric;
 mod viscosity;
-mod viscosity_lanes;
 mod yield_curve;
 #[cfg(test)]
 pub(crate) mod yielding;
 
 pub use constitutive_law::{
-    Across, BentLaw, BentTangent, ConstitutiveLaw, Metal, MetalLaw, StrainMeasure, Strains,
-    StressAtPoints,
+    Across, BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StrainMeasure, StressAtPoints,
 };
 pub use hyperelastic::Hyperelastic;
-pub use lanes::{LawInLanes, OneByOne, StrainChange, TangentLanes};
+pub use invariants::InvariantEnergy;
 pub(crate) use law::in_lanes;
 pub use law::{Committed, Law, PlaneLaw};
 pub use law_card::LawCard;
 pub use neo_hooke::NeoHooke;
+pub use number::{Lanes, Number};
 pub use plane::{Plane, SmallStrainModuli};
+pub use plane_stress::PlaneStress;
 pub use plastic::{PlanePlastic, Plastic};
-pub use polynomial::{PlanePolynomial, Polynomial};
+pub use polynomial::Polynomial;
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
-pub use solid::{RingLaw, RingStressAtPoints, SolidHyperelastic};
-pub use symmetric::{Symmetric, contract};
+pub use strains::{StrainChange, Strains};
+pub use symmetric::{Symmetric, Tangent, contract};
 pub use viscosity::Viscosity;

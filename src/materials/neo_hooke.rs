@@ -2,16 +2,13 @@
 //! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 and 6.5; Bonet & Wood, Nonlinear Continuum
 //! Mechanics for Finite Element Analysis, section 6.5). Section 2 of docs/theory.md.
 
-use nalgebra::{Matrix2, Matrix3};
+use super::invariants::InvariantEnergy;
+use super::number::Number;
+use super::{LawCard, SmallStrainModuli};
 
-use super::lanes::{
-    LawInLanes, StrainChange, SymmetricLanes, points_side_by_side, tangent_of, tensor_of, tensors,
-};
-use super::{Across, Hyperelastic, LawCard, SmallStrainModuli, Strains};
-
-/// Neo-Hookean material in plane strain, `*HYPERELASTIC, NEO HOOKE`.
+/// Neo-Hookean material, `*HYPERELASTIC, NEO HOOKE`.
 ///
-/// With C = I + 2 E (C_zz = 1), I1 = tr C, J = det F, Ibar1 = J^(-2/3) I1:
+/// With C = I + 2 E, I1 = tr C, J = det F, Ibar1 = J^(-2/3) I1:
 ///
 /// ```text
 /// energy   W = C10 (Ibar1 - 3) + (J - 1)²/D1
@@ -22,12 +19,7 @@ use super::{Across, Hyperelastic, LawCard, SmallStrainModuli, Strains};
 /// moduli   mu = 2 C10,  K = 2/D1
 /// ```
 ///
-/// (A o A)_ijkl = (A_ik A_jl + A_il A_jk)/2. Terms are arranged so that small strains keep their
-/// digits: with t = 2 tr E, q = 4 det E, J² = 1 + t + q, a = J^(2/3), b = a - 1,
-///
-/// ```text
-/// Ibar1 - 3 = (b² (b + 3) - q)/a,     I - I1/3 C^-1 = [(2 t/3 + q) I - (1 + t/3) 2 cof E]/J²
-/// ```
+/// (A o A)_ijkl = (A_ik A_jl + A_il A_jk)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeoHooke {
     /// Shear constant C10 (force/length^2, > 0).
@@ -65,84 +57,69 @@ impl NeoHooke {
     }
 }
 
-/// All by the formulas of elements side by side: one number in all lanes costs what one number costs.
-impl Hyperelastic for NeoHooke {
-    fn stored_energy(&self, e: &Matrix2<f64>) -> f64 {
-        LawInLanes::stored_energy(self, &alone(e)).0[0]
+/// w = C10 x, U = (J - 1)²/D1, eq. (2.14).
+impl InvariantEnergy for NeoHooke {
+    const LINEAR: bool = true;
+    const SECOND: bool = false;
+
+    #[inline(always)]
+    fn c01(&self) -> f64 {
+        0.0
     }
 
-    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> f64 {
-        self.energy_change_in_lanes(&StrainChange::between(&alone(e0), &alone(e1)))
-            .0[0]
+    #[inline(always)]
+    fn shape<T: Number>(&self, x: T) -> T {
+        x * self.c10
     }
 
-    fn stress(&self, e: &Matrix2<f64>) -> Matrix2<f64> {
-        tensor_of(0, &LawInLanes::stress(self, &alone(e)))
+    #[inline(always)]
+    fn shape_slopes<T: Number>(&self, _x: T) -> [T; 2] {
+        [T::all(self.c10), T::default()]
     }
 
-    fn tangent(&self, e: &Matrix2<f64>) -> Matrix3<f64> {
-        tangent_of(0, &LawInLanes::tangent(self, &alone(e)))
+    #[inline(always)]
+    fn shape_quotient<T: Number>(&self, _x0: T, _x1: T) -> T {
+        T::all(self.c10)
     }
 
-    fn across(&self, e: &Matrix2<f64>) -> Across {
-        let [stretch, stress] = LawInLanes::across(self, &alone(e)).map(|value| value.0[0]);
-        Across { stretch, stress }
+    #[inline(always)]
+    fn volume<T: Number>(&self, grown: T) -> T {
+        grown * grown * (1.0 / self.d1)
     }
 
-    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix2<f64> {
-        let change = StrainChange::between(&alone(e0), &alone(e1));
-        tensor_of(0, &LawInLanes::mean_stress(self, &change))
+    #[inline(always)]
+    fn volume_slopes<T: Number>(&self, grown: T) -> [T; 2] {
+        [grown * (2.0 / self.d1), T::all(2.0 / self.d1)]
     }
 
-    fn mean_tangent(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix3<f64> {
-        let change = StrainChange::between(&alone(e0), &alone(e1));
-        tangent_of(0, &LawInLanes::mean_tangent(self, &change))
+    #[inline(always)]
+    fn volume_quotient<T: Number>(&self, grown0: T, grown1: T) -> T {
+        (grown1 + grown0) * (1.0 / self.d1)
     }
-
-    fn stresses(&self, strains: &[Strains], s: &mut [Matrix2<f64>]) {
-        points_side_by_side(
-            strains,
-            s,
-            |e| LawInLanes::stress(self, e),
-            |change| LawInLanes::mean_stress(self, change),
-            tensor_of,
-        );
-    }
-
-    fn tangents(&self, strains: &[Strains], c: &mut [Matrix3<f64>]) {
-        points_side_by_side(
-            strains,
-            c,
-            |e| LawInLanes::tangent(self, e),
-            |change| LawInLanes::mean_tangent(self, change),
-            tangent_of,
-        );
-    }
-}
-
-/// A strain in all lanes.
-fn alone(e: &Matrix2<f64>) -> SymmetricLanes {
-    tensors(|_| *e)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::{Plane, SaintVenantKirchhoff};
-    use nalgebra::Vector3;
+    use crate::materials::{Hyperelastic, Symmetric};
+    use nalgebra::Matrix2;
 
     const MATERIAL: NeoHooke = NeoHooke {
         c10: 200.0,
         d1: 2e-3,
     };
 
-    fn strain(f: &Matrix2<f64>) -> Matrix2<f64> {
-        (f.transpose() * f - Matrix2::identity()) / 2.0
+    fn strain(f: &Matrix2<f64>) -> Symmetric {
+        Symmetric::of_plane(&((f.transpose() * f - Matrix2::identity()) / 2.0), 0.0)
+    }
+
+    fn stress(f: &Matrix2<f64>) -> Matrix2<f64> {
+        Hyperelastic::<f64, true>::stress(&MATERIAL, &strain(f)).in_plane()
     }
 
     /// Cauchy stress F S F^T/J.
     fn cauchy(f: &Matrix2<f64>) -> Matrix2<f64> {
-        f * Hyperelastic::stress(&MATERIAL, &strain(f)) * f.transpose() / f.determinant()
+        f * stress(f) * f.transpose() / f.determinant()
     }
 
     #[test]
@@ -153,9 +130,9 @@ mod tests {
         let sigma = cauchy(&f);
         let expected = Matrix2::new(2.0 * g / 3.0, 1.0, 1.0, -g / 3.0) * (mu * g);
         assert!((sigma - expected).norm() < 1e-13 * mu);
-        let across = Hyperelastic::across(&MATERIAL, &strain(&f));
+        let across = Hyperelastic::<f64, true>::across(&MATERIAL, &strain(&f));
         assert!((across.stress + mu * g * g / 3.0).abs() < 1e-13 * mu);
-        let energy = Hyperelastic::stored_energy(&MATERIAL, &strain(&f));
+        let energy = Hyperelastic::<f64, true>::energy(&MATERIAL, &strain(&f));
         assert!((energy - MATERIAL.c10 * g * g).abs() < 1e-13 * mu);
     }
 
@@ -169,76 +146,8 @@ mod tests {
             let p = 2.0 * (l - 1.0) / MATERIAL.d1;
             let expected = Matrix2::new(shape + p, 0.0, 0.0, p - shape / 2.0);
             assert!((cauchy(&f) - expected).norm() < 1e-12 * (1.0 + expected.norm()));
-            let across = Hyperelastic::across(&MATERIAL, &strain(&f));
+            let across = Hyperelastic::<f64, true>::across(&MATERIAL, &strain(&f));
             assert!((across.stress / l - expected.m22).abs() < 1e-12 * (1.0 + expected.norm()));
         }
-    }
-
-    #[test]
-    fn stress_and_tangent_are_derivatives() {
-        let h = 1e-6;
-        for f in [
-            Matrix2::new(1.0, 0.0, 0.0, 1.0),
-            Matrix2::new(1.4, 0.3, -0.5, 0.8),
-            Matrix2::new(0.5, 0.4, 0.1, 0.9),
-        ] {
-            let e = strain(&f);
-            let (s, c) = (
-                Hyperelastic::stress(&MATERIAL, &e),
-                Hyperelastic::tangent(&MATERIAL, &e),
-            );
-            let units = [
-                Matrix2::new(1.0, 0.0, 0.0, 0.0),
-                Matrix2::new(0.0, 0.0, 0.0, 1.0),
-                Matrix2::new(0.0, 0.5, 0.5, 0.0),
-            ];
-            for (k, unit) in units.iter().enumerate() {
-                let energy = |h: f64| Hyperelastic::stored_energy(&MATERIAL, &(e + unit * h));
-                let slope = (energy(h) - energy(-h)) / (2.0 * h);
-                assert!((slope - s.dot(unit)).abs() < 1e-8 * c.norm());
-                let stress = |h: f64| Hyperelastic::stress(&MATERIAL, &(e + unit * h));
-                let d = (stress(h) - stress(-h)) / (2.0 * h);
-                let column = Vector3::new(d.m11, d.m22, d.m12);
-                assert!((column - c.column(k)).norm() < 1e-8 * c.norm());
-            }
-            assert_eq!(c, c.transpose());
-        }
-    }
-
-    #[test]
-    fn small_strains_are_those_of_linear_elasticity_with_all_digits() {
-        let moduli = MATERIAL.small_strain();
-        assert!((moduli.young - 9.0 * 1000.0 * 400.0 / 3400.0).abs() < 1e-12 * moduli.young);
-        let linear = SaintVenantKirchhoff {
-            young: moduli.young,
-            poisson: moduli.poisson,
-        };
-        let linear = linear.in_plane(Plane::Strain);
-        let c = Hyperelastic::tangent(&linear, &Matrix2::zeros());
-        assert!(
-            (Hyperelastic::tangent(&MATERIAL, &Matrix2::zeros()) - c).norm() < 1e-14 * c.norm()
-        );
-        let e = Matrix2::new(3.0, -1.0, -1.0, 2.0) * 1e-14;
-        let (s, expected) = (
-            Hyperelastic::stress(&MATERIAL, &e),
-            Hyperelastic::stress(&linear, &e),
-        );
-        assert!((s - expected).norm() < 1e-12 * expected.norm());
-        let (w, expected) = (
-            Hyperelastic::stored_energy(&MATERIAL, &e),
-            Hyperelastic::stored_energy(&linear, &e),
-        );
-        assert!((w - expected).abs() < 1e-12 * expected);
-        let change = Hyperelastic::energy_change(&MATERIAL, &e, &(e * 3.0));
-        assert!((change - 8.0 * expected).abs() < 1e-11 * expected);
-    }
-
-    #[test]
-    fn the_energy_change_is_the_difference_of_energies() {
-        let e0 = strain(&Matrix2::new(1.4, 0.3, -0.5, 0.8));
-        let e1 = strain(&Matrix2::new(0.5, 0.4, 0.1, 0.9));
-        let [w0, w1] = [e0, e1].map(|e| Hyperelastic::stored_energy(&MATERIAL, &e));
-        let change = Hyperelastic::energy_change(&MATERIAL, &e0, &e1);
-        assert!((change - (w1 - w0)).abs() < 1e-14 * (w0 + w1));
     }
 }

@@ -2,9 +2,11 @@
 //! (Holzapfel, Nonlinear Solid Mechanics, section 6.5; Bonet & Wood, Nonlinear Continuum Mechanics for
 //! Finite Element Analysis, section 6.4). Section 2 of docs/theory.md.
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
-
-use super::{Across, Hyperelastic, LawCard, Plane, SmallStrainModuli};
+use super::hyperelastic::Hyperelastic;
+use super::number::Number;
+use super::strains::StrainChange;
+use super::symmetric::{Symmetric, Tangent};
+use super::{LawCard, Plane, SmallStrainModuli, StrainMeasure};
 
 /// St. Venant-Kirchhoff material.
 ///
@@ -21,17 +23,6 @@ pub struct SaintVenantKirchhoff {
     pub young: f64,
     /// Poisson's ratio nu.
     pub poisson: f64,
-}
-
-/// St. Venant-Kirchhoff material in plane stress, in plane strain or in a body of revolution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlaneSaintVenantKirchhoff {
-    /// Elasticity C in Voigt order xx, yy, xy with engineering shear 2 E_xy (force/length^2).
-    c: Matrix3<f64>,
-    /// E_zz = -contraction (E_xx + E_yy).
-    contraction: f64,
-    /// S_zz = across (S_xx + S_yy).
-    across: f64,
 }
 
 impl SaintVenantKirchhoff {
@@ -57,104 +48,120 @@ impl SaintVenantKirchhoff {
         }
     }
 
-    /// The law in the plane.
+    /// The law in the plane. Plane stress changes the constants of the formulas alone: without S_33
     ///
-    /// In plane strain S_zz = lambda (E_xx + E_yy) and S_xx + S_yy = 2 (lambda + mu) (E_xx + E_yy), so
-    /// that their quotient is nu = lambda/(2 (lambda + mu)).
+    /// ```text
+    /// E_33 = -nu/(1 - nu) (E_11 + E_22),   lambda' = 2 lambda mu/(lambda + 2 mu) = E nu/(1 - nu²)
+    /// ```
     pub fn in_plane(&self, plane: Plane) -> PlaneSaintVenantKirchhoff {
-        let (contraction, across) = match plane {
-            Plane::Stress => (self.poisson / (1.0 - self.poisson), 0.0),
-            Plane::Strain | Plane::Revolution => (0.0, self.poisson),
+        let (e, nu) = (self.young, self.poisson);
+        let mu = e / (2.0 * (1.0 + nu));
+        let (lambda, contraction) = match plane {
+            Plane::Stress => (e * nu / (1.0 - nu * nu), nu / (1.0 - nu)),
+            Plane::Strain | Plane::Revolution => (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.0),
+        };
+        let across = match plane {
+            Plane::Stress => 0.0,
+            Plane::Strain | Plane::Revolution => 1.0,
         };
         PlaneSaintVenantKirchhoff {
-            c: self.elasticity(plane),
+            lambda,
+            mu,
             contraction,
             across,
         }
     }
+}
 
-    /// Elasticity in Voigt order (Bathe, Finite Element Procedures, table 4.3; force/length^2).
-    ///
-    /// ```text
-    ///                        [ 1   nu  0          ]
-    /// plane stress  E/(1-nu²)[ nu  1   0          ]
-    ///                        [ 0   0   (1 - nu)/2 ]
-    ///
-    ///                                 [ 1-nu  nu    0          ]
-    /// plane strain  E/((1+nu)(1-2nu)) [ nu    1-nu  0          ]
-    ///                                 [ 0     0     (1-2 nu)/2 ]
-    /// ```
-    fn elasticity(&self, plane: Plane) -> Matrix3<f64> {
-        let (e, nu) = (self.young, self.poisson);
-        let (a, b, g) = match plane {
-            Plane::Stress => {
-                let c = e / (1.0 - nu * nu);
-                (c, c * nu, c * (1.0 - nu) / 2.0)
-            }
-            Plane::Strain | Plane::Revolution => {
-                let c = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
-                (c * (1.0 - nu), c * nu, c * (1.0 - 2.0 * nu) / 2.0)
-            }
-        };
-        Matrix3::new(a, b, 0.0, b, a, 0.0, 0.0, 0.0, g)
-    }
+/// St. Venant-Kirchhoff material in plane stress, in plane strain or in a body of revolution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlaneSaintVenantKirchhoff {
+    /// lambda, or lambda' of plane stress (force/length^2).
+    lambda: f64,
+    /// mu (force/length^2).
+    mu: f64,
+    /// E_33 = -contraction (E_11 + E_22) of plane stress.
+    contraction: f64,
+    /// 1, or 0 without a stress across.
+    across: f64,
 }
 
 impl PlaneSaintVenantKirchhoff {
-    /// Elasticity C in Voigt order (force/length^2).
-    #[inline(always)]
-    pub fn elasticity(&self) -> &Matrix3<f64> {
-        &self.c
-    }
-
-    /// lambda and mu of plane strain and of bodies of revolution (force/length^2).
+    /// lambda and mu at small strains (force/length^2).
     pub(super) fn lame(&self) -> (f64, f64) {
-        (self.c.m12, self.c.m33)
-    }
-
-    /// -E_zz/(E_xx + E_yy) and S_zz/(S_xx + S_yy).
-    #[inline(always)]
-    pub fn across_ratios(&self) -> [f64; 2] {
-        [self.contraction, self.across]
+        (self.lambda, self.mu)
     }
 }
 
-impl Hyperelastic for PlaneSaintVenantKirchhoff {
+impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirchhoff {
     /// W = E:C:E/2 = S:E/2, eq. (2.13)
-    fn stored_energy(&self, e: &Matrix2<f64>) -> f64 {
-        self.stress(e).dot(e) / 2.0
+    #[inline(always)]
+    fn energy(&self, e: &Symmetric<T>) -> T {
+        let s = Hyperelastic::<T, HOOP>::stress(self, e);
+        s.contract::<HOOP>(e) * 0.5
     }
 
     /// W1 - W0 = S(E_m):(E1 - E0)
-    fn energy_change(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> f64 {
-        self.mean_stress(e0, e1).dot(&(e1 - e0))
+    #[inline(always)]
+    fn energy_change(&self, change: &StrainChange<T>) -> T {
+        let s = Hyperelastic::<T, HOOP>::stress(self, &change.mean);
+        s.contract::<HOOP>(&change.change())
     }
 
-    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13)
-    fn stress(&self, e: &Matrix2<f64>) -> Matrix2<f64> {
-        let s = self.c * Vector3::new(e.m11, e.m22, 2.0 * e.m12);
-        Matrix2::new(s.x, s.z, s.z, s.y)
-    }
-
-    fn tangent(&self, _e: &Matrix2<f64>) -> Matrix3<f64> {
-        self.c
-    }
-
-    /// F_zz² = 1 + 2 E_zz
-    fn across(&self, e: &Matrix2<f64>) -> Across {
-        Across {
-            stretch: (1.0 - 2.0 * self.contraction * e.trace()).sqrt(),
-            stress: self.across * self.stress(e).trace(),
+    /// S = lambda tr(E) I + 2 mu E, eq. (2.13)
+    #[inline(always)]
+    fn stress(&self, e: &Symmetric<T>) -> Symmetric<T> {
+        let of_plane = e.x + e.y;
+        let trace = match HOOP {
+            true => of_plane + e.z,
+            false => of_plane,
+        };
+        let (pressure, shear) = (trace * self.lambda, 2.0 * self.mu);
+        let across = match HOOP {
+            true => (pressure + e.z * shear) * self.across,
+            false => pressure * self.across,
+        };
+        Symmetric {
+            z: across,
+            ..e.map(|e| e * shear).plus_isotropic(pressure)
         }
     }
 
-    /// S(E_m) = (S0 + S1)/2, eq. (4.8) (Simo & Tarnow 1992): the discrete gradient of a quadratic energy.
-    fn mean_stress(&self, e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> Matrix2<f64> {
-        self.stress(&((e0 + e1) / 2.0))
+    #[inline(always)]
+    fn tangent(&self, _e: &Symmetric<T>) -> Tangent<T> {
+        let (diagonal, mixed) = (self.lambda + 2.0 * self.mu, self.lambda);
+        Tangent::of(|i, j| {
+            T::all(match (i, j) {
+                (2, _) | (_, 2) if self.across == 0.0 => 0.0,
+                (3, 3) => self.mu,
+                (3, _) | (_, 3) => 0.0,
+                _ if i == j => diagonal,
+                _ => mixed,
+            })
+        })
     }
 
-    fn mean_tangent(&self, _e0: &Matrix2<f64>, _e1: &Matrix2<f64>) -> Matrix3<f64> {
-        self.c
+    #[inline(always)]
+    fn strain_across(&self, e: &Symmetric<T>) -> T {
+        match HOOP {
+            true => e.z - (e.x + e.y) * self.contraction,
+            false => (e.x + e.y) * -self.contraction,
+        }
+    }
+
+    fn convex_in(&self) -> StrainMeasure {
+        StrainMeasure::Green
+    }
+
+    /// S(E_m) = (S0 + S1)/2, eq. (4.8) (Simo & Tarnow 1992): the discrete gradient of a quadratic energy.
+    #[inline(always)]
+    fn mean_stress(&self, change: &StrainChange<T>) -> Symmetric<T> {
+        Hyperelastic::<T, HOOP>::stress(self, &change.mean)
+    }
+
+    #[inline(always)]
+    fn mean_tangent(&self, change: &StrainChange<T>) -> Tangent<T> {
+        Hyperelastic::<T, HOOP>::tangent(self, &change.mean)
     }
 }
 
@@ -166,40 +173,47 @@ mod tests {
         SaintVenantKirchhoff { young, poisson }
     }
 
+    fn stress(law: PlaneSaintVenantKirchhoff, e: Symmetric) -> Symmetric {
+        Hyperelastic::<f64, true>::stress(&law, &e)
+    }
+
     #[test]
     fn plane_stress_and_plane_strain_by_hand() {
         // E = 960, nu = 1/4: E/(1-nu²) = 1024; E/((1+nu)(1-2nu)) = 1536; G = 384.
-        let c = material(960.0, 0.25).elasticity(Plane::Stress);
-        assert_eq!(
-            c,
-            Matrix3::new(1024.0, 256.0, 0.0, 256.0, 1024.0, 0.0, 0.0, 0.0, 384.0)
-        );
-        let c = material(960.0, 0.25).elasticity(Plane::Strain);
-        assert_eq!(
-            c,
-            Matrix3::new(1152.0, 384.0, 0.0, 384.0, 1152.0, 0.0, 0.0, 0.0, 384.0)
-        );
+        for (plane, diagonal, mixed) in [
+            (Plane::Stress, 1024.0, 256.0),
+            (Plane::Strain, 1152.0, 384.0),
+        ] {
+            let law = material(960.0, 0.25).in_plane(plane);
+            let Tangent([x, y, _, w]) =
+                Hyperelastic::<f64, true>::tangent(&law, &Symmetric::zeros());
+            assert_eq!([x[0], x[1], x[3]], [diagonal, mixed, 0.0]);
+            assert_eq!([y[0], y[1], y[3]], [mixed, diagonal, 0.0]);
+            assert_eq!([w[0], w[1], w[3]], [0.0, 0.0, 384.0]);
+        }
     }
 
     #[test]
     fn uniaxial_stress_in_plane_stress_gives_young() {
         // E_yy = -nu E_xx leaves S_yy = 0 and S_xx = E E_xx.
         let law = material(200.0, 0.3).in_plane(Plane::Stress);
-        let s = law.stress(&Matrix2::new(1e-3, 0.0, 0.0, -3e-4));
-        assert!((s.m11 - 0.2).abs() < 1e-15 && s.m22.abs() < 1e-16 && s.m12 == 0.0);
+        let s = stress(law, Symmetric::new(1e-3, -3e-4, 0.0, 0.0));
+        assert!((s.x - 0.2).abs() < 1e-15 && s.y.abs() < 1e-16 && [s.z, s.w] == [0.0; 2]);
     }
 
     #[test]
     fn without_lateral_contraction_both_planes_agree() {
         let m = material(7.0, 0.0);
-        assert_eq!(m.in_plane(Plane::Stress), m.in_plane(Plane::Strain));
+        let e = Symmetric::new(0.3, -0.1, 0.0, 0.2);
+        let [one, other] = [Plane::Stress, Plane::Strain].map(|plane| stress(m.in_plane(plane), e));
+        assert_eq!(one, other);
     }
 
     #[test]
     fn shear_strain_counts_once() {
         // S_xy = 2 G E_xy, G = E/(2(1+nu)) = 4.
         let law = material(10.0, 0.25).in_plane(Plane::Strain);
-        let s = law.stress(&Matrix2::new(0.0, 0.5, 0.5, 0.0));
-        assert_eq!(s, Matrix2::new(0.0, 4.0, 4.0, 0.0));
+        let s = stress(law, Symmetric::new(0.0, 0.0, 0.0, 0.5));
+        assert_eq!(s, Symmetric::new(0.0, 0.0, 0.0, 4.0));
     }
 }

@@ -1,31 +1,50 @@
 //! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
 //! of its shape and of its volume. Section 4 of docs/theory.md, Damping.
 
-use nalgebra::{Matrix2, Matrix3, Matrix4};
+use super::number::Number;
+use super::strains::{StrainChange, Strains};
+use super::symmetric::{Symmetric, Tangent, cofactor, dyad, minor, product};
+use super::{Across, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoints};
 
-use super::plane::{dyad, product};
-use super::symmetric::{self, IDENTITY, Symmetric, contract};
-use super::{
-    Hyperelastic, Plane, SaintVenantKirchhoff, SmallStrainModuli, Strains, StressAtPoints,
-};
-
-/// Stiffness-proportional viscosity of a material in the plane, over an increment with dE = E1 - E0.
+/// Stiffness-proportional viscosity of a material, over an increment with dE = E1 - E0.
 ///
 /// ```text
-/// G = cof(C_m)/J_m,  C_m = I + E0 + E1,  J_m = (J0 + J1)/2     J C^-1 halfway
+/// D = cof(C_m) + cof(dE)/3,  C_m = I + E0 + E1                 D : 2 dE = J1² - J0² exactly
+/// G = D/J_m,  J_m = (J0 + J1)/2                                J C^-1 halfway
 /// dJ = G : dE = J1 - J0                                        change of the volume ratio
-/// dS = G dE G - (dJ/2) G                                       change of the shape
-/// S_d dt = beta/J_m (2 mu dS + kappa dJ G)                     the stress
+/// S_d dt = beta/J_m (2 mu G dE G + lambda dJ G)                the stress
 /// S_d : dE >= 0                                                what it dissipates
 /// ```
 ///
-/// mu and kappa are the moduli of shear and of the area at small strains.
+/// D is the mean of the cofactors of C on the straight way from C0 to C1, and so positive definite. mu and lambda are the moduli
+/// at small strains. With the part dJ/2 G (in the plane) of the first term the stress is one of the shape and one of the
+/// volume, each without the modulus of the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
     /// 2 beta mu (force time/length^2).
-    pub(super) shape: f64,
-    /// beta (kappa - mu), since dS has the part -(dJ/2) G (force time/length^2).
-    pub(super) volume: f64,
+    shape: f64,
+    /// beta lambda (force time/length^2).
+    volume: f64,
+}
+
+/// G and 1/J_m of eq. (4.17) between two strains.
+#[inline(always)]
+fn halfway<T: Number, const HOOP: bool>(change: &StrainChange<T>) -> (Symmetric<T>, T) {
+    let ratio = |e: Symmetric<T>| {
+        let (of_plane, q) = ((e.x + e.y) * 2.0, minor(&e) * 4.0);
+        let square = match HOOP {
+            true => (of_plane + q + 1.0) * (e.z * 2.0 + 1.0),
+            false => of_plane + q + 1.0,
+        };
+        square.sqrt()
+    };
+    let inverse = T::all(2.0) / (ratio(change.start()) + ratio(change.end()));
+    let c = change.mean.map(|e| e * 2.0).plus_isotropic(T::all(1.0));
+    let g = match HOOP {
+        true => cofactor(&c) + cofactor(&change.half).map(|d| d * (4.0 / 3.0)),
+        false => Symmetric::new(c.y, c.x, T::default(), c.w * -1.0),
+    };
+    (g.times(inverse), inverse)
 }
 
 impl Viscosity {
@@ -37,88 +56,81 @@ impl Viscosity {
     /// Viscosity of `beta` (time) of a material with these moduli at small strains.
     pub fn new(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Self {
         let SmallStrainModuli { young, poisson } = moduli;
-        let linear = SaintVenantKirchhoff { young, poisson }.in_plane(plane);
-        // 2 mu E + (kappa - mu) tr(E) I at small strains
-        let c0 = linear.tangent(&Matrix2::zeros());
+        let (lambda, mu) = SaintVenantKirchhoff { young, poisson }
+            .in_plane(plane)
+            .lame();
         Viscosity {
-            shape: beta * 2.0 * c0.m33,
-            volume: beta * c0.m12,
+            shape: beta * 2.0 * mu,
+            volume: beta * lambda,
         }
-    }
-
-    /// S_d dt of a ring, eq. (2.36), with P = C_m^-1 in all components (force time/length^2).
-    pub fn stress_of_ring(&self, e0: &Symmetric, e1: &Symmetric) -> Symmetric {
-        let ((p, j), de) = (Self::halfway_of_ring(e0, e1), e1 - e0);
-        let shape = symmetric::product(&p) * Symmetric::new(de.x, de.y, de.z, 2.0 * de.w);
-        (shape * self.shape + p * (self.volume * contract(&p, &de))) * j
-    }
-
-    /// 2 V of a ring, positive definite: without the change of P and J_m.
-    pub fn tangent_of_ring(&self, e0: &Symmetric, e1: &Symmetric) -> Matrix4<f64> {
-        let (p, j) = Self::halfway_of_ring(e0, e1);
-        (symmetric::product(&p) * self.shape + symmetric::dyad(&p, &p) * self.volume) * (2.0 * j)
-    }
-
-    /// P and J_m of a ring between two strains.
-    fn halfway_of_ring(e0: &Symmetric, e1: &Symmetric) -> (Symmetric, f64) {
-        let c = IDENTITY + e0 + e1;
-        let cofactor = symmetric::cofactor(&c);
-        let square = c.z * cofactor.z;
-        (cofactor / square, square.sqrt())
-    }
-
-    /// G and 1/J_m of eq. (4.17) between two strains.
-    #[inline]
-    fn halfway(e0: &Matrix2<f64>, e1: &Matrix2<f64>) -> (Matrix2<f64>, f64) {
-        let ratio = |e: &Matrix2<f64>| (1.0 + 2.0 * e.trace() + 4.0 * e.determinant()).sqrt();
-        let inverse = 2.0 / (ratio(e0) + ratio(e1));
-        // cof is linear in the plane: cof(I + A) = I + cof A, A = E0 + E1
-        let (xx, yy) = (1.0 + e0.m22 + e1.m22, 1.0 + e0.m11 + e1.m11);
-        let xy = -(e0.m12 + e1.m12);
-        (Matrix2::new(xx, xy, xy, yy) * inverse, inverse)
     }
 }
 
 /// Stresses are taken over the length of the increment (force time/length^2). There are none at a strain that does not
-/// change.
-impl StressAtPoints for Viscosity {
+/// change, nothing is stored, and there is no stress across the plane.
+impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
     /// S_d dt, eq. (4.17)
     #[inline(always)]
-    fn stress(&self, _point: usize, strains: &Strains) -> Matrix2<f64> {
-        let Strains::Between(e0, e1) = strains else {
-            return Matrix2::zeros();
+    fn stress_at(&self, _point: usize, strains: &Strains<T>) -> Symmetric<T> {
+        let Strains::Between(change) = strains else {
+            return Symmetric::zeros();
         };
-        let ((g, inverse), de) = (Self::halfway(e0, e1), e1 - e0);
-        let (row, dj) = (g * de, g.dot(&de));
-        // a component of G dE G and of G, both symmetric
-        let s = |gdeg: f64, g: f64| (self.shape * gdeg + self.volume * dj * g) * inverse;
-        let xy = s(row.m11 * g.m12 + row.m12 * g.m22, g.m12);
-        Matrix2::new(
-            s(row.m11 * g.m11 + row.m12 * g.m12, g.m11),
-            xy,
-            xy,
-            s(row.m21 * g.m12 + row.m22 * g.m22, g.m22),
-        )
+        let ((g, inverse), de) = (halfway::<T, HOOP>(change), change.change());
+        let dj = g.contract::<HOOP>(&de) * self.volume;
+        // G dE and G dE G
+        let (xx, xy) = (g.x * de.x + g.w * de.w, g.x * de.w + g.w * de.y);
+        let (yx, yy) = (g.w * de.x + g.y * de.w, g.w * de.w + g.y * de.y);
+        let around = match HOOP {
+            true => g.z * de.z * g.z,
+            false => T::default(),
+        };
+        let gdeg = Symmetric::new(
+            xx * g.x + xy * g.w,
+            yx * g.w + yy * g.y,
+            around,
+            xx * g.w + xy * g.y,
+        );
+        gdeg.with(&g, |gdeg, g| (gdeg * self.shape + dj * g) * inverse)
     }
 
     /// 2 V of eq. (4.19), positive definite: without the change of G and J_m, which is of first order in dE.
     #[inline(always)]
-    fn tangent(&self, _point: usize, strains: &Strains) -> Matrix3<f64> {
-        let Strains::Between(e0, e1) = strains else {
-            return Matrix3::zeros();
+    fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {
+        let Strains::Between(change) = strains else {
+            return Tangent::default();
         };
-        let (g, inverse) = Self::halfway(e0, e1);
-        product(&g) * (2.0 * self.shape * inverse) + dyad(&g) * (2.0 * self.volume * inverse)
+        let (g, inverse) = halfway::<T, HOOP>(change);
+        let (product, dyad) = (product(&g), dyad(&g, &g));
+        let (shape, volume) = (inverse * (2.0 * self.shape), inverse * (2.0 * self.volume));
+        Tangent::of(|i, j| product[i][j] * shape + dyad[i][j] * volume)
+    }
+
+    fn energy_at(&self, _point: usize, _e: &Symmetric<T>) -> T {
+        T::default()
+    }
+
+    fn across_at(&self, _point: usize, _e: &Symmetric<T>) -> Across<T> {
+        Across {
+            stretch: T::all(1.0),
+            stress: T::default(),
+        }
     }
 
     fn is_viscous(&self) -> bool {
         true
+    }
+
+    fn initial_tangent(&self) -> Tangent<T> {
+        let none = Strains::Between(StrainChange::default());
+        StressAtPoints::<T, HOOP>::tangent_at(self, 0, &none)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::materials::Hyperelastic;
+    use nalgebra::Matrix2;
 
     const BETA: f64 = 0.3;
 
@@ -131,8 +143,16 @@ mod tests {
         Viscosity::new(BETA, moduli, Plane::Strain)
     }
 
-    fn strain(f: &Matrix2<f64>) -> Matrix2<f64> {
-        (f.transpose() * f - Matrix2::identity()) / 2.0
+    fn strain(f: &Matrix2<f64>) -> Symmetric {
+        Symmetric::of_plane(&((f.transpose() * f - Matrix2::identity()) / 2.0), 0.0)
+    }
+
+    fn stress(v: Viscosity, [e0, e1]: &[Symmetric; 2]) -> Symmetric {
+        StressAtPoints::<f64, true>::stress_at(&v, 0, &Strains::between(e0, e1))
+    }
+
+    fn in_plane(v: Viscosity, ends: &[Symmetric; 2]) -> Matrix2<f64> {
+        stress(v, ends).in_plane()
     }
 
     fn some() -> Matrix2<f64> {
@@ -145,15 +165,13 @@ mod tests {
         // of one volume ratio, however large the change
         let stretched = f * Matrix2::new(1.5, 0.0, 0.4, 1.0 / 1.5);
         let ends = [strain(&f), strain(&stretched)];
-        let of =
-            |v: Viscosity, &[e0, e1]: &[Matrix2<f64>; 2]| v.stress(0, &Strains::Between(e0, e1));
-        let [soft, hard] = [2.0, 2e6].map(|bulk| of(viscosity(1.0, bulk), &ends));
+        let [soft, hard] = [2.0, 2e6].map(|bulk| in_plane(viscosity(1.0, bulk), &ends));
         assert!((soft - hard).norm() < 1e-8 * soft.norm(), "{soft} {hard}");
         // of one shape, turned; kappa = K + mu/3 is the same
         let turned = Matrix2::new(0.6, 0.8, -0.8, 0.6) * f * 1.7;
         let ends = [strain(&f), strain(&turned)];
-        let [one, other] =
-            [(1.0, 3.0), (3.0, 3.0 - 2.0 / 3.0)].map(|(mu, bulk)| of(viscosity(mu, bulk), &ends));
+        let [one, other] = [(1.0, 3.0), (3.0, 3.0 - 2.0 / 3.0)]
+            .map(|(mu, bulk)| in_plane(viscosity(mu, bulk), &ends));
         assert!((one - other).norm() < 1e-14 * one.norm(), "{one} {other}");
     }
 
@@ -169,7 +187,7 @@ mod tests {
         let exact = inverse * sigma * inverse.transpose() * f.determinant();
         let h = 1e-5;
         let [e0, e1] = [-h, h].map(|h| strain(&(f + rate * h)));
-        let found = viscosity(mu, bulk).stress(0, &Strains::Between(e0, e1)) / (2.0 * h);
+        let found = in_plane(viscosity(mu, bulk), &[e0, e1]) / (2.0 * h);
         assert!(
             (found - exact).norm() < 1e-9 * exact.norm(),
             "{found} {exact}"
@@ -188,7 +206,7 @@ mod tests {
                 let [f0, f1] = [f(0), f(4)];
                 if f0.determinant() > 0.0 && f1.determinant() > 0.0 {
                     let [e0, e1] = [strain(&f0), strain(&f1)];
-                    let work = v.stress(0, &Strains::Between(e0, e1)).dot(&(e1 - e0));
+                    let work = in_plane(v, &[e0, e1]).dot(&(e1 - e0).in_plane());
                     assert!(work > 0.0, "{work}");
                 }
             }
@@ -202,13 +220,70 @@ mod tests {
             poisson: 0.3,
         };
         let v = Viscosity::new(BETA, moduli, Plane::Stress);
-        let e = Matrix2::new(3e-9, 1e-9, 1e-9, -2e-9);
+        let e = Symmetric::new(3e-9, -2e-9, 0.0, 1e-9);
         let linear = SaintVenantKirchhoff {
             young: 100.0,
             poisson: 0.3,
         };
-        let exact = linear.in_plane(Plane::Stress).stress(&e) * BETA;
-        let found = v.stress(0, &Strains::Between(Matrix2::zeros(), e));
+        let linear: &dyn Hyperelastic = &linear.in_plane(Plane::Stress);
+        let exact = linear.stress(&e).in_plane() * BETA;
+        let found = in_plane(v, &[Symmetric::zeros(), e]);
         assert!((found - exact).norm() < 1e-8 * exact.norm());
+    }
+
+    #[test]
+    fn in_a_ring_it_takes_energy_and_has_the_spatial_law_in_a_short_increment() {
+        let moduli = SmallStrainModuli {
+            young: 1000.0,
+            poisson: 0.3,
+        };
+        let (e0, way) = (
+            Symmetric::new(0.2, -0.1, 0.3, 0.15),
+            Symmetric::new(-0.4, 0.3, 0.5, 0.2),
+        );
+        let v = Viscosity::new(BETA, moduli, Plane::Revolution);
+        for size in [0.5, -0.3, 1e-3] {
+            let s = stress(v, &[e0, e0 + way * size]);
+            assert!(s.contract::<true>(&(way * size)) > 0.0);
+        }
+        // near E = 0 it is beta C dE
+        let linear: &dyn Hyperelastic = &SaintVenantKirchhoff {
+            young: 1000.0,
+            poisson: 0.3,
+        }
+        .in_plane(Plane::Revolution);
+        let de = way * 1e-8;
+        let found = stress(v, &[de * -0.5, de * 0.5]);
+        let exact = linear.stress(&de) * BETA;
+        assert!((found - exact).norm() < 1e-12 * exact.norm());
+        // a change of volume alone has no part of the shear modulus: C1 = s^2 C0
+        let grown = (e0 * 1.44).plus_isotropic(0.22);
+        let bulk = 1000.0 / (3.0 * 0.4);
+        let with_shear = |mu: f64| {
+            let moduli = SmallStrainModuli {
+                young: 9.0 * bulk * mu / (3.0 * bulk + mu),
+                poisson: (3.0 * bulk - 2.0 * mu) / (2.0 * (3.0 * bulk + mu)),
+            };
+            Viscosity::new(BETA, moduli, Plane::Revolution)
+        };
+        let [one, other] = [400.0, 1800.0].map(|mu| stress(with_shear(mu), &[e0, grown]));
+        assert!((one - other).norm() < 1e-12 * one.norm());
+        // nor has a change of shape alone, of any size, one of the bulk modulus: det C1 = det C0
+        let stretched = |by: f64| {
+            let c = (e0 * 2.0).plus_isotropic(1.0);
+            let c = Symmetric::new(c.x * by, c.y * by, c.z / (by * by), c.w * by);
+            c.plus_isotropic(-1.0) / 2.0
+        };
+        let [soft, hard] = [0.1, 1e6].map(|lambda| {
+            let v = Viscosity {
+                shape: 1.0,
+                volume: lambda,
+            };
+            stress(v, &[e0, stretched(1.5)])
+        });
+        assert!(
+            (soft - hard).norm() < 1e-8 * soft.norm(),
+            "{soft:?} {hard:?}"
+        );
     }
 }

@@ -23,7 +23,7 @@ pub(super) fn tensor(s: &Symmetric) -> Tensor<3> {
 
 /// The components of a tensor without 13 and 23.
 pub(super) fn components(t: &Tensor<3>) -> Symmetric {
-    Vector4::new(t.m11, t.m22, t.m33, t.m12)
+    Symmetric::new(t.m11, t.m22, t.m33, t.m12)
 }
 
 /// Mean over the volume of the points.
@@ -45,7 +45,7 @@ impl AtStrains {
         let conjugate: OfPoints<[Symmetric; 2]> = conjugate.collect();
         let on_mean: OfPoints<Symmetric> = conjugate.iter().map(|[_, r]| *r).collect();
         let mean = mean_of(points, &on_mean);
-        conjugate.iter().map(|[t, _]| t - mean).collect()
+        conjugate.iter().map(|[t, _]| *t - mean).collect()
     }
 
     /// dE_g (11, 22, 33, 2*12) and B of S : d²E_g at a point, from the change of E + M alpha and that of the mean.

@@ -19,7 +19,7 @@ use super::stresses::{Compatible, StrainRows, Stresses, add_products, energy_cha
 use crate::elements::formulation::smaller;
 use crate::elements::solid::MAX_DOFS;
 use crate::materials::symmetric::{IDENTITY, cofactor, dyad, product};
-use crate::materials::{RingStressAtPoints, Strains, Symmetric, contract};
+use crate::materials::{Strains, StressAtPoints, Symmetric, Tangent, contract};
 
 /// Most functions of the volume ratio.
 const FUNCTIONS: usize = 3;
@@ -106,7 +106,7 @@ impl RingDilatation {
                 j,
                 theta: 1.0 + of_element,
                 ratio: 1.0 + excess,
-                strain: e + c * (excess / 2.0),
+                strain: *e + c * (excess / 2.0),
             }
         };
         all.map(of_point).collect()
@@ -161,7 +161,7 @@ impl RingDilatation {
     pub fn stresses(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         compatible: &Compatible,
     ) -> Stresses {
         let end = self.dilated(points, &compatible.end);
@@ -170,9 +170,9 @@ impl RingDilatation {
             true => self.dilated(points, &compatible.start),
             false => OfPoints::new(),
         };
-        let strains: OfPoints<Strains<Symmetric>> = if compatible.is_increment {
+        let strains: OfPoints<Strains> = if compatible.is_increment {
             let ends = start.iter().zip(&end);
-            ends.map(|(e0, e1)| Strains::Between(e0.strain, e1.strain))
+            ends.map(|(e0, e1)| Strains::between(&e0.strain, &e1.strain))
                 .collect()
         } else {
             end.iter().map(|at| Strains::At(at.strain)).collect()
@@ -186,12 +186,12 @@ impl RingDilatation {
         };
         let thetas = middle.iter().map(|at| at.theta);
         determinant = thetas.fold(determinant, smaller);
-        let tangent_at: OfPoints<Strains<Symmetric>> = match material.ring_is_viscous() {
+        let tangent_at: OfPoints<Strains> = match material.is_viscous() {
             true => strains.clone(),
             false => middle.iter().map(|at| Strains::At(at.strain)).collect(),
         };
         let own = tangent_at.iter().enumerate();
-        let own: OfPoints<Symmetric> = own.map(|(p, e)| material.ring_stress(p, e)).collect();
+        let own: OfPoints<Symmetric> = own.map(|(p, e)| material.stress_at(p, e)).collect();
         let pressures = self.pressures(points, &middle, &own);
         let all = middle.iter().zip(&own).zip(&pressures);
         let mut s: OfPoints<Symmetric> = all
@@ -220,7 +220,7 @@ impl RingDilatation {
     pub fn add_tangent(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         (compatible, stresses): (&Compatible, &Stresses),
         rows: &[StrainRows],
         k: &mut [f64],
@@ -231,10 +231,11 @@ impl RingDilatation {
             false => self.dilated(points, &compatible.end),
         };
         let own = stresses.tangent_at.iter().enumerate();
-        let own: OfPoints<Symmetric> = own.map(|(p, e)| material.ring_stress(p, e)).collect();
+        let own: OfPoints<Symmetric> = own.map(|(p, e)| material.stress_at(p, e)).collect();
         let pressures = self.pressures(points, &at, &own);
-        let of_row =
-            |(at, rows): (&Dilated, &StrainRows)| rows.map(|row| at.j * at.inverse.dot(&row));
+        let of_row = |(at, rows): (&Dilated, &StrainRows)| {
+            rows.map(|row| at.j * at.inverse.vector().dot(&row))
+        };
         let dj: OfPoints<[f64; MAX_DOFS]> = at.iter().zip(rows).map(of_row).collect();
         let mut sums = [[0.0; MAX_DOFS]; FUNCTIONS];
         for ((point, psi), dj) in points.iter().zip(&self.functions).zip(&dj) {
@@ -255,14 +256,14 @@ impl RingDilatation {
             let bar: StrainRows = std::array::from_fn(|i| {
                 rows[p][i] * at.ratio + half_c * (2.0 / 3.0 * at.ratio * dl[i])
             });
-            let c: Matrix4<f64> = material.ring_tangent(p, &stresses.tangent_at[p]);
+            let c: Matrix4<f64> = material.tangent_at(p, &stresses.tangent_at[p]).matrix();
             add_products(&bar, &(c * v), k);
-            let around = product(&at.inverse) * (-2.0 * pressures[p] * at.j);
-            let volume = dyad(&at.inverse, &at.inverse) * (pressures[p] * at.j);
+            let around = Tangent(product(&at.inverse)).matrix() * (-2.0 * pressures[p] * at.j);
+            let volume = Tangent(dyad(&at.inverse, &at.inverse)).matrix() * (pressures[p] * at.j);
             add_products(&rows[p], &((around + volume) * v), k);
             let b = contract(&own[p], &at.c) / 2.0;
             let a = 2.0 / 3.0 * b * at.ratio;
-            let work = rows[p].map(|row| own[p].dot(&row) * (2.0 / 3.0 * at.ratio));
+            let work = rows[p].map(|row| own[p].vector().dot(&row) * (2.0 / 3.0 * at.ratio));
             for i in 0..d {
                 for j in 0..d {
                     let mixed = work[i] * dl[j] + dl[i] * work[j];

@@ -10,7 +10,7 @@ use crate::elements::enhanced_strain::{alternating, finite_or, signs};
 use crate::elements::local_solution::{LAST_STEP, least, zero};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
 use crate::elements::stretch::{AddedStrain, MeanStrain, Variation};
-use crate::materials::{Committed, RingStressAtPoints, Strains, Symmetric, contract};
+use crate::materials::{Committed, Strains, StressAtPoints, Symmetric, contract};
 
 /// Number of strains of the element.
 pub(super) const STRAINS: usize = 5;
@@ -75,7 +75,7 @@ impl Enhanced {
             let mut strains = [Symmetric::zeros(); STRAINS];
             for (strain, (xx, yy, xy)) in strains.iter_mut().zip(shapes) {
                 let m = inverse.transpose() * Matrix2::new(xx, xy, xy, yy) * inverse * shrunk;
-                *strain = Vector4::new(m.m11, m.m22, 0.0, m.m12);
+                *strain = Symmetric::of_plane(&m, 0.0);
             }
             strains[STRAINS - 1].z = r * s * shrunk;
             strains
@@ -86,7 +86,7 @@ impl Enhanced {
             let squares = points.iter().zip(&strains);
             let squares = squares.map(|(p, m)| p.volume * contract(&m[k], &m[k]));
             let size = (squares.sum::<f64>() / volume).sqrt();
-            strains.iter_mut().for_each(|m| m[k] /= size);
+            strains.iter_mut().for_each(|m| m[k] = m[k] / size);
         }
         Enhanced {
             gamma,
@@ -110,7 +110,7 @@ impl Enhanced {
     pub fn correct_strains(&self, u: &[Vector2<f64>; MAX_NODES], strains: &mut [Symmetric]) {
         let half = self.q(u).norm_squared() / 2.0;
         for (strain, s) in strains.iter_mut().zip(&self.slope) {
-            *strain -= Vector4::new(s.x * s.x, s.y * s.y, 0.0, s.x * s.y) * half;
+            *strain -= Symmetric::new(s.x * s.x, s.y * s.y, 0.0, s.x * s.y) * half;
         }
     }
 
@@ -174,12 +174,12 @@ impl Enhanced {
     fn measured(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         compatible: &[Symmetric],
     ) -> Measured {
         let mean = MeanStrain {
             strain: tensor(&mean_of(points, compatible)),
-            measure: material.ring_convex_in(),
+            measure: material.convex_in(),
         };
         Measured {
             compatible: compatible.into(),
@@ -196,11 +196,11 @@ impl Enhanced {
 
     /// The material at strains.
     fn at(
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         enhanced: OfPoints<AddedStrain<3>>,
-        strains: impl Fn(usize) -> Strains<Symmetric>,
+        strains: impl Fn(usize) -> Strains,
     ) -> AtStrains {
-        let stress = |p: usize| material.ring_stress(p, &strains(p));
+        let stress = |p: usize| material.stress_at(p, &strains(p));
         AtStrains {
             stresses: (0..enhanced.len()).map(stress).collect(),
             enhanced,
@@ -216,16 +216,16 @@ impl Enhanced {
     fn derivatives(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         enhanced: OfPoints<AddedStrain<3>>,
-        (strains, factor): (impl Fn(usize) -> Strains<Symmetric>, f64),
+        (strains, factor): (impl Fn(usize) -> Strains, f64),
     ) -> (Alpha, StrainStiffness) {
         let at = Self::at(material, enhanced, &strains);
         let (mut slope, mut stiffness) = (Alpha::zeros(), StrainStiffness::zeros());
         for (p, point) in points.iter().enumerate() {
             let own = self.own_columns(&at, p);
-            let stress = at.stresses[p] * point.volume;
-            let c = material.ring_tangent(p, &strains(p)) * factor;
+            let stress = at.stresses[p].vector() * point.volume;
+            let c = material.tangent_at(p, &strains(p)).matrix() * factor;
             slope += Alpha::from_fn(|k, _| own[k].0.dot(&stress));
             stiffness +=
                 StrainStiffness::from_fn(|k, l| at.product(p, &c, &own[k], &own[l]) * point.volume);
@@ -234,8 +234,8 @@ impl Enhanced {
     }
 
     /// alpha of the last committed increment, from which the next is sought.
-    fn committed(&self, material: &impl RingStressAtPoints) -> Alpha {
-        match material.ring_beyond(self.strains.len()) {
+    fn committed(&self, material: &impl StressAtPoints) -> Alpha {
+        match material.beyond(self.strains.len()) {
             [] => Alpha::zeros(),
             own => Alpha::from_column_slice(own),
         }
@@ -246,7 +246,7 @@ impl Enhanced {
     fn least(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         (measured, first): (&Measured, Alpha),
     ) -> Alpha {
         let last = LAST_STEP * largest(&measured.compatible) + f64::EPSILON;
@@ -267,7 +267,7 @@ impl Enhanced {
     fn of_rates(
         &self,
         points: &[RingPoint],
-        viscosity: &impl RingStressAtPoints,
+        viscosity: &impl StressAtPoints,
         (start, end): (&[Symmetric], &Measured),
     ) -> Alpha {
         let changes = end.compatible.iter().zip(start).map(|(e1, e0)| e1 - e0);
@@ -277,7 +277,7 @@ impl Enhanced {
         let derivatives = |alpha: &Alpha| {
             let e = self.enhanced(end, alpha);
             let of_material = of_material(&e);
-            let strains = |p: usize| Strains::Between(start[p], of_material[p]);
+            let strains = |p: usize| Strains::between(&start[p], &of_material[p]);
             self.derivatives(points, viscosity, e, (strains, 0.5))
         };
         zero(derivatives, last).unwrap_or(Alpha::from_element(f64::NAN))
@@ -287,7 +287,7 @@ impl Enhanced {
     fn energy_change(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         [(start, alpha0), (end, alpha1)]: [(&Measured, &Alpha); 2],
         changes: &[Symmetric],
     ) -> f64 {
@@ -310,7 +310,7 @@ impl Enhanced {
     pub fn stresses(
         &self,
         points: &[RingPoint],
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         compatible: &Compatible,
     ) -> Stresses {
         let first = self.committed(material);
@@ -320,7 +320,7 @@ impl Enhanced {
             let enhanced = self.enhanced(&measured, &alpha);
             (measured, alpha, enhanced)
         };
-        let (strains, tangent_at): (OfPoints<Strains<Symmetric>>, OfPoints<Strains<Symmetric>>);
+        let (strains, tangent_at): (OfPoints<Strains>, OfPoints<Strains>);
         let at = |e: &OfPoints<AddedStrain<3>>| of_material(e).into_iter().map(Strains::At);
         let enhanced;
         let mut work = None;
@@ -328,7 +328,7 @@ impl Enhanced {
             (_, _, enhanced) = solved(&compatible.end);
             strains = at(&enhanced).collect();
             tangent_at = strains.clone();
-        } else if material.ring_is_viscous() {
+        } else if material.is_viscous() {
             let end = self.measured(points, material, &compatible.end);
             let alpha = self.of_rates(points, material, (&compatible.start, &end));
             enhanced = self.enhanced(&end, &alpha);
@@ -348,7 +348,7 @@ impl Enhanced {
         if let Some(work) = work {
             compatible.do_work(work, points, &mut s);
         }
-        let is_number = s.iter().all(|s| s.iter().all(|s| !s.is_nan()));
+        let is_number = s.iter().all(|s| s.components().iter().all(|s| !s.is_nan()));
         Stresses {
             strains,
             tangent_at,
@@ -368,7 +368,7 @@ impl Enhanced {
         k: &mut [f64],
     ) {
         let d = size(k);
-        let of_row = |row: &Vector4<f64>| Vector4::new(row.x, row.y, row.z, row.w / 2.0);
+        let of_row = |row: &Vector4<f64>| Symmetric::new(row.x, row.y, row.z, row.w / 2.0);
         let of_mean: OfPoints<Symmetric> = (0..d)
             .map(|j| {
                 let all: OfPoints<Symmetric> = rows.iter().map(|r| of_row(&r[j])).collect();
@@ -426,15 +426,16 @@ impl Enhanced {
             let strains = stresses.strains.iter().enumerate();
             let work = strains.map(|(p, strains)| match strains {
                 Strains::At(_) => 0.0,
-                Strains::Between(e0, e1) => {
-                    contract(&material.ring_stress(p, strains), &(e1 - e0)) * points[p].volume
+                Strains::Between(change) => {
+                    let s = material.stress_at(p, strains);
+                    contract(&s, &change.change()) * points[p].volume
                 }
             });
             let stored = |material: &Committed, measured: &Measured, alpha: &Alpha| -> f64 {
                 let e = of_material(&self.enhanced(measured, alpha));
                 let energies = points.iter().zip(&e).enumerate();
                 energies
-                    .map(|(p, (point, e))| material.ring_energy(p, e) * point.volume)
+                    .map(|(p, (point, e))| material.energy_at(p, e) * point.volume)
                     .sum()
             };
             dissipated = work.sum::<f64>() + stored(material, &start, &before)
@@ -446,9 +447,9 @@ impl Enhanced {
 }
 
 /// From the strains at the start to those at the end.
-fn between([e0, e1]: &[OfPoints<Symmetric>; 2]) -> impl Iterator<Item = Strains<Symmetric>> {
+fn between([e0, e1]: &[OfPoints<Symmetric>; 2]) -> impl Iterator<Item = Strains> {
     let ends = e0.iter().zip(e1);
-    ends.map(|(e0, e1)| Strains::Between(*e0, *e1))
+    ends.map(|(e0, e1)| Strains::between(e0, e1))
 }
 
 /// Largest component of strains.

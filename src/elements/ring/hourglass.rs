@@ -23,7 +23,7 @@ use super::stresses::{StrainRows, size};
 use crate::elements::formulation::smaller;
 use crate::elements::hourglass::{Amplitudes, ModesInMotion, variables};
 use crate::elements::solid::{MAX_DOFS, MAX_NODES};
-use crate::materials::{RingStressAtPoints, Strains, Symmetric};
+use crate::materials::{Strains, StressAtPoints, Symmetric};
 
 /// Number of nodes, and of points at which E_33 changes.
 const POINTS: usize = 4;
@@ -46,7 +46,7 @@ pub(super) struct RingHourglass {
 /// The hourglass modes in a motion.
 pub(super) struct RingModes<'a> {
     of: &'a RingHourglass,
-    modes: ModesInMotion<'a, 4, MODES>,
+    modes: ModesInMotion<'a, MODES>,
     /// F0 and q halfway.
     f: Matrix2<f64>,
     q: Vector2<f64>,
@@ -99,15 +99,15 @@ impl RingHourglass {
     /// The modes of eq. (2.44) between displacements of the nodes at the start and at the end of an increment, or at one configuration.
     pub fn modes<'a>(
         &'a self,
-        material: &'a impl RingStressAtPoints,
+        material: &'a impl StressAtPoints,
         ends: [[Vector2<f64>; MAX_NODES]; 2],
         is_increment: bool,
     ) -> RingModes<'a> {
-        let is_viscous = material.ring_is_viscous();
+        let is_viscous = material.is_viscous();
         let c = match is_viscous && !is_increment {
             // a viscosity has no stress at one configuration
             true => nalgebra::Matrix4::zeros(),
-            false => material.ring_initial_tangent(),
+            false => material.initial_tangent().matrix(),
         };
         let of_point = |point: &RingPoint| {
             let [start, end] = ends.each_ref().map(|u| point.displacement_gradient(u));
@@ -138,7 +138,7 @@ impl RingHourglass {
             let e = self.mean.displacement_gradient(u).strain();
             Vector4::new(e.x, e.y, e.z, 2.0 * e.w)
         });
-        let (stiffness, metal) = (self.stiffness(&c), material.ring_metal(1));
+        let (stiffness, metal) = (self.stiffness(&c), material.metal(1));
         RingModes {
             of: self,
             modes: ModesInMotion::new(stiffness, metal, self.mean.volume, strains, amplitudes),
@@ -181,16 +181,22 @@ impl RingModes<'_> {
 
     /// S of a metal (force/length^2).
     pub fn metal_stress(&self) -> Option<Symmetric> {
-        self.modes.metal_stress
+        let components = self.modes.metal_stress?;
+        Some(Symmetric::new(
+            components.x,
+            components.y,
+            components.z,
+            components.w,
+        ))
     }
 
     /// Writes the variables of a metal's point and of its modes, and returns what is dissipated (force length); none of
     /// another material.
-    pub fn update(&self, strains: &Strains<Symmetric>, updated: &mut [f64]) -> Option<f64> {
+    pub fn update(&self, strains: &Strains, updated: &mut [f64]) -> Option<f64> {
         let (metal, squares) = self.modes.metal()?;
         let (of_point, own) = updated.split_at_mut(updated.len() - variables(MODES));
         let law = metal.law;
-        let [dissipated, part] = law.ring_update(strains, metal.of_point, squares, of_point);
+        let [dissipated, part] = law.update(strains, metal.of_point, squares, of_point);
         self.modes.update(part, own);
         Some(dissipated * self.of.mean.volume)
     }

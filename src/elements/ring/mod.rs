@@ -21,7 +21,7 @@ use super::formulation::{ElementResult, PointResult, PointResults, smaller};
 use super::hourglass::variables;
 use super::shapes::ShapeAtPoints;
 use super::solid::{ElementMatrix, ElementVector, MAX_DOFS, MAX_NODES, Motion, take_positive_part};
-use crate::materials::{Committed, RingStressAtPoints, Symmetric, contract};
+use crate::materials::{Committed, StressAtPoints, Symmetric, contract};
 use crate::model::{self, ElementType, Formulation, Nodes, Thickness};
 
 /// An element with all components of the strain.
@@ -94,11 +94,7 @@ impl Ring {
     /// ```text
     /// F_a = sum over the points of v (F S dh_a/dX + (1 + h) S_33 h_a/R e_r)      eq. (2.33)
     /// ```
-    pub fn force(
-        &self,
-        material: &impl RingStressAtPoints,
-        motion: Motion,
-    ) -> (ElementVector, f64) {
+    pub fn force(&self, material: &impl StressAtPoints, motion: Motion) -> (ElementVector, f64) {
         let (mut force, paths) = ([0.0; MAX_DOFS], self.paths(motion));
         let modes = self.modes(material, motion);
         let stresses = self.stresses(material, &self.compatible(&paths, motion), modes.as_ref());
@@ -131,7 +127,7 @@ impl Ring {
 
     /// Tangent, D x D (force/length), symmetric: as that of [`super::displacement::Displacement`] with the row
     /// (1 + h) h_a/R of B_L and the part S_33 h_a h_b/R² of the stress around the axis, eq. (2.34).
-    pub fn tangent(&self, material: &impl RingStressAtPoints, motion: Motion) -> ElementMatrix {
+    pub fn tangent(&self, material: &impl StressAtPoints, motion: Motion) -> ElementMatrix {
         let (mut whole, paths) = ([0.0; MAX_DOFS * MAX_DOFS], self.paths(motion));
         let d = 2 * self.nodes.len();
         let k = &mut whole[..d * d];
@@ -139,7 +135,7 @@ impl Ring {
         let modes = self.modes(material, motion);
         let stresses = self.stresses(material, &compatible, modes.as_ref());
         let mut rows = self.rows(&paths);
-        let c = |p: usize| material.ring_tangent(p, &stresses.tangent_at[p]);
+        let c = |p: usize| material.tangent_at(p, &stresses.tangent_at[p]).matrix();
         match &self.formulation {
             RingFormulation::RingDilatation(dilatation) => {
                 dilatation.add_tangent(&self.points, material, (&compatible, &stresses), &rows, k);
@@ -169,7 +165,7 @@ impl Ring {
     /// Positive part of the tangent.
     pub fn positive_tangent(
         &self,
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         motion: Motion,
     ) -> ElementMatrix {
         let (d, mut k) = (2 * self.nodes.len(), self.tangent(material, motion));
@@ -178,7 +174,7 @@ impl Ring {
     }
 
     /// Work of the stress on the strains of a motion from its start to its end (force length).
-    pub fn work(&self, material: &impl RingStressAtPoints, motion: Motion) -> f64 {
+    pub fn work(&self, material: &impl StressAtPoints, motion: Motion) -> f64 {
         let compatible = self.compatible(&self.paths(motion), motion);
         let modes = self.modes(material, motion);
         let stresses = self.stresses(material, &compatible, modes.as_ref());
@@ -191,7 +187,7 @@ impl Ring {
     /// The hourglass modes in a motion.
     fn modes<'a>(
         &'a self,
-        material: &'a impl RingStressAtPoints,
+        material: &'a impl StressAtPoints,
         motion: Motion,
     ) -> Option<RingModes<'a>> {
         match &self.formulation {
@@ -228,7 +224,7 @@ impl Ring {
             let (e, f, stretch) = (at.strain(), at.f(), at.stretch_around());
             let determinant = f.determinant();
             let result = PointResult {
-                energy: material.ring_energy(p, stresses.strains[p].end()),
+                energy: material.energy_at(p, &stresses.strains[p].end()),
                 sigma: f * section(s) * f.transpose() / (determinant * stretch),
                 across: s.z * stretch / determinant,
                 strain: section(&e),
@@ -252,7 +248,7 @@ impl Ring {
         }
         let mut dissipated = 0.0;
         for (p, point) in self.points.iter().enumerate() {
-            dissipated += material.ring_update(p, &stresses.strains[p], updated) * point.volume;
+            dissipated += material.update(p, &stresses.strains[p], updated) * point.volume;
         }
         match &self.formulation {
             RingFormulation::Enhanced(enhanced) if compatible.is_increment => {
@@ -314,7 +310,7 @@ impl Ring {
 
     fn stresses(
         &self,
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         compatible: &Compatible,
         modes: Option<&RingModes>,
     ) -> Stresses {
@@ -401,9 +397,7 @@ pub(super) fn nodal_volumes(shape: model::Shape, x: &[[f64; 2]]) -> [f64; MAX_NO
 mod tests {
     use super::*;
     use crate::elements::shapes::tests::{QUAD8, TRI6};
-    use crate::materials::{
-        ConstitutiveLaw, Law, NeoHooke, Plane, Plastic, SmallStrainModuli, Viscosity,
-    };
+    use crate::materials::{Law, NeoHooke, Plane, Plastic, SmallStrainModuli, Viscosity};
     use crate::model::{Element, Mesh};
 
     /// Rings of all types between distorted nodes off the axis, with their nodes.
@@ -667,7 +661,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_beyond_the_axis_or_folded_is_turned_inside_out() {
+    fn a_beyond_the_axis_or_folded_is_turned_inside_out() {
         let (ring, mesh) = &rings()[1];
         assert!(is_ring(mesh));
         let law = laws()[0].in_plane(Plane::Revolution);

@@ -105,7 +105,7 @@ impl Gradient {
     pub fn strain(&self) -> Symmetric {
         let e = green_lagrange(&self.h);
         let around = self.around + self.around * self.around / 2.0;
-        Vector4::new(e.m11, e.m22, around, e.m12)
+        Symmetric::of_plane(&e, around)
     }
 
     /// det F in the section, or its product with the stretch around the axis where one of both is not positive.

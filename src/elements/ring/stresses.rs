@@ -6,7 +6,7 @@ use nalgebra::{Matrix4, Vector4};
 use super::at_strains::AtStrains;
 use super::points::{OfPoints, RingPoint};
 use crate::elements::solid::MAX_DOFS;
-use crate::materials::{RingStressAtPoints, Strains, Symmetric, contract};
+use crate::materials::{Strains, StressAtPoints, Symmetric, contract};
 
 /// Strains of the displacements of all points at the start and at the end of a motion, twice the same at one
 /// configuration.
@@ -34,9 +34,9 @@ impl Compatible {
         &self,
         start: impl Iterator<Item = &'a Symmetric>,
         end: impl Iterator<Item = &'a Symmetric>,
-    ) -> OfPoints<Strains<Symmetric>> {
+    ) -> OfPoints<Strains> {
         let of_point = |(e0, e1): (&Symmetric, &Symmetric)| match self.is_increment {
-            true => Strains::Between(*e0, *e1),
+            true => Strains::between(e0, e1),
             false => Strains::At(*e1),
         };
         start.zip(end).map(of_point).collect()
@@ -62,9 +62,9 @@ impl Compatible {
 /// Stresses of all points of an element in a motion.
 pub(super) struct Stresses {
     /// Strains of the material.
-    pub strains: OfPoints<Strains<Symmetric>>,
+    pub strains: OfPoints<Strains>,
     /// Strains at which the material has its tangent.
-    pub tangent_at: OfPoints<Strains<Symmetric>>,
+    pub tangent_at: OfPoints<Strains>,
     /// Second Piola-Kirchhoff stress that does work on the strains of the displacements (force/length^2).
     pub s: OfPoints<Symmetric>,
     /// The material of an element with strains of its own at those of the tangent.
@@ -76,12 +76,12 @@ pub(super) struct Stresses {
 impl Stresses {
     /// Those of the law at the strains of the displacements, or that of the one point of a metal with hourglass modes.
     pub fn of_displacements(
-        material: &impl RingStressAtPoints,
+        material: &impl StressAtPoints,
         compatible: &Compatible,
         of_metal: Option<Symmetric>,
     ) -> Self {
         let strains = compatible.strains(compatible.start.iter(), compatible.end.iter());
-        let stress = |(p, e)| of_metal.unwrap_or_else(|| material.ring_stress(p, e));
+        let stress = |(p, e)| of_metal.unwrap_or_else(|| material.stress_at(p, e));
         Stresses {
             s: strains.iter().enumerate().map(stress).collect(),
             tangent_at: strains.clone(),
@@ -96,13 +96,13 @@ impl Stresses {
 /// strains, whose difference has the round-off of the strains.
 pub(super) fn energy_change(
     points: &[RingPoint],
-    material: &impl RingStressAtPoints,
-    strains: impl Iterator<Item = Strains<Symmetric>>,
+    material: &impl StressAtPoints,
+    strains: impl Iterator<Item = Strains>,
     changes: &[Symmetric],
 ) -> f64 {
     let all = points.iter().zip(changes).zip(strains).enumerate();
     let terms = all.map(|(p, ((point, change), strains))| {
-        contract(&material.ring_stress(p, &strains), change) * point.volume
+        contract(&material.stress_at(p, &strains), change) * point.volume
     });
     terms.sum()
 }

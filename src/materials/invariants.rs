@@ -1,0 +1,279 @@
+//! Compressible hyperelastic materials whose energy is a function of the invariants of the shape, and of the volume
+//! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6). Section 2 of docs/theory.md.
+
+use super::hyperelastic::Hyperelastic;
+use super::number::Number;
+use super::strains::StrainChange;
+use super::symmetric::{Symmetric, Tangent, cofactor, dyad, minor, product, with_identity};
+
+/// An energy W = w(x) + C01 y + U(J) of invariants.
+///
+/// With C = I + 2 E, I1, I2 and I3 = J² its invariants, a = J^(2/3), x = I1/a - 3, y = I2/a² - 3 and P = C^-1:
+///
+/// ```text
+/// stress   S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P
+/// ```
+///
+/// Terms are arranged so that small strains keep their digits: with G = 2 E, i = tr G, m and n the sum of its principal
+/// minors and its determinant, s = i + m + n, a = (1 + s)^(1/3) and b = a - 1,
+///
+/// ```text
+/// x = (b² (b + 3) - m - n)/a,     y = (b² (2 b + 3) - m - 2 n)/a²
+/// (I - I1/3 P) I3 = G + (m + n) I - cof G - i/3 cof C
+/// (I1 I - C - 2 I2/3 P) I3 = G - i I - 2 cof G + s (2 I + i I - G) - 2/3 (2 i + m) cof C
+/// ```
+pub trait InvariantEnergy {
+    /// Whether w is linear.
+    const LINEAR: bool;
+    /// Whether C01 counts.
+    const SECOND: bool;
+
+    /// C01 (force/length^2).
+    fn c01(&self) -> f64;
+
+    /// w at x (force/length^2).
+    fn shape<T: Number>(&self, x: T) -> T;
+
+    /// w' and w'' (force/length^2).
+    fn shape_slopes<T: Number>(&self, x: T) -> [T; 2];
+
+    /// (w(x1) - w(x0))/(x1 - x0) (force/length^2).
+    fn shape_quotient<T: Number>(&self, x0: T, x1: T) -> T;
+
+    /// U at J - 1 (force/length^2).
+    fn volume<T: Number>(&self, grown: T) -> T;
+
+    /// U' and U'' (force/length^2).
+    fn volume_slopes<T: Number>(&self, grown: T) -> [T; 2];
+
+    /// (U(J1) - U(J0))/(J1 - J0) (force/length^2).
+    fn volume_quotient<T: Number>(&self, grown0: T, grown1: T) -> T;
+}
+
+/// Measures of the change of volume and shape at a strain.
+struct Invariants<T> {
+    /// G = 2 E.
+    g: Symmetric<T>,
+    /// tr G, the sum of its principal minors and its determinant.
+    i: T,
+    m: T,
+    n: T,
+    /// s = i + m + n, so that J² = 1 + s.
+    s: T,
+    j: T,
+    /// J - 1 = s/(J + 1).
+    grown: T,
+    /// a = J^(2/3).
+    a: T,
+    /// b = a - 1 = s/(a² + a + 1).
+    b: T,
+    /// 1/a and 1/J².
+    over_a: T,
+    over_square: T,
+}
+
+impl<T: Number> Invariants<T> {
+    #[inline(always)]
+    fn new<const HOOP: bool>(e: &Symmetric<T>) -> Self {
+        let g = e.map(|e| e * 2.0);
+        let (of_plane, q) = (g.x + g.y, minor(&g));
+        let (i, m, n) = match HOOP {
+            true => (of_plane + g.z, q + g.z * of_plane, g.z * q),
+            false => (of_plane, q, T::default()),
+        };
+        let s = match HOOP {
+            true => i + m + n,
+            false => i + q,
+        };
+        let square = s + 1.0;
+        // J^(-2/3) once, and no division but one: divisions take as long as all else
+        let (j, over_a) = (square.sqrt(), square.inverse_cbrt());
+        let a = square * over_a * over_a;
+        let (of_j, of_a) = (j + 1.0, a * a + a + 1.0);
+        let both = s / (of_j * of_a);
+        Invariants {
+            g,
+            i,
+            m,
+            n,
+            s,
+            j,
+            grown: both * of_a,
+            a,
+            b: both * of_j,
+            over_a,
+            over_square: over_a * over_a * over_a,
+        }
+    }
+
+    /// a x = a (I1/a - 3)
+    #[inline(always)]
+    fn distortion(&self) -> T {
+        self.b * self.b * (self.b + 3.0) - self.m - self.n
+    }
+
+    /// x = I1/a - 3
+    #[inline(always)]
+    fn x(&self) -> T {
+        self.distortion() * self.over_a
+    }
+
+    /// y = I2/a² - 3
+    #[inline(always)]
+    fn y(&self) -> T {
+        let b = self.b;
+        (b * b * (b * 2.0 + 3.0) - self.m - self.n * 2.0) * (self.over_a * self.over_a)
+    }
+
+    /// cof C = I3 C^-1, C_33 = 1 without `HOOP`.
+    #[inline(always)]
+    fn cofactor<const HOOP: bool>(&self) -> Symmetric<T> {
+        let c = Symmetric::identity() + self.g;
+        match HOOP {
+            true => cofactor(&c),
+            false => Symmetric::new(c.y, c.x, minor(&c), c.w * -1.0),
+        }
+    }
+
+    /// cof G.
+    #[inline(always)]
+    fn cofactor_of_change<const HOOP: bool>(&self) -> Symmetric<T> {
+        match HOOP {
+            true => cofactor(&self.g),
+            false => Symmetric {
+                z: self.m,
+                ..Symmetric::zeros()
+            },
+        }
+    }
+}
+
+impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for L {
+    /// W = w(x) + C01 y + U(J), eq. (2.14) and eq. (2.23).
+    #[inline(always)]
+    fn energy(&self, e: &Symmetric<T>) -> T {
+        let v = Invariants::new::<HOOP>(e);
+        let energy = self.shape(v.x()) + self.volume(v.grown);
+        match L::SECOND {
+            true => energy + v.y() * self.c01(),
+            false => energy,
+        }
+    }
+
+    /// W(E1) - W(E0), from dE, m being quadratic and n cubic:
+    ///
+    /// ```text
+    /// dm = (tr(G_m) I - G_m):dG                 dq = (cof of G_m in the plane):dG,  n = G_33 q
+    /// ds = di + dm + dn                         da = db = ds/(a1² + a1 a0 + a0²)
+    /// dx = (d(b³ + 3 b²) - dm - dn - x0 da)/a1  dy = (d(2 b³ + 3 b²) - dm - 2 dn - y0 d(a²))/a1²
+    /// dJ = ds/(J1 + J0)
+    /// ```
+    #[inline(always)]
+    fn energy_change(&self, change: &StrainChange<T>) -> T {
+        let [v0, v1] = [change.start(), change.end()].map(|e| Invariants::new::<HOOP>(&e));
+        let (mean, dg) = (
+            change.mean.map(|e| e * 2.0),
+            change.half.map(|half| half * 4.0),
+        );
+        let dq = mean.y * dg.x + mean.x * dg.y - mean.w * dg.w * 2.0;
+        let of_plane = dg.x + dg.y;
+        let (di, dm, dn) = match HOOP {
+            true => {
+                let around = (mean.x + mean.y) * dg.z + mean.z * of_plane;
+                let [q0, q1] = [&v0.g, &v1.g].map(minor);
+                let dn = dg.z * (q0 + q1) * 0.5 + mean.z * dq;
+                (of_plane + dg.z, dq + around, dn)
+            }
+            false => (of_plane, dq, T::default()),
+        };
+        let ds = match HOOP {
+            true => di + dm + dn,
+            false => di + dm,
+        };
+        let (of_a, of_j) = (v1.a * v1.a + v1.a * v0.a + v0.a * v0.a, v1.j + v0.j);
+        let both = ds / (of_a * of_j);
+        let (da, dj) = (both * of_j, both * of_a);
+        let (squares, cubes) = (v1.b + v0.b, v1.b * v1.b + v1.b * v0.b + v0.b * v0.b);
+        let dx = (da * (cubes + squares * 3.0) - dm - dn - v0.x() * da) * v1.over_a;
+        let slope = match L::LINEAR {
+            true => self.shape_quotient(T::default(), T::default()),
+            false => self.shape_quotient(v0.x(), v1.x()),
+        };
+        let energy = dx * slope + dj * self.volume_quotient(v0.grown, v1.grown);
+        if !L::SECOND {
+            return energy;
+        }
+        let second = da * (cubes * 2.0 + squares * 3.0) - dm - dn * 2.0;
+        let dy = (second - v0.y() * da * (v1.a + v0.a)) * (v1.over_a * v1.over_a);
+        energy + dy * self.c01()
+    }
+
+    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.24).
+    #[inline(always)]
+    fn stress(&self, e: &Symmetric<T>) -> Symmetric<T> {
+        let v = Invariants::new::<HOOP>(e);
+        let (cof, cof_g) = (v.cofactor::<HOOP>(), v.cofactor_of_change::<HOOP>());
+        let [of_x, _] = self.shape_slopes(v.x());
+        let [p, _] = self.volume_slopes(v.grown);
+        let first = v.g.plus_isotropic(v.m + v.n) - cof_g - cof.times(v.i * (1.0 / 3.0));
+        let shape = first.times(of_x * v.over_a * v.over_square * 2.0);
+        let stress = shape + cof.times(p * v.j * v.over_square);
+        if !L::SECOND {
+            return stress;
+        }
+        let b = v.g.map(|g| g * -1.0).plus_isotropic(v.i + 2.0);
+        let second = v.g.plus_isotropic(v.i * -1.0) - cof_g.map(|a| a * 2.0) + b.times(v.s)
+            - cof.times((v.i * 2.0 + v.m) * (2.0 / 3.0));
+        let factor = v.over_a * v.over_a * v.over_square * (2.0 * self.c01());
+        stress + second.times(factor)
+    }
+
+    /// C = 4 d²W/dC²:
+    ///
+    /// ```text
+    /// x' = (I - I1/3 P)/a,  B = I1 I - C
+    /// C = 4 w''  x' x x'
+    ///     + 4 w'/a   [ I1/3 P o P + I1/9 P x P - (I x P + P x I)/3 ]
+    ///     + 4 C01/a² [ I x I - I o I - 2/3 (B x P + P x B) + 4 I2/9 P x P + 2 I2/3 P o P ]
+    ///     + (U'' J² + U' J) P x P - 2 U' J P o P
+    /// ```
+    #[inline(always)]
+    fn tangent(&self, e: &Symmetric<T>) -> Tangent<T> {
+        let v = Invariants::new::<HOOP>(e);
+        let inverse = v.cofactor::<HOOP>().times(v.over_square);
+        let [of_x, of_xx] = self.shape_slopes(v.x());
+        let [p, stiff] = self.volume_slopes(v.grown);
+        let (i1, i2) = (v.i + 3.0, v.i * 2.0 + v.m + 3.0);
+        let shape = of_x * v.over_a * (4.0 / 3.0);
+        let second = v.over_a * v.over_a * (4.0 * self.c01());
+        // factors of P o P and of P x P
+        let mut of_product = shape * i1 - p * v.j * 2.0;
+        let mut of_square = shape * i1 * (1.0 / 3.0) + (p + stiff * v.j) * v.j;
+        if L::SECOND {
+            of_product += second * i2 * (2.0 / 3.0);
+            of_square += second * i2 * (4.0 / 9.0);
+        }
+        let (around, square) = (product(&inverse), dyad(&inverse, &inverse));
+        let mixed = with_identity(&inverse);
+        let mut c = Tangent::of(|i, j| {
+            let own = around[i][j] * of_product + square[i][j] * of_square;
+            own - mixed[i][j] * shape
+        });
+        if !L::LINEAR {
+            let shrunk = inverse.times(i1 * (-1.0 / 3.0));
+            let slope = shrunk.plus_isotropic(T::all(1.0)).times(v.over_a);
+            let (slopes, factor) = (dyad(&slope, &slope), of_xx * 4.0);
+            c = Tangent::of(|i, j| c.0[i][j] + slopes[i][j] * factor);
+        }
+        if L::SECOND {
+            let b = v.g.map(|g| g * -1.0).plus_isotropic(v.i + 2.0);
+            let (b, identity) = (dyad(&b, &inverse), Symmetric::<T>::identity());
+            let (unit, own) = (dyad(&identity, &identity), product(&identity));
+            c = Tangent::of(|i, j| {
+                let of_b = (b[i][j] + b[j][i]) * (2.0 / 3.0);
+                c.0[i][j] + (unit[i][j] - own[i][j] - of_b) * second
+            });
+        }
+        c
+    }
+}
