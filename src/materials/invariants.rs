@@ -6,6 +6,65 @@ use super::number::Number;
 use super::strains::StrainChange;
 use super::symmetric::{Symmetric, Tangent, cofactor, dyad, minor, product, with_identity};
 
+/// The energy of the volume:
+///
+/// ```text
+/// U(J) = (J - 1)²/D1 + (J - 1)^4/D2 + (J - 1)^6/D3,   K = 2/D1
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct VolumeEnergy {
+    /// D1, D2, D3 (length^2/force); the first is positive, zeros are no terms.
+    pub d: [f64; 3],
+}
+
+impl VolumeEnergy {
+    /// 1/D1, 1/D2, 1/D3, zero without the term.
+    #[inline(always)]
+    fn stiffnesses(&self) -> [f64; 3] {
+        self.d.map(|d| if d > 0.0 { 1.0 / d } else { 0.0 })
+    }
+
+    /// Whether there is no term but the first: formulas with constants that are known so then fold.
+    #[inline(always)]
+    fn is_quadratic(&self) -> bool {
+        self.d[1] == 0.0 && self.d[2] == 0.0
+    }
+
+    /// U at J - 1 (force/length^2).
+    #[inline(always)]
+    pub fn energy<T: Number>(&self, grown: T) -> T {
+        let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
+        match self.is_quadratic() {
+            true => r * k1,
+            false => r * (r * (r * k3 + k2) + k1),
+        }
+    }
+
+    /// U' and U'' (force/length^2).
+    #[inline(always)]
+    pub fn slopes<T: Number>(&self, grown: T) -> [T; 2] {
+        let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
+        if self.is_quadratic() {
+            return [grown * (2.0 * k1), T::all(2.0 * k1)];
+        }
+        [
+            grown * (r * (r * (3.0 * k3) + 2.0 * k2) + k1) * 2.0,
+            (r * (r * (15.0 * k3) + 6.0 * k2) + k1) * 2.0,
+        ]
+    }
+
+    /// (U(J1) - U(J0))/(J1 - J0) (force/length^2).
+    #[inline(always)]
+    pub fn quotient<T: Number>(&self, grown0: T, grown1: T) -> T {
+        let [k1, k2, k3] = self.stiffnesses();
+        if self.is_quadratic() {
+            return (grown1 + grown0) * k1;
+        }
+        let [r0, r1] = [grown0 * grown0, grown1 * grown1];
+        (grown1 + grown0) * ((r1 + r0) * k2 + (r1 * r1 + r1 * r0 + r0 * r0) * k3 + k1)
+    }
+}
+
 /// An energy W = w(x) + C01 y + U(J) of invariants.
 ///
 /// With C = I + 2 E, I1, I2 and I3 = J² its invariants, a = J^(2/3), x = I1/a - 3, y = I2/a² - 3 and P = C^-1:
@@ -40,14 +99,8 @@ pub trait InvariantEnergy {
     /// (w(x1) - w(x0))/(x1 - x0) (force/length^2).
     fn shape_quotient<T: Number>(&self, x0: T, x1: T) -> T;
 
-    /// U at J - 1 (force/length^2).
-    fn volume<T: Number>(&self, grown: T) -> T;
-
-    /// U' and U'' (force/length^2).
-    fn volume_slopes<T: Number>(&self, grown: T) -> [T; 2];
-
-    /// (U(J1) - U(J0))/(J1 - J0) (force/length^2).
-    fn volume_quotient<T: Number>(&self, grown0: T, grown1: T) -> T;
+    /// U(J).
+    fn volume(&self) -> VolumeEnergy;
 }
 
 /// Measures of the change of volume and shape at a strain.
@@ -153,7 +206,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
     #[inline(always)]
     fn energy(&self, e: &Symmetric<T>) -> T {
         let v = Invariants::new::<HOOP>(e);
-        let energy = self.shape(v.x()) + self.volume(v.grown);
+        let energy = self.shape(v.x()) + self.volume().energy(v.grown);
         match L::SECOND {
             true => energy + v.y() * self.c01(),
             false => energy,
@@ -199,7 +252,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
             true => self.shape_quotient(T::default(), T::default()),
             false => self.shape_quotient(v0.x(), v1.x()),
         };
-        let energy = dx * slope + dj * self.volume_quotient(v0.grown, v1.grown);
+        let energy = dx * slope + dj * self.volume().quotient(v0.grown, v1.grown);
         if !L::SECOND {
             return energy;
         }
@@ -214,7 +267,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         let v = Invariants::new::<HOOP>(e);
         let (cof, cof_g) = (v.cofactor::<HOOP>(), v.cofactor_of_change::<HOOP>());
         let [of_x, _] = self.shape_slopes(v.x());
-        let [p, _] = self.volume_slopes(v.grown);
+        let [p, _] = self.volume().slopes(v.grown);
         let first = v.g.plus_isotropic(v.m + v.n) - cof_g - cof.times(v.i * (1.0 / 3.0));
         let shape = first.times(of_x * v.over_a * v.over_square * 2.0);
         let stress = shape + cof.times(p * v.j * v.over_square);
@@ -242,7 +295,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         let v = Invariants::new::<HOOP>(e);
         let inverse = v.cofactor::<HOOP>().times(v.over_square);
         let [of_x, of_xx] = self.shape_slopes(v.x());
-        let [p, stiff] = self.volume_slopes(v.grown);
+        let [p, stiff] = self.volume().slopes(v.grown);
         let (i1, i2) = (v.i + 3.0, v.i * 2.0 + v.m + 3.0);
         let shape = of_x * v.over_a * (4.0 / 3.0);
         let second = v.over_a * v.over_a * (4.0 * self.c01());

@@ -11,7 +11,7 @@ use super::symmetric::{Symmetric, Tangent};
 #[cfg(test)]
 use super::yielding::Yielding;
 use super::{
-    Across, Flow, LawCard, Metal, NeoHooke, Plane, PlanePlastic, PlaneSaintVenantKirchhoff,
+    Across, Flow, LawCard, Metal, NeoHooke, Ogden, Plane, PlanePlastic, PlaneSaintVenantKirchhoff,
     Plastic, Polynomial, SaintVenantKirchhoff, SmallStrainModuli, StrainMeasure, StressAtPoints,
 };
 
@@ -24,6 +24,8 @@ pub enum Law {
     NeoHooke(NeoHooke),
     /// `*HYPERELASTIC` of other forms.
     Polynomial(Polynomial),
+    /// `*HYPERELASTIC, OGDEN`
+    Ogden(Ogden),
     /// `*PLASTIC`
     Plastic(Plastic),
     /// A law with internal variables.
@@ -43,6 +45,7 @@ impl Law {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
             Law::NeoHooke(law) => law.small_strain(),
             Law::Polynomial(law) => law.small_strain(),
+            Law::Ogden(law) => law.small_strain(),
             Law::Plastic(law) => law.small_strain(),
             #[cfg(test)]
             Law::Yielding(law) => law.small_strain(),
@@ -55,6 +58,7 @@ impl Law {
             Law::SaintVenantKirchhoff(law) => law.cards(),
             Law::NeoHooke(law) => law.cards(),
             Law::Polynomial(law) => law.cards(),
+            Law::Ogden(law) => law.cards(),
             Law::Plastic(law) => law.cards(),
             #[cfg(test)]
             Law::Yielding(_) => Vec::new(),
@@ -68,17 +72,31 @@ impl Law {
             Law::NeoHooke(_) => 1,
             Law::Polynomial(_) => 2,
             Law::Plastic(_) => 3,
+            Law::Ogden(_) => 4,
             #[cfg(test)]
             Law::Yielding(_) => u8::MAX,
         }
     }
 
-    /// Constants of the invariants of a hyperelastic law, zero of others.
-    pub fn constants_of_invariants(&self) -> Polynomial {
+    /// Constants of a hyperelastic law, zero of others.
+    pub fn constants(&self) -> Constants {
+        let of_invariants = |Polynomial { shape, c01, d }: Polynomial| {
+            let [c10, c20, c30] = shape;
+            Constants {
+                invariants: [c10, c20, c30, c01],
+                compressibility: d,
+                ..Constants::default()
+            }
+        };
         match *self {
-            Law::NeoHooke(law) => law.into(),
-            Law::Polynomial(law) => law,
-            _ => Polynomial::default(),
+            Law::NeoHooke(law) => of_invariants(law.into()),
+            Law::Polynomial(law) => of_invariants(law),
+            Law::Ogden(law) => Constants {
+                compressibility: law.volume.d,
+                powers: law.terms,
+                ..Constants::default()
+            },
+            _ => Constants::default(),
         }
     }
 
@@ -102,11 +120,26 @@ impl Law {
                 PlaneLaw::PolynomialInPlaneStress(PlaneStress { law, poisson })
             }
             &Law::Polynomial(law) => PlaneLaw::Polynomial(law),
+            &Law::Ogden(law) if in_stress => {
+                PlaneLaw::OgdenInPlaneStress(PlaneStress { law, poisson })
+            }
+            &Law::Ogden(law) => PlaneLaw::Ogden(law),
             Law::Plastic(law) => PlaneLaw::Plastic(law.in_plane(plane)),
             #[cfg(test)]
             &Law::Yielding(law) => PlaneLaw::Yielding(law),
         }
     }
+}
+
+/// Constants of a hyperelastic law.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Constants {
+    /// C10, C20, C30, C01 (force/length^2).
+    pub invariants: [f64; 4],
+    /// D1, D2, D3 (length^2/force).
+    pub compressibility: [f64; 3],
+    /// mu_k (force/length^2) and alpha_k.
+    pub powers: [[f64; 2]; 3],
 }
 
 /// Law of a material in the plane of the elements.
@@ -120,6 +153,10 @@ pub enum PlaneLaw {
     Polynomial(Polynomial),
     /// Neo-Hookean materials too.
     PolynomialInPlaneStress(PlaneStress<Polynomial>),
+    /// In plane strain and in bodies of revolution.
+    Ogden(Ogden),
+    /// In plane stress.
+    OgdenInPlaneStress(PlaneStress<Ogden>),
     /// A metal in any plane.
     Plastic(PlanePlastic),
     /// A law with internal variables.
@@ -142,6 +179,8 @@ impl PlaneLaw {
             PlaneLaw::NeoHooke(law) => Kind::Elastic(law),
             PlaneLaw::Polynomial(law) => Kind::Elastic(law),
             PlaneLaw::PolynomialInPlaneStress(law) => Kind::Elastic(law),
+            PlaneLaw::Ogden(law) => Kind::Elastic(law),
+            PlaneLaw::OgdenInPlaneStress(law) => Kind::Elastic(law),
             PlaneLaw::Plastic(law) => Kind::Flow(law),
             #[cfg(test)]
             PlaneLaw::Yielding(law) => Kind::Flow(law),

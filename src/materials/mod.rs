@@ -15,6 +15,7 @@ mod law;
 mod law_card;
 mod neo_hooke;
 pub mod number;
+mod ogden;
 mod plane;
 mod plane_stress;
 mod plastic;
@@ -32,12 +33,13 @@ pub use constitutive_law::{
     Across, BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StrainMeasure, StressAtPoints,
 };
 pub use hyperelastic::Hyperelastic;
-pub use invariants::InvariantEnergy;
+pub use invariants::{InvariantEnergy, VolumeEnergy};
 pub(crate) use law::in_lanes;
-pub use law::{Committed, Law, PlaneLaw};
+pub use law::{Committed, Constants, Law, PlaneLaw};
 pub use law_card::LawCard;
 pub use neo_hooke::NeoHooke;
 pub use number::{Lanes, Number};
+pub use ogden::Ogden;
 pub use plane::{Plane, SmallStrainModuli};
 pub use plane_stress::PlaneStress;
 pub use plastic::{PlanePlastic, Plastic};

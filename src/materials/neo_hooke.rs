@@ -2,7 +2,7 @@
 //! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 and 6.5; Bonet & Wood, Nonlinear Continuum
 //! Mechanics for Finite Element Analysis, section 6.5). Section 2 of docs/theory.md.
 
-use super::invariants::InvariantEnergy;
+use super::invariants::{InvariantEnergy, VolumeEnergy};
 use super::number::Number;
 use super::{LawCard, SmallStrainModuli};
 
@@ -47,13 +47,9 @@ impl NeoHooke {
         }]
     }
 
-    /// mu = 2 C10 and K = 2/D1, E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(2 (3 K + mu)).
+    /// mu = 2 C10 and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
-        let (mu, k) = (2.0 * self.c10, 2.0 / self.d1);
-        SmallStrainModuli {
-            young: 9.0 * k * mu / (3.0 * k + mu),
-            poisson: (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)),
-        }
+        SmallStrainModuli::of_shear_and_bulk(2.0 * self.c10, 2.0 / self.d1)
     }
 }
 
@@ -83,18 +79,10 @@ impl InvariantEnergy for NeoHooke {
     }
 
     #[inline(always)]
-    fn volume<T: Number>(&self, grown: T) -> T {
-        grown * grown * (1.0 / self.d1)
-    }
-
-    #[inline(always)]
-    fn volume_slopes<T: Number>(&self, grown: T) -> [T; 2] {
-        [grown * (2.0 / self.d1), T::all(2.0 / self.d1)]
-    }
-
-    #[inline(always)]
-    fn volume_quotient<T: Number>(&self, grown0: T, grown1: T) -> T {
-        (grown1 + grown0) * (1.0 / self.d1)
+    fn volume(&self) -> VolumeEnergy {
+        VolumeEnergy {
+            d: [self.d1, 0.0, 0.0],
+        }
     }
 }
 

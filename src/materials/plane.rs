@@ -20,3 +20,17 @@ pub struct SmallStrainModuli {
     /// Poisson's ratio nu.
     pub poisson: f64,
 }
+
+impl SmallStrainModuli {
+    /// Those of a shear modulus mu and a bulk modulus K (force/length^2):
+    ///
+    /// ```text
+    /// E = 9 K mu/(3 K + mu),   nu = (3 K - 2 mu)/(2 (3 K + mu))
+    /// ```
+    pub fn of_shear_and_bulk(mu: f64, k: f64) -> Self {
+        SmallStrainModuli {
+            young: 9.0 * k * mu / (3.0 * k + mu),
+            poisson: (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)),
+        }
+    }
+}

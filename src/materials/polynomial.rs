@@ -2,7 +2,7 @@
 //! volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh, Rubber Chem. Technol. 63, 1990). Section 2 of
 //! docs/theory.md.
 
-use super::invariants::InvariantEnergy;
+use super::invariants::{InvariantEnergy, VolumeEnergy};
 use super::number::Number;
 use super::{LawCard, NeoHooke, SmallStrainModuli};
 
@@ -50,18 +50,9 @@ impl Polynomial {
         }]
     }
 
-    /// mu = 2 (C10 + C01) and K = 2/D1, E = 9 K mu/(3 K + mu), nu = (3 K - 2 mu)/(2 (3 K + mu)).
+    /// mu = 2 (C10 + C01) and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
-        let (mu, k) = (2.0 * (self.shape[0] + self.c01), 2.0 / self.d[0]);
-        SmallStrainModuli {
-            young: 9.0 * k * mu / (3.0 * k + mu),
-            poisson: (3.0 * k - 2.0 * mu) / (2.0 * (3.0 * k + mu)),
-        }
-    }
-
-    /// 1/D1, 1/D2, 1/D3, zero without the term.
-    fn stiffnesses(&self) -> [f64; 3] {
-        self.d.map(|d| if d > 0.0 { 1.0 / d } else { 0.0 })
+        SmallStrainModuli::of_shear_and_bulk(2.0 * (self.shape[0] + self.c01), 2.0 / self.d[0])
     }
 }
 
@@ -96,25 +87,8 @@ impl InvariantEnergy for Polynomial {
     }
 
     #[inline(always)]
-    fn volume<T: Number>(&self, grown: T) -> T {
-        let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
-        r * (r * (r * k3 + k2) + k1)
-    }
-
-    #[inline(always)]
-    fn volume_slopes<T: Number>(&self, grown: T) -> [T; 2] {
-        let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
-        [
-            grown * (r * (r * (3.0 * k3) + 2.0 * k2) + k1) * 2.0,
-            (r * (r * (15.0 * k3) + 6.0 * k2) + k1) * 2.0,
-        ]
-    }
-
-    #[inline(always)]
-    fn volume_quotient<T: Number>(&self, grown0: T, grown1: T) -> T {
-        let [k1, k2, k3] = self.stiffnesses();
-        let [r0, r1] = [grown0 * grown0, grown1 * grown1];
-        (grown1 + grown0) * ((r1 + r0) * k2 + (r1 * r1 + r1 * r0 + r0 * r0) * k3 + k1)
+    fn volume(&self) -> VolumeEnergy {
+        VolumeEnergy { d: self.d }
     }
 }
 

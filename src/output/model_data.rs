@@ -8,7 +8,6 @@ use hdf5::Group;
 
 use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
-use crate::materials::{Law, Polynomial};
 use crate::model::{
     Disc, ElementType, FrictionLaw, Heat, Material, Model, Procedure, Scheme, Segment, Step,
     Surface, SurfaceKind, Variation,
@@ -55,17 +54,20 @@ fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
     let all = &model.materials;
     let laws: Vec<u8> = all.iter().map(|material| material.law.number()).collect();
     constant(at, "law", &[laws.len()], &laws, LAW)?;
-    let hyperelastic = all.iter().map(|material| hyperelastic(&material.law));
-    let (shapes, compressibilities): (Vec<[f64; 4]>, Vec<[f64; 3]>) = hyperelastic.unzip();
-    constant(at, "shape", &[all.len(), 4], shapes.as_flattened(), SHAPE)?;
-    let values = compressibilities.as_flattened();
-    constant(
-        at,
-        "compressibility",
-        &[all.len(), 3],
-        values,
-        COMPRESSIBILITY,
-    )?;
+    let (mut shapes, mut volumes) = (vec![], vec![]);
+    let (mut ogden_mu, mut ogden_alpha) = (vec![], vec![]);
+    for material in all {
+        let constants = material.law.constants();
+        shapes.extend(constants.invariants);
+        volumes.extend(constants.compressibility);
+        ogden_mu.extend(constants.powers.map(|[mu, _]| mu));
+        ogden_alpha.extend(constants.powers.map(|[_, alpha]| alpha));
+    }
+    constant(at, "shape", &[all.len(), 4], &shapes, SHAPE)?;
+    let shape = [all.len(), 3];
+    constant(at, "compressibility", &shape, &volumes, COMPRESSIBILITY)?;
+    constant(at, "ogden_mu", &shape, &ogden_mu, OGDEN_MU)?;
+    constant(at, "ogden_alpha", &shape, &ogden_alpha, OGDEN_ALPHA)?;
     let column = |name, meaning, of: fn(&Material) -> f64| {
         let values: Vec<f64> = all.iter().map(of).collect();
         constant(at, name, &[values.len()], &values, meaning)
@@ -75,13 +77,6 @@ fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
     column("density", DENSITY, |m| m.density)?;
     column("alpha", ALPHA, |m| m.damping.alpha)?;
     column("beta", BETA, |m| m.damping.beta)
-}
-
-/// C10, C20, C30, C01, and D1, D2, D3 of a hyperelastic law.
-fn hyperelastic(law: &Law) -> ([f64; 4], [f64; 3]) {
-    let Polynomial { shape, c01, d } = law.constants_of_invariants();
-    let [c10, c20, c30] = shape;
-    ([c10, c20, c30, c01], d)
 }
 
 /// Node indices of the segments of a surface.
@@ -337,6 +332,11 @@ const COMPRESSIBILITY: Meaning = (
     "length^2/force",
     "D1, D2, D3 of a hyperelastic law, else zero; zero for no term",
 );
+const OGDEN_MU: Meaning = (
+    "force/length^2",
+    "mu1, mu2, mu3 of an Ogden material, else zero",
+);
+const OGDEN_ALPHA: Meaning = ("1", "alpha1, alpha2, alpha3 of an Ogden material, else zero");
 const YOUNG: Meaning = ("force/length^2", "Young's modulus at small strains");
 const POISSON: Meaning = ("1", "Poisson's ratio at small strains");
 const DENSITY: Meaning = ("mass/length^3", "density of the undeformed material");

@@ -5,7 +5,9 @@ use super::names::Names;
 use super::outline::{CardBlock, Outline};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
-use crate::materials::{Law, NeoHooke, Plane, Plastic, Polynomial, SmallStrainModuli};
+use crate::materials::{
+    Law, NeoHooke, Ogden, Plane, Plastic, Polynomial, SmallStrainModuli, VolumeEnergy,
+};
 use crate::model::{Damping, Material, Section};
 
 /// Places of a material for messages.
@@ -296,15 +298,23 @@ fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
     if card.faulty {
         return Constant::Wrong;
     }
-    let forms = ["NEO HOOKE", "MOONEY-RIVLIN", "YEOH", "POLYNOMIAL"];
+    let forms = ["NEO HOOKE", "MOONEY-RIVLIN", "YEOH", "POLYNOMIAL", "OGDEN"];
     let given: Vec<&str> = forms.into_iter().filter(|form| card.has(form)).collect();
+    let order = card.choice("N").unwrap_or("1");
+    if given != ["OGDEN"] && order != "1" {
+        let message = format!("N={order} is an order of OGDEN alone");
+        cx.error(Code::UnsupportedParameter, card.span_of("N"), message)
+            .help("give MOONEY-RIVLIN or YEOH");
+        return Constant::Wrong;
+    }
     let read = match given[..] {
+        ["OGDEN"] => return ogden(card, order, cx),
         ["NEO HOOKE"] => neo_hooke_row,
         ["YEOH"] => yeoh_row,
         [] | ["POLYNOMIAL" | "MOONEY-RIVLIN"] => mooney_rivlin_row,
         _ => {
             let message =
-                "*HYPERELASTIC has one form: NEO HOOKE, MOONEY-RIVLIN, YEOH or POLYNOMIAL";
+                "*HYPERELASTIC has one form: NEO HOOKE, MOONEY-RIVLIN, YEOH, OGDEN or POLYNOMIAL";
             cx.error(Code::MissingParameter, card.span, message).help(
                 "the data line of NEO HOOKE is C10, D1 with C10 = mu/2, D1 = 2/K of small strains",
             );
@@ -344,6 +354,76 @@ fn mooney_rivlin_row(row: Line, cx: &mut Context) -> Option<Law> {
     }))
 }
 
+/// `mu1, alpha1, ..., D1, ...[, T]` of `order` terms: eight constants in a row at most, the ninth and the temperature in the
+/// next.
+fn ogden(card: &Card, order: &str, cx: &mut Context) -> Constant<Law> {
+    let terms = match order {
+        "1" => 1,
+        "2" => 2,
+        _ => 3,
+    };
+    let rows: Vec<Line> = card.rows.iter().collect();
+    let mut found = Constant::Wrong;
+    for rows in rows.chunks(if terms == 3 { 2 } else { 1 }) {
+        match (ogden_rows(rows, terms, cx), &found) {
+            (None, _) => return Constant::Wrong,
+            (Some(law), Constant::Given(first)) if law != *first => {
+                let message = "constants that depend on temperature cannot be used";
+                cx.error(Code::UnsupportedParameter, rows[0].span(), message);
+            }
+            (Some(law), _) => found = Constant::Given(law),
+        }
+    }
+    found
+}
+
+fn ogden_rows(rows: &[Line], terms: usize, cx: &mut Context) -> Option<Law> {
+    let (first, code) = (rows[0], Code::MaterialRange);
+    let last = *rows.last()?;
+    let in_last = 3 * terms % 8;
+    first.at_most(if terms == 3 { 8 } else { in_last + 1 }, cx.d);
+    if rows.len() > 1 {
+        last.at_most(in_last + 1, cx.d);
+    }
+    if rows.len() > 1 || terms < 3 {
+        temperature(last, in_last, cx)?;
+    }
+    let mut law = Ogden {
+        terms: [[0.0; 2]; 3],
+        volume: VolumeEnergy::default(),
+    };
+    for (k, term) in law.terms.iter_mut().take(terms).enumerate() {
+        let mu = first.required(2 * k, "mu", cx.d)?.real(cx.d)?;
+        let alpha = first.required(2 * k + 1, "alpha", cx.d)?;
+        let rule = "alpha must not be zero";
+        *term = [mu, alpha.real_that(|alpha| alpha != 0.0, rule, code, cx.d)?];
+    }
+    let shear: f64 = law.terms.iter().map(|[mu, _]| mu).sum();
+    if shear <= 0.0 {
+        let message = "the sum of the mu, the shear modulus at small strains, must be positive";
+        cx.error(code, first.span(), message);
+        return None;
+    }
+    let [d1_at, d2_at] = [2 * terms, 2 * terms + 1];
+    law.volume.d[0] = d1(first, d1_at, shear / 2.0, cx)?;
+    if terms > 1 {
+        law.volume.d[1] = higher_d(first, d2_at, cx)?;
+    }
+    if rows.len() > 1 {
+        law.volume.d[2] = higher_d(last, 0, cx)?;
+    }
+    Some(Law::Ogden(law))
+}
+
+/// D2 or D3, zero where there is none.
+fn higher_d(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
+    let rule = "D2 and D3 must not be negative; 0 is none";
+    let field = row.get(index).filter(|field| !field.text.is_empty());
+    field.map_or(Some(0.0), |field| {
+        field.real_that(|d| d >= 0.0, rule, Code::MaterialRange, cx.d)
+    })
+}
+
 /// `C10, C20, C30, D1, D2, D3[, T]`: all but C10 and D1 may be zero, for no such term.
 fn yeoh_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(7, cx.d);
@@ -352,17 +432,10 @@ fn yeoh_row(row: Line, cx: &mut Context) -> Option<Law> {
     let c10 = positive_c10(c10?, cx)?;
     let [c20, c30] = [row.real_or(1, 0.0, cx.d)?, row.real_or(2, 0.0, cx.d)?];
     let d1 = d1(row, 3, c10, cx)?;
-    let mut other = |index: usize| {
-        let rule = "D2 and D3 must not be negative; 0 is none";
-        let field = row.get(index).filter(|field| !field.text.is_empty());
-        field.map_or(Some(0.0), |field| {
-            field.real_that(|d| d >= 0.0, rule, Code::MaterialRange, cx.d)
-        })
-    };
     Some(Law::Polynomial(Polynomial {
         shape: [c10, c20, c30],
         c01: 0.0,
-        d: [d1, other(4)?, other(5)?],
+        d: [d1, higher_d(row, 4, cx)?, higher_d(row, 5, cx)?],
     }))
 }
 
