@@ -17,6 +17,7 @@ MATERIALS = {
     "rubber": "*HYPERELASTIC, NEO HOOKE\n190., 0.0024\n",
     "mooney": "*HYPERELASTIC, MOONEY-RIVLIN\n150., 40., 0.0024\n",
     "yeoh": "*HYPERELASTIC, YEOH\n190., -2., 0.5, 0.0024, 0., 0.\n",
+    "ogden": "*HYPERELASTIC, OGDEN, N=2\n350., 1.3, 30., -2., 0.0024, 0.\n",
     "metal": "*ELASTIC\n1000., 0.3\n*PLASTIC\n4., 0.\n8., 0.2\n",
     "kinematic metal": "*ELASTIC\n1000., 0.3\n*PLASTIC, HARDENING=KINEMATIC\n4., 0.\n8., 0.2\n",
     "viscous": "*ELASTIC\n1000., 0.3\n*DAMPING, BETA=0.002\n",

@@ -200,14 +200,14 @@ fn strain_change(h: &TensorLanes, g: &TensorLanes) -> StrainChange<Lanes> {
         deformation_gradient(h),
     );
     let product = |i: usize, j: usize| f[0][i] * g[0][j] + f[1][i] * g[1][j];
-    StrainChange {
-        mean: in_plane([e.x + square[0], e.y + square[1], e.w + square[2]]),
-        half: in_plane([
+    StrainChange::about(
+        in_plane([e.x + square[0], e.y + square[1], e.w + square[2]]),
+        in_plane([
             product(0, 0),
             product(1, 1),
             (product(0, 1) + product(1, 0)) * 0.5,
         ]),
-    }
+    )
 }
 
 /// A tensor of the components 11, 22 and 12.

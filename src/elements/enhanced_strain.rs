@@ -26,7 +26,7 @@ use super::formulation::{
 };
 use super::local_solution::{LAST_STEP, least, zero};
 use super::stretch::{AddedStrain, MeanStrain, Variation};
-use crate::materials::{Committed, Strains, StressAtPoints};
+use crate::materials::{Committed, Strains, StressAtPoints, Symmetric, Tangent};
 
 /// Number of strains of the element.
 pub(super) const STRAINS: usize = 4;
@@ -170,14 +170,16 @@ impl<const N: usize, const P: usize> Modes<N, P> {
         (strains, factor): (&[Strains; P], f64),
     ) -> (Vector4<f64>, Matrix4<f64>) {
         let s: [Matrix2<f64>; P] = stresses_at(material, strains);
+        let mut tangents = [Tangent::default(); P];
+        material.tangents_at(strains, &mut tangents);
         let (mut slope, mut stiffness) = (Vector4::zeros(), Matrix4::zeros());
         for (p, point) in element.points.iter().enumerate() {
             let [stress, _] = enhanced[p].conjugate(&s[p]);
             let stress = stress * point.volume;
             slope += Vector4::from_fn(|k, _| self.strains[p][k].dot(&stress));
             let own = self.strains[p].map(|m| Columns::new(&enhanced[p], m, None));
-            let c = voigt(&material.tangent_at(p, &strains[p]));
-            let at = (&enhanced[p], &s[p], &(c * factor));
+            let c = voigt(&tangents[p]) * factor;
+            let at = (&enhanced[p], &s[p], &c);
             add_products(&own, &own, at, |k, l, value| {
                 stiffness[(k, l)] += value * point.volume;
             });
@@ -276,7 +278,9 @@ fn stresses_at<const P: usize>(
     material: &impl StressAtPoints,
     strains: &[Strains; P],
 ) -> [Matrix2<f64>; P] {
-    std::array::from_fn(|p| material.stress_at(p, &strains[p]).in_plane())
+    let mut s = [Symmetric::zeros(); P];
+    material.stresses_at(strains, &mut s);
+    s.map(|s| s.in_plane())
 }
 
 /// Strains of the displacements of all points, and their mean in the measure of a material.

@@ -2,26 +2,8 @@
 
 use super::hyperelastic::Hyperelastic;
 use super::number::Number;
-use super::strains::{StrainChange, Strains};
+use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
-
-/// Measures of strain in which energies are convex.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StrainMeasure {
-    /// E of Green and Lagrange.
-    Green,
-    /// Logarithms of stretches.
-    Logarithmic,
-}
-
-/// What happens across the plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Across<T = f64> {
-    /// Stretch F_33.
-    pub stretch: T,
-    /// Second Piola-Kirchhoff stress S_33 (force/length^2).
-    pub stress: T,
-}
 
 /// A law with internal variables. From the strains of an iterate and the internal variables z0 that the last accepted
 /// increment has committed follow the stress, its tangent and the internal variables z1 of the iterate, by a local
@@ -116,6 +98,20 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
 
     /// Tangent of [`Self::stress_at`] at a point, or the symmetric part of twice its derivative by E1 (force/length^2).
     fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T>;
+
+    /// Stresses of the first points, all of one kind of strains.
+    fn stresses_at(&self, strains: &[Strains<T>], s: &mut [Symmetric<T>]) {
+        for (point, (strains, s)) in strains.iter().zip(s).enumerate() {
+            *s = self.stress_at(point, strains);
+        }
+    }
+
+    /// Tangents of the first points, all of one kind of strains.
+    fn tangents_at(&self, strains: &[Strains<T>], c: &mut [Tangent<T>]) {
+        for (point, (strains, c)) in strains.iter().zip(c).enumerate() {
+            *c = self.tangent_at(point, strains);
+        }
+    }
 
     /// Stored energy W at a point (force/length^2).
     fn energy_at(&self, point: usize, e: &Symmetric<T>) -> T;

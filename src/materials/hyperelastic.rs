@@ -18,9 +18,8 @@
 //! C0 and C1.
 
 use super::number::Number;
-use super::strains::{StrainChange, Strains};
+use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
-use super::{Across, StrainMeasure};
 
 /// Norm of dE up to which f is dropped. It changes the energy by a part of about |dE| of itself or
 /// less, which is round-off here.
@@ -96,7 +95,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
             let f = self.energy_change(change) - s.contract::<HOOP>(&n);
             (
                 f,
-                self.stress(&change.end()) - s - c.times::<HOOP>(&change.half),
+                self.stress(&change.end) - s - c.times::<HOOP>(&change.half),
             )
         })
     }
@@ -237,10 +236,7 @@ mod tests {
             let (e0, way) = start_and_way(name);
             for size in [0.5, 1e-3, 1e-6, 1e-9, 1e-12] {
                 let half = way * (size / 2.0);
-                let change = StrainChange {
-                    mean: e0 + half,
-                    half,
-                };
+                let change = StrainChange::about(e0 + half, half);
                 let (s, de) = (law.mean_stress(&change), change.change());
                 let energy = law.energy_change(&change);
                 let error = (s.contract::<true>(&de) - energy).abs();
@@ -312,10 +308,7 @@ mod tests {
         for (name, law) in laws() {
             let (mean, way) = start_and_way(name);
             for size in [1e-8, 1e-10, 1e-13, 1e-15, 0.0] {
-                let change = StrainChange {
-                    mean,
-                    half: way * size,
-                };
+                let change = StrainChange::about(mean, way * size);
                 let s = law.stress(&mean);
                 let difference = (law.mean_stress(&change) - s).norm();
                 assert!(difference < 2e-14 * s.norm(), "{name} {size}: {difference}");
@@ -386,7 +379,7 @@ mod tests {
                 let (own, one) = (Elastic(law), OneByOne(Elastic(law)));
                 for strains in [
                     Strains::At(mean),
-                    Strains::Between(StrainChange { mean, half }),
+                    Strains::Between(StrainChange::about(mean, half)),
                 ] {
                     let found: Symmetric<Lanes> =
                         StressAtPoints::<Lanes, false>::stress_at(&own, 0, &strains);

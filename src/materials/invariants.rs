@@ -178,14 +178,22 @@ impl<T: Number> Invariants<T> {
         (b * b * (b * 2.0 + 3.0) - self.m - self.n * 2.0) * (self.over_a * self.over_a)
     }
 
-    /// cof C = I3 C^-1, C_33 = 1 without `HOOP`.
+    /// cof C - I = tr(G) I - G + cof G, C_33 = 1 without `HOOP`.
+    #[inline(always)]
+    fn change_of_cofactor<const HOOP: bool>(&self) -> Symmetric<T> {
+        let Symmetric { x, y, z, w } = self.g;
+        let across = x + y + minor(&self.g);
+        match HOOP {
+            true => Symmetric::new(y + z + y * z, x + z + x * z, across, (w + w * z) * -1.0),
+            false => Symmetric::new(y, x, across, w * -1.0),
+        }
+    }
+
+    /// cof C = I3 C^-1.
     #[inline(always)]
     fn cofactor<const HOOP: bool>(&self) -> Symmetric<T> {
-        let c = Symmetric::identity() + self.g;
-        match HOOP {
-            true => cofactor(&c),
-            false => Symmetric::new(c.y, c.x, minor(&c), c.w * -1.0),
-        }
+        let change = self.change_of_cofactor::<HOOP>();
+        change.plus_isotropic(T::all(1.0))
     }
 
     /// cof G.
@@ -223,21 +231,18 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
     /// ```
     #[inline(always)]
     fn energy_change(&self, change: &StrainChange<T>) -> T {
-        let [v0, v1] = [change.start(), change.end()].map(|e| Invariants::new::<HOOP>(&e));
-        let (mean, dg) = (
-            change.mean.map(|e| e * 2.0),
-            change.half.map(|half| half * 4.0),
-        );
-        let dq = mean.y * dg.x + mean.x * dg.y - mean.w * dg.w * 2.0;
-        let of_plane = dg.x + dg.y;
+        let [v0, v1] = [change.start, change.end].map(|e| Invariants::new::<HOOP>(&e));
+        let StrainChange { mean, half, .. } = change;
+        let of_plane = half.x + half.y;
+        let dq = (mean.y * half.x + mean.x * half.y - mean.w * half.w * 2.0) * 8.0;
         let (di, dm, dn) = match HOOP {
             true => {
-                let around = (mean.x + mean.y) * dg.z + mean.z * of_plane;
+                let around = ((mean.x + mean.y) * half.z + mean.z * of_plane) * 8.0;
                 let [q0, q1] = [&v0.g, &v1.g].map(minor);
-                let dn = dg.z * (q0 + q1) * 0.5 + mean.z * dq;
-                (of_plane + dg.z, dq + around, dn)
+                let dn = half.z * (q0 + q1) * 2.0 + mean.z * dq * 2.0;
+                ((of_plane + half.z) * 4.0, dq + around, dn)
             }
-            false => (of_plane, dq, T::default()),
+            false => (of_plane * 4.0, dq, T::default()),
         };
         let ds = match HOOP {
             true => di + dm + dn,
@@ -261,22 +266,35 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         energy + dy * self.c01()
     }
 
-    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.24).
+    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.24). With K = cof C - I the first and the last
+    /// term are
+    ///
+    /// ```text
+    /// (shape (2 i/3 + m + n) + p J/J²) I + (p J/J² - shape (1 + i/3)) K,   shape = 2 w'/(a J²)
+    /// ```
     #[inline(always)]
     fn stress(&self, e: &Symmetric<T>) -> Symmetric<T> {
         let v = Invariants::new::<HOOP>(e);
-        let (cof, cof_g) = (v.cofactor::<HOOP>(), v.cofactor_of_change::<HOOP>());
+        let change = v.change_of_cofactor::<HOOP>();
         let [of_x, _] = self.shape_slopes(v.x());
         let [p, _] = self.volume().slopes(v.grown);
-        let first = v.g.plus_isotropic(v.m + v.n) - cof_g - cof.times(v.i * (1.0 / 3.0));
-        let shape = first.times(of_x * v.over_a * v.over_square * 2.0);
-        let stress = shape + cof.times(p * v.j * v.over_square);
+        let shape = of_x * v.over_a * v.over_square * 2.0;
+        let pressure = p * v.j * v.over_square;
+        let distorted = match HOOP {
+            true => v.i * (2.0 / 3.0) + v.m + v.n,
+            false => v.i * (2.0 / 3.0) + v.m,
+        };
+        let of_change = pressure - (v.i * (1.0 / 3.0) + 1.0) * shape;
+        let stress = change
+            .times(of_change)
+            .plus_isotropic(distorted * shape + pressure);
         if !L::SECOND {
             return stress;
         }
         let b = v.g.map(|g| g * -1.0).plus_isotropic(v.i + 2.0);
+        let cof_g = v.cofactor_of_change::<HOOP>();
         let second = v.g.plus_isotropic(v.i * -1.0) - cof_g.map(|a| a * 2.0) + b.times(v.s)
-            - cof.times((v.i * 2.0 + v.m) * (2.0 / 3.0));
+            - v.cofactor::<HOOP>().times((v.i * 2.0 + v.m) * (2.0 / 3.0));
         let factor = v.over_a * v.over_a * v.over_square * (2.0 * self.c01());
         stress + second.times(factor)
     }

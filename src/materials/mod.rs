@@ -29,9 +29,7 @@ mod yield_curve;
 #[cfg(test)]
 pub(crate) mod yielding;
 
-pub use constitutive_law::{
-    Across, BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StrainMeasure, StressAtPoints,
-};
+pub use constitutive_law::{BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StressAtPoints};
 pub use hyperelastic::Hyperelastic;
 pub use invariants::{InvariantEnergy, VolumeEnergy};
 pub(crate) use law::in_lanes;
@@ -45,6 +43,6 @@ pub use plane_stress::PlaneStress;
 pub use plastic::{PlanePlastic, Plastic};
 pub use polynomial::Polynomial;
 pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
-pub use strains::{StrainChange, Strains};
+pub use strains::{Across, StrainChange, StrainMeasure, Strains};
 pub use symmetric::{Symmetric, Tangent, contract};
 pub use viscosity::Viscosity;

@@ -83,6 +83,8 @@ pub(super) fn completed<T: Number>(
 ) -> StrainChange<T> {
     let with = |e: &Symmetric<T>, z: T| Symmetric { z, ..*e };
     StrainChange {
+        start: with(&change.start, start),
+        end: with(&change.end, end),
         mean: with(&change.mean, (start + end) * 0.5),
         half: with(&change.half, (end - start) * 0.5),
     }
@@ -113,7 +115,7 @@ impl<T: Number, const HOOP: bool, L: Hyperelastic<T> + Hyperelastic> Hyperelasti
     }
 
     fn energy_change(&self, change: &StrainChange<T>) -> T {
-        let across = [change.start(), change.end()].map(|e| self.complete(&e).z);
+        let across = [change.start, change.end].map(|e| self.complete(&e).z);
         self.law.energy_change(&completed(change, across))
     }
 

@@ -539,8 +539,8 @@ impl<'a> Potential<'a> {
     fn change(&self, strains: &StrainChange, at_start: f64, by: f64) -> f64 {
         let Potential { law, state, .. } = self;
         let (start, end) = (
-            law.trial(&strains.start(), state),
-            law.trial(&strains.end(), state),
+            law.trial(&strains.start, state),
+            law.trial(&strains.end, state),
         );
         let flow0 = law.flow(&start.strain, state, at_start);
         let flow1 = self.flow(&end);
@@ -658,7 +658,7 @@ impl PlanePlastic {
 
     /// Strains with their components across, beside modes of these squares.
     fn complete_change(&self, change: &StrainChange, z0: &[f64], modes: [f64; 2]) -> StrainChange {
-        let ends = [(modes[0], change.start()), (modes[1], change.end())];
+        let ends = [(modes[0], change.start), (modes[1], change.end)];
         let across = ends.map(|(modes, e)| self.complete(self.potential(z0, modes), &e).z);
         completed(change, across)
     }
@@ -669,7 +669,7 @@ impl PlanePlastic {
         let released = match strains {
             Strains::At(_) => 0.0,
             Strains::Between(change) => {
-                let start = self.complete(self.potential(z0, modes[0]), &change.start());
+                let start = self.complete(self.potential(z0, modes[0]), &change.start);
                 self.law.released(&start, &state, modes[0])
             }
         };

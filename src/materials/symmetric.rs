@@ -241,7 +241,7 @@ impl<T: Number> Tangent<T> {
     /// The matrix of its entries.
     #[inline(always)]
     pub fn of(entry: impl Fn(usize, usize) -> T) -> Self {
-        Tangent(from_fn(|i| from_fn(|j| entry(i, j))))
+        Tangent(square(entry))
     }
 
     /// C:E
@@ -257,6 +257,12 @@ impl<T: Number> Tangent<T> {
         };
         let [x, y, z, w] = &self.0;
         Symmetric::new(row(x), row(y), row(z), row(w))
+    }
+
+    /// The matrix of one element.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> Tangent {
+        Tangent::of(|i, j| self.0[i][j].lane(lane))
     }
 
     /// The matrices of all elements.
@@ -292,24 +298,33 @@ fn each_element<T: Number, V: Default>(of: impl Fn(usize) -> V) -> [V; LANES] {
     })
 }
 
+/// A matrix of its entries, written out: what is not used of it then costs nothing, unlike that of a loop.
+#[inline(always)]
+fn square<T>(at: impl Fn(usize, usize) -> T) -> [[T; 4]; 4] {
+    [
+        [at(0, 0), at(0, 1), at(0, 2), at(0, 3)],
+        [at(1, 0), at(1, 1), at(1, 2), at(1, 3)],
+        [at(2, 0), at(2, 1), at(2, 2), at(2, 3)],
+        [at(3, 0), at(3, 1), at(3, 2), at(3, 3)],
+    ]
+}
+
 /// A x B, row by row: E -> (B:E) A.
 #[inline(always)]
 pub fn dyad<T: Number>(a: &Symmetric<T>, b: &Symmetric<T>) -> [[T; 4]; 4] {
     let (a, b) = (a.components(), b.components());
-    from_fn(|i| from_fn(|j| a[i] * b[j]))
+    square(|i, j| a[i] * b[j])
 }
 
 /// I x A + A x I, row by row.
 #[inline(always)]
 pub fn with_identity<T: Number>(a: &Symmetric<T>) -> [[T; 4]; 4] {
     let a = a.components();
-    from_fn(|i| {
-        from_fn(|j| match (i < 3, j < 3) {
-            (true, true) => a[i] + a[j],
-            (true, false) => a[j],
-            (false, true) => a[i],
-            (false, false) => T::default(),
-        })
+    square(|i, j| match (i < 3, j < 3) {
+        (true, true) => a[i] + a[j],
+        (true, false) => a[j],
+        (false, true) => a[i],
+        (false, false) => T::default(),
     })
 }
 

@@ -38,7 +38,7 @@ fn halfway<T: Number, const HOOP: bool>(change: &StrainChange<T>) -> (Symmetric<
         };
         square.sqrt()
     };
-    let inverse = T::all(2.0) / (ratio(change.start()) + ratio(change.end()));
+    let inverse = T::all(2.0) / (ratio(change.start) + ratio(change.end));
     let c = change.mean.map(|e| e * 2.0).plus_isotropic(T::all(1.0));
     let g = match HOOP {
         true => cofactor(&c) + cofactor(&change.half).map(|d| d * (4.0 / 3.0)),

@@ -141,7 +141,7 @@ impl Flow for Yielding {
         let Strains::Between(change) = strains else {
             return end.stress;
         };
-        let start = self.start(&change.start(), z0);
+        let start = self.start(&change.start, z0);
         let mean = (start + end.stress) / 2.0;
         corrected_stress::<f64, true>(&mean, &change.change(), || {
             in_plane(&(end.stress - start), &end.flow) / 2.0
@@ -154,7 +154,7 @@ impl Flow for Yielding {
         let Strains::Between(change) = strains else {
             return end.tangent;
         };
-        let of_stress = end.stress - self.start(&change.start(), z0);
+        let of_stress = end.stress - self.start(&change.start, z0);
         let of_stress = Symmetric {
             z: 0.0,
             ..of_stress

@@ -336,7 +336,10 @@ const OGDEN_MU: Meaning = (
     "force/length^2",
     "mu1, mu2, mu3 of an Ogden material, else zero",
 );
-const OGDEN_ALPHA: Meaning = ("1", "alpha1, alpha2, alpha3 of an Ogden material, else zero");
+const OGDEN_ALPHA: Meaning = (
+    "1",
+    "alpha1, alpha2, alpha3 of an Ogden material, else zero",
+);
 const YOUNG: Meaning = ("force/length^2", "Young's modulus at small strains");
 const POISSON: Meaning = ("1", "Poisson's ratio at small strains");
 const DENSITY: Meaning = ("mass/length^3", "density of the undeformed material");

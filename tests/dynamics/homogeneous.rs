@@ -1,14 +1,16 @@
 //! Static steps of every element type with every law: homogeneous states stay homogeneous, and loads that stay change nothing.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use stickslip::model::{ElementType, Shape};
+use stickslip::model::{ElementType, Plane, Shape};
 
 use crate::statics::run_deck;
 
 const RUBBER: &str = "*HYPERELASTIC, MOONEY-RIVLIN\n0.4, 0.25, 0.2\n";
 const NEO_HOOKE: &str = "*HYPERELASTIC, NEO HOOKE\n0.5, 0.02\n";
+const OGDEN: &str = "*HYPERELASTIC, OGDEN, N=3\n1., 1.3, 0.02, 5., 0.1, -2., 0.1, 0.\n0.5\n";
 const LINEAR: &str = "*ELASTIC\n100., 0.3\n";
 const METAL: &str =
     "*ELASTIC\n120., 0.33\n*PLASTIC\n1., 0.\n1.3, 0.013\n1.6, 0.05\n2.2, 0.2\n2.6, 0.4\n4., 2.\n";
@@ -79,6 +81,9 @@ fn homogeneous_states_stay_homogeneous_to_large_strains() {
         (RUBBER, Some(-0.3), Some(0.5)),
         (NEO_HOOKE, Some(1.5), None),
         (NEO_HOOKE, None, Some(-0.3)),
+        (OGDEN, Some(1.5), None),
+        (OGDEN, Some(-0.3), Some(0.5)),
+        (OGDEN, None, Some(-0.3)),
         (LINEAR, Some(0.3), None),
         (LINEAR, None, Some(-0.3)),
         (METAL, Some(0.2), None),
@@ -112,6 +117,65 @@ fn homogeneous_states_stay_homogeneous_to_large_strains() {
     }
 }
 
+/// dW/d ln l_i of the principal stretches of the material [`OGDEN`] (force/length^2).
+fn ogden_stresses(l: [f64; 3]) -> [f64; 3] {
+    let j: f64 = l.iter().product();
+    let pressure = j * (2.0 * (j - 1.0) / 0.1 + 6.0 * (j - 1.0).powi(5) / 0.5);
+    let mut stresses = [pressure; 3];
+    for [mu, alpha] in [[1.0, 1.3], [0.02, 5.0], [0.1, -2.0]] {
+        let powers = l.map(|l| (l / j.cbrt()).powf(alpha));
+        let mean = powers.iter().sum::<f64>() / 3.0;
+        for (stress, power) in stresses.iter_mut().zip(powers) {
+            *stress += 2.0 * mu / alpha * (power - mean);
+        }
+    }
+    stresses
+}
+
+/// A square that is pulled to a stretch, free in the other directions but for that across of plane strain and that around of
+/// rings: its width and its force are those of the principal stretches.
+#[test]
+fn forces_of_ogdens_material_are_those_of_its_stretches() {
+    for element_type in ElementType::NAMED {
+        for along in [0.8, 1.2, 2.5] {
+            let (deck, x) = patch(element_type, OGDEN);
+            let deck = format!(
+                "{deck}*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY\nB, 2, 2\nL, 1, 1\nR, 1, 1, {:?}\n\
+                 *END STEP\n",
+                along - 1.0
+            );
+            let what = format!("{} {along}", element_type.name());
+            let (keep, failure) = run_deck(&deck);
+            assert_eq!(failure, None, "{what}");
+            let report = keep.reports.last().expect("reports");
+            let stretches = |side: f64| match element_type.plane {
+                Plane::Stress => [along, side, side],
+                Plane::Strain => [along, side, 1.0],
+                Plane::Revolution => [along, side, along],
+            };
+            let (mut low, mut high) = (0.05, 5.0);
+            for _ in 0..200 {
+                let middle = (low + high) / 2.0;
+                match ogden_stresses(stretches(middle))[1] < 0.0 {
+                    true => low = middle,
+                    false => high = middle,
+                }
+            }
+            let width = report.state.u[2 * 6 + 1] + 1.0;
+            assert!((width / low - 1.0).abs() < 1e-9, "{what}: {width} {low}");
+            // nominal stress over the side that it acts on
+            let area = if element_type.is_ring() { TAU } else { 1.0 };
+            let exact = ogden_stresses(stretches(low))[0] / along * area;
+            let side = (0..x.len()).filter(|&n| x[n][0] == 1.0);
+            let force: f64 = side.map(|n| report.nodal.reaction[2 * n]).sum();
+            assert!(
+                (force / exact - 1.0).abs() < 1e-9,
+                "{what}: {force} {exact}"
+            );
+        }
+    }
+}
+
 /// In a square that its base holds, with forces at its right side beyond the strength of the metal, a step without anything
 /// new leaves displacements and reactions as they are. Kinematic hardening is no part of the table, where the stress changes in
 /// the second order of an increment's flow as that is committed, eq. (2.41).
@@ -122,6 +186,7 @@ fn loads_that_stay_change_nothing() {
         (LINEAR, [0.2, -0.5]),
         (NEO_HOOKE, [0.01, -0.03]),
         (RUBBER, [0.01, -0.03]),
+        (OGDEN, [0.01, -0.03]),
         (METAL, [0.03, -0.08]),
     ];
     for element_type in ElementType::NAMED {

@@ -183,6 +183,8 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/model/materials/shape", vec![1, 4]),
         ("/model/materials/compressibility", vec![1, 3]),
         ("/model/materials/young", vec![1]),
+        ("/model/materials/ogden_alpha", vec![1, 3]),
+        ("/model/materials/ogden_mu", vec![1, 3]),
         ("/model/materials/poisson", vec![1]),
         ("/model/materials/density", vec![1]),
         ("/model/materials/alpha", vec![1]),

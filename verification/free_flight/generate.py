@@ -13,6 +13,7 @@ LAWS = {
     "neo-hooke": card("HYPERELASTIC, NEO HOOKE", (1923.0, 2.4e-4)),
     "mooney": card("HYPERELASTIC, MOONEY-RIVLIN", (1500.0, 423.0, 2.4e-4)),
     "yeoh": card("HYPERELASTIC, YEOH", (1923.0, -100.0, 50.0, 2.4e-4, 2.4e-4, 2.4e-4)),
+    "ogden": card("HYPERELASTIC, OGDEN, N=3", (3500.0, 1.3, 20.0, 5.0, 326.0, -2.0, 2.4e-4, 0.0), (2.4e-4,)),
     "plastic": card("ELASTIC", (1e4, 0.3)) + card("PLASTIC", (10.0, 0.0), (20.0, 0.1)),
     "kinematic": card("ELASTIC", (1e4, 0.3)) + card("PLASTIC, HARDENING=KINEMATIC", (10.0, 0.0), (20.0, 0.1)),
 }
