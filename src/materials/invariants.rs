@@ -266,7 +266,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         energy + dy * self.c01()
     }
 
-    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.24). With K = cof C - I the first and the last
+    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.15) and eq. (2.24). With K = cof C - I the first and the last
     /// term are
     ///
     /// ```text
