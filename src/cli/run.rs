@@ -266,8 +266,7 @@ mod tests {
     use crate::lcp::{FrictionalLcp, LcpError};
     use crate::materials::Law;
     use crate::model::{
-        ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
-        Material, Mesh, Model, Procedure, Section, Set, Settings, Step,
+        Damping, Element, ElementType, Increments, Material, Mesh, Model, Section, Set,
     };
     use crate::output::ResultSummary;
     use clap::Parser;
@@ -301,25 +300,8 @@ mod tests {
                 thickness: 1.0,
             }],
             steps: vec![Step {
-                name: None,
-                procedure: Procedure::Dynamic,
-                increments: Increments {
-                    dt: 0.1,
-                    period: 1.0,
-                    dt_min: 0.0,
-                    dt_max: f64::INFINITY,
-                    incrementation: Incrementation::Fixed,
-                },
-                settings: Settings::default(),
-                supports: vec![],
-                point_loads: vec![],
-                body_forces: vec![],
-                centrifugal_forces: vec![],
-                pressures: vec![],
-                tractions: vec![],
-                interferences: vec![],
-                contacts: ContactChanges::default(),
                 frames: Frames::Count(1),
+                ..Step::new(Increments::fixed(0.1, 1.0))
             }],
             ..Model::default()
         }

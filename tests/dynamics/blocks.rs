@@ -8,9 +8,9 @@ use stickslip::dynamics::{
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face,
-    Frames, Friction, Incrementation, Increments, Interaction, Load, Material, Model, Procedure,
-    Scheme, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
+    BodyForce, Contact, ContactFormulation, Damping, Element, ElementType, Face, Friction,
+    Increments, Interaction, Load, Material, Model, Scheme, Section, Settings, Step, Support,
+    SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -198,25 +198,9 @@ pub fn gravity(element: usize, magnitude: f64) -> Load<BodyForce> {
 pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support>) -> Step {
     supports.sort_by_key(|support| support.dof);
     Step {
-        name: None,
-        procedure: Procedure::Dynamic,
-        increments: Increments {
-            dt,
-            period: dt * count as f64,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        },
         settings,
         supports,
-        point_loads: Vec::new(),
-        body_forces: Vec::new(),
-        centrifugal_forces: Vec::new(),
-        pressures: Vec::new(),
-        tractions: Vec::new(),
-        interferences: Vec::new(),
-        contacts: ContactChanges::default(),
-        frames: Frames::Default,
+        ..Step::new(Increments::fixed(dt, dt * count as f64))
     }
 }
 

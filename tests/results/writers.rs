@@ -20,10 +20,9 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face, Frames,
-    Friction, HistorySet, Incrementation, Increments, Interaction, Material, Mesh, Model,
-    NamedSets, NodalVariable, Procedure, RequestedFields, Section, Set, Settings, Step, Support,
-    SupportMotion, Surface, SurfaceKind,
+    Contact, ContactFormulation, Damping, Element, ElementType, Face, Frames, Friction, HistorySet,
+    Increments, Interaction, Material, Mesh, Model, NamedSets, NodalVariable, RequestedFields,
+    Section, Set, Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, Earlier, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -156,28 +155,12 @@ fn contact() -> Contact {
 fn step() -> Step {
     let to = SupportMotion::Ramp { to: 0.0 };
     Step {
-        name: None,
-        procedure: Procedure::Dynamic,
-        increments: Increments {
-            dt: 0.1,
-            period: 1.0,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        },
-        settings: Settings::default(),
         supports: vec![
             Support { dof: 0, motion: to },
             Support { dof: 1, motion: to },
         ],
-        point_loads: vec![],
-        body_forces: vec![],
-        centrifugal_forces: vec![],
-        pressures: vec![],
-        tractions: vec![],
-        interferences: vec![],
-        contacts: ContactChanges::default(),
         frames: Frames::Count(5),
+        ..Step::new(Increments::fixed(0.1, 1.0))
     }
 }
 

@@ -601,10 +601,7 @@ mod tests {
         ClosedConstraints, Discretization, Equilibrium, HeldMotions, Seen,
     };
     use crate::elements::Motion;
-    use crate::model::{
-        ContactChanges, ContactMass, Frames, Incrementation, Increments, Procedure, Scheme,
-        Settings, Step,
-    };
+    use crate::model::{ContactMass, Increments, Scheme, Settings, Step};
     use crate::prepare::{PreparedModel, redistribution_tests::block};
 
     const DT: f64 = 0.1;
@@ -623,25 +620,8 @@ mod tests {
         test: impl FnOnce(&StepProblem, &mut Workspace),
     ) {
         let step = Step {
-            name: None,
-            procedure: Procedure::Dynamic,
-            increments: Increments {
-                dt: DT,
-                period: 1.0,
-                dt_min: 0.0,
-                dt_max: f64::INFINITY,
-                incrementation: Incrementation::Fixed,
-            },
             settings,
-            supports: vec![],
-            point_loads: vec![],
-            body_forces: vec![],
-            centrifugal_forces: vec![],
-            pressures: vec![],
-            tractions: vec![],
-            interferences: vec![],
-            contacts: ContactChanges::default(),
-            frames: Frames::Default,
+            ..Step::new(Increments::fixed(DT, 1.0))
         };
         let mut model = block([rows; 2], |_, _| false, |_, _| true);
         model.steps.push(step.clone());

@@ -8,10 +8,7 @@ use crate::dynamics::{Cutback, IncrementReport, Observer, Outcome};
 use crate::elements::{Elements, Motion};
 use crate::materials::Law;
 use crate::materials::yielding::Yielding;
-use crate::model::{
-    ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments, Material,
-    Model, Procedure, Section, Settings, Step,
-};
+use crate::model::{Damping, Element, ElementType, Increments, Material, Model, Section, Step};
 use crate::prepare::PreparedModel;
 
 const YIELDING: Yielding = Yielding {
@@ -56,27 +53,7 @@ fn block(rate: f64) -> Model {
 }
 
 fn step(dt: f64, count: usize) -> Step {
-    Step {
-        name: None,
-        procedure: Procedure::Dynamic,
-        increments: Increments {
-            dt,
-            period: dt * count as f64,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        },
-        settings: Settings::default(),
-        supports: vec![],
-        point_loads: vec![],
-        body_forces: vec![],
-        centrifugal_forces: vec![],
-        pressures: vec![],
-        tractions: vec![],
-        interferences: vec![],
-        contacts: ContactChanges::default(),
-        frames: Frames::Default,
-    }
+    Step::new(Increments::fixed(dt, dt * count as f64))
 }
 
 #[derive(Default)]

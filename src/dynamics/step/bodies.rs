@@ -138,8 +138,8 @@ mod tests {
     use crate::dynamics::step::{ClosedConstraints, Discretization, HeldMotions, Seen, Workspace};
     use crate::materials::{Law, SaintVenantKirchhoff};
     use crate::model::{
-        ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
-        Material, Model, Procedure, Section, Settings, Step, Support, SupportMotion,
+        Damping, Element, ElementType, Increments, Material, Model, Section, Step, Support,
+        SupportMotion,
     };
     use crate::prepare::PreparedModel;
 
@@ -191,25 +191,8 @@ mod tests {
             motion: SupportMotion::Ramp { to: 0.0 },
         };
         Step {
-            name: None,
-            procedure: Procedure::Dynamic,
-            increments: Increments {
-                dt: 0.1,
-                period: 1.0,
-                dt_min: 0.0,
-                dt_max: f64::INFINITY,
-                incrementation: Incrementation::Fixed,
-            },
-            settings: Settings::default(),
             supports: supports.iter().map(support).collect(),
-            point_loads: vec![],
-            body_forces: vec![],
-            centrifugal_forces: vec![],
-            pressures: vec![],
-            tractions: vec![],
-            interferences: vec![],
-            contacts: ContactChanges::default(),
-            frames: Frames::Default,
+            ..Step::new(Increments::fixed(0.1, 1.0))
         }
     }
 
