@@ -11,6 +11,7 @@
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
+mod anderson;
 mod basis;
 mod block_iteration;
 mod dense;
@@ -23,6 +24,7 @@ mod reduced;
 mod residual;
 mod scaled;
 
+pub use anderson::{Acceleration, IterationStep};
 pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
 pub use hybrid::{LcpMethod, solve_frictional, solve_similar};

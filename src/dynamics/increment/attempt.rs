@@ -1,7 +1,7 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use super::acceleration::Acceleration;
+use super::acceleration::PassAcceleration;
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
 use super::convergence::{Iterate, Pass, Residual};
@@ -264,7 +264,7 @@ impl<'m> Attempt<'_, 'm> {
         let closed = self.guess.map_or(&start.contact, |path| &path.closed);
         let mut contact = ContactStates::new(closed, self.set, choice);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
-        let mut acceleration = Acceleration::default();
+        let mut acceleration = PassAcceleration::new();
         let mut pins = PinState::new(
             self.guess
                 .map_or(HeldMotions::default(), |path| path.held.clone()),
