@@ -265,9 +265,7 @@ mod tests {
     use crate::elements::{ElementResult, Strained};
     use crate::lcp::{FrictionalLcp, LcpError};
     use crate::materials::Law;
-    use crate::model::{
-        Damping, Element, ElementType, Increments, Material, Mesh, Model, Section, Set,
-    };
+    use crate::model::{Element, ElementType, Increments, Mesh, Model, Set};
     use crate::output::ResultSummary;
     use clap::Parser;
     use nalgebra::{DMatrix, DVector};
@@ -278,7 +276,7 @@ mod tests {
 
     /// One square, one step of ten increments with a frame at its end.
     fn square() -> Model {
-        Model {
+        let mut model = Model {
             mesh: Mesh {
                 node_labels: vec![1, 2, 3, 4],
                 coordinates: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
@@ -289,22 +287,14 @@ mod tests {
                     section: 0,
                 }],
             },
-            materials: vec![Material {
-                name: "M".into(),
-                law: Law::elastic(1.0, 0.0),
-                density: 1.0,
-                damping: Damping::default(),
-            }],
-            sections: vec![Section {
-                material: 0,
-                thickness: 1.0,
-            }],
             steps: vec![Step {
                 frames: Frames::Count(1),
                 ..Step::new(Increments::fixed(0.1, 1.0))
             }],
             ..Model::default()
-        }
+        };
+        model.add_section(Law::elastic(1.0, 0.0), 1.0, 1.0);
+        model
     }
 
     fn loaded(model: Option<Model>) -> Loaded {

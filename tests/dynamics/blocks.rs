@@ -2,15 +2,13 @@
 
 use std::io;
 
-use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
     self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, ContactFormulation, Damping, Element, ElementType, Face, Friction,
-    Increments, Interaction, Load, Material, Model, Scheme, Section, Settings, Step, Support,
-    SupportMotion, Surface, SurfaceKind, Variation,
+    BodyForce, Contact, Element, ElementType, Face, Friction, Increments, Interaction, Load, Model,
+    Scheme, Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -64,19 +62,9 @@ impl Block {
 
 /// A model without steps; one plane-stress material E, nu, rho and thickness 1.
 pub fn model(young: f64, poisson: f64, density: f64) -> Model {
-    Model {
-        materials: vec![Material {
-            name: "M".into(),
-            law: Law::elastic(young, poisson),
-            density,
-            damping: Damping::default(),
-        }],
-        sections: vec![Section {
-            material: 0,
-            thickness: 1.0,
-        }],
-        ..Model::default()
-    }
+    let mut model = Model::default();
+    model.add_section(Law::elastic(young, poisson), density, 1.0);
+    model
 }
 
 /// Adds a block with its corner at `origin`, turned by `angle` about it.
@@ -148,21 +136,13 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
         });
     }
     let master = model.surfaces.len() - 1;
-    model.contacts.push(Contact {
-        slave: master - 1,
-        master,
-        interaction: Interaction {
-            name: "DRY".into(),
-            friction: Friction::constant(friction),
-            ..Interaction::default()
-        },
-        formulation: ContactFormulation::default(),
-        lying_faces: None,
-        adjust: None,
-        left_out: Vec::new(),
-        is_interference_fit: false,
-        span: Span::default(),
-    });
+    let dry = Interaction {
+        name: "DRY".into(),
+        friction: Friction::constant(friction),
+        ..Interaction::default()
+    };
+    let contact = Contact::new([master - 1, master], dry);
+    model.contacts.push(contact);
 }
 
 /// A support at rest.

@@ -11,7 +11,6 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
     BodyResult, ContactImpulse, ContactResultant, Energy, FrictionResults, IncrementReport,
     Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary,
@@ -20,9 +19,9 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, ContactFormulation, Damping, Element, ElementType, Face, Frames, Friction, HistorySet,
-    Increments, Interaction, Material, Mesh, Model, NamedSets, NodalVariable, RequestedFields,
-    Section, Set, Step, Support, SupportMotion, Surface, SurfaceKind,
+    Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Increments,
+    Interaction, Material, Mesh, Model, NamedSets, NodalVariable, RequestedFields, Section, Set,
+    Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, Earlier, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -135,21 +134,12 @@ fn face(element: usize, side: usize) -> Face {
 }
 
 fn contact() -> Contact {
-    Contact {
-        slave: 0,
-        master: 1,
-        interaction: Interaction {
-            name: "DRY".into(),
-            friction: Friction::constant(0.3),
-            ..Interaction::default()
-        },
-        formulation: ContactFormulation::default(),
-        lying_faces: None,
-        adjust: None,
-        left_out: Vec::new(),
-        is_interference_fit: false,
-        span: Span::default(),
-    }
+    let dry = Interaction {
+        name: "DRY".into(),
+        friction: Friction::constant(0.3),
+        ..Interaction::default()
+    };
+    Contact::new([0, 1], dry)
 }
 
 fn step() -> Step {
