@@ -126,6 +126,13 @@ pub fn throw(model: &mut Model, block: &Block, v: [f64; 2], omega: f64, centre: 
     }
 }
 
+/// Adds a velocity along x that grows by this rate from the line at x = `middle`.
+pub fn stretch(model: &mut Model, block: &Block, rate: f64, middle: f64) {
+    for node in block.nodes() {
+        model.initial_velocity[2 * node] += rate * (model.mesh.coordinates[node][0] - middle);
+    }
+}
+
 /// Adds a contact between faces.
 pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, friction: f64) {
     for faces in [slave, master] {
