@@ -6,7 +6,8 @@
 //! The frictional problem ([`FrictionalLcp`]): unilateral contacts with Coulomb friction, coupled
 //! by a symmetric matrix Q; solved by [`solve_frictional`] on the states open, stick, slip+ and
 //! slip-: a warm active set first, Gauss-Seidel sweeps when it cycles, Lemke when nothing else
-//! succeeds. Many contacts are solved by blocks ([`BlockIteration`]). Every answer is checked by a residual that shares nothing with the method.
+//! succeeds. Many contacts are solved by blocks ([`BlockIteration`]), whose iteration its last steps accelerate
+//! ([`Acceleration`]). Every answer is checked by a residual that shares nothing with the method.
 //!
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
