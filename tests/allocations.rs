@@ -10,8 +10,8 @@ use stickslip::elements::{Elements, Motion, TangentPart};
 use stickslip::linear::{Assembled, Transformation};
 use stickslip::materials::{Law, NeoHooke};
 use stickslip::model::{
-    ContactFormulation, Damping, Element, ElementType, Formulation, Material, Model, Scheme,
-    Section, Settings, Support, SupportMotion,
+    ContactFormulation, Element, ElementType, Formulation, Model, Scheme, Settings, Support,
+    SupportMotion,
 };
 
 // shared with tests/dynamics, which use all of it
@@ -66,17 +66,8 @@ fn row(length: usize) -> Model {
         c10: 20.0,
         d1: 0.02,
     });
-    for (material, law) in [Law::elastic(100.0, 0.3), rubber].into_iter().enumerate() {
-        model.materials.push(Material {
-            name: "M".into(),
-            law,
-            density: 1.0,
-            damping: Damping::default(),
-        });
-        model.sections.push(Section {
-            material,
-            thickness: 1.0,
-        });
+    for law in [Law::elastic(100.0, 0.3), rubber] {
+        model.add_section(law, 1.0, 1.0);
     }
     let mean = ElementType {
         formulation: Formulation::MeanDilatation,

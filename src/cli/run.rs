@@ -265,10 +265,7 @@ mod tests {
     use crate::elements::{ElementResult, Strained};
     use crate::lcp::{FrictionalLcp, LcpError};
     use crate::materials::Law;
-    use crate::model::{
-        ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
-        Material, Mesh, Model, Procedure, Section, Set, Settings, Step,
-    };
+    use crate::model::{Element, ElementType, Increments, Mesh, Model, Set};
     use crate::output::ResultSummary;
     use clap::Parser;
     use nalgebra::{DMatrix, DVector};
@@ -279,7 +276,7 @@ mod tests {
 
     /// One square, one step of ten increments with a frame at its end.
     fn square() -> Model {
-        Model {
+        let mut model = Model {
             mesh: Mesh {
                 node_labels: vec![1, 2, 3, 4],
                 coordinates: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
@@ -290,39 +287,14 @@ mod tests {
                     section: 0,
                 }],
             },
-            materials: vec![Material {
-                name: "M".into(),
-                law: Law::elastic(1.0, 0.0),
-                density: 1.0,
-                damping: Damping::default(),
-            }],
-            sections: vec![Section {
-                material: 0,
-                thickness: 1.0,
-            }],
             steps: vec![Step {
-                name: None,
-                procedure: Procedure::Dynamic,
-                increments: Increments {
-                    dt: 0.1,
-                    period: 1.0,
-                    dt_min: 0.0,
-                    dt_max: f64::INFINITY,
-                    incrementation: Incrementation::Fixed,
-                },
-                settings: Settings::default(),
-                supports: vec![],
-                point_loads: vec![],
-                body_forces: vec![],
-                centrifugal_forces: vec![],
-                pressures: vec![],
-                tractions: vec![],
-                interferences: vec![],
-                contacts: ContactChanges::default(),
                 frames: Frames::Count(1),
+                ..Step::new(Increments::fixed(0.1, 1.0))
             }],
             ..Model::default()
-        }
+        };
+        model.add_section(Law::elastic(1.0, 0.0), 1.0, 1.0);
+        model
     }
 
     fn loaded(model: Option<Model>) -> Loaded {

@@ -74,6 +74,12 @@ mod tests {
     }
 
     fn at(x: &[[f64; 2]], form: RowForm, u: &[f64]) -> Constraint {
+        let u0 = &[0.0; 8];
+        Constraint::new(source(), &Configurations { form, x, u0, u })
+    }
+
+    /// Node 0 at the corner of the segments from node 1 to 2 and from 2 to 3.
+    fn source() -> PairTarget {
         let corner = Corner {
             next: 1,
             weight: 0.3,
@@ -82,9 +88,7 @@ mod tests {
             corner: Some(corner),
             ..ContactTarget::face(0)
         };
-        let source = testing::pair(target, [0, 1, 2, 3]);
-        let u0 = &[0.0; 8];
-        Constraint::new(source, &Configurations { form, x, u0, u })
+        testing::pair(target, [0, 1, 2, 3])
     }
 
     #[test]
@@ -124,14 +128,6 @@ mod tests {
     #[test]
     fn a_fit_allows_the_same_overlap_behind_both_segments() {
         for form in [RowForm::End, RowForm::DiscreteGradient] {
-            let corner = Corner {
-                next: 1,
-                weight: 0.3,
-            };
-            let target = ContactTarget {
-                corner: Some(corner),
-                ..ContactTarget::face(0)
-            };
             // behind both segments by what is allowed: where their lines, moved by it, meet
             let depths = [0.02, 0.01];
             let [_, a, tip, c] = ROOF;
@@ -145,7 +141,7 @@ mod tests {
             u[..2].copy_from_slice(&[0, 1].map(|i| end[i] - start[i]));
             let source = PairTarget {
                 allowed: depths,
-                ..testing::pair(target, [0, 1, 2, 3])
+                ..source()
             };
             let (x, u0, u) = (&x, &[0.0; 8], &u);
             let constraint = Constraint::new(source, &Configurations { form, x, u0, u });

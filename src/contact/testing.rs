@@ -1,7 +1,7 @@
 //! Contact constraints for tests.
 
 use super::closed_pairs::{ClosedPair, ClosedPairs};
-use super::constraint::{Constraint, Rows};
+use super::constraint::{Configurations, Constraint, RowForm, Rows};
 use super::keys::{ConstraintKey, SlaveKey};
 use super::lists::Recycled;
 use super::targets::ContactTarget;
@@ -31,6 +31,18 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
 /// Node 0 at the segment from node 1 to node 2.
 pub(crate) fn face() -> PairTarget {
     pair(ContactTarget::face(0), [0, 1, 2, 2])
+}
+
+/// The constraint of [`face`] with the given gap and slip: the node starts at 1/4 of a segment of length 2.
+pub(crate) fn at_face([gap, slip]: [f64; 2]) -> Constraint {
+    let at = Configurations {
+        form: RowForm::End,
+        x: &[[-0.5, 0.0], [0.0, 0.0], [-2.0, 0.0]],
+        u0: &[0.0; 6],
+        // the tangent of the segment from 0 to -2 is -x
+        u: &[-slip, gap, 0.0, 0.0, 0.0, 0.0],
+    };
+    Constraint::new(face(), &at)
 }
 
 /// A constraint of some dofs with the given rows as force rows and derivative rows: no gap, no slip, mu = 0.5, the

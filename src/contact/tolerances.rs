@@ -8,6 +8,8 @@
 /// angle below 120 degrees): folded legs there are the corner itself, elsewhere a closed concave
 /// corner.
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
+/// Cosine of 30 degrees: the turn of a surface in the reference configuration beyond which it has a corner.
+pub(crate) const CORNER_COSINE: f64 = 0.866;
 /// Sine of the turn at a corner below which its two segments count as one straight face: the turn
 /// of a smooth, finely meshed surface.
 pub(crate) const STRAIGHT_SINE: f64 = 1e-3;
@@ -114,8 +116,6 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 // Contact from surface to surface.
 
-/// Cosine of 30 degrees: the turn of a surface in the reference configuration beyond which it has a corner.
-pub(crate) const CORNER_COSINE: f64 = 0.866;
 /// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface.
 pub(crate) const CORNER_DEPTH: f64 = 0.01;
 /// Cosine of the angle between a slave face and a master segment, turned to each other, up to which they take part.

@@ -48,13 +48,7 @@ fn entries(file: FileId, text: &str) -> impl Iterator<Item = CardField<'_>> {
 pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<Diagnostic> {
     for (index, file) in sources.files().iter().enumerate() {
         let id = FileId(index as u32);
-        let start = Span {
-            file: id,
-            line: 1,
-            column: 1,
-            length: 1,
-            instance: 0,
-        };
+        let start = Span::start_of(id);
         let Some((name, before)) = earlier.get(index) else {
             let message = format!(
                 "the deck has changed since the checkpoint: it has another file, {}",
@@ -94,17 +88,7 @@ pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<D
     }
     let (name, _) = earlier.get(sources.files().len())?;
     let message = format!("the deck has changed since the checkpoint: it had another file, {name}");
-    let file = FileId(0);
-    Some(changed(
-        Span {
-            file,
-            line: 1,
-            column: 1,
-            length: 1,
-            instance: 0,
-        },
-        message,
-    ))
+    Some(changed(Span::start_of(FileId(0)), message))
 }
 
 fn changed(span: Span, message: String) -> Diagnostic {

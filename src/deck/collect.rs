@@ -131,13 +131,7 @@ fn collect(
     }
     let deck = collector.deck;
     if deck.cards.is_empty() && !d.has_errors() {
-        let start = Span {
-            file,
-            line: 1,
-            column: 1,
-            length: 1,
-            instance: 0,
-        };
+        let start = Span::start_of(file);
         d.error(Code::EmptyDeck, start, format!("{name} holds no keyword"))
             .help("a keyword line begins with one star, such as *NODE");
     }

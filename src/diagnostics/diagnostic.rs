@@ -340,6 +340,19 @@ pub struct Span {
     pub instance: u32,
 }
 
+impl Span {
+    /// The first character of a file.
+    pub fn start_of(file: FileId) -> Self {
+        Span {
+            file,
+            line: 1,
+            column: 1,
+            length: 1,
+            instance: 0,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,5 +13,5 @@ mod words;
 pub use code::Code;
 pub use diagnostic::{Added, Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
 pub use sources::{EarlierDeck, Replaced, Source, Sources};
+pub(crate) use words::{WIDTH, in_lines, list_of, wrapped};
 pub use words::{closest, shown};
-pub(crate) use words::{list_of, wrapped};

@@ -77,27 +77,39 @@ pub(crate) fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> S
     }
 }
 
-/// Width of the screen in columns.
-const WIDTH: usize = 80;
+/// Width of the screen and of the files for it, in columns.
+pub(crate) const WIDTH: usize = 80;
 
 /// A text in lines, each but the first behind so many blanks; the first keeps its own.
 pub(crate) fn wrapped(text: &str, blanks: usize) -> String {
     let own = text.len() - text.trim_start().len();
-    let mut lines = " ".repeat(own);
-    let mut width = own;
-    for (number, word) in text.split_whitespace().enumerate() {
-        if number > 0 && width + 1 + word.len() > WIDTH {
-            lines.push('\n');
-            lines.push_str(&" ".repeat(blanks));
-            width = blanks;
-        } else if number > 0 {
-            lines.push(' ');
-            width += 1;
+    let first = " ".repeat(own);
+    in_lines(first, blanks, text.split_whitespace(), " ").join("\n") + "\n"
+}
+
+/// Items with a gap between them in lines, the first line behind its head, the others behind so many blanks.
+pub(crate) fn in_lines<'t>(
+    head: String,
+    blanks: usize,
+    items: impl IntoIterator<Item = &'t str>,
+    gap: &str,
+) -> Vec<String> {
+    let mut lines = vec![];
+    let mut line = head;
+    let mut is_empty = true;
+    for item in items {
+        if !is_empty && line.len() + gap.len() + item.len() > WIDTH {
+            lines.push(std::mem::replace(&mut line, " ".repeat(blanks)));
+            is_empty = true;
         }
-        lines.push_str(word);
-        width += word.len();
+        if !is_empty {
+            line.push_str(gap);
+        }
+        line.push_str(item);
+        is_empty = false;
     }
-    lines + "\n"
+    lines.push(line);
+    lines
 }
 
 /// Magnitudes that are written with all their digits.

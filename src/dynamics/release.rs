@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use super::increment::{ContactForces, ContactSystem, Release, Solved};
+use super::increment::{ContactForces, Release, Solved};
 use super::results::State;
 use super::step::{FactoredMatrix, Interval, StepProblem, System, Workspace, difference, dot, sum};
 use crate::contact::tolerances::TIED_ROW;
@@ -112,14 +112,10 @@ impl Releasing<'_, '_> {
         system.factorize().ok()?;
         let mut forces = ContactForces::default();
         forces.relinearize(&mut constraints);
-        let mut contact = ContactSystem {
-            system,
-            method: problem.method(),
-        };
         let (still, r) = (vec![0.0; u.len()], difference(&load, &internal));
         let mut du = Vec::new();
-        (forces.solve([&still, &r], None, &mut contact, &mut du)).ok()?;
-        contact.system.check().ok()?;
+        (forces.solve([&still, &r], None, &mut system, &mut du)).ok()?;
+        system.check().ok()?;
         Some(du)
     }
 
@@ -231,7 +227,11 @@ impl FreeNodes {
         for (list, &element) in self.elements.iter().enumerate() {
             k.add(list, &problem.elements.tangent(element, motion), 1.0);
         }
-        FactoredMatrix::new(linear_solver(problem.settings.solver), k, &self.map)
+        FactoredMatrix::new(
+            (linear_solver(problem.settings.solver), problem.method()),
+            k,
+            &self.map,
+        )
     }
 
     /// Whether the gap of a constraint depends on them.

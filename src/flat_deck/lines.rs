@@ -1,7 +1,6 @@
 //! DeckWriter of a deck: keyword lines, data lines, names and numbers.
 
-/// Longest keyword line; longer ones are continued.
-const WIDTH: usize = 80;
+use crate::diagnostics::WIDTH;
 
 /// Length up to which a number needs no exponent.
 const SHORT: usize = 12;
@@ -19,7 +18,7 @@ impl DeckWriter {
         self.0
     }
 
-    /// A keyword line with its parameters.
+    /// A keyword line with its parameters, continued where it is longer than a screen is wide.
     pub fn card(&mut self, keyword: &str, parameters: impl IntoIterator<Item = String>) {
         let mut width = 1 + keyword.len();
         self.0.push('*');

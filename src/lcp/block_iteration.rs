@@ -1,11 +1,11 @@
 //! Frictional problems of many contacts by blocks: each block is solved exactly with the forces of the others held,
-//! until the motion that it expects is that under the forces of all; accelerated by the last steps (Anderson 1965) in
-//! the form of generalised conjugate residuals. docs/numerics.md, Blocks.
+//! until the motion that it expects is that under the forces of all; accelerated by the last steps. docs/numerics.md, Blocks.
 //!
 //! Ten bodies with 2000 pairs on one strip take 0.4 s per increment with it. As one problem the first increment took
 //! 420 s, nearly all of them for the compliance between the bodies through the strip (docs/numerics.md).
 
-use super::dense::{add_sizes, axpy, dot, max_abs};
+use super::anderson::{Acceleration, IterationStep};
+use super::dense::{add_sizes, max_abs};
 use super::hybrid::{LcpMethod, solve_similar};
 use super::kept::KeptFactors;
 use super::problems::{ContactState, Counters, FrictionalLcp, LcpError};
@@ -33,6 +33,12 @@ const STAGNANT: usize = 4;
 
 /// Growth of the difference beyond the smallest one that ends the acceleration by the steps before.
 const GROWTH: f64 = 10.0;
+
+/// Changes from step to step that are remembered.
+const MEMORY: usize = 20;
+
+/// Part of a change of the residual, beside what is along those before, below which it is round-off.
+const DEPENDENT: f64 = 1e-8;
 
 /// A block of the contacts of a larger problem.
 pub struct LcpBlock {
@@ -128,7 +134,7 @@ pub struct BlockIteration {
     answer: [Vec<f64>; 2],
     /// Largest sum of the sizes of the terms of Q P within the blocks.
     terms: f64,
-    acceleration: Acceleration,
+    acceleration: Acceleration<2>,
     course: Fall,
     residual: f64,
     counters: Counters,
@@ -148,7 +154,7 @@ impl BlockIteration {
             answer: [vec![0.0; free.len()], vec![0.0; free.len()]],
             at: [start.forces, start.motion].map(|values| values.as_flattened().to_vec()),
             terms: 0.0,
-            acceleration: Acceleration::default(),
+            acceleration: Acceleration::new(MEMORY, DEPENDENT),
             course: Fall::default(),
             residual: f64::INFINITY,
             counters: Counters::default(),
@@ -208,13 +214,10 @@ impl BlockIteration {
     fn go_on(&mut self, motion: &[f64]) {
         let [forces, _] = &self.answer;
         let residual = forces.iter().zip(&self.at[0]).map(|(f, x)| f - x);
-        let step = FixedPoint {
+        self.at = self.acceleration.next(IterationStep {
             residual: residual.collect(),
-            forces: forces.clone(),
-            motion: motion.to_vec(),
-        };
-        let next = self.acceleration.next(step);
-        self.at = [next.forces, next.motion];
+            images: [forces.clone(), motion.to_vec()],
+        });
     }
 
     /// Residual of the contact law under the last forces, whose motion is given.
@@ -278,123 +281,4 @@ impl LcpBlock {
 /// Values of a normal and a tangential direction.
 fn pairs(values: &[f64]) -> &[[f64; 2]] {
     values.as_chunks().0
-}
-
-/// Steps that are remembered.
-const MEMORY: usize = 20;
-
-/// Part of a change of the residual, beside what is along those before, below which it is round-off.
-const DEPENDENT: f64 = 1e-8;
-
-/// A point of the iteration x <- f(x), whose motion depends linearly on the forces f.
-#[derive(Debug, Clone, Default)]
-pub(super) struct FixedPoint {
-    /// f(x) - x
-    pub residual: Vec<f64>,
-    /// f(x)
-    pub forces: Vec<f64>,
-    /// Motion under f(x).
-    pub motion: Vec<f64>,
-}
-
-impl FixedPoint {
-    /// Adds a times another.
-    fn add(&mut self, a: f64, other: &FixedPoint) {
-        axpy(a, &other.residual, &mut self.residual);
-        axpy(a, &other.forces, &mut self.forces);
-        axpy(a, &other.motion, &mut self.motion);
-    }
-}
-
-/// What the last steps say about the answer.
-#[derive(Debug, Default)]
-pub(super) struct Acceleration {
-    last: Option<FixedPoint>,
-    /// Differences of steps, their residuals orthonormal.
-    directions: Vec<FixedPoint>,
-}
-
-impl Acceleration {
-    /// Forgets the steps before.
-    pub fn clear(&mut self) {
-        *self = Self::default();
-    }
-
-    /// Of all combinations of this step and those before, weights adding up to 1, the one with the least
-    /// residual:
-    ///
-    /// ```text
-    /// f - sum (e_j.r) f_j,   e_j = r_j the orthonormal changes of the residual, f_j those of f
-    /// ```
-    pub fn next(&mut self, step: FixedPoint) -> FixedPoint {
-        if let Some(mut change) = self.last.replace(step.clone()) {
-            change.add(-1.0, &step);
-            self.take_in(change);
-        }
-        let mut next = step;
-        for direction in &self.directions {
-            let part = dot(&direction.residual, &next.residual);
-            next.add(-part, direction);
-        }
-        next
-    }
-
-    /// Makes a change orthonormal to those before and remembers it.
-    fn take_in(&mut self, mut change: FixedPoint) {
-        if self.directions.len() == MEMORY {
-            self.directions.remove(0);
-        }
-        let whole = norm(&change.residual);
-        for direction in &self.directions {
-            let part = dot(&direction.residual, &change.residual);
-            change.add(-part, direction);
-        }
-        let rest = norm(&change.residual);
-        if rest > DEPENDENT * whole {
-            let vectors = [&mut change.residual, &mut change.forces, &mut change.motion];
-            vectors
-                .into_iter()
-                .flatten()
-                .for_each(|value| *value /= rest);
-            self.directions.push(change);
-        }
-    }
-}
-
-fn norm(vector: &[f64]) -> f64 {
-    dot(vector, vector).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// x <- A x + c of three unknowns, A with eigenvalues up to 0.9 and one beyond 1, is solved by four
-    /// accelerated steps.
-    #[test]
-    fn a_linear_iteration_ends_after_as_many_steps_as_unknowns() {
-        let rates = [0.9, -0.5, 1.5];
-        let image = |x: &[f64]| -> Vec<f64> {
-            let of = x.iter().zip(rates);
-            of.map(|(x, rate)| rate * x + 1.0).collect()
-        };
-        let (mut acceleration, mut x) = (Acceleration::default(), vec![0.0; 3]);
-        for _ in 0..4 {
-            let forces = image(&x);
-            let residual = forces.iter().zip(&x).map(|(f, x)| f - x).collect();
-            let motion = forces.iter().map(|f| 2.0 * f).collect();
-            let next = acceleration.next(FixedPoint {
-                residual,
-                forces,
-                motion,
-            });
-            x = next.forces;
-            for (x, motion) in x.iter().zip(next.motion) {
-                assert!((motion - 2.0 * x).abs() < 1e-12 * (1.0 + motion.abs()));
-            }
-        }
-        for (x, rate) in x.iter().zip(rates) {
-            assert!((x - 1.0 / (1.0 - rate)).abs() < 1e-11, "{x} {rate}");
-        }
-    }
 }

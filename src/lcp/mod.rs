@@ -6,11 +6,13 @@
 //! The frictional problem ([`FrictionalLcp`]): unilateral contacts with Coulomb friction, coupled
 //! by a symmetric matrix Q; solved by [`solve_frictional`] on the states open, stick, slip+ and
 //! slip-: a warm active set first, Gauss-Seidel sweeps when it cycles, Lemke when nothing else
-//! succeeds. Many contacts are solved by blocks ([`BlockIteration`]). Every answer is checked by a residual that shares nothing with the method.
+//! succeeds. Many contacts are solved by blocks ([`BlockIteration`]), whose iteration its last steps accelerate
+//! ([`Acceleration`]). Every answer is checked by a residual that shares nothing with the method.
 //!
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
+mod anderson;
 mod basis;
 mod block_iteration;
 mod dense;
@@ -23,6 +25,7 @@ mod reduced;
 mod residual;
 mod scaled;
 
+pub use anderson::{Acceleration, IterationStep};
 pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
 pub use hybrid::{LcpMethod, solve_frictional, solve_similar};

@@ -122,6 +122,21 @@ impl Adjust {
 }
 
 impl Contact {
+    /// A contact of two surfaces in which all slave nodes take part, where they are.
+    pub fn new([slave, master]: [usize; 2], interaction: Interaction) -> Self {
+        Contact {
+            slave,
+            master,
+            interaction,
+            formulation: ContactFormulation::default(),
+            lying_faces: None,
+            adjust: None,
+            left_out: Vec::new(),
+            is_interference_fit: false,
+            span: Span::default(),
+        }
+    }
+
     /// Whether slave and master are the same surface.
     pub fn is_self_contact(&self) -> bool {
         self.slave == self.master

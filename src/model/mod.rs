@@ -83,6 +83,21 @@ pub struct Model {
 }
 
 impl Model {
+    /// Adds a section of this thickness of another material, without damping.
+    pub fn add_section(&mut self, law: Law, density: f64, thickness: f64) {
+        let material = self.materials.len();
+        self.materials.push(Material {
+            name: format!("M{material}"),
+            law,
+            density,
+            damping: Damping::default(),
+        });
+        self.sections.push(Section {
+            material,
+            thickness,
+        });
+    }
+
     /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a rigid body has beside those of the
     /// mesh, its reference node.
     pub fn node_name(&self, node: usize) -> String {

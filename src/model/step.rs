@@ -35,6 +35,25 @@ pub struct Step {
 }
 
 impl Step {
+    /// A dynamic step in which nothing acts, with what a deck has by default.
+    pub fn new(increments: Increments) -> Self {
+        Step {
+            name: None,
+            procedure: Procedure::Dynamic,
+            increments,
+            settings: Settings::default(),
+            supports: Vec::new(),
+            point_loads: Vec::new(),
+            body_forces: Vec::new(),
+            centrifugal_forces: Vec::new(),
+            pressures: Vec::new(),
+            tractions: Vec::new(),
+            interferences: Vec::new(),
+            contacts: ContactChanges::default(),
+            frames: Frames::default(),
+        }
+    }
+
     /// The motion of a dof, if it is prescribed.
     pub fn motion_of(&self, dof: usize) -> Option<SupportMotion> {
         let place = (self.supports).binary_search_by_key(&dof, |support| support.dof);
@@ -120,6 +139,19 @@ pub struct Increments {
     pub dt_max: f64,
     /// What decides their length.
     pub incrementation: Incrementation,
+}
+
+impl Increments {
+    /// Increments of one length over a step, which cutbacks may make as short as they like (DIRECT).
+    pub fn fixed(dt: f64, period: f64) -> Self {
+        Increments {
+            dt,
+            period,
+            dt_min: 0.0,
+            dt_max: dt,
+            incrementation: Incrementation::Fixed,
+        }
+    }
 }
 
 /// What decides how long the increments of a step are.

@@ -632,8 +632,7 @@ mod tests {
     use crate::dynamics::FailedLcp;
     use crate::lcp::FrictionalLcp;
     use crate::model::{
-        ContactChanges, Element, ElementType, Incrementation, Increments, Load, Mesh, PointLoad,
-        Procedure, Set, Settings, Variation,
+        Element, ElementType, Incrementation, Increments, Load, Mesh, PointLoad, Set, Variation,
     };
 
     #[test]
@@ -710,27 +709,11 @@ mod tests {
             coordinates: vec![[0.0; 2]; 6],
             elements: vec![],
         };
-        let step = Step {
-            name: None,
-            procedure: Procedure::Dynamic,
-            increments: Increments {
-                dt: 1.0,
-                period: 1.0,
-                dt_min: 0.01,
-                dt_max: f64::INFINITY,
-                incrementation: Incrementation::Passes,
-            },
-            settings: Settings::default(),
-            supports: vec![],
-            point_loads: vec![],
-            body_forces: vec![],
-            centrifugal_forces: vec![],
-            pressures: vec![],
-            tractions: vec![],
-            interferences: vec![],
-            contacts: ContactChanges::default(),
-            frames: crate::model::Frames::Default,
-        };
+        let step = Step::new(Increments {
+            dt_min: 0.01,
+            incrementation: Incrementation::Passes,
+            ..Increments::fixed(1.0, 1.0)
+        });
         Model {
             mesh,
             steps: vec![step],

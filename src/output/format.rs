@@ -1,5 +1,7 @@
 //! Numbers as text, and the layout of lines: width, labels in the first columns, wrapping.
 
+use crate::diagnostics::in_lines;
+
 /// `x` in scientific notation with at least two digits of the exponent, such as `1.00e-05`.
 pub fn scientific(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$e}");
@@ -87,42 +89,23 @@ pub(crate) fn bytes(size: u64) -> String {
     format!("{} TB", general(value, 3))
 }
 
-/// Width of the screen in columns.
-pub(crate) const WIDTH: usize = 80;
+/// Width of labels in columns.
+const LABEL: usize = 9;
 
 /// One line with its label in front.
 pub(crate) fn label(label: &str, text: &str) -> String {
-    format!("{label:<9}{text}")
+    format!("{label:<LABEL$}{text}")
 }
 
 /// The items three blanks apart, wrapped into lines, the first one labelled `first`.
 pub(crate) fn wrap(first: &str, items: &[String]) -> Vec<String> {
-    wrap_apart(first, items.iter().map(String::as_str), "   ")
+    let items = items.iter().map(String::as_str);
+    in_lines(label(first, ""), LABEL, items, "   ")
 }
 
 /// The words of a text, wrapped into lines, the first one labelled `first`.
 pub(crate) fn wrap_words(first: &str, text: &str) -> Vec<String> {
-    wrap_apart(first, text.split(' '), " ")
-}
-
-/// The items with `gap` between them, wrapped into lines.
-fn wrap_apart<'t>(first: &str, items: impl IntoIterator<Item = &'t str>, gap: &str) -> Vec<String> {
-    let mut lines = vec![];
-    let mut line = label(first, "");
-    let mut is_empty = true;
-    for item in items {
-        if !is_empty && line.len() + gap.len() + item.len() > WIDTH {
-            lines.push(std::mem::replace(&mut line, label("", "")));
-            is_empty = true;
-        }
-        if !is_empty {
-            line.push_str(gap);
-        }
-        line.push_str(item);
-        is_empty = false;
-    }
-    lines.push(line);
-    lines
+    in_lines(label(first, ""), LABEL, text.split(' '), " ")
 }
 
 #[cfg(test)]

@@ -190,30 +190,12 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{ContactChanges, Incrementation, Increments, Procedure, Settings};
+    use crate::model::Increments;
 
     fn model(frames: Frames, period: f64) -> Model {
-        let increments = Increments {
-            dt: 0.1,
-            period,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        };
         let step = Step {
-            name: None,
-            procedure: Procedure::Dynamic,
-            increments,
-            settings: Settings::default(),
-            supports: vec![],
-            point_loads: vec![],
-            body_forces: vec![],
-            centrifugal_forces: vec![],
-            pressures: vec![],
-            tractions: vec![],
-            interferences: vec![],
-            contacts: ContactChanges::default(),
             frames,
+            ..Step::new(Increments::fixed(0.1, period))
         };
         Model {
             steps: vec![step.clone(), step],

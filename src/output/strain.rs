@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use crate::elements::ElementResult;
     use crate::materials::{Law, NeoHooke};
-    use crate::model::{Damping, Element, ElementType, Material, Section};
+    use crate::model::{Element, ElementType};
 
     /// An elastic element and one of rubber.
     fn model() -> Model {
@@ -144,16 +144,7 @@ mod tests {
             Law::NeoHooke(NeoHooke { c10: 1.0, d1: 0.1 }),
         ];
         for (index, law) in laws.into_iter().enumerate() {
-            model.materials.push(Material {
-                name: format!("M{index}"),
-                law,
-                density: 1.0,
-                damping: Damping::default(),
-            });
-            model.sections.push(Section {
-                material: index,
-                thickness: 1.0,
-            });
+            model.add_section(law, 1.0, 1.0);
             model.mesh.elements.push(Element {
                 label: index as u64 + 1,
                 element_type: ElementType::CPE4,

@@ -203,8 +203,6 @@ fn note(model: &Model, contact: &Contact, moved: &Adjusted) -> Diagnostic {
 mod tests {
     use super::*;
     use crate::contact::contact_surfaces;
-    use crate::diagnostics::Span;
-    use crate::model::ContactFormulation;
     use crate::model::{ElementType, Face, Interaction, Surface, SurfaceKind};
 
     /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
@@ -283,19 +281,12 @@ mod tests {
             });
         }
         model.contacts.push(Contact {
-            slave: 0,
-            master: 1,
-            interaction: Interaction::default(),
-            formulation: ContactFormulation::default(),
-            lying_faces: None,
             adjust: Some(Adjust::Within(Reach {
                 above: 0.1 * edge,
                 below: f64::INFINITY,
                 clearance: 0.0,
             })),
-            left_out: Vec::new(),
-            is_interference_fit: false,
-            span: Span::default(),
+            ..Contact::new([0, 1], Interaction::default())
         });
         let surfaces = contact_surfaces(&model, &model.mesh.bodies());
         let adjusted = adjust(&mut model, &surfaces);

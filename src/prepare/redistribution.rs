@@ -427,11 +427,9 @@ pub(crate) mod tests {
 
     use super::Redistribution;
     use crate::contact::contact_surfaces;
-    use crate::diagnostics::Span;
     use crate::materials::Law;
     use crate::model::{
-        Contact, ContactFormulation, Damping, Element, ElementType, Equation, Interaction,
-        Material, Model, Section, Surface, SurfaceKind,
+        Contact, Element, ElementType, Equation, Interaction, Model, Surface, SurfaceKind,
     };
 
     /// A bent block of cells of two sizes, each a quadrilateral or two triangles, in contact with itself
@@ -471,31 +469,14 @@ pub(crate) mod tests {
                 section: 0,
             }));
         }
-        model.materials.push(Material {
-            name: "M".into(),
-            law: Law::elastic(100.0, 0.3),
-            density: 1.3,
-            damping: Damping::default(),
-        });
-        model.sections.push(Section {
-            material: 0,
-            thickness: 2.0,
-        });
+        model.add_section(Law::elastic(100.0, 0.3), 1.3, 2.0);
         model.surfaces.push(Surface {
             name: "SKIN".into(),
             kind: SurfaceKind::Faces(model.mesh.exterior_faces()),
         });
-        model.contacts.push(Contact {
-            slave: 0,
-            master: 0,
-            interaction: Interaction::default(),
-            formulation: ContactFormulation::default(),
-            lying_faces: None,
-            adjust: None,
-            left_out: Vec::new(),
-            is_interference_fit: false,
-            span: Span::default(),
-        });
+        model
+            .contacts
+            .push(Contact::new([0, 0], Interaction::default()));
         model
     }
 

@@ -151,15 +151,8 @@ fn contact(
     let (slave, master) = (slave?, master?);
     check_use(row, slave, master, cx)?;
     Some(Contact {
-        slave: slave.0,
-        master: master.0,
-        interaction: interaction?,
-        formulation: ContactFormulation::default(),
-        lying_faces: None,
-        adjust: None,
-        left_out: Vec::new(),
-        is_interference_fit: false,
         span: row.span(),
+        ..Contact::new([slave.0, master.0], interaction?)
     })
 }
 

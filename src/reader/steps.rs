@@ -12,9 +12,9 @@ use super::surfaces::Surfaces;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
 use crate::model::{
-    Contact, ContactChanges, ContactMass, Factorization, Impact, ImpactTime, Incrementation,
-    Increments, LandingRule, LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice,
-    Step, Support,
+    Contact, ContactMass, Factorization, Impact, ImpactTime, Incrementation, Increments,
+    LandingRule, LcpChoice, Procedure, RestartOutput, Scheme, Settings, SolverChoice, Step,
+    Support,
 };
 
 /// Most increments of a step: at a microsecond each they would take eleven days.
@@ -162,17 +162,10 @@ impl StepReader<'_> {
         let mut step = Step {
             name,
             procedure,
-            increments,
             settings: self.settings,
-            supports: Vec::new(),
-            point_loads: Vec::new(),
-            body_forces: Vec::new(),
-            centrifugal_forces: Vec::new(),
-            pressures: Vec::new(),
-            tractions: Vec::new(),
             interferences: self.interferences.list(is_last),
-            contacts: ContactChanges::default(),
             frames: self.requests.frames(self.start, increments.period),
+            ..Step::new(increments)
         };
         self.loads.fill(&mut step, is_last);
         step

@@ -4,22 +4,20 @@
 use std::fs;
 
 use assert_cmd::Command;
-use stickslip::deck;
-use stickslip::diagnostics::{Diagnostics, Sources, Span};
+use stickslip::diagnostics::Span;
 use stickslip::model::{Contact, Model};
 use stickslip::output::ResultSummary;
-use stickslip::reader;
 use tempfile::TempDir;
+
+use crate::reading::try_read;
 
 /// Two instances of a part as Abaqus/CAE writes them, one on its end above the other.
 const BLOCKS: &str = include_str!("../decks/cae_blocks.inp");
 
 /// The model of a deck, if it has no errors, and its messages.
 fn read(text: &str) -> (Option<Model>, String) {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    (model, d.render(&sources, false))
+    let (model, _, messages) = try_read(text);
+    (model, messages)
 }
 
 /// The model of the blocks with a change.

@@ -5,17 +5,10 @@ use std::path::{Path, PathBuf};
 use stickslip::diagnostics::{Diagnostics, Sources, Span};
 use stickslip::flat_deck::{difference, flat_deck};
 use stickslip::model::{Frames, Model, SurfaceKind, Variation};
-use stickslip::{deck, reader};
+use stickslip::reader;
 
 use crate::errors;
-
-/// The model of a text, which must have no errors.
-fn read(text: &str) -> Model {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}\n{text}", d.render(&sources, false)))
-}
+use crate::reading::read;
 
 /// A model without the places of its contacts in the deck, the reasons of pairs, and the instances of parts.
 fn flat(mut model: Model) -> Model {

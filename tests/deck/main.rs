@@ -9,5 +9,7 @@ mod model;
 mod owners;
 mod parameters;
 mod picture;
+#[path = "../shared/reading.rs"]
+mod reading;
 mod reference;
 mod syntax;

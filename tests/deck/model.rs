@@ -6,14 +6,13 @@ use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::model::*;
 use stickslip::output::contact_names;
 use stickslip::prepare::PreparedModel;
-use stickslip::{deck, reader};
+use stickslip::reader;
+
+use crate::reading::try_read;
 
 /// The model of a deck, which must have no errors, and the text of its warnings.
 fn read(text: &str) -> (Model, String) {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    let messages = d.render(&sources, false);
+    let (model, _, messages) = try_read(text);
     (model.unwrap_or_else(|| panic!("{messages}")), messages)
 }
 
@@ -1061,10 +1060,8 @@ fn equations_that_cannot_be_used_are_told() {
     ];
     for (rows, code, message) in faults {
         let text = SQUARE.replacen("*STEP", &format!("{sets}{rows}\n*STEP"), 1);
-        let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-        let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-        assert!(reader::build(&deck, &mut d).is_none(), "{rows}");
-        let found = d.render(&sources, false);
+        let (model, _, found) = try_read(&text);
+        assert!(model.is_none(), "{rows}");
         let is_told = found.contains(message) && found.contains(&format!("error[{code}]"));
         assert!(is_told, "{rows}\n{found}");
     }
@@ -1135,10 +1132,8 @@ fn a_section_and_its_element_types_agree_on_mean_dilatation() {
         let text = SQUARE
             .replace("CPS4", kind)
             .replace("*SOLID SECTION,", &section);
-        let (mut sources, mut d) = (Sources::default(), Diagnostics::default());
-        let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-        assert!(reader::build(&deck, &mut d).is_none());
-        let found = d.render(&sources, false);
+        let (model, _, found) = try_read(&text);
+        assert!(model.is_none());
         assert!(found.contains(expected), "{found}");
     }
 }

@@ -1,7 +1,6 @@
 //! Two cards that move the same node, loads of directions that nothing has, results of one name: errors that name both.
 
-use stickslip::diagnostics::{Diagnostics, Sources};
-use stickslip::{deck, reader};
+use crate::reading::try_read;
 
 /// Three blocks beside each other, with nodes of their own.
 const BLOCKS: &str = "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n5, 2., 0.\n6, 2., 1.\n7, 3., 0.\n8, 3., 1.\n\
@@ -15,11 +14,9 @@ fn messages(model: &str, step: &str) -> String {
     let text = format!(
         "{BLOCKS}{model}*STEP, NLGEOM\n*DYNAMIC, DIRECT\n.01, .1\n*DLOAD\n, GRAV, 1., 0., -1.\n{step}*END STEP\n"
     );
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
+    let (model, d, messages) = try_read(&text);
     assert_eq!(model.is_some(), !d.has_errors());
-    d.render(&sources, false)
+    messages
 }
 
 /// Cards of the model, of the step, and what the messages hold.

@@ -1,20 +1,12 @@
 //! The picture of a model (`check --picture`).
 
-use stickslip::diagnostics::{Diagnostics, Sources};
-use stickslip::model::Model;
 use stickslip::output::{Window, picture};
-use stickslip::{deck, reader};
+
+use crate::reading::read;
 
 const SHARED: &str = include_str!("../decks/shared.inp");
 const SQUARE: &str = include_str!("../decks/square.inp");
 const STEPS: &str = include_str!("../decks/steps.inp");
-
-fn read(text: &str) -> Model {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
-}
 
 #[test]
 fn a_block_above_its_base() {

@@ -9,6 +9,7 @@ use stickslip::model::{
 use stickslip::vectors::cross;
 
 use crate::blocks::{add_block, add_contact, fixed, model, run_to_end, step, throw};
+use crate::energies::{energy, largest};
 use crate::friction::block_on_base;
 use crate::invariants::oblique_impact;
 
@@ -20,12 +21,6 @@ const SS22: Scheme = Scheme::Ss22 {
 /// `a` and `b` agree to round-off of `scale`.
 pub fn near(a: f64, b: f64, scale: f64) {
     assert!((a - b).abs() <= 1e-12 * scale, "{a:e} is not {b:e}");
-}
-
-/// Largest of kinetic and strain energy.
-fn energy(reports: &[IncrementReport]) -> f64 {
-    let energies = reports.iter().map(|r| r.energy.kinetic + r.energy.strain);
-    energies.fold(0.0, f64::max)
 }
 
 /// Masses of the beams of [`oblique_impact`].
@@ -58,7 +53,7 @@ fn bodies_start_as_they_are_thrown() {
 fn bodies_and_contacts_add_up_to_the_ledger() {
     for scheme in [Scheme::EnergyMomentum, SS22] {
         let (kept, _) = run_to_end(&oblique_impact(0.3, scheme));
-        let scale = energy(&kept.reports);
+        let scale = largest(&kept.reports, energy);
         for report in &kept.reports {
             let sum = |f: fn(&stickslip::dynamics::BodyResult) -> f64| -> f64 {
                 report.bodies.iter().map(f).sum()
@@ -328,7 +323,7 @@ fn losses_do_not_depend_on_the_frame() {
             let (kept, _) = run_to_end(&landing_in_frame(c, settings));
             kept
         });
-        let scale = energy(&runs[0].reports);
+        let scale = largest(&runs[0].reports, energy);
         let last = runs[0].reports.last().expect("reports").energy;
         let lost = last.impact_loss - last.normal_contact_work + last.release_loss;
         assert!(lost > 1e-2 * scale, "{last:?}");

@@ -6,7 +6,7 @@ use stickslip::model::{
 };
 
 use crate::blocks::{Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw};
-use crate::turning::read;
+use crate::reading::read;
 
 const TOLERANCE: f64 = 1e-4;
 

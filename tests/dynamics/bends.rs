@@ -3,10 +3,8 @@
 //! land, and take no energy.
 
 use crate::blocks::{Keep, run_to_end};
-use stickslip::deck;
-use stickslip::diagnostics::{Diagnostics, Sources};
+use crate::reading::read;
 use stickslip::model::Model;
-use stickslip::reader;
 
 const SEGMENTS: usize = 24;
 
@@ -43,10 +41,7 @@ fn model(bend: f64, speed: f64, max_passes: usize, increments: usize) -> Model {
          *DLOAD\nUP, GRAV, 300., 0., -1.\n*END STEP\n",
         0.01 * increments as f64
     );
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
+    read(&text)
 }
 
 /// What the normal contact forces have taken, in percent of the largest energy or external work.

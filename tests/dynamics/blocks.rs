@@ -2,15 +2,13 @@
 
 use std::io;
 
-use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
     self, Cutback, IncrementReport, Observer, Outcome, RunError, RunSummary,
 };
 use stickslip::materials::Law;
 use stickslip::model::{
-    BodyForce, Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face,
-    Frames, Friction, Incrementation, Increments, Interaction, Load, Material, Model, Procedure,
-    Scheme, Section, Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
+    BodyForce, Contact, Element, ElementType, Face, Friction, Increments, Interaction, Load, Model,
+    Scheme, Settings, Step, Support, SupportMotion, Surface, SurfaceKind, Variation,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -64,19 +62,9 @@ impl Block {
 
 /// A model without steps; one plane-stress material E, nu, rho and thickness 1.
 pub fn model(young: f64, poisson: f64, density: f64) -> Model {
-    Model {
-        materials: vec![Material {
-            name: "M".into(),
-            law: Law::elastic(young, poisson),
-            density,
-            damping: Damping::default(),
-        }],
-        sections: vec![Section {
-            material: 0,
-            thickness: 1.0,
-        }],
-        ..Model::default()
-    }
+    let mut model = Model::default();
+    model.add_section(Law::elastic(young, poisson), density, 1.0);
+    model
 }
 
 /// Adds a block with its corner at `origin`, turned by `angle` about it.
@@ -138,6 +126,13 @@ pub fn throw(model: &mut Model, block: &Block, v: [f64; 2], omega: f64, centre: 
     }
 }
 
+/// Adds a velocity along x that grows by this rate from the line at x = `middle`.
+pub fn stretch(model: &mut Model, block: &Block, rate: f64, middle: f64) {
+    for node in block.nodes() {
+        model.initial_velocity[2 * node] += rate * (model.mesh.coordinates[node][0] - middle);
+    }
+}
+
 /// Adds a contact between faces.
 pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, friction: f64) {
     for faces in [slave, master] {
@@ -148,21 +143,13 @@ pub fn add_contact(model: &mut Model, slave: Vec<Face>, master: Vec<Face>, frict
         });
     }
     let master = model.surfaces.len() - 1;
-    model.contacts.push(Contact {
-        slave: master - 1,
-        master,
-        interaction: Interaction {
-            name: "DRY".into(),
-            friction: Friction::constant(friction),
-            ..Interaction::default()
-        },
-        formulation: ContactFormulation::default(),
-        lying_faces: None,
-        adjust: None,
-        left_out: Vec::new(),
-        is_interference_fit: false,
-        span: Span::default(),
-    });
+    let dry = Interaction {
+        name: "DRY".into(),
+        friction: Friction::constant(friction),
+        ..Interaction::default()
+    };
+    let contact = Contact::new([master - 1, master], dry);
+    model.contacts.push(contact);
 }
 
 /// A support at rest.
@@ -198,25 +185,9 @@ pub fn gravity(element: usize, magnitude: f64) -> Load<BodyForce> {
 pub fn step(dt: f64, count: usize, settings: Settings, mut supports: Vec<Support>) -> Step {
     supports.sort_by_key(|support| support.dof);
     Step {
-        name: None,
-        procedure: Procedure::Dynamic,
-        increments: Increments {
-            dt,
-            period: dt * count as f64,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        },
         settings,
         supports,
-        point_loads: Vec::new(),
-        body_forces: Vec::new(),
-        centrifugal_forces: Vec::new(),
-        pressures: Vec::new(),
-        tractions: Vec::new(),
-        interferences: Vec::new(),
-        contacts: ContactChanges::default(),
-        frames: Frames::Default,
+        ..Step::new(Increments::fixed(dt, dt * count as f64))
     }
 }
 

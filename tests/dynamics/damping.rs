@@ -1,6 +1,9 @@
 //! Damping of materials: ratios of modes, energy, momenta, and the passes.
 
-use crate::blocks::{Keep, PAPER, SCHEMES, add_block, add_contact, model, run_to_end, step, throw};
+use crate::blocks::{
+    Keep, PAPER, SCHEMES, add_block, add_contact, model, run_to_end, settings, step, stretch, throw,
+};
+use crate::energies::{energy, largest};
 use stickslip::dynamics::IncrementReport;
 use stickslip::materials::{Law, NeoHooke};
 use stickslip::model::{
@@ -8,23 +11,8 @@ use stickslip::model::{
     SupportMotion,
 };
 
-fn with(scheme: Scheme) -> Settings {
-    Settings {
-        scheme,
-        ..Settings::default()
-    }
-}
-
-fn energy(report: &IncrementReport) -> f64 {
-    report.energy.kinetic + report.energy.strain
-}
-
 fn last(keep: &Keep) -> &IncrementReport {
     &keep.reports[keep.reports.len() - 1]
-}
-
-fn largest(keep: &Keep, of: impl Fn(&IncrementReport) -> f64) -> f64 {
-    keep.reports.iter().map(of).fold(0.0, f64::max)
 }
 
 /// Speed at the end of the one-element bar at the start, so small that its strains are linear.
@@ -50,7 +38,7 @@ fn one_mode(scheme: Scheme, damping: Damping, dt: f64, increments: usize) -> Kee
     for j in 0..2 {
         model.initial_velocity[2 * bar.node(1, j)] = SPEED;
     }
-    model.steps = vec![step(dt, increments, with(scheme), supports)];
+    model.steps = vec![step(dt, increments, settings(scheme), supports)];
     run_to_end(&model).0
 }
 
@@ -113,17 +101,14 @@ fn flying_block(law: Law, formulation: Formulation, damping: Damping, scheme: Sc
     model.materials[0].damping = damping;
     let block = add_block(&mut model, [0.0, 0.0], [2.0, 1.0], (6, 3), 0.0);
     throw(&mut model, &block, [0.4, -0.3], 0.8, [1.0, 0.5]);
-    for node in block.nodes() {
-        let x = model.mesh.coordinates[node][0] - 1.0;
-        model.initial_velocity[2 * node] += 0.3 * x;
-    }
+    stretch(&mut model, &block, 0.3, 1.0);
     for element in &mut model.mesh.elements {
         element.element_type = ElementType {
             formulation,
             ..ElementType::CPE4
         };
     }
-    model.steps = vec![step(0.05, 100, with(scheme), Vec::new())];
+    model.steps = vec![step(0.05, 100, settings(scheme), Vec::new())];
     model
 }
 
@@ -135,12 +120,12 @@ fn laws() -> [Law; 2] {
 /// Largest errors of the linear and the angular momentum, with what mass-proportional damping took.
 fn momentum_errors(keep: &Keep) -> [f64; 2] {
     let first = &keep.reports[0].momentum;
-    let linear = largest(keep, |r| {
+    let linear = largest(&keep.reports, |r| {
         let m = &r.momentum;
         let change = |i: usize| m.linear[i] + m.damped_linear[i] - first.linear[i];
         change(0).hypot(change(1)) / first.linear[0].hypot(first.linear[1])
     });
-    let angular = largest(keep, |r| {
+    let angular = largest(&keep.reports, |r| {
         let m = &r.momentum;
         (m.angular + m.damped_angular - first.angular).abs() / first.angular.abs()
     });
@@ -169,7 +154,7 @@ fn viscosity_keeps_both_momenta_and_takes_what_is_booked() {
                 assert!(lost > 0.01 * energy(first));
                 assert!((last.energy.damping - lost).abs() < 1e-12 * energy(first));
                 assert!(last.energy.numerical_dissipation.abs() < 1e-12 * energy(first));
-                assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
+                assert!(largest(&keep.reports, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
                 for pair in keep.reports.windows(2) {
                     assert!(pair[1].energy.damping >= pair[0].energy.damping);
                     assert!(energy(&pair[1]) <= energy(&pair[0]) + 1e-12 * energy(first));
@@ -202,7 +187,7 @@ fn pulled(bulk: f64, scheme: Scheme) -> ([(Keep, usize); 2], [usize; 2]) {
     let supports: Vec<Support> = supports.chain(pulled.map(|dof| moved(dof, 0.5))).collect();
     let runs = [0.0, 0.01].map(|beta| {
         model.materials[0].damping = Damping { alpha: 0.0, beta };
-        model.steps = vec![step(0.05, 200, with(scheme), supports.clone())];
+        model.steps = vec![step(0.05, 200, settings(scheme), supports.clone())];
         let (keep, summary) = run_to_end(&model);
         (keep, summary.solver.passes)
     });
@@ -277,7 +262,7 @@ fn mass_proportional_damping_brakes_the_flight_as_booked() {
         println!("linear {linear:.0e} angular {angular:.0e}");
         assert!(linear < 1e-13);
         assert!(angular < 2e-13 || scheme == PAPER);
-        assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
+        assert!(largest(&keep.reports, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
         assert!(last.energy.damping > 0.5 * energy(first));
     }
 }
@@ -304,14 +289,14 @@ fn the_balance_holds_in_contact_and_at_moving_supports() {
             [moved(2 * node, 0.1), moved(2 * node + 1, -0.02)]
         });
         let supports = held.chain(driven).collect();
-        model.steps = vec![step(1e-3, 100, with(scheme), supports)];
+        model.steps = vec![step(1e-3, 100, settings(scheme), supports)];
         let (keep, summary) = run_to_end(&model);
         let last = last(&keep);
-        let largest_energy = largest(&keep, |r| energy(r).max(r.energy.external_work));
+        let largest_energy = largest(&keep.reports, |r| energy(r).max(r.energy.external_work));
         println!("{:?} {} passes", last.energy, summary.solver.passes);
         assert!(last.energy.damping > 1e-3 * largest_energy);
         assert!(last.energy.friction_dissipation > 1e-3 * largest_energy);
-        assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * largest_energy);
+        assert!(largest(&keep.reports, |r| r.energy.balance.abs()) < 1e-12 * largest_energy);
     }
 }
 
@@ -344,7 +329,7 @@ fn landings_of_damped_bodies_give_back_energy_and_keep_momenta() {
             assert!(linear < 1e-13 && angular < 2e-13);
             assert!(last.energy.landing_return > 1e-4 * energy(first));
             assert!(last.energy.damping > 1e-2 * energy(first));
-            assert!(largest(&keep, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
+            assert!(largest(&keep.reports, |r| r.energy.balance.abs()) < 1e-12 * energy(first));
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::blocks::{
     Block, Keep, PAPER, SCHEMES, add_block, add_contact, fixed, gravity, model, run_to_end, step,
     throw,
 };
+use crate::energies::energy;
 use stickslip::dynamics::{IncrementReport, Landing, RunSummary};
 use stickslip::model::{ContactFormulation, ImpactTime, Model, Scheme, Settings};
 
@@ -76,15 +77,11 @@ fn landings(keep: &Keep) -> Vec<Landing> {
     all.copied().collect()
 }
 
-fn total(report: &IncrementReport) -> f64 {
-    report.energy.kinetic + report.energy.strain
-}
-
 /// Energy never rises, and the gaps at the ends of all increments are closed but for round-off.
 fn check(keep: &Keep, what: &str) {
-    let scale = keep.reports.iter().map(total).fold(0.0, f64::max);
+    let scale = keep.reports.iter().map(energy).fold(0.0, f64::max);
     for pair in keep.reports.windows(2) {
-        let rise = total(&pair[1]) - total(&pair[0]);
+        let rise = energy(&pair[1]) - energy(&pair[0]);
         let work = pair[1].energy.external_work - pair[0].energy.external_work;
         assert!(
             rise - work <= 1e-9 * scale,
@@ -183,7 +180,7 @@ fn free_bodies_keep_their_momenta_through_impacts() {
             model.steps[0].settings.impact_time = ImpactTime::Event;
             let (keep, summary) = run_to_end(&model);
             let first = &keep.reports[0];
-            let scale = (2.0 * total(first)).sqrt();
+            let scale = (2.0 * energy(first)).sqrt();
             let worst = keep
                 .reports
                 .iter()
@@ -204,17 +201,17 @@ fn free_bodies_keep_their_momenta_through_impacts() {
                 summary.events,
                 summary.increments,
                 landings(&keep).len(),
-                total(last) / total(first),
-                last.energy.normal_contact_work / total(first),
+                energy(last) / energy(first),
+                last.energy.normal_contact_work / energy(first),
             );
             assert!(summary.events > 3 && worst[0] < 1e-9);
             assert!(scheme == PAPER || worst[1] < 1e-9);
-            assert!(last.energy.balance.abs() < 1e-8 * total(first));
+            assert!(last.energy.balance.abs() < 1e-8 * energy(first));
             if scheme == Scheme::EnergyMomentum {
                 check(&keep, "oblique");
                 // the default rule takes a thirtieth of the energy here
                 let work = last.energy.normal_contact_work;
-                assert!(work.abs() < 1e-5 * total(first), "{work:e}");
+                assert!(work.abs() < 1e-5 * energy(first), "{work:e}");
             }
         }
     }
@@ -275,7 +272,7 @@ fn bars_of_unlike_mesh_meet_at_their_time() {
         let off = |l: &Landing| (l.time - gap / closing).abs();
         let worst = landings[..4].iter().map(off).fold(0.0, f64::max);
         let (first, last) = (&keep.reports[0], keep.reports.last().unwrap());
-        let [start, end] = [first, last].map(total);
+        let [start, end] = [first, last].map(energy);
         let drift = |r: &IncrementReport| {
             let d = |i: usize| r.momentum.linear[i] - first.momentum.linear[i];
             d(0).hypot(d(1))

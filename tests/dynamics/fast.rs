@@ -53,6 +53,20 @@ impl Bodies {
         self.model.steps = vec![step(dt, count, settings, dofs.map(fixed).collect())];
     }
 
+    /// Runs to the end: the bodies touch, and no node of the block goes through the plate.
+    fn land(&self, what: &str) {
+        let (keep, summary) = run_to_end(&self.model);
+        let depth = self.depth(&keep);
+        println!(
+            "{what}: depth {:.1e} elements, {} increments, {} cutbacks, {} of them for crossings",
+            depth / SIZE,
+            summary.increments,
+            summary.cutbacks,
+            crossings(&keep),
+        );
+        assert!(touch(&keep) && depth < 1e-9 * SIZE, "{depth:e}");
+    }
+
     /// Depth of the deepest node of the block below the upper side of the plate.
     fn depth(&self, keep: &Keep) -> f64 {
         let in_report = |u: &[f64]| {
@@ -99,17 +113,7 @@ fn a_fast_bullet_does_not_go_through_a_thin_plate() {
                 throw(model, block, [0.0, -speed], 0.0, [0.0; 2]);
                 let dt = elements * SIZE / speed;
                 bodies.step(scheme, dt, (8.0 / (speed * dt)).ceil() as usize);
-                let (keep, summary) = run_to_end(&bodies.model);
-                let depth = bodies.depth(&keep);
-                println!(
-                    "{scheme:?} {elements} {angle}: depth {:.1e} elements, {} increments, {} \
-                     cutbacks, {} of them for crossings",
-                    depth / SIZE,
-                    summary.increments,
-                    summary.cutbacks,
-                    crossings(&keep),
-                );
-                assert!(touch(&keep) && depth < 1e-9 * SIZE, "{depth:e}");
+                bodies.land(&format!("{scheme:?} {elements} {angle}"));
             }
         }
     }
@@ -126,17 +130,7 @@ fn a_body_that_gathers_speed_in_an_increment_does_not_go_through_a_thin_plate() 
             let first = bodies.block.first_element;
             let pull = |element| gravity(element, 2.0 * elements * SIZE / (dt * dt));
             bodies.model.steps[0].body_forces = (first..first + 4).map(pull).collect();
-            let (keep, summary) = run_to_end(&bodies.model);
-            let depth = bodies.depth(&keep);
-            println!(
-                "{scheme:?} {elements}: depth {:.1e} elements, {} increments, {} cutbacks, {} of \
-                 them for crossings",
-                depth / SIZE,
-                summary.increments,
-                summary.cutbacks,
-                crossings(&keep),
-            );
-            assert!(touch(&keep) && depth < 1e-9 * SIZE, "{depth:e}");
+            bodies.land(&format!("{scheme:?} {elements}"));
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Energy and momentum of free bodies, with and without contact.
 
-use crate::blocks::{Keep, add_block, add_contact, model, run_to_end, step, throw};
+use crate::blocks::{Keep, add_block, add_contact, model, run_to_end, step, stretch, throw};
+use crate::energies::energy;
 use stickslip::model::{Model, Scheme, Settings};
 
 /// Largest change of energy and of the momenta, relative to their scales.
 pub fn drift(keep: &Keep) -> [f64; 3] {
     let first = &keep.reports[0];
-    let energy = |r: &stickslip::dynamics::IncrementReport| r.energy.kinetic + r.energy.strain;
     let speed = (2.0 * energy(first)).sqrt();
     keep.reports.iter().fold([0.0; 3], |worst, r| {
         let linear = (0..2)
@@ -27,10 +27,7 @@ fn spinning_bar(settings: Settings) -> Model {
     let mut model = model(1e4, 0.3, 1.0);
     let bar = add_block(&mut model, [0.0, 0.0], [10.0, 1.0], (20, 2), 0.0);
     throw(&mut model, &bar, [1.0, 2.0], 1.0, [5.0, 0.5]);
-    for node in bar.nodes() {
-        let x = model.mesh.coordinates[node][0] - 5.0;
-        model.initial_velocity[2 * node] += 0.5 * x;
-    }
+    stretch(&mut model, &bar, 0.5, 5.0);
     model.steps = vec![step(0.02, 300, settings, Vec::new())];
     model
 }

@@ -1,6 +1,6 @@
 //! Energy that landings take is given back: `*STICKSLIP, LANDING=RETURN`.
 
-use stickslip::dynamics::{IncrementReport, Touch};
+use stickslip::dynamics::Touch;
 use stickslip::model::{
     Face, Impact, ImpactTime, LandingRule, Model, Scheme, Settings, Support, SupportMotion,
 };
@@ -9,6 +9,7 @@ use crate::accounts::{MASSES, all_exterior, near};
 use crate::blocks::{
     Block, Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw,
 };
+use crate::energies::energy;
 use crate::invariants::{drift, oblique_impact};
 
 fn settings() -> Settings {
@@ -26,10 +27,6 @@ fn with(mut model: Model, change: impl Fn(&mut Settings)) -> Model {
     model
 }
 
-fn total(report: &IncrementReport) -> f64 {
-    report.energy.kinetic + report.energy.strain
-}
-
 /// The balance is round-off, all that normal contact forces take is given back, contact by contact, and
 /// energy that nothing brings in never rises. Returns the energy given back as a part of the start.
 fn check(keep: &Keep, what: &str) -> f64 {
@@ -38,7 +35,7 @@ fn check(keep: &Keep, what: &str) -> f64 {
 
 /// The same, where the bounds of the returns lose at most the part `lost` of the energy.
 fn check_but_for(keep: &Keep, what: &str, lost: f64) -> f64 {
-    let scale = keep.reports.iter().map(total).fold(0.0, f64::max);
+    let scale = keep.reports.iter().map(energy).fold(0.0, f64::max);
     for pair in keep.reports.windows(2) {
         let (before, after) = (&pair[0].energy, &pair[1].energy);
         assert!(
@@ -50,7 +47,7 @@ fn check_but_for(keep: &Keep, what: &str, lost: f64) -> f64 {
         let least = -(1e-10 + lost) * scale;
         assert!(taken > least && taken < 1e-10 * scale, "{what}: {taken:e}");
         let work = after.external_work - before.external_work;
-        let rise = total(&pair[1]) - total(&pair[0]) - work;
+        let rise = energy(&pair[1]) - energy(&pair[0]) - work;
         assert!(rise < 1e-10 * scale, "{what}: {rise:e}");
         let of_contacts = pair[1].contacts.iter().map(|c| c.landing_return);
         near(of_contacts.sum(), after.landing_return, scale);
@@ -59,7 +56,7 @@ fn check_but_for(keep: &Keep, what: &str, lost: f64) -> f64 {
             assert!(outside < 2e-9, "{what}: {outside:e} at {}", pair[1].time);
         }
     }
-    keep.reports.last().expect("reports").energy.landing_return / total(&keep.reports[0])
+    keep.reports.last().expect("reports").energy.landing_return / energy(&keep.reports[0])
 }
 
 /// A square of one stiff element falls flat with the speed 2 on a fixed plate, `way` increments away.

@@ -9,6 +9,7 @@ use stickslip::model::{
 use crate::blocks::{
     Block, SCHEMES, add_block, add_contact, fixed, gravity, model, run_to_end, settings, step,
 };
+use crate::energies::{energy, largest};
 
 /// A free block 2 x 1 of mass 2.
 fn free_block() -> (Model, Block) {
@@ -18,9 +19,8 @@ fn free_block() -> (Model, Block) {
 }
 
 fn balance_closes(reports: &[IncrementReport]) {
-    let largest = |f: fn(&IncrementReport) -> f64| reports.iter().map(f).fold(0.0, f64::max);
-    let energy = largest(|r| r.energy.kinetic + r.energy.strain);
-    let balance = largest(|r| r.energy.balance.abs());
+    let energy = largest(reports, energy);
+    let balance = largest(reports, |r| r.energy.balance.abs());
     assert!(balance < 1e-9 * energy, "{balance:e} of {energy:e}");
 }
 

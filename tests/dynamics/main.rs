@@ -10,6 +10,7 @@ mod contact_changes;
 mod contact_energy;
 mod damping;
 mod elastic_bar;
+mod energies;
 mod equations;
 mod events;
 mod facing;
@@ -32,6 +33,8 @@ mod on_and_off;
 mod owners;
 mod patch;
 mod quasi_static;
+#[path = "../shared/reading.rs"]
+mod reading;
 mod redistributed_mass;
 mod released;
 mod rest;

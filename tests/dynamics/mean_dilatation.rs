@@ -52,20 +52,26 @@ fn linear_solution(model: &Model, forces: &[(usize, f64)], held: &[usize]) -> DV
     k.lu().solve(&f).expect("the body is held")
 }
 
+/// Displacements of a block that is held at its left end under a vertical force, spread over its right end.
+fn sheared(model: &Model, block: &Block, force: f64) -> DVector<f64> {
+    let (nx, ny) = (block.nx, block.ny);
+    let held: Vec<usize> = (0..=ny)
+        .flat_map(|j| [2 * block.node(0, j), 2 * block.node(0, j) + 1])
+        .collect();
+    let share = |j: usize| if j == 0 || j == ny { 0.5 } else { 1.0 };
+    let forces: Vec<(usize, f64)> = (0..=ny)
+        .map(|j| (2 * block.node(nx, j) + 1, force * share(j) / ny as f64))
+        .collect();
+    linear_solution(model, &forces, &held)
+}
+
 /// Tip deflection of a cantilever 10 x 1 of 10 n x n elements over that of beam theory with shear,
 /// in plane strain.
 fn cantilever(element_type: ElementType, nu: f64, n: usize) -> f64 {
     let mut model = model(1000.0, nu, 1.0);
     let block: Block = add_block(&mut model, [0.0, 0.0], [10.0, 1.0], (10 * n, n), 0.0);
     set_type(&mut model, element_type);
-    let held: Vec<usize> = (0..=n)
-        .flat_map(|j| [2 * block.node(0, j), 2 * block.node(0, j) + 1])
-        .collect();
-    let share = |j: usize| if j == 0 || j == n { 0.5 } else { 1.0 };
-    let forces: Vec<(usize, f64)> = (0..=n)
-        .map(|j| (2 * block.node(10 * n, j) + 1, share(j) / n as f64))
-        .collect();
-    let u = linear_solution(&model, &forces, &held);
+    let u = sheared(&model, &block, 1.0);
     // P L³/(3 E' I) + P L/(5/6 G h), E' = E/(1 - nu²), I = h³/12
     let bending = 12.0 * 1000.0 / 3.0 * (1.0 - nu * nu) / 1000.0;
     let shear = 10.0 / (5.0 / 6.0 * 1000.0 / (2.0 * (1.0 + nu)));
@@ -96,14 +102,7 @@ fn cook(element_type: ElementType, n: usize) -> f64 {
         *x = [48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)];
     }
     set_type(&mut model, element_type);
-    let held: Vec<usize> = (0..=n)
-        .flat_map(|j| [2 * block.node(0, j), 2 * block.node(0, j) + 1])
-        .collect();
-    let share = |j: usize| if j == 0 || j == n { 0.5 } else { 1.0 };
-    let forces: Vec<(usize, f64)> = (0..=n)
-        .map(|j| (2 * block.node(n, j) + 1, 100.0 * share(j) / n as f64))
-        .collect();
-    linear_solution(&model, &forces, &held)[2 * block.node(n, n) + 1]
+    sheared(&model, &block, 100.0)[2 * block.node(n, n) + 1]
 }
 
 #[test]

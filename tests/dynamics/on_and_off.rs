@@ -4,7 +4,7 @@
 use stickslip::dynamics::{Energy, IncrementReport, RunSummary};
 
 use crate::blocks::{Keep, run_to_end};
-use crate::turning::read;
+use crate::reading::read;
 
 fn largest(report: &IncrementReport) -> f64 {
     let sizes = report.state.u.iter().map(|u| u.abs());

@@ -3,13 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use stickslip::diagnostics::{Diagnostics, Severity, Sources};
+use stickslip::diagnostics::Severity;
 use stickslip::dynamics::{IncrementReport, Outcome};
 use stickslip::model::{Equation, Model};
-use stickslip::{deck, reader};
 
 use crate::blocks::{Keep, run, run_to_end};
-use crate::turning::read;
+use crate::reading::{read, try_read};
 
 /// A block of two elements on a support, and a block on it that nothing joins to it; node 90 belongs to neither.
 const BASE: &str = "*NODE\n1, 0., 0.\n2, 1., 0.\n5, 1., .5\n6, 0., .5\n3, 1., 1.\n4, 0., 1.\n11, 0., 1.\n12, 1., 1.\n\
@@ -114,9 +113,8 @@ fn meet(features: &[usize], node: &str) -> Result<Model, Vec<(String, Option<Str
     let text = format!(
         "{BASE}{model}*STEP, NLGEOM\n*DYNAMIC, DIRECT\n.002, .006\n{step}*DLOAD\nB, GRAV, 1., 0., -1.\n*END STEP\n"
     );
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    reader::build(&deck, &mut d).ok_or_else(|| {
+    let (model, d, _) = try_read(&text);
+    model.ok_or_else(|| {
         let errors = d.iter().filter(|item| item.severity == Severity::Error);
         let other = errors.map(|item| {
             let other = item.other.as_ref().map(|(what, _)| what.clone());

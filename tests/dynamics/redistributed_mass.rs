@@ -1,16 +1,17 @@
 //! Redistributed mass at contact surfaces: free flight, impacts, gravity, supports, equations.
 
-use crate::blocks::{Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, throw};
+use crate::blocks::{
+    Keep, add_block, add_contact, fixed, gravity, model, run_to_end, step, stretch, throw,
+};
 use crate::invariants::drift;
+use crate::reading::try_read;
 use crate::statics::run_deck;
-use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{
     Amplitude, ContactMass, Curve, Equation, ImpactTime, LandingRule, Load, Model, PointLoad,
     Settings, Support, SupportMotion, TimeBase, Variation,
 };
 use stickslip::prepare::PreparedModel;
-use stickslip::{deck, reader};
 
 fn redistributed() -> Settings {
     Settings {
@@ -53,10 +54,7 @@ fn free_flight_keeps_energy_and_both_momenta() {
     let mut model = model(1e4, 0.3, 1.0);
     let bar = add_block(&mut model, [0.0, 0.0], [10.0, 1.0], (20, 4), 0.0);
     throw(&mut model, &bar, [1.0, 2.0], 1.0, [5.0, 0.5]);
-    for node in bar.nodes() {
-        let x = model.mesh.coordinates[node][0] - 5.0;
-        model.initial_velocity[2 * node] += 0.5 * x;
-    }
+    stretch(&mut model, &bar, 0.5, 5.0);
     let skin = model.mesh.exterior_faces();
     add_contact(&mut model, skin.clone(), skin, 0.0);
     model.steps = vec![step(0.02, 200, redistributed(), Vec::new())];
@@ -252,11 +250,7 @@ fn messages(steps: [&str; 2]) -> String {
     let (head, rest) = text.split_once("*STEP").expect("a step");
     let (_, body) = rest.split_once('\n').expect("lines");
     let steps = steps.map(|card| format!("*STEP, NLGEOM\n{card}\n{body}"));
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let text = format!("{head}{}", steps.concat());
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    reader::build(&deck, &mut d);
-    d.render(&sources, false)
+    try_read(&format!("{head}{}", steps.concat())).2
 }
 
 #[test]

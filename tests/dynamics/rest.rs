@@ -1,17 +1,7 @@
 //! Bodies that come to rest stay at rest: what is left of a motion is nothing, and is no scale of anything.
 
 use crate::blocks::{Keep, run_to_end};
-use stickslip::deck;
-use stickslip::diagnostics::{Diagnostics, Sources};
-use stickslip::model::Model;
-use stickslip::reader;
-
-fn model(text: &str) -> Model {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
-}
+use crate::reading::read;
 
 /// A block of `nx` x `ny` Q4 with its corner at the origin given, its nodes and elements numbered from the numbers
 /// given.
@@ -97,7 +87,7 @@ fn sliding_block(case: &Case, damping: &str, increments: usize) -> Keep {
         true => String::new(),
         false => format!("*STICKSLIP, {settings}\n"),
     };
-    let keep = run_to_end(&model(&format!(
+    let keep = run_to_end(&read(&format!(
         "*NODE\n{floor}*NODE, NSET=BODY\n{body}*NSET, NSET=HELD, GENERATE\n1, 122, 1\n\
          *ELEMENT, TYPE={element}, ELSET=LOW\n{of_floor}*ELEMENT, TYPE={element}, ELSET=UP\n{of_body}\
          *SURFACE, NAME=TOP\nLOW, S3\n*SURFACE, NAME=FOOT\n61, S1\n62, S1\n63, S1\n64, S1\n\
@@ -188,7 +178,7 @@ fn a_load_far_away_does_not_underflow_at_a_contact() {
         let tie = |n: usize, dof: usize| format!("2\n{}, {dof}, 1., {n}, {dof}, -1.\n", n + 1);
         let rows = (3..1604).step_by(2);
         let ties: String = rows.flat_map(|n| [tie(n, 1), tie(n, 2)]).collect();
-        let keep = run_to_end(&model(&format!(
+        let keep = run_to_end(&read(&format!(
             "*NODE\n{below}{above}*ELEMENT, TYPE=CPE4, ELSET=BARS\n{of_below}{of_above}\
              *MATERIAL, NAME=M\n*ELASTIC\n10000, 0\n*DENSITY\n1\n*SOLID SECTION, ELSET=BARS, MATERIAL=M\n\
              *EQUATION\n{ties}*SURFACE, NAME=U\n400, S3\n*SURFACE, NAME=L\n401, S1\n*SURFACE, NAME=TOP\n800, S3\n\
@@ -227,7 +217,7 @@ fn a_motion_that_ends_with_a_static_step_gives_the_next_step_no_velocity() {
                  *STEP, NLGEOM\n*STATIC\n0.5, 1.\n{motion}*END STEP\n\
                  *STEP, NLGEOM\n*DYNAMIC, DIRECT\n1.e-3, 2.e-2\n*END STEP\n"
             );
-            let (keep, _) = run_to_end(&model(&text));
+            let (keep, _) = run_to_end(&read(&text));
             for report in &keep.reports {
                 let energy = &report.energy;
                 let is_at_rest = energy.kinetic <= 1e-20 * energy.strain;
@@ -252,7 +242,7 @@ fn reduced_metals_that_have_flowed_rest_in_whole_increments() {
                  *STEP, NLGEOM\n*STATIC\n.25, 1.\n*BOUNDARY\nTOP, 1, 1, .03\n*END STEP\n\
                  *STEP, NLGEOM\n*DYNAMIC, DIRECT\n.01, .1\n*END STEP\n"
             );
-            let (keep, _) = run_to_end(&model(&text));
+            let (keep, _) = run_to_end(&read(&text));
             let rest: Vec<_> = (keep.reports.iter().filter(|report| report.time > 1.0)).collect();
             assert_eq!(rest.len(), 10, "{family} {hardening}");
             for report in rest {

@@ -1,20 +1,16 @@
 //! A rigid surface, read from a deck, as a master.
 
-use std::path::Path;
-use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::{Model, SurfaceKind};
-use stickslip::{deck, reader};
 
 use crate::blocks::run_to_end;
+use crate::reading::read;
 
 /// Between impacts a square of mass 1 falls freely onto a floor that slides away below it with the
 /// velocity 0.5; the ledger closes with the work of the floor, and no node passes through it.
 #[test]
 fn a_square_on_a_sliding_floor() {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let path = Path::new("tests/decks/rigid_floor.inp");
-    let model = reader::read_model(path, &mut sources, &mut d).expect("a valid deck");
+    let model = read(include_str!("../decks/rigid_floor.inp"));
     let master = &model.surfaces[model.contacts[0].master];
     assert!(matches!(master.kind, SurfaceKind::Rigid(_)));
     let floor = master.nodes(&model.mesh);
@@ -70,11 +66,7 @@ fn with_contact(cards: &str) -> Model {
     let text = include_str!("../decks/rigid_floor.inp");
     let pair = "*CONTACT PAIR, INTERACTION=DRY\nBOT, FLOOR\n";
     assert!(text.contains(pair));
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let text = text.replacen(pair, cards, 1);
-    let deck = deck::parse_str("deck.inp", &text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
+    read(&text.replacen(pair, cards, 1))
 }
 
 /// General contact holds the rigid floor away from all exterior faces, with the assigned friction,
@@ -124,12 +116,7 @@ fn a_held_rigid_body_has_its_point_masses() {
     };
     let freed =
         "*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.05\n*BOUNDARY, OP=NEW\n9, 6, 6\n*END STEP\n";
-    let [held, freed] = ["", freed].map(|more| {
-        let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-        let deck = deck::parse_str("deck.inp", &deck(more), &mut sources, &mut d);
-        let model = reader::build(&deck, &mut d).expect("a valid deck");
-        run_to_end(&model).0.reports
-    });
+    let [held, freed] = ["", freed].map(|more| run_to_end(&read(&deck(more))).0.reports);
     for (a, b) in held.iter().zip(&freed).skip(1) {
         for (force, right) in a.rigid[0].force.into_iter().zip([15.0, 30.0]) {
             assert!((force - right).abs() < 1e-12, "{force} at {}", a.time);

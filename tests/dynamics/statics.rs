@@ -3,20 +3,15 @@
 use std::fmt::Write;
 
 use crate::blocks::Keep;
-use stickslip::deck;
-use stickslip::diagnostics::{Diagnostics, Sources};
+use crate::reading::read;
 use stickslip::dynamics::{Cause, Failure, Outcome, run};
 use stickslip::prepare::PreparedModel;
-use stickslip::reader;
 
 /// A run of a deck: what it has reported, and why it stopped.
 pub(crate) fn run_deck(text: &str) -> (Keep, Option<Failure>) {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    let model = model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)));
     let mut keep = Keep::default();
-    let summary = run(&PreparedModel::new(model), &mut keep).expect("the observer never fails");
+    let summary =
+        run(&PreparedModel::new(read(text)), &mut keep).expect("the observer never fails");
     let failure = match summary.outcome {
         Outcome::Stopped(failure) => Some(*failure),
         _ => None,

@@ -5,10 +5,8 @@
 //!  |=====|=====|=====|=====|       a foil of 4 elements, ends fixed
 //! ```
 
-use stickslip::diagnostics::Span;
 use stickslip::model::{
-    Contact, ContactFormulation, ElementType, Face, Interaction, Model, Settings, Surface,
-    SurfaceKind,
+    Contact, ElementType, Face, Interaction, Model, Settings, Surface, SurfaceKind,
 };
 use stickslip::prepare::PreparedModel;
 
@@ -39,17 +37,9 @@ fn foils(ratio: f64, layers: usize, triangles: bool, lifts: &[f64]) -> (Model, V
         name: "SKIN".into(),
         kind: SurfaceKind::Faces(faces),
     });
-    model.contacts.push(Contact {
-        slave: 0,
-        master: 0,
-        interaction: Interaction::default(),
-        formulation: ContactFormulation::default(),
-        lying_faces: None,
-        adjust: None,
-        left_out: Vec::new(),
-        is_interference_fit: false,
-        span: Span::default(),
-    });
+    model
+        .contacts
+        .push(Contact::new([0, 0], Interaction::default()));
     (model, foils)
 }
 

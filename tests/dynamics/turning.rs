@@ -1,20 +1,11 @@
 //! Rigid bodies that turn: by a prescribed angle, and freely, in contact.
 
-use stickslip::diagnostics::{Diagnostics, Sources};
 use stickslip::dynamics::IncrementReport;
-use stickslip::model::Model;
-use stickslip::{deck, reader};
 
 use crate::blocks::run_to_end;
+use crate::energies::{energy, largest, unbalanced};
+use crate::reading::read;
 use crate::statics::run_deck;
-
-/// The model of a deck.
-pub fn read(text: &str) -> Model {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
-}
 
 /// A square of one element with the side 2a about a point, its material, and its skin.
 fn square(first: usize, [x, y]: [f64; 2], a: f64, name: &str) -> String {
@@ -35,18 +26,6 @@ fn square(first: usize, [x, y]: [f64; 2], a: f64, name: &str) -> String {
 }
 
 const MATERIAL: &str = "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n";
-
-fn largest(reports: &[IncrementReport], f: impl Fn(&IncrementReport) -> f64) -> f64 {
-    reports.iter().map(f).fold(0.0, f64::max)
-}
-
-/// Largest energy balance, beside the largest energy.
-fn unbalanced(reports: &[IncrementReport]) -> f64 {
-    let energy = largest(reports, |r| {
-        (r.energy.kinetic + r.energy.strain).max(r.energy.external_work.abs())
-    });
-    largest(reports, |r| r.energy.balance.abs()) / energy
-}
 
 /// A rigid bar turns about its middle by 1.5 within the step and throws a free block.
 #[test]
@@ -303,10 +282,9 @@ fn landing_return_and_redistributed_mass_leave_bodies_out_that_turn() {
             "{settings}: {:e}",
             unbalanced(&reports)
         );
-        let total = |r: &IncrementReport| r.energy.kinetic + r.energy.strain;
         let start = &reports[0].momentum;
         for pair in reports.windows(2) {
-            assert!(total(&pair[1]) <= total(&pair[0]) * (1.0 + 1e-12));
+            assert!(energy(&pair[1]) <= energy(&pair[0]) * (1.0 + 1e-12));
             let now = &pair[1].momentum;
             (0..2).for_each(|i| assert!((now.linear[i] - start.linear[i]).abs() < 1e-12));
             assert!((now.angular - start.angular).abs() < 1e-11);

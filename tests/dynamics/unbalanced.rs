@@ -2,18 +2,9 @@
 //! energy in, and contacts that contradict each other.
 
 use crate::blocks::{Keep, add_block, fixed, model, run, step};
-use stickslip::deck;
-use stickslip::diagnostics::{Diagnostics, Sources};
+use crate::reading::read;
 use stickslip::dynamics::{Cause, Failure, Outcome};
 use stickslip::model::{Model, Settings};
-use stickslip::reader;
-
-fn read(text: &str) -> Model {
-    let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
-    let deck = deck::parse_str("deck.inp", text, &mut sources, &mut d);
-    let model = reader::build(&deck, &mut d);
-    model.unwrap_or_else(|| panic!("{}", d.render(&sources, false)))
-}
 
 fn stopped(model: &Model) -> (Keep, Box<Failure>) {
     let mut keep = Keep::default();

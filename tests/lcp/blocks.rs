@@ -1,7 +1,7 @@
 //! Frictional problems of coupled blocks: the block iteration finds the answer of Lemke's method, or says that
 //! it does not converge.
 
-use crate::problems::{drawn, states, unique};
+use crate::problems::{drawn, in_units, states, unique};
 use crate::random::Random;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -71,12 +71,8 @@ fn coupled(random: &mut Random, case: &Case, blocks: &[Vec<usize>]) -> Frictiona
             }
         }
     }
-    let mut problem = drawn(random, q, case.mu);
-    let (length, force) = (10f64.powi(case.units.0), 10f64.powi(case.units.1));
-    problem.q *= length / force;
-    problem.gap *= length;
-    problem.slip *= length;
-    problem
+    let units = [case.units.0, case.units.1].map(|exponent| 10f64.powi(exponent));
+    in_units(drawn(random, q, case.mu), units)
 }
 
 fn block(problem: &FrictionalLcp, contacts: &[usize]) -> LcpBlock {

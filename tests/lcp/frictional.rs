@@ -1,7 +1,7 @@
 //! Frictional problems with known answers, by both methods.
 
 use crate::block::block_delassus;
-use crate::problems::{drawn, duplicated, planted, states};
+use crate::problems::{drawn, duplicated, in_units, planted, states, without_self_stress};
 use crate::random::Random;
 use nalgebra::{DMatrix, DVector};
 use stickslip::lcp::ContactState::{Open, SlipMinus, SlipPlus, Stick};
@@ -226,12 +226,7 @@ fn units_do_not_matter() {
         let (problem, p) = planted(&mut random, q, DVector::from_element(n, 0.3), &truth);
         let mut unit = || 10f64.powf(random.range(-12.0, 12.0));
         let (length, force) = (unit(), unit());
-        let scaled = FrictionalLcp {
-            q: &problem.q * (length / force),
-            gap: &problem.gap * length,
-            slip: &problem.slip * length,
-            mu: problem.mu.clone(),
-        };
+        let scaled = in_units(problem, [length, force]);
         for method in METHODS {
             let s = solve(&scaled, method);
             assert!((s.pn / force - p.rows(0, n)).amax() < 1e-9);
@@ -251,12 +246,7 @@ fn powers_of_two_are_exact() {
             (2f64.powi(31), 2f64.powi(-8)),
             (2f64.powi(-40), 2f64.powi(17)),
         ] {
-            let scaled = FrictionalLcp {
-                q: &problem.q * (length / force),
-                gap: &problem.gap * length,
-                slip: &problem.slip * length,
-                mu: problem.mu.clone(),
-            };
+            let scaled = in_units(problem.clone(), [length, force]);
             for method in METHODS {
                 let (one, other) = (solve(&problem, method), solve(&scaled, method));
                 assert_eq!((one.pn * force, one.pt * force), (other.pn, other.pt));
@@ -319,22 +309,15 @@ fn non_unique_problems_have_a_valid_solution() {
     }
 }
 
-/// Q = B W B^T with more rows than degrees of freedom. The first of these sees the sum of all Pn
-/// and no Pt, which excludes self-stress: no ray, whatever gaps and mu.
+/// More rows than degrees of freedom, but no self-stress: no ray, whatever gaps and mu.
 #[test]
 fn no_ray_without_self_stress() {
     let mut random = Random(29);
     for case in 0..1000 {
         let (n, dofs) = (4 + case % 12, 3 + case % 5);
         let mu = [0.0, 0.3, 1.0, 3.0][case % 4];
-        let mut b = random.matrix(2 * n, dofs);
-        for i in 0..n {
-            b[(i, 0)] = 1.0;
-            b[(n + i, 0)] = 0.0;
-        }
-        let q = &b * random.gram(dofs, dofs, 0.1) * b.transpose();
-        let problem = drawn(&mut random, 0.5 * (&q + q.transpose()), mu);
-        solve_both(&problem);
+        let q = without_self_stress(&mut random, n, dofs);
+        solve_both(&drawn(&mut random, q, mu));
     }
 }
 

@@ -55,6 +55,26 @@ pub fn planted(
     (FrictionalLcp { q, gap, slip, mu }, p)
 }
 
+/// A random Q = B W B^T of few degrees of freedom. The first of these sees the sum of all Pn and no Pt, which excludes
+/// self-stress.
+pub fn without_self_stress(random: &mut Random, n: usize, dofs: usize) -> DMatrix<f64> {
+    let mut b = random.matrix(2 * n, dofs);
+    for i in 0..n {
+        b[(i, 0)] = 1.0;
+        b[(n + i, 0)] = 0.0;
+    }
+    let q = &b * random.gram(dofs, dofs, 0.1) * b.transpose();
+    0.5 * (&q + q.transpose())
+}
+
+/// A problem in units of length and force of these sizes.
+pub fn in_units(mut problem: FrictionalLcp, [length, force]: [f64; 2]) -> FrictionalLcp {
+    problem.q *= length / force;
+    problem.gap *= length;
+    problem.slip *= length;
+    problem
+}
+
 /// A problem with random gaps and slips.
 pub fn drawn(random: &mut Random, q: DMatrix<f64>, mu: f64) -> FrictionalLcp {
     let n = q.nrows() / 2;

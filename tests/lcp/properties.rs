@@ -1,7 +1,7 @@
 //! Random frictional problems of many kinds: all must be solved.
 
 use crate::block::block_delassus;
-use crate::problems::{drawn, duplicated, states, unique};
+use crate::problems::{drawn, duplicated, in_units, states, unique, without_self_stress};
 use crate::random::Random;
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -71,17 +71,7 @@ fn matrix(random: &mut Random, kind: Kind, n: usize) -> DMatrix<f64> {
     match kind {
         Kind::Gram => random.gram(2 * n, 2 * n, 0.01),
         Kind::Block(courant) | Kind::Twice(courant) => block_delassus(n, 3, courant),
-        Kind::FewDofs => {
-            // The first dof sees the sum of all Pn and no Pt.
-            let dofs = n.div_ceil(2) + 1;
-            let mut b = random.matrix(2 * n, dofs);
-            for i in 0..n {
-                b[(i, 0)] = 1.0;
-                b[(n + i, 0)] = 0.0;
-            }
-            let q = &b * random.gram(dofs, dofs, 0.1) * b.transpose();
-            0.5 * (&q + q.transpose())
-        }
+        Kind::FewDofs => without_self_stress(random, n, n.div_ceil(2) + 1),
     }
 }
 
@@ -104,11 +94,8 @@ fn problem(case: &Case, random: &mut Random) -> FrictionalLcp {
     if matches!(case.kind, Kind::Twice(_)) {
         problem = duplicated(&problem);
     }
-    let (length, force) = (10f64.powi(case.units.0), 10f64.powi(case.units.1));
-    problem.q *= length / force;
-    problem.gap *= length;
-    problem.slip *= length;
-    problem
+    let units = [case.units.0, case.units.1].map(|exponent| 10f64.powi(exponent));
+    in_units(problem, units)
 }
 
 fn close(a: &DVector<f64>, b: &DVector<f64>, scale: f64) -> bool {

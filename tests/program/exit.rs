@@ -8,7 +8,8 @@ use tempfile::TempDir;
 /// being written here, and with it the lock.
 const NO_LOCKS: (&str, &str) = ("HDF5_USE_FILE_LOCKING", "FALSE");
 
-fn stickslip(arguments: &[&str]) -> (i32, String, String) {
+/// Exit code, standard output and standard error of the program.
+pub fn stickslip(arguments: &[&str]) -> (i32, String, String) {
     let mut command = Command::cargo_bin("stickslip").expect("binary");
     command.env(NO_LOCKS.0, NO_LOCKS.1);
     let output = command.args(arguments).output().expect("started");

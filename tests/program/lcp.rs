@@ -3,24 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Exit code and output of the program.
-fn stickslip(arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::cargo_bin("stickslip")
-        .expect("binary")
-        .args(arguments)
-        .output()
-        .expect("started");
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (
-        output.status.code().expect("ended"),
-        text(&output.stdout),
-        text(&output.stderr),
-    )
-}
+use crate::exit::stickslip;
 
 /// Solves a problem given as text.
 fn solve(folder: &Path, problem: &str) -> (i32, Value) {

@@ -11,7 +11,6 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use stickslip::diagnostics::Span;
 use stickslip::dynamics::{
     BodyResult, ContactImpulse, ContactResultant, Energy, FrictionResults, IncrementReport,
     Landing, Momentum, NodalResults, NodeStatus, Observer, Outcome, PassReport, RunSummary,
@@ -20,10 +19,9 @@ use stickslip::dynamics::{
 use stickslip::elements::{ElementResult, Strained};
 use stickslip::materials::Law;
 use stickslip::model::{
-    Contact, ContactChanges, ContactFormulation, Damping, Element, ElementType, Face, Frames,
-    Friction, HistorySet, Incrementation, Increments, Interaction, Material, Mesh, Model,
-    NamedSets, NodalVariable, Procedure, RequestedFields, Section, Set, Settings, Step, Support,
-    SupportMotion, Surface, SurfaceKind,
+    Contact, Damping, Element, ElementType, Face, Frames, Friction, HistorySet, Increments,
+    Interaction, Material, Mesh, Model, NamedSets, NodalVariable, RequestedFields, Section, Set,
+    Step, Support, SupportMotion, Surface, SurfaceKind,
 };
 use stickslip::output::{Claim, Earlier, JobFiles, ResultWriter, RunRecord, Verbosity};
 
@@ -136,48 +134,23 @@ fn face(element: usize, side: usize) -> Face {
 }
 
 fn contact() -> Contact {
-    Contact {
-        slave: 0,
-        master: 1,
-        interaction: Interaction {
-            name: "DRY".into(),
-            friction: Friction::constant(0.3),
-            ..Interaction::default()
-        },
-        formulation: ContactFormulation::default(),
-        lying_faces: None,
-        adjust: None,
-        left_out: Vec::new(),
-        is_interference_fit: false,
-        span: Span::default(),
-    }
+    let dry = Interaction {
+        name: "DRY".into(),
+        friction: Friction::constant(0.3),
+        ..Interaction::default()
+    };
+    Contact::new([0, 1], dry)
 }
 
 fn step() -> Step {
     let to = SupportMotion::Ramp { to: 0.0 };
     Step {
-        name: None,
-        procedure: Procedure::Dynamic,
-        increments: Increments {
-            dt: 0.1,
-            period: 1.0,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        },
-        settings: Settings::default(),
         supports: vec![
             Support { dof: 0, motion: to },
             Support { dof: 1, motion: to },
         ],
-        point_loads: vec![],
-        body_forces: vec![],
-        centrifugal_forces: vec![],
-        pressures: vec![],
-        tractions: vec![],
-        interferences: vec![],
-        contacts: ContactChanges::default(),
         frames: Frames::Count(5),
+        ..Step::new(Increments::fixed(0.1, 1.0))
     }
 }
 

@@ -1,13 +1,13 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use super::acceleration::Acceleration;
+use super::acceleration::PassAcceleration;
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
 use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
 use super::impulses::EarlierPass;
-use super::linear_pass::{SkewPart, Vectors, close_hinges, k_star};
+use super::linear_pass::{SkewPart, Vectors, close_hinges};
 use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
@@ -264,7 +264,7 @@ impl<'m> Attempt<'_, 'm> {
         let closed = self.guess.map_or(&start.contact, |path| &path.closed);
         let mut contact = ContactStates::new(closed, self.set, choice);
         let mut equal_forces = EqualForces::new(problem.settings.tolerance);
-        let mut acceleration = Acceleration::default();
+        let mut acceleration = PassAcceleration::new();
         let mut pins = PinState::new(
             self.guess
                 .map_or(HeldMotions::default(), |path| path.held.clone()),
@@ -451,7 +451,7 @@ impl<'m> Attempt<'_, 'm> {
         v: &mut Vectors,
     ) -> Result<Vec<f64>, Cause> {
         let closing = close_hinges(self.problem, self.workspace, v)?;
-        let mut k_star = k_star(self.problem, self.workspace);
+        let mut k_star = self.workspace.k();
         if self.problem.integration.has_rates {
             contact.solve([&v.closing, &v.load], weight, &mut k_star, &mut v.du)?;
             return Ok(closing);
@@ -656,7 +656,7 @@ impl<'m> Attempt<'_, 'm> {
         is_balanced: bool,
     ) -> Result<Solved, Cause> {
         contact.take_left_out(self.problem, &v.u);
-        let v0p = (contact.impulses).velocity(self.problem, self.workspace, self.start)?;
+        let v0p = (contact.impulses).velocity(self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);
         (self.problem.unknowns.turning).turn([&self.start.u, d], &mut u);
         let mut equilibrium = std::mem::take(&mut v.equilibrium);

@@ -3,10 +3,11 @@
 
 use smallvec::SmallVec;
 
-use super::contact_system::{ContactSystem, FEW, Guess, Response};
+use super::contact_system::{FEW, Guess, Response};
 use crate::contact::tolerances::SETTLED_OVERLAP;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
+use crate::dynamics::step::System;
 
 /// Constraints with the forces (or impulses) of those that are closed.
 #[derive(Debug, Clone, Default)]
@@ -114,7 +115,7 @@ impl ContactForces {
         &mut self,
         [d_p, r]: [&[f64]; 2],
         weight: Option<f64>,
-        system: &mut ContactSystem,
+        system: &mut System,
         du: &mut Vec<f64>,
     ) -> Result<(), Cause> {
         (self.problem_size, self.pivots) = (0, 0);
@@ -142,7 +143,7 @@ impl ContactForces {
             terms.clear();
             terms.extend(chosen(free, inside));
             guess.take_over(&constraints, before, weight);
-            self.pivots += system.solve(
+            self.pivots += system.solve_contact(
                 &constraints,
                 terms,
                 guess,
@@ -188,7 +189,7 @@ fn chosen<'c, 'i, T>(
 mod tests {
     use super::*;
     use crate::contact::{Rows, testing};
-    use crate::dynamics::step::{FactoredMatrix, Meter, System};
+    use crate::dynamics::step::{FactoredMatrix, Meter};
     use crate::lcp::{ContactState, LcpMethod};
     use crate::linear::{Assembled, Transformation, linear_solver};
     use crate::model::SolverChoice;
@@ -218,13 +219,11 @@ mod tests {
         let elements: Vec<Vec<usize>> = (0..DOFS).map(|dof| vec![dof, (dof + 1) % DOFS]).collect();
         let mut stiffness = Assembled::new(&map, &elements);
         (0..DOFS).for_each(|dof| stiffness.add(dof, &[1.0, 0.0, 0.0, 1.0], 1.0));
-        let mut matrix = FactoredMatrix::new(linear_solver(SolverChoice::Faer), stiffness, &map);
+        let mut matrix =
+            FactoredMatrix::new((linear_solver(SolverChoice::Faer), method), stiffness, &map);
         matrix.factorize().expect("positive definite");
         let mut meter = Meter::default();
-        let mut system = ContactSystem {
-            system: System::new(&mut matrix, &mut meter),
-            method,
-        };
+        let mut system = System::new(&mut matrix, &mut meter);
         let mut forces = ContactForces::default();
         forces.relinearize(&mut vec![wide(mu)]);
         let mut du = Vec::new();

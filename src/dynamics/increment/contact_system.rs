@@ -18,12 +18,6 @@ use crate::lcp::{
 };
 use crate::linear::LinearError;
 
-/// A system matrix with what its complementarity problems need.
-pub(crate) struct ContactSystem<'a> {
-    pub system: System<'a>,
-    pub method: LcpMethod,
-}
-
 /// What a complementarity problem starts from.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Guess {
@@ -66,7 +60,7 @@ impl Guess {
     }
 }
 
-impl ContactSystem<'_> {
+impl System<'_> {
     /// Forces of the given constraints from the constant terms of their gaps and slips: the pairs that carry one are
     /// `closed`; returns the pivots that it took. With their response, many are solved by blocks where that gains.
     ///
@@ -74,7 +68,7 @@ impl ContactSystem<'_> {
     /// solved: Q is then symmetric and the theorem of section 8 holds, so that a ray says that pairs
     /// contradict each other. Where pairs are so nearly one that round-off spoils both problems, the answer
     /// near the forces before is taken.
-    pub(super) fn solve(
+    pub(super) fn solve_contact(
         &mut self,
         constraints: &[&Constraint],
         constant_terms: &[[f64; 2]],
@@ -130,18 +124,18 @@ impl ContactSystem<'_> {
         closed: &mut ClosedPairs,
     ) -> Result<usize, Cause> {
         let mut problem =
-            (self.system).frictional_lcp(&ConstraintGroup::All, constraints, constant_terms)?;
+            self.frictional_lcp(&ConstraintGroup::All, constraints, constant_terms)?;
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
-        match self.system.solve_lcp(&problem, &guess.states, self.method) {
+        match self.solve_lcp(&problem, &guess.states) {
             Ok(solution) => {
-                self.system.take_back(problem);
+                self.take_back(problem);
                 let forces = solution.pn.iter().zip(&solution.pt);
                 let forces = forces.map(|(&pn, &pt)| [pn, pt]);
                 closed.set(closed_of(constraints, forces, &solution.state));
                 let pivots = solution.counters.pivots;
-                self.system.take_back_solution(solution);
+                self.take_back_solution(solution);
                 Ok(pivots)
             }
             Err(error) => {
@@ -149,15 +143,6 @@ impl ContactSystem<'_> {
                 Err(Cause::Lcp(Box::new(failed)))
             }
         }
-    }
-
-    /// y + W load, both over all dofs, W being the inverse of the matrix.
-    pub fn respond(&mut self, y: &[f64], load: &[f64]) -> Result<Vec<f64>, LinearError> {
-        self.system.begin(load)?;
-        let mut response = Vec::new();
-        self.system.end(y, &mut response)?;
-        self.system.check()?;
-        Ok(response)
     }
 }
 
@@ -221,7 +206,7 @@ struct GapsAndSlips<'r, 'a> {
 
 impl GapsAndSlips<'_, '_> {
     /// g + G W B^T P + eps diag(Q) (P - P^0), g being gaps and slips without these forces.
-    fn under(&mut self, system: &mut ContactSystem, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    fn under(&mut self, system: &mut System, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let constraints = self.constraints.iter().copied();
         let acting = constraints.clone().zip(forces.iter().copied());
         self.response.set_forces(system, acting);
@@ -237,14 +222,14 @@ impl GapsAndSlips<'_, '_> {
 /// The blocks of a problem, with eps Q_kk of all its constraints.
 type ProblemBlocks = (Vec<LcpBlock>, Vec<[f64; 2]>);
 
-impl ContactSystem<'_> {
+impl System<'_> {
     /// Positions of constraints by the bodies that they are between, or by parts of surfaces, if their problem is to be
     /// solved by blocks.
     pub(super) fn by_bodies(
         &self,
         constraints: &[&Constraint],
     ) -> Option<BTreeMap<ConstraintGroup, Vec<usize>>> {
-        let may_be_parted = self.method == LcpMethod::Hybrid && !self.system.couples_bodies();
+        let may_be_parted = self.method() == LcpMethod::Hybrid && !self.couples_bodies();
         if constraints.len() < LEAST || !may_be_parted {
             return None;
         }
@@ -258,9 +243,9 @@ impl ContactSystem<'_> {
             let are_small = within <= WITHIN * square(constraints.len());
             (are_small && LEAST_BLOCK * blocks.len() <= constraints.len()).then_some(blocks)
         };
-        let by_bodies = blocks_by(&|constraint| self.system.scope_of(constraint));
+        let by_bodies = blocks_by(&|constraint| self.scope_of(constraint));
         by_bodies.or_else(|| {
-            let parts = blocks_by(&|constraint| self.system.part_of(constraint, PART));
+            let parts = blocks_by(&|constraint| self.part_of(constraint, PART));
             parts.filter(|_| constraints.len() >= LEAST_PARTED)
         })
     }
@@ -299,19 +284,19 @@ impl ContactSystem<'_> {
             forces: near,
             free: free.to_vec(),
         };
-        let mut iteration = BlockIteration::new(blocks, start, self.method);
+        let mut iteration = BlockIteration::new(blocks, start, self.method());
         let mut progress = Progress::GoesOn;
         while progress == Progress::GoesOn {
-            progress = match self.system.solve_blocks(&mut iteration) {
+            progress = match self.solve_blocks(&mut iteration) {
                 Ok(forces) => iteration.take_in(&motion.under(self, &forces)),
                 Err(_) => Progress::Fails,
             };
         }
         let (solution, blocks) = iteration.end();
         for (scope, block) in by_bodies.into_keys().zip(blocks) {
-            self.system.keep(scope, block.kept);
+            self.keep(scope, block.kept);
         }
-        self.system.count_lcp(count, solution.counters);
+        self.count_lcp(count, solution.counters);
         if progress != Progress::Solved {
             return Ok(None);
         }
@@ -333,7 +318,7 @@ impl ContactSystem<'_> {
             let constraints: Vec<&Constraint> = contacts.iter().map(|&k| all[k]).collect();
             let n = constraints.len();
             let terms = vec![[0.0; 2]; n];
-            let mut problem = self.system.frictional_lcp(scope, &constraints, &terms)?;
+            let mut problem = self.frictional_lcp(scope, &constraints, &terms)?;
             if matches!(scope, ConstraintGroup::Part(..)) && n >= PART / 2 && is_coupled(&problem) {
                 return Ok(None);
             }
@@ -344,7 +329,7 @@ impl ContactSystem<'_> {
                     part
                 });
             }
-            let kept = self.system.take_kept(scope);
+            let kept = self.take_kept(scope);
             blocks.push(LcpBlock {
                 contacts: contacts.clone(),
                 problem,
@@ -376,11 +361,11 @@ impl<'a> Response<'a> {
     /// # Errors
     /// A matrix without factors.
     pub fn begin(
-        system: &mut ContactSystem,
+        system: &mut System,
         [start, f]: [&'a [f64]; 2],
         constraints: &[Constraint],
     ) -> Result<Self, LinearError> {
-        let mut vectors = system.system.take_vectors();
+        let mut vectors = system.take_vectors();
         let ResponseVectors {
             nodes,
             unknowns,
@@ -390,18 +375,18 @@ impl<'a> Response<'a> {
         } = &mut vectors;
         replace(nodes, constraints.iter().flat_map(Constraint::nodes));
         let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
-        let terms = dofs.flat_map(|dof| system.system.map().row(dof));
+        let terms = dofs.flat_map(|dof| system.map().row(dof));
         replace(unknowns, terms.map(|term| term.0));
         forces.clear();
         at_nodes.resize(start.len(), 0.0);
-        system.system.begin(f)?;
+        system.begin(f)?;
         Ok(Response { start, vectors })
     }
 
     /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far, 0 where that is nothing.
     pub fn gaps_and_slips<'c>(
         &mut self,
-        system: &mut ContactSystem,
+        system: &mut System,
         constraints: impl Iterator<Item = &'c Constraint>,
         found: &mut Vec<[f64; 2]>,
     ) {
@@ -413,15 +398,15 @@ impl<'a> Response<'a> {
             at_nodes: y,
             ..
         } = &mut self.vectors;
-        system.system.partial(unknowns, values);
+        system.partial(unknowns, values);
         let value = |unknown: &usize| values[unknowns.partition_point(|u| u < unknown)];
         for &node in nodes.iter() {
             let of_dof = |dof: usize| -> f64 {
-                let terms = system.system.map().derivative_row(dof);
+                let terms = system.map().derivative_row(dof);
                 terms.map(|(unknown, c)| c * value(&unknown)).sum()
             };
             let mut own = [of_dof(2 * node), of_dof(2 * node + 1)];
-            system.system.rotation().turn_node(node, &mut own);
+            system.rotation().turn_node(node, &mut own);
             (y[2 * node], y[2 * node + 1]) =
                 (start[2 * node] + own[0], start[2 * node + 1] + own[1]);
         }
@@ -436,7 +421,7 @@ impl<'a> Response<'a> {
     /// before; gaps and slips without them must have been asked for.
     pub fn set_forces<'c>(
         &mut self,
-        system: &mut ContactSystem,
+        system: &mut System,
         acting: impl Iterator<Item = (&'c Constraint, [f64; 2])>,
     ) {
         let forces = &mut self.vectors.forces;
@@ -444,14 +429,14 @@ impl<'a> Response<'a> {
         let before = forces.len();
         for (constraint, force) in acting {
             for (node, mut force) in constraint.nodal_forces(force) {
-                system.system.rotation().turn_node_back(node, &mut force);
+                system.rotation().turn_node_back(node, &mut force);
                 for (dof, force) in [2 * node, 2 * node + 1].into_iter().zip(force) {
-                    let terms = system.system.map().row(dof).iter();
+                    let terms = system.map().row(dof).iter();
                     forces.extend(terms.map(|&(unknown, c)| (unknown, c * force)));
                 }
             }
         }
-        system.system.add(forces);
+        system.add(forces);
         forces.drain(..before);
     }
 
@@ -459,13 +444,9 @@ impl<'a> Response<'a> {
     ///
     /// # Errors
     /// A solution that is not finite.
-    pub fn end(
-        self,
-        system: &mut ContactSystem,
-        response: &mut Vec<f64>,
-    ) -> Result<(), LinearError> {
-        system.system.give_back(self.vectors);
-        system.system.end(self.start, response)
+    pub fn end(self, system: &mut System, response: &mut Vec<f64>) -> Result<(), LinearError> {
+        system.give_back(self.vectors);
+        system.end(self.start, response)
     }
 }
 

@@ -483,7 +483,7 @@ impl<'a> Iterate<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Configurations, RowForm, Rows, testing};
+    use crate::contact::{Rows, testing};
     use crate::model::{Friction, FrictionLaw, Mesh, Model};
     use crate::prepare::redistribution_tests::block;
 
@@ -496,24 +496,14 @@ mod tests {
         .into()
     }
 
-    /// Whether a node at 1/4 of a segment of length 2 may end an increment of length 1 with the given gap, slip and
+    /// Whether [`testing::at_face`] may end an increment of length 1 with the given gap, slip and
     /// forces, none where it is open.
     fn obeys(
-        [gap, slip]: [f64; 2],
+        gap_and_slip: [f64; 2],
         friction: &Friction,
         closed: Option<([f64; 2], ContactState)>,
     ) -> bool {
-        let source = testing::face();
-        let mut u = [0.0; 6];
-        // the tangent of the segment from 0 to -2 is -x
-        (u[0], u[1]) = (-slip, gap);
-        let at = Configurations {
-            form: RowForm::End,
-            x: &[[-0.5, 0.0], [0.0, 0.0], [-2.0, 0.0]],
-            u0: &[0.0; 6],
-            u: &u,
-        };
-        let mut constraint = Constraint::new(source, &at);
+        let mut constraint = testing::at_face(gap_and_slip);
         constraint.mu = friction.at(constraint.slip, 0.0);
         constraint.mu_varies = !friction.is_constant();
         let pair = closed.map(|(force, state)| ClosedPair::new(&constraint, force, state));

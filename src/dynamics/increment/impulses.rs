@@ -9,12 +9,12 @@ use std::borrow::Cow;
 use smallvec::{SmallVec, smallvec};
 
 use super::contact_forces::ContactForces;
-use super::contact_system::{ContactSystem, Guess, Response};
+use super::contact_system::{Guess, Response};
 use super::rigid_velocity::agreeing;
 use crate::contact::tolerances::SOLVED_GAP;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey, Rows};
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, Workspace};
+use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, System, Workspace};
 use crate::lcp::ContactState;
 use crate::linear::larger;
 
@@ -145,7 +145,7 @@ impl Impulses {
             return Ok(());
         }
         (self.are_exact, self.lent) = (true, pairs);
-        let system = mass_system(problem, workspace);
+        let system = workspace.m();
         let states = (self.of_iterate.iter()).map(|c| self.state(c, v0, dt));
         let states = states.collect();
         let closed = held_impulses(&self.of_iterate, held, states, v0, dt, system)?;
@@ -176,9 +176,9 @@ impl Impulses {
             return Ok(());
         }
         let nothing = vec![0.0; start.v.len()];
-        let mut mass = mass_system(problem, workspace);
-        mass.respond(&nothing, &self.resultant)?;
-        let answer = mass.system.hinge_forces();
+        let mut mass = workspace.m();
+        mass.respond(&self.resultant)?;
+        let answer = mass.hinge_forces();
         let mut of_hinges = nothing.clone();
         problem.hinges.add_forces(&answer, &mut of_hinges);
         let turning = &problem.unknowns.turning;
@@ -240,7 +240,7 @@ impl Impulses {
     ) -> Result<StartVelocity<'a>, Cause> {
         self.solve(problem, workspace, constraints, start, before)?;
         match problem.integration.lags() || problem.unknowns.turning.turn_mass() {
-            true => self.velocity(problem, workspace, start),
+            true => self.velocity(workspace, start),
             false => Ok(StartVelocity {
                 v0p: Cow::Borrowed(&start.v),
                 impulse: &self.resultant,
@@ -251,13 +251,12 @@ impl Impulses {
     /// Velocity V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1).
     pub fn velocity<'a>(
         &self,
-        problem: &StepProblem,
         workspace: &mut Workspace,
         start: &'a State,
     ) -> Result<StartVelocity<'a>, Cause> {
         let v0p = match self.resultant.as_slice() {
             [] => Cow::Borrowed(start.v.as_slice()),
-            impulse => Cow::Owned(mass_system(problem, workspace).respond(&start.v, impulse)?),
+            impulse => Cow::Owned(workspace.m().respond_from(&start.v, impulse)?),
         };
         Ok(StartVelocity { v0p, impulse: &[] })
     }
@@ -319,14 +318,6 @@ fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
     !nodes.any(|node| problem.redistribution.is_massless(node))
 }
 
-/// M with its complementarity problems.
-fn mass_system<'a>(problem: &'a StepProblem, workspace: &'a mut Workspace) -> ContactSystem<'a> {
-    ContactSystem {
-        system: workspace.m(),
-        method: problem.method(),
-    }
-}
-
 /// Impact impulses Phi, Psi of constraints at the start of an increment, for the velocity after them
 /// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
 ///
@@ -344,7 +335,7 @@ fn impulses(
     states: Vec<ContactState>,
     v0: &[f64],
     dt: f64,
-    system: &mut ContactSystem,
+    system: &mut System,
 ) -> Result<ClosedPairs, Cause> {
     // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 where what they make of an increment is nothing
     let resolved = |c: &Constraint, rate: f64| match c.resolved(dt * rate) {
@@ -362,13 +353,13 @@ fn impulses(
         forces: None,
         weight: None,
     };
-    if !system.system.is_factorized() {
-        system.system.factorize()?;
+    if !system.is_factorized() {
+        system.factorize()?;
     }
     let mut closed = ClosedPairs::default();
     let all: Vec<&Constraint> = constraints.iter().collect();
     if system.by_bodies(&all).is_none() {
-        system.solve(&all, &given, &guess, &mut closed, None)?;
+        system.solve_contact(&all, &given, &guess, &mut closed, None)?;
         return Ok(closed);
     }
     let posed = |(constraint, &given): (&Constraint, &[f64; 2])| {
@@ -380,7 +371,7 @@ fn impulses(
     let all: Vec<&Constraint> = posed.iter().collect();
     let mut free = Vec::new();
     response.gaps_and_slips(system, posed.iter(), &mut free);
-    system.solve(&all, &free, &guess, &mut closed, Some(&mut response))?;
+    system.solve_contact(&all, &free, &guess, &mut closed, Some(&mut response))?;
     Ok(closed)
 }
 
@@ -392,17 +383,17 @@ fn held_impulses(
     states: Vec<ContactState>,
     v0: &[f64],
     dt: f64,
-    mut system: ContactSystem,
+    mut system: System,
 ) -> Result<ClosedPairs, Cause> {
     while held.iter().any(|impulse| *impulse > 0.0) {
-        if !system.system.is_factorized() {
-            system.system.factorize()?;
+        if !system.is_factorized() {
+            system.factorize()?;
         }
         let mut taken = vec![0.0; v0.len()];
         for (constraint, impulse) in constraints.iter().zip(&held) {
             constraint.add_force([-impulse, 0.0], &mut taken);
         }
-        let v = system.respond(v0, &taken)?;
+        let v = system.respond_from(v0, &taken)?;
         let closed = impulses(constraints, states.clone(), &v, dt, &mut system)?;
         let mut all_push = true;
         for (constraint, impulse) in constraints.iter().zip(&mut held) {
@@ -601,10 +592,7 @@ mod tests {
         ClosedConstraints, Discretization, Equilibrium, HeldMotions, Seen,
     };
     use crate::elements::Motion;
-    use crate::model::{
-        ContactChanges, ContactMass, Frames, Incrementation, Increments, Procedure, Scheme,
-        Settings, Step,
-    };
+    use crate::model::{ContactMass, Increments, Scheme, Settings, Step};
     use crate::prepare::{PreparedModel, redistribution_tests::block};
 
     const DT: f64 = 0.1;
@@ -623,25 +611,8 @@ mod tests {
         test: impl FnOnce(&StepProblem, &mut Workspace),
     ) {
         let step = Step {
-            name: None,
-            procedure: Procedure::Dynamic,
-            increments: Increments {
-                dt: DT,
-                period: 1.0,
-                dt_min: 0.0,
-                dt_max: f64::INFINITY,
-                incrementation: Incrementation::Fixed,
-            },
             settings,
-            supports: vec![],
-            point_loads: vec![],
-            body_forces: vec![],
-            centrifugal_forces: vec![],
-            pressures: vec![],
-            tractions: vec![],
-            interferences: vec![],
-            contacts: ContactChanges::default(),
-            frames: Frames::Default,
+            ..Step::new(Increments::fixed(DT, 1.0))
         };
         let mut model = block([rows; 2], |_, _| false, |_, _| true);
         model.steps.push(step.clone());

@@ -2,7 +2,6 @@
 
 use nalgebra::DMatrix;
 
-use super::contact_system::ContactSystem;
 use super::convergence::Residual;
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
@@ -89,14 +88,6 @@ impl SkewPart {
         self.changes = (count, [first, change]);
         let is_small = change <= NO_CHANGE * others || change <= self.left * first;
         is_small || change > FALLS * last || count >= MOST_CHANGES
-    }
-}
-
-/// K* of a step with its contact problems.
-pub(super) fn k_star<'w>(problem: &StepProblem, workspace: &'w mut Workspace) -> ContactSystem<'w> {
-    ContactSystem {
-        system: workspace.k(),
-        method: problem.method(),
     }
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use nalgebra::{DMatrix, DVector};
 
 use super::contact_forces::ContactForces;
-use super::linear_pass::{Vectors, close_hinges, k_star};
+use super::linear_pass::{Vectors, close_hinges};
 use crate::contact::{Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::{
@@ -451,7 +451,7 @@ impl PinIteration<'_, '_> {
         contact.solve(
             [&v.closing, &load],
             weight,
-            &mut k_star(self.problem, self.workspace),
+            &mut self.workspace.k(),
             &mut v.du,
         )
     }

@@ -372,23 +372,14 @@ fn violation_of_closed_pair(constraint: &Constraint, state: ContactState) -> Con
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Configurations, RowForm, testing};
+    use crate::contact::testing;
 
-    /// Violation of a node at 1/4 of a segment of length 2, with the given gap and slip.
-    fn violation([gap, slip]: [f64; 2], mu: f64, state: Option<ContactState>) -> ContactViolation {
-        let source = testing::face();
-        let mut u = [0.0; 6];
-        (u[0], u[1]) = (slip, gap);
-        let at = Configurations {
-            form: RowForm::End,
-            x: &[[-0.5, 0.0], [0.0, 0.0], [-2.0, 0.0]],
-            u0: &[0.0; 6],
-            u: &u,
-        };
-        let mut constraint = Constraint::new(source, &at);
+    /// Violation of [`testing::at_face`].
+    fn violation(gap_and_slip: [f64; 2], mu: f64, state: Option<ContactState>) -> ContactViolation {
+        let mut constraint = testing::at_face(gap_and_slip);
         constraint.mu = mu;
         match state {
-            None => violation_of_open_pair(constraint.gap_and_scale(&at)),
+            None => violation_of_open_pair((constraint.gap, constraint.scale)),
             Some(state) => violation_of_closed_pair(&constraint, state),
         }
     }

@@ -8,10 +8,7 @@ use crate::dynamics::{Cutback, IncrementReport, Observer, Outcome};
 use crate::elements::{Elements, Motion};
 use crate::materials::Law;
 use crate::materials::yielding::Yielding;
-use crate::model::{
-    ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments, Material,
-    Model, Procedure, Section, Settings, Step,
-};
+use crate::model::{Element, ElementType, Increments, Model, Step};
 use crate::prepare::PreparedModel;
 
 const YIELDING: Yielding = Yielding {
@@ -26,16 +23,7 @@ const SIDE: usize = 4;
 /// A free square of side 1 that is stretched along x at this rate and turns.
 fn block(rate: f64) -> Model {
     let mut model = Model::default();
-    model.materials.push(Material {
-        name: "M".into(),
-        law: Law::Yielding(YIELDING),
-        density: 1.0,
-        damping: Damping::default(),
-    });
-    model.sections.push(Section {
-        material: 0,
-        thickness: 1.0,
-    });
+    model.add_section(Law::Yielding(YIELDING), 1.0, 1.0);
     let at = |i: usize| i as f64 / (SIDE - 1) as f64 - 0.5;
     for (j, i) in (0..SIDE * SIDE).map(|node| (node / SIDE, node % SIDE)) {
         let node = j * SIDE + i;
@@ -56,27 +44,7 @@ fn block(rate: f64) -> Model {
 }
 
 fn step(dt: f64, count: usize) -> Step {
-    Step {
-        name: None,
-        procedure: Procedure::Dynamic,
-        increments: Increments {
-            dt,
-            period: dt * count as f64,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        },
-        settings: Settings::default(),
-        supports: vec![],
-        point_loads: vec![],
-        body_forces: vec![],
-        centrifugal_forces: vec![],
-        pressures: vec![],
-        tractions: vec![],
-        interferences: vec![],
-        contacts: ContactChanges::default(),
-        frames: Frames::Default,
-    }
+    Step::new(Increments::fixed(dt, dt * count as f64))
 }
 
 #[derive(Default)]

@@ -465,13 +465,7 @@ mod nominal_tests {
             period: 0.25,
             ..nominal().place
         };
-        let increments = Increments {
-            dt: 0.1,
-            period: 0.25,
-            dt_min: 0.0,
-            dt_max: f64::INFINITY,
-            incrementation: Incrementation::Fixed,
-        };
+        let increments = Increments::fixed(0.1, 0.25);
         let all: Vec<NominalIncrement> = nominal_increments(place, increments).collect();
         assert_eq!(all.len(), 3);
         assert_eq!((all[1].to, all[2].to), (all[2].from, 0.25));

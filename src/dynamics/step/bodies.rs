@@ -136,11 +136,8 @@ mod tests {
     use super::*;
     use crate::contact::{Constraint, ConstraintGroup, Rows, testing};
     use crate::dynamics::step::{ClosedConstraints, Discretization, HeldMotions, Seen, Workspace};
-    use crate::materials::{Law, SaintVenantKirchhoff};
-    use crate::model::{
-        ContactChanges, Damping, Element, ElementType, Frames, Incrementation, Increments,
-        Material, Model, Procedure, Section, Settings, Step, Support, SupportMotion,
-    };
+    use crate::materials::Law;
+    use crate::model::{Element, ElementType, Increments, Model, Step, Support, SupportMotion};
     use crate::prepare::PreparedModel;
 
     /// Nodes along a side of a block.
@@ -154,20 +151,7 @@ mod tests {
     /// Two blocks beside each other.
     fn blocks() -> PreparedModel {
         let mut model = Model::default();
-        let law = SaintVenantKirchhoff {
-            young: 100.0,
-            poisson: 0.3,
-        };
-        model.materials.push(Material {
-            name: "M".into(),
-            law: Law::SaintVenantKirchhoff(law),
-            density: 1.0,
-            damping: Damping::default(),
-        });
-        model.sections.push(Section {
-            material: 0,
-            thickness: 1.0,
-        });
+        model.add_section(Law::elastic(100.0, 0.3), 1.0, 1.0);
         for node in 0..2 * NODES {
             let (i, j) = (node % NODES % SIDE, node % NODES / SIDE);
             let x = [i as f64 + 5.0 * (node / NODES) as f64, 0.7 * j as f64];
@@ -191,25 +175,8 @@ mod tests {
             motion: SupportMotion::Ramp { to: 0.0 },
         };
         Step {
-            name: None,
-            procedure: Procedure::Dynamic,
-            increments: Increments {
-                dt: 0.1,
-                period: 1.0,
-                dt_min: 0.0,
-                dt_max: f64::INFINITY,
-                incrementation: Incrementation::Fixed,
-            },
-            settings: Settings::default(),
             supports: supports.iter().map(support).collect(),
-            point_loads: vec![],
-            body_forces: vec![],
-            centrifugal_forces: vec![],
-            pressures: vec![],
-            tractions: vec![],
-            interferences: vec![],
-            contacts: ContactChanges::default(),
-            frames: Frames::Default,
+            ..Step::new(Increments::fixed(0.1, 1.0))
         }
     }
 

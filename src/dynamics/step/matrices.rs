@@ -46,6 +46,8 @@ pub(crate) struct FactoredMatrix {
     updates: Updates,
     /// Hinges that its solutions keep closed.
     hinges: Hinges,
+    /// Solver of its complementarity problems.
+    method: LcpMethod,
 }
 
 /// Vectors of a solve in parts, used again by the next.
@@ -73,8 +75,12 @@ pub(crate) struct ResponseVectors {
 }
 
 impl FactoredMatrix {
-    /// A matrix over the unknowns of a map, without factors.
-    pub fn new(solver: Box<dyn LinearSolver>, matrix: Assembled, map: &Transformation) -> Self {
+    /// A matrix over the unknowns of a map, without factors, and the solvers of its linear and complementarity problems.
+    pub fn new(
+        (solver, method): (Box<dyn LinearSolver>, LcpMethod),
+        matrix: Assembled,
+        map: &Transformation,
+    ) -> Self {
         let solver = CheckedSolver::new(solver, matrix);
         let compliance = Compliance::new(map.clone(), solver.groups());
         FactoredMatrix {
@@ -85,6 +91,7 @@ impl FactoredMatrix {
             vectors: SolveVectors::default(),
             updates: Updates::default(),
             hinges: Hinges::default(),
+            method,
         }
     }
 
@@ -110,6 +117,7 @@ impl FactoredMatrix {
             space: _,
             vectors: _,
             hinges: _,
+            method: _,
         } = self;
         solver.carry(archive)?;
         compliance.carry(archive, solver)?;
@@ -244,8 +252,8 @@ impl EffectiveStiffness {
         let mass = unknown_mass(&masses(problem), unknowns);
         let massless = diagonal_of_massless(problem, &mass);
         let [of_k, of_m] = two_linear_solvers(settings.solver);
-        let mut k = FactoredMatrix::new(of_k, mass.zeros(), &unknowns.map);
-        let mut m = FactoredMatrix::new(of_m, mass, &unknowns.map);
+        let mut k = FactoredMatrix::new((of_k, problem.method()), mass.zeros(), &unknowns.map);
+        let mut m = FactoredMatrix::new((of_m, problem.method()), mass, &unknowns.map);
         k.hinges = problem.hinges.clone();
         m.hinges = problem.hinges.clone();
         m.solver.add_blocks(massless);
@@ -542,9 +550,14 @@ impl<'a> System<'a> {
     /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
     /// bodies (docs/numerics.md, Turned factors).
     pub fn respond(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
+        self.respond_from(&vec![0.0; f.len()], f)
+    }
+
+    /// The same with `start` added to it.
+    pub fn respond_from(&mut self, start: &[f64], f: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.begin(f)?;
         let mut response = Vec::new();
-        self.end(&vec![0.0; f.len()], &mut response)?;
+        self.end(start, &mut response)?;
         self.check()?;
         Ok(response)
     }
@@ -636,6 +649,11 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || matrix.solver.check())
     }
 
+    /// Solver of the complementarity problems.
+    pub fn method(&self) -> LcpMethod {
+        self.matrix.method
+    }
+
     /// T at the iterate.
     pub fn map(&self) -> &Transformation {
         self.matrix.map()
@@ -690,11 +708,10 @@ impl<'a> System<'a> {
         &mut self,
         problem: &FrictionalLcp,
         warm: &[ContactState],
-        method: LcpMethod,
     ) -> Result<FrictionalSolution, LcpError> {
         let Self { matrix, meter } = self;
         let kept = matrix.kept.entry(ConstraintGroup::All).or_default();
-        let solve = || solve_similar(problem, Some(warm), method, kept);
+        let solve = || solve_similar(problem, Some(warm), matrix.method, kept);
         let solution = meter.time(|t| &mut t.lcp, solve)?;
         self.meter.count_lcp(warm.len(), solution.counters);
         Ok(solution)

@@ -5,13 +5,12 @@ use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::contact::tolerances::CORNER_COSINE;
 use crate::model::Model;
 use crate::vectors::{cross, difference, dot, length};
 
 /// Largest mean slope of the normals of pairs against a motion that they let free.
 const SLOPE: f64 = 0.25;
-/// Cosine of the angle from which on a vertex is a corner of a body.
-const CORNER: f64 = 0.866;
 
 /// The pairs of a body along its free rigid motions.
 pub(super) struct Normals(pub Vec<Normal>);
@@ -112,7 +111,7 @@ impl Vertices {
                     difference(x[*before], x[node]),
                     difference(x[node], x[*after]),
                 );
-                dot(e, f) > CORNER * length(e) * length(f)
+                dot(e, f) > CORNER_COSINE * length(e) * length(f)
             }
             _ => false,
         });
