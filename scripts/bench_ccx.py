@@ -1,7 +1,6 @@
 """Decks of CalculiX for the same meshes: two blocks pressed and sheared, without friction."""
 
-from stickslip.cards import card, elastic
-from stickslip.quads import facing_blocks
+from stickslip.decks import card, elastic, facing_blocks
 
 STIFFNESS = 1e6
 """Pressure over penetration: a hundred times Young's modulus over the height of the blocks."""

@@ -8,9 +8,8 @@ from pathlib import Path
 
 from bench_dense import arch, lattice, long_block, wall
 from repository import ROOT
-from stickslip.cards import card, dry, elastic, step
+from stickslip.decks import Grid, card, dry, elastic, step
 from stickslip.deck import Deck
-from stickslip.quads import Grid
 
 sys.path.insert(0, str(ROOT / "verification" / "convergence"))
 

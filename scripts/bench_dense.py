@@ -3,8 +3,7 @@
 from collections.abc import Callable, Sequence
 from math import cos, pi, sin
 
-from stickslip.cards import card, dry, elastic, step
-from stickslip.quads import Grid, Mesh, disc, outline
+from stickslip.decks import Grid, GridMesh, card, disc, dry, elastic, outline, step
 
 Place = Callable[[int, int], tuple[float, float]]
 
@@ -33,7 +32,7 @@ def at(left: float, bottom: float, width: float, height: float) -> Place:
 def cards(
     title: str,
     held: Sequence[Grid],
-    moving: Sequence[Grid | Mesh],
+    moving: Sequence[Grid | GridMesh],
     contact: str,
     run: tuple[float, int],
     friction: float = 0.6,
@@ -114,7 +113,7 @@ def lattice(columns: int, rows: int, increments: int) -> str:
     labels = near.next_node, near.next_element
     far = Grid("FAR", 1, 2 * rows, at(left + width + GAP, 0.0, 0.1, element), *labels)
     labels = far.next_node, far.next_element
-    discs: list[Mesh] = []
+    discs: list[GridMesh] = []
     for row in range(rows):
         for column in range(columns):
             centre = pitch * column, apothem + row * pitch + (row + 1) * GAP

@@ -11,9 +11,8 @@ from pathlib import Path
 from bench_runs import COLLECTED, MISSING_VALGRIND
 from measured_run import Usage, wait
 from sample_decks import runner
-from stickslip.cards import card, dry, elastic, step
+from stickslip.decks import Grid, card, dry, elastic, step
 from stickslip.errors import Fault
-from stickslip.quads import Grid
 
 NODES = 1_000_000
 COUNTED = 100_000

@@ -1,4 +1,4 @@
-"""Recomputes what results claim: the command `stickslip-certify` of the package."""
+"""Checks what results claim: the command `stickslip-certify` of the package."""
 
 from stickslip.certificate.__main__ import main
 

@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
-from stickslip.quads import Mesh, disc, ring
+from stickslip.decks import GridMesh, disc, ring
 
 Array = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def weights(x: Array, donors: Array) -> Array | None:
     return w if np.abs(w).sum() <= MOST_WEIGHT else None
 
 
-def redistribution(mesh: Mesh, skin: Sequence[int]) -> tuple[Array, list[int]]:
+def redistribution(mesh: GridMesh, skin: Sequence[int]) -> tuple[Array, list[int]]:
     """P over the nodes, and the nodes without mass."""
     x = np.array(mesh.nodes)
     around: list[set[int]] = [set() for _ in mesh.nodes]
@@ -91,7 +91,7 @@ def redistribution(mesh: Mesh, skin: Sequence[int]) -> tuple[Array, list[int]]:
     return p, massless
 
 
-def frequencies(mesh: Mesh, skin: Sequence[int]) -> tuple[Array, int]:
+def frequencies(mesh: GridMesh, skin: Sequence[int]) -> tuple[Array, int]:
     """Elastic frequencies, lowest first, of a free body; number of nodes without mass."""
     x, n = np.array(mesh.nodes), len(mesh.nodes)
     stiffness, mass = np.zeros((2 * n, 2 * n)), np.zeros((n, n))
@@ -114,15 +114,15 @@ def frequencies(mesh: Mesh, skin: Sequence[int]) -> tuple[Array, int]:
     return np.sqrt(squares[3 : 3 + MODES]) / (2 * pi), len(massless)
 
 
-def beam(nx: int, ny: int) -> Mesh:
+def beam(nx: int, ny: int) -> GridMesh:
     """A beam of 10 x 1."""
     nodes = [(10 * i / nx, j / ny) for j in range(ny + 1) for i in range(nx + 1)]
     row = nx + 1
     corners = [j * row + i for j in range(ny) for i in range(nx)]
-    return Mesh("BEAM", nodes, [(a, a + 1, a + row + 1, a + row) for a in corners])
+    return GridMesh("BEAM", nodes, [(a, a + 1, a + row + 1, a + row) for a in corners])
 
 
-def rim(mesh: Mesh, has: int = 1) -> list[int]:
+def rim(mesh: GridMesh, has: int = 1) -> list[int]:
     """Nodes of the sides of one element; with `has` 2 without those of the inner half of a ring."""
     sides: dict[frozenset[int], int] = {}
     for element in mesh.elements:

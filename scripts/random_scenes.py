@@ -12,8 +12,7 @@ import numpy as np
 import scene_shapes as shapes
 from numpy.random import Generator
 from scene_shapes import Shape
-from stickslip.cards import card
-from stickslip.quads import Mesh
+from stickslip.decks import GridMesh, card
 from stickslip.result import Array
 
 POISSON, DENSITY, GRAVITY = 0.3, 1.0, 9.81
@@ -96,16 +95,16 @@ class Scene:
             ]
         )
 
-    def _meshes(self) -> list[Mesh]:
-        meshes: list[Mesh] = []
+    def _meshes(self) -> list[GridMesh]:
+        meshes: list[GridMesh] = []
         named = [(f"B{k}", body) for k, body in enumerate(self.bodies)]
         for name, body in named + ([("WALLS", self.walls)] if self.walls else []):
             first = (meshes[-1].next_node, meshes[-1].next_element) if meshes else (1, 1)
             places = [(_digits(x), _digits(y)) for x, y in body.nodes]
-            meshes.append(Mesh(name, places, body.shape.elements, *first))
+            meshes.append(GridMesh(name, places, body.shape.elements, *first))
         return meshes
 
-    def _velocities(self, meshes: list[Mesh]) -> list[tuple[object, ...]]:
+    def _velocities(self, meshes: list[GridMesh]) -> list[tuple[object, ...]]:
         return [
             (mesh.first_node + k, direction, _digits(value))
             for mesh, body in zip(meshes, self.bodies)
@@ -113,7 +112,7 @@ class Scene:
             for direction, value in enumerate(velocity, 1)
         ]
 
-    def _supports(self, meshes: list[Mesh]) -> list[str]:
+    def _supports(self, meshes: list[GridMesh]) -> list[str]:
         held = [card("BOUNDARY", *((name, 1, 2) for name in self.profiles))]
         if self.walls:
             x, y = self.walls.nodes.T

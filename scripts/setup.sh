@@ -1,4 +1,4 @@
-# What `run`, `test` and `venv` share; sourced by them. Sets ROOT, FIRST_WORD and FEATURES.
+# What the scripts share; sourced by them. Sets ROOT, FIRST_WORD and FEATURES.
 
 ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 VENV="$ROOT/.venv"
@@ -6,6 +6,8 @@ VENV="$ROOT/.venv"
 FIRST_WORD="${1:-}"
 export PYTHONPATH="$ROOT/python${PYTHONPATH:+:$PYTHONPATH}"
 FEATURES=()
+# The program that `need_program` has built.
+PROGRAM=""
 
 fail() {
     echo "error: $*" >&2
@@ -122,4 +124,12 @@ need_program() {
     fi
     (cd "$ROOT" && cargo build --release "${quiet[@]}" --locked "${FEATURES[@]}" </dev/null) ||
         fail "the build failed"
+}
+
+# Runs the Python file that has the name of the calling script, with the program if that has asked for it.
+start() {
+    need_venv "$ROOT/scripts/requirements.txt"
+    export MPLBACKEND=Agg
+    [ -z "${PROGRAM:-}" ] || export STICKSLIP="$PROGRAM"
+    exec "$VENV/bin/python" "${BASH_SOURCE[1]}.py" "$@"
 }

@@ -6,7 +6,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
-from stickslip.cards import card  # noqa: E402
+from stickslip.decks import card  # noqa: E402
 
 Place = Callable[[int, int], tuple[float, float]]
 

@@ -8,8 +8,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card  # noqa: E402
-from stickslip.quads import Grid  # noqa: E402
+from stickslip.decks import Grid, card  # noqa: E402
 
 # kg, cm, s; the unit of force is kg cm/s^2 = 0.01 N.
 YOUNG = 1e9  # the block's; the slope's is twice that: 1e7 N/cm^2 = 1e9 kg/(cm s^2)

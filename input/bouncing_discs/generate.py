@@ -6,9 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Mesh, disc, outline  # noqa: E402
+from stickslip.decks import GridMesh, card, disc, dry, elastic, outline, step, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY = 1e4, 0.3, 1.0
 HALF = 1.3
@@ -30,7 +28,7 @@ INCLUDE = "bouncing_discs.inc"
 
 def model(fine: int = 1) -> str:
     """Everything but the step, `fine` times as fine."""
-    bodies: list[Mesh] = []
+    bodies: list[GridMesh] = []
     for name, (centre, _) in DISCS.items():
         first = (bodies[-1].next_node, bodies[-1].next_element) if bodies else (1, 1)
         bodies.append(disc(name, centre, RADIUS, 0.0, SIDE * fine, RINGS * fine, *first))

@@ -6,9 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import outline, ring  # noqa: E402
+from stickslip.decks import card, dry, elastic, outline, ring, step, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 1000.0, 0.3, 1.0, 1.0
 RADII = 0.8, 1.0

@@ -6,9 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, material, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid  # noqa: E402
+from stickslip.decks import Grid, card, dry, material, step, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY = 1e4, 0.3, 1.0
 LENGTH, HEIGHT = 1.0, 0.5

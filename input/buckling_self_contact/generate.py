@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid, outline  # noqa: E402
+from stickslip.decks import Grid, card, dry, elastic, outline, step, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 1e4, 0.3, 1.0, 1.0
 LENGTH, DEPTH = 12.0, 0.16

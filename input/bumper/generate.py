@@ -7,8 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import card, dry, write_to_folder  # noqa: E402
 
 SPAN, RISE, SHEET = 600.0, 80.0, 3.0
 """Of the arch between its feet; thickness of the sheet."""

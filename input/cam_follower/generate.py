@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, material  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid  # noqa: E402
+from stickslip.decks import Grid, card, dry, material, write_to_folder  # noqa: E402
 
 Point = tuple[float, float]
 

@@ -8,9 +8,7 @@ from random import Random
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid, Mesh, disc  # noqa: E402
+from stickslip.decks import Grid, GridMesh, card, disc, dry, elastic, step, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 4000.0, 0.3, 1.0, 1.0
 GRAVITY, FRICTION = 10.0, 0.3
@@ -56,10 +54,10 @@ def box() -> list[Grid]:
     return [floor, left, right]
 
 
-def discs(after: Grid) -> list[Mesh]:
+def discs(after: Grid) -> list[GridMesh]:
     """Discs of slightly different sizes on a grid, each displaced and turned by chance."""
     chance = Random(SEED)
-    bodies: list[Mesh] = []
+    bodies: list[GridMesh] = []
     first = after.next_node, after.next_element
     for row in range(ROWS):
         for column in range(COLUMNS):

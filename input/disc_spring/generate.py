@@ -7,8 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import card, dry, write_to_folder  # noqa: E402
 
 OUTSIDE, INSIDE, THICKNESS, HEIGHT = 100.0, 51.0, 5.0, 2.8
 """Diameters, thickness and height of the cone of the unloaded spring."""

@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid, outline  # noqa: E402
+from stickslip.decks import Grid, card, outline, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, THICKNESS = 1e4, 0.3, 1.0
 DENSITY = {"PLATE": 1.0, "BULLET": 0.2}

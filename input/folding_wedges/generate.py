@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY = 210000.0, 0.3, 7.85e-9
 LENGTH, THIN, SLOPE = 100.0, 8.0, 0.1

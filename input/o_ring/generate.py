@@ -6,9 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import disc  # noqa: E402
+from stickslip.decks import card, disc, dry, write_to_folder  # noqa: E402
 
 RADIUS, DEPTH = 2.65, 4.0
 """Radius of the cord and depth of the groove."""

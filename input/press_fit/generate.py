@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Mesh, ring  # noqa: E402
+from stickslip.decks import GridMesh, card, dry, elastic, ring, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY = 210e3, 0.3, 7.85e-9
 """Steel in N, mm, s."""
@@ -43,7 +41,7 @@ def model() -> str:
     turned = [
         (x * cos(half) - y * sin(half), x * sin(half) + y * cos(half)) for x, y in shaft.nodes
     ]
-    shaft = Mesh("SHAFT", turned, shaft.elements)
+    shaft = GridMesh("SHAFT", turned, shaft.elements)
     labels = shaft.next_node, shaft.next_element
     wheel = ring("WHEEL", (0.0, 0.0), (RADIUS, RIM), AROUND, ACROSS[1], *labels)
     reference = wheel.next_node

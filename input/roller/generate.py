@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, material  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid, ring  # noqa: E402
+from stickslip.decks import Grid, card, dry, material, ring, write_to_folder  # noqa: E402
 
 RUBBER, STEEL = (100.0, 0.49), (1e6, 0.3)
 """Young's modulus and Poisson's ratio of the block and of the roller."""

@@ -6,9 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import outline, ring  # noqa: E402
+from stickslip.decks import card, dry, outline, ring, step, write_to_folder  # noqa: E402
 
 C10, D1, DENSITY, THICKNESS = 100.0, 2.0e-3, 1.0, 1.0
 """Shear modulus 2 C10 = 200, bulk modulus 2/D1 = 1000."""

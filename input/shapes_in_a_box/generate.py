@@ -8,9 +8,7 @@ from random import Random
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid, Mesh  # noqa: E402
+from stickslip.decks import Grid, GridMesh, card, elastic, step, write_to_folder  # noqa: E402
 
 YOUNG, POISSON, DENSITY, THICKNESS = 6000.0, 0.3, 1.0, 1.0
 GRAVITY, SPEED = 9.81, 3.0
@@ -57,7 +55,7 @@ def box() -> list[Grid]:
     return walls
 
 
-def shape(chance: Random, name: str, centre: tuple[float, float], after: Grid | Mesh) -> Mesh:
+def shape(chance: Random, name: str, centre: tuple[float, float], after: Grid | GridMesh) -> GridMesh:
     """A shape of some size, turned; its cells are one element or four."""
     rows = chance.choice(list(SHAPES.values()))[::-1]
     parts = chance.choice((1, 2))
@@ -82,14 +80,14 @@ def shape(chance: Random, name: str, centre: tuple[float, float], after: Grid | 
         (centre[0] + x * cos(turn) - y * sin(turn), centre[1] + x * sin(turn) + y * cos(turn))
         for x, y in flat
     ]
-    return Mesh(name, nodes, elements, after.next_node, after.next_element)
+    return GridMesh(name, nodes, elements, after.next_node, after.next_element)
 
 
 def deck(name: str) -> str:
     """A whole deck."""
     chance = Random(list(FRICTION).index(name) + 1)
     walls = box()
-    bodies: list[Mesh] = []
+    bodies: list[GridMesh] = []
     for column in range(COLUMNS):
         for row in range(ROWS):
             centre = PITCH * (column - 0.5 * (COLUMNS - 1)), PITCH * (row + 0.5)

@@ -6,8 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import card, write_to_folder  # noqa: E402
 
 LENGTH, RADIUS, SPEED = 32.4, 3.2, 227000.0
 """Rod, and its speed: N, mm, s."""

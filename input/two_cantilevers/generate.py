@@ -7,8 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, elastic  # noqa: E402
-from stickslip.quads import Grid  # noqa: E402
+from stickslip.decks import Grid, card, elastic  # noqa: E402
 
 YOUNG = 4000.0
 POISSON = 0.3

@@ -7,8 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import card, dry, step, write_to_folder  # noqa: E402
 
 RADII = 0.26, 0.3
 AROUND = 48

@@ -3,15 +3,14 @@
 Whatever a method does not offer is a card: `deck.add("KEYWORD, PARAMETER=VALUE", row, row)`.
 """
 
-import argparse
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from stickslip.cards import card, material
+from stickslip.decks import card, material
 from stickslip.errors import Fault
 from stickslip.mesh import Mesh
 from stickslip.whole import write_text
@@ -389,10 +388,3 @@ def fields(line: str) -> list[str]:
 def fold(text: str) -> str:
     """A word as it is compared: in capitals, without blanks."""
     return "".join(text.split()).upper()
-
-
-def write_to_folder(about: str | None, folder: Path, write: Callable[[Path], None]) -> None:
-    """Command line of a script that writes decks: into `folder`, or that of the option `-o`."""
-    parser = argparse.ArgumentParser(description=about)
-    parser.add_argument("-o", "--output", type=Path, default=folder, help="folder of the decks")
-    write(parser.parse_args().output)

@@ -146,6 +146,21 @@ class Result:
         return np.unique(np.concatenate([*self.cells, np.empty(0, np.int64)]))
 
     @cached_property
+    def is_axisymmetric(self) -> bool:
+        """Whether the elements are bodies of revolution, which have no thickness."""
+        return bool(np.isnan(self.read("model/thickness")).any())
+
+    @cached_property
+    def middles(self) -> dict[int, tuple[int, int]]:
+        """The corners of the sides that have a node between them, by this node."""
+        found: dict[int, tuple[int, int]] = {}
+        for cell in self.cells:
+            if len(cell) > 4:
+                corners, between = np.reshape(cell, (2, -1)).tolist()
+                found.update(zip(between, zip(corners, [*corners[1:], corners[0]])))
+        return found
+
+    @cached_property
     def edge_length(self) -> float:
         """Median distance of the nodes that follow each other around elements of the undeformed mesh."""
         pairs = [(self.coordinates[one], np.roll(one, -1)) for one in self.outlines]

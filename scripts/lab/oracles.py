@@ -21,9 +21,9 @@ from changed_decks import Unchangeable
 from expected_results import Array, Change, Seen, deviations
 from invariance import rotation
 from numpy.typing import NDArray
+from oracle.checks import broken
 from rescale import Units, Unscalable, rescale
 from restart_equality import contents
-from stickslip.certificate.certify import certify
 from stickslip.deck import Deck
 from stickslip.report.collect import Choice, collect_outline
 from stickslip.report.pack import Packed
@@ -553,10 +553,9 @@ def checked(trial: Trial) -> str | None:
 
 
 def certificate(trial: Trial) -> str | None:
-    """All checks of the certificate hold."""
-    found = certify(trial.result)
-    broken = [check.name for check in found.checks if check.is_told and not check.holds]
-    return f"fails: {', '.join(broken)}" if broken else None
+    """All checks of the certificate and of the oracle of elements hold."""
+    found = broken(trial.result)
+    return f"fails: {', '.join(sorted(found))}" if found else None
 
 
 def own_checks(trial: Trial) -> str | None:

@@ -11,7 +11,7 @@ from math import cos, pi, radians, sin
 
 import numpy as np
 from bodies import Place, grid
-from stickslip.cards import card
+from stickslip.decks import card
 from stickslip.deck import Deck
 from stickslip.mesh import Mesh
 

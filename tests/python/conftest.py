@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(ROOT / "tests")]
 os.environ["PYTHONPATH"] = str(ROOT / "python")  # of the scripts that tests start
 
 from stickslip import program  # noqa: E402

@@ -4,9 +4,8 @@ import runpy
 from math import cos, pi, sin
 from pathlib import Path
 
-from stickslip.cards import card, elastic, step
+from stickslip.decks import Grid, card, elastic, step
 from stickslip.deck import Card, Deck
-from stickslip.quads import Grid
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = ROOT / "input" / "block_slope"

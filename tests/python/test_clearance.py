@@ -7,9 +7,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from stickslip.cards import card, dry, elastic
+from stickslip.decks import Grid, card, dry, elastic
 from stickslip.program import binary
-from stickslip.quads import Grid
 
 BORE, SHAFT, RIM = 0.4, 1.0, 2.0
 """Radii."""

@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from stickslip import program
-from stickslip.cards import card, dry, elastic, step
+from stickslip.decks import card, dry, elastic, step
 
 SIZES = {"BASE": (-2.0, -1.0, 4.0, 1.0), "BLOCK": (-0.5, 0.01, 1.0, 1.0)}
 """Left, bottom, width and height of the two rectangles."""

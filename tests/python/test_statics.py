@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from stickslip import program
-from stickslip.cards import card, dry, elastic
+from stickslip.decks import Grid, card, disc, dry, elastic
 from stickslip.program import RunStopped
-from stickslip.quads import Grid, disc
 from stickslip.result import Result
 
 YOUNG = 1e4

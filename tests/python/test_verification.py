@@ -1,11 +1,14 @@
-"""The quick runs of verification/, and the form of its cases."""
+"""The quick runs of verification/, their certificates and the oracle, and the form of its cases."""
 
+import multiprocessing
+import re
 from pathlib import Path
 
 import pytest
 from conftest import ROOT
 
 import verify
+from oracle.checks import broken
 from runner import Study, all_folders, read
 from stickslip.errors import Fault
 from values import FUNCTIONS, evaluate
@@ -18,6 +21,36 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Study]:
     """The studies of the quick runs of all cases."""
     output = tmp_path_factory.mktemp("verification")
     return {study.form.name: study for study in verify.verify((), output, quick=True)}
+
+
+@pytest.fixture(scope="module")
+def certificates(studies: dict[str, Study]) -> dict[tuple[str, str], set[str]]:
+    """The checks of the certificate and of the oracle that do not hold, by case and run."""
+    found = {(name, run): result for name, study in studies.items() for run, result in study.results.items()}
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        return dict(zip(found, pool.map(broken, [result.path for result in found.values()], chunksize=1)))
+
+
+UNSETTLED = {"blocks_both_offset_0": {"cone", "slip"}}
+"""Runs of which checks do not hold though nothing is wrong. Here a corner carries a force that the nodal forces do not tell
+from those of the means beside it (docs/certificate.md)."""
+
+LOOSE = {"balance", "law", "equilibrium"}
+"""Checks that need not hold where a deck asks for less than the bounds of the certificate."""
+
+TOLERANCE = re.compile(r"^\*STICKSLIP.*TOLERANCE=\s*([^,\s]+)", re.MULTILINE)
+
+
+@pytest.mark.parametrize("name", FOLDERS)
+def test_the_certificates_of_the_quick_runs_hold(
+    name: str, studies: dict[str, Study], certificates: dict[tuple[str, str], set[str]]
+) -> None:
+    wrong = {}
+    for run, result in studies[name].results.items():
+        asked = [float(tolerance) for tolerance in TOLERANCE.findall(result.deck)]
+        allowed = LOOSE if max(asked, default=0.0) > 1e-10 else UNSETTLED.get(run, set())
+        wrong[run] = certificates[name, run] - allowed
+    assert {run: names for run, names in wrong.items() if names} == {}
 
 
 @pytest.mark.parametrize("name", FOLDERS)

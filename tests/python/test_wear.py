@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, Job
 from decks import parse
-from stickslip.certificate.certify import certify
+from oracle.checks import assert_holds
 from stickslip.deck import Deck
 from stickslip.result import Array, Result
 
@@ -95,8 +95,7 @@ def test_sums_over_nodes_are_those_of_the_contact(job: Job, name: str, tmp_path:
             assert np.allclose(wear[worn], RATE * per_area[worn], rtol=1e-10, atol=0.0)
             assert on_block(result, per_area) == pytest.approx(np.full(5, 1.5), rel=1e-9)
             assert on_block(result, wear) == pytest.approx(np.full(5, 1e-5), rel=1e-9)
-    certificate = certify(path)
-    assert certificate.holds, certificate.table()
+    assert_holds(path)
 
 
 def test_the_heat_of_a_disc_is_its_part_of_the_work(job: Job) -> None:
@@ -109,7 +108,7 @@ def test_the_heat_of_a_disc_is_its_part_of_the_work(job: Job) -> None:
         # a disc has no faces over whose area work and wear could be told
         assert np.isnan(result.frames[-1]["WEAR"]).all()
         assert np.count_nonzero(np.nan_to_num(heat)) == 1
-    assert certify(path).holds
+    assert_holds(path)
 
 
 @pytest.mark.parametrize("kind", BOTH)

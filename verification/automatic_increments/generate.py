@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import prints, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, elastic  # noqa: E402
+from stickslip.decks import card, elastic  # noqa: E402
 
 
 def write(folder: Path, ratio: float = 0.0, first: float = 0.01, direct: int = 0, factor: float = 0.0) -> None:

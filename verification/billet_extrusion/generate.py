@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import prints, rectangle, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.decks import card, dry, elastic  # noqa: E402
 
 RADIUS, LENGTH, WAY = 50.0, 65.0, 155.0
 DIE = ((50.0, -5.0), (50.0, 70.0), (45.0, 85.0), (45.0, 115.0), (48.0, 135.0), (48.0, 205.0), (48.0, 240.0))

@@ -6,8 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import plane, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.quads import disc, outline  # noqa: E402
+from stickslip.decks import card, disc, dry, elastic, outline, step  # noqa: E402
 
 RADIUS, HEIGHT, GRAVITY = 0.5, 0.05, 1.0
 

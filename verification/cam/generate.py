@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import prints, rectangle, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.decks import card, dry, elastic, step  # noqa: E402
 
 RADIUS, OFFSET, SPEED, MASS, STIFFNESS, PRELOAD = 1.0, 0.3, 1.0, 1.0, 10.0, 5.0
 

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import graded, mapped, prints, ride, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.decks import card, dry, elastic  # noqa: E402
 
 YOUNG, POISSON, FRICTION = 1000.0, 0.3, 0.3
 PRESS = pi / 4 * YOUNG / (1 - POISSON**2)

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import Block, mapped, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.decks import card, dry, elastic  # noqa: E402
 
 OUTER, MIDDLE, INNER = 1.0, 0.6, 0.2
 YOUNG, POISSON, LOAD = 1e9, 0.2, 1e3

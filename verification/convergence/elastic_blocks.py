@@ -1,8 +1,7 @@
 """Elastic bodies that are pressed on each other: blocks sheared, at rest, or dropped; a long bar."""
 
 from settings import ramp, settings
-from stickslip.cards import card, dry, elastic, step
-from stickslip.quads import Grid, facing_blocks, outline
+from stickslip.decks import Grid, card, dry, elastic, facing_blocks, outline, step
 
 
 def two_blocks(

@@ -10,7 +10,7 @@ sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(HERE)]
 import elastic_blocks  # noqa: E402
 import masonry  # noqa: E402
 import stiff_bodies  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import write_to_folder  # noqa: E402
 
 PROBLEMS = {
     "two_blocks": elastic_blocks.two_blocks,

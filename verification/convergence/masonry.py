@@ -3,8 +3,7 @@
 from math import cos, pi, sin
 
 from bench_dense import wall
-from stickslip.cards import card, dry, elastic, step
-from stickslip.quads import Grid
+from stickslip.decks import Grid, card, dry, elastic, step
 
 GRAVITY = 9.81
 

@@ -2,7 +2,7 @@
 
 from math import cos, pi
 
-from stickslip.cards import card
+from stickslip.decks import card
 
 SCHEMES = {"default": "", "ss22": ", SCHEME=SS22, THETA1=1., THETA2=1."}
 """The energy-momentum scheme, and the paper's."""

@@ -6,8 +6,7 @@ The Courant number c dt / h, with c = sqrt(E / rho), sets the stiffness; h is an
 from math import cos, sin
 
 from settings import ramp, settings
-from stickslip.cards import card, dry, elastic, step
-from stickslip.quads import Grid, outline
+from stickslip.decks import Grid, card, dry, elastic, outline, step
 
 GRAVITY = 10.0
 

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import prints, rectangle, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry  # noqa: E402
+from stickslip.decks import card, dry  # noqa: E402
 
 BLANK, PUNCH, FILLET, YOUNG = 59.18, 50.8, 6.35, 69004.0
 CURVE = (

@@ -6,15 +6,14 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.quads import Mesh, disc, outline  # noqa: E402
+from stickslip.decks import GridMesh, card, disc, dry, elastic, outline, step  # noqa: E402
 
 RADIUS, SPEED, GAP = 0.5, 0.1, 0.02
 
 
 def write(folder: Path, count: int, side: int = 8, dt: float = 0.002, settings: str = "") -> None:
     """`count` discs in a row, the first of which moves; 4 `side` elements around each."""
-    discs: list[Mesh] = []
+    discs: list[GridMesh] = []
     for k in range(count):
         first = (discs[-1].next_node, discs[-1].next_element) if discs else (1, 1)
         discs.append(disc(f"DISC{k + 1}", (k * (2 * RADIUS + GAP), 0.0), RADIUS, 0.0, side, side // 4, *first))

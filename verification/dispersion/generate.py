@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import prints, rectangle, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, elastic, step  # noqa: E402
+from stickslip.decks import card, elastic, step  # noqa: E402
 
 WAVES = 4
 """Quarter waves in the length of the bar, times two less one: the mode sin((2 WAVES - 1) pi x/2)."""

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import mapped, prints, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, elastic, step  # noqa: E402
+from stickslip.decks import card, elastic, step  # noqa: E402
 
 LENGTH, DEPTH, GRAVITY, ANGLES = 1.0, 0.1, 9.81, (1.2, 0.6)
 """Angles of the rods from the vertical at the start."""

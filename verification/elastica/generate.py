@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import dead, prints, rectangle, static  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, elastic  # noqa: E402
+from stickslip.decks import card, elastic  # noqa: E402
 
 
 def write(folder: Path, load: float, nx: int, ny: int, slender: float = 20.0, kind: str = "CPS8") -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import rectangle, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, step  # noqa: E402
+from stickslip.decks import card, step  # noqa: E402
 
 LAWS = {
     "kirchhoff": card("ELASTIC", (1e4, 0.3)),

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import mapped, prints, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.decks import card, dry, elastic, step  # noqa: E402
 
 ANGLE, SPEED, TORQUE, FIRST, LAST = radians(20.0), 1.0, 10.0, -0.08, 0.08
 """Pressure angle, speed of the pinion, torque on the gear, angles of the pinion at start and end."""

@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import graded, mapped, ride, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, material  # noqa: E402
+from stickslip.decks import card, dry, elastic, material  # noqa: E402
 
 RADIUS, SIDE = 50.0, 200.0
 

@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid, Mesh, disc, outline, ring  # noqa: E402
+from stickslip.decks import Grid, GridMesh, card, disc, dry, elastic, outline, ring, step, write_to_folder  # noqa: E402
 
 DECKS = ("box", "bar", "rings")
 
@@ -42,7 +40,7 @@ def edge(deck: str) -> float:
 
 def box(settings: str, around: int) -> str:
     """Two frictionless discs in a box; `around` times as fine."""
-    bodies: list[Mesh] = []
+    bodies: list[GridMesh] = []
     for name, (centre, _) in zip("AB", DISCS):
         first = (bodies[0].next_node, bodies[0].next_element) if bodies else (1, 1)
         bodies.append(disc(name, centre, RADIUS, 0.0, SIDE * around, RINGS * around, *first))

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import plane, rectangle, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.decks import card, dry, elastic, step  # noqa: E402
 
 LENGTH, RADIUS, SPEED, GAP, DENSITY = 32.4, 3.2, 227e3, 1.0, 8.9225e-9
 YOUNG = 117e3

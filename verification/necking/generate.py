@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import mapped, prints, ride, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card  # noqa: E402
+from stickslip.decks import card  # noqa: E402
 
 RADIUS, HALF, WAY = 6.413, 26.667, 7.0
 BULK, SHEAR, YIELD, LAST, RISE, SLOPE = 164.206, 80.1938, 0.45, 0.715, 16.93, 0.12924

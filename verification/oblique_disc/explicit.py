@@ -13,7 +13,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import meshes  # noqa: E402, F401  (it finds the modules of python/)
-from stickslip.quads import disc  # noqa: E402
+from stickslip.decks import disc  # noqa: E402
 
 RADIUS, YOUNG, POISSON, DENSITY, FRICTION, FALL = 0.5, 1e4, 0.3, 1.0, 0.3, 0.1
 

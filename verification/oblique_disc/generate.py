@@ -7,8 +7,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from form import load
 from meshes import plane, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
-from stickslip.quads import disc, outline  # noqa: E402
+from stickslip.decks import card, disc, dry, elastic, outline, step  # noqa: E402
 
 case = load(Path(__file__).resolve().parent / "explicit.py")
 

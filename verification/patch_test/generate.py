@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import static  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, elastic  # noqa: E402
+from stickslip.decks import card, elastic  # noqa: E402
 
 
 CORNERS = [(0.0, 0.0), (0.24, 0.0), (0.24, 0.12), (0.0, 0.12), (0.04, 0.02), (0.18, 0.03), (0.16, 0.08), (0.08, 0.08)]

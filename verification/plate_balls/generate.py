@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import Block, graded, mapped, prints, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.decks import card, dry, elastic  # noqa: E402
 
 PLATES = ((10.0, 2.0), (20.0, 4.0))
 """Radius and height of the upper and the lower plate."""

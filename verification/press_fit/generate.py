@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import rectangle, static, prints, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.decks import card, dry, elastic  # noqa: E402
 
 INNER, OUTER, OVERLAP = 0.5, 1.0, 0.6667e-3
 

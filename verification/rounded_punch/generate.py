@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from form import load
 from meshes import graded, mapped, ride, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
+from stickslip.decks import card, dry, elastic  # noqa: E402
 
 sneddon = load(Path(__file__).resolve().parent / "sneddon.py")
 YOUNG, LOAD = 100e3, 1e-3

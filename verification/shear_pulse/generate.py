@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import follower, prints, rectangle, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic, step  # noqa: E402
+from stickslip.decks import card, dry, elastic, step  # noqa: E402
 
 LENGTH, DURATION, PRESSURE, FRICTION = 1.0, 1.0, 1e-6, 0.5
 """Of each column; of the pulse; E = 2, nu = 0, rho = 1: the shear wave has the speed 1 and the impedance 1."""

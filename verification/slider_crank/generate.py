@@ -7,7 +7,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import mapped, prints, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, elastic, step  # noqa: E402
+from stickslip.decks import card, elastic, step  # noqa: E402
 
 CRANK, ROD, DEPTH, SPEED = 0.153, 0.306, 0.02, 150.0
 START = pi / 4

@@ -7,9 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, dry, elastic  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
-from stickslip.quads import Grid  # noqa: E402
+from stickslip.decks import Grid, card, dry, elastic, write_to_folder  # noqa: E402
 
 YOUNG = 1e6
 LENGTH, DEPTH = 10.0, 0.2

@@ -9,8 +9,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 from meshes import graded, static  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry, elastic  # noqa: E402
-from stickslip.quads import Grid  # noqa: E402
+from stickslip.decks import Grid, card, dry, elastic  # noqa: E402
 
 YOUNG, POISSON = 1000.0, 0.3
 MODULUS = YOUNG / (1 - POISSON**2)

@@ -6,8 +6,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "python"))
 
-from stickslip.cards import card, elastic, step  # noqa: E402
-from stickslip.deck import write_to_folder  # noqa: E402
+from stickslip.decks import card, elastic, step, write_to_folder  # noqa: E402
 
 MASS, NORMAL, SPEED = 1.0, 10.0, 0.05
 """Mass and normal force of each block, speed of the belt."""

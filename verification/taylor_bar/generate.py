@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from form import load
 from meshes import plane, rectangle, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry  # noqa: E402
+from stickslip.decks import card, dry  # noqa: E402
 
 held = load(Path(__file__).resolve().parents[2] / "input" / "taylor_bar" / "generate.py")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from meshes import plane, prints, rectangle, static, write_deck  # noqa: E402  (first: it finds the modules of python/)
-from stickslip.cards import card, dry  # noqa: E402
+from stickslip.decks import card, dry  # noqa: E402
 
 RADIUS, HALF, YOUNG, YIELD, HARDENING = 10.0, 15.0, 200e3, 700.0, 300.0
 

@@ -1,5 +1,5 @@
-"""The certificate of a result: its claims recomputed from the file alone (docs/certificate.md).
+"""The certificate of a result: what the file alone tells of its claims (docs/certificate.md).
 
-Nothing here is shared with the program: elements, materials, geometry of contact and ledger are
-written anew, from the equations of docs/theory.md.
+Nothing here is shared with the program: geometry and law of contact, ledger and momenta are written anew, from the equations of
+docs/theory.md. No element and no material is evaluated, so that those of a new kind need nothing here.
 """

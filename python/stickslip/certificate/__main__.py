@@ -1,4 +1,4 @@
-"""Recomputes what a result file claims, from the file alone (docs/certificate.md).
+"""Checks what a result file claims of contacts, energies and momenta, from the file alone (docs/certificate.md).
 
 Exit code 0 when all checks hold, 1 when one fails, 2 when the file cannot be read.
 """

@@ -257,7 +257,7 @@ class Page {
       return make("tr", {}, make("th", { scope: "row" }, check.text), make("td", {}, check.largest > 0 ? check.largest.toExponential(1) : "0"), make("td", {}, check.bound?.toExponential(0) ?? "–"), ...where.map((each) => make("td", {}, each)));
     });
     const { certificate } = this.result;
-    byId("checks").append(make("p", { class: "note" }, `Certificate, recomputed from the file: ${certificate}.`));
+    byId("checks").append(make("p", { class: "note" }, `Certificate, from the file alone: ${certificate}.`));
     byId("checks").append(make("table", { class: "checks" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows)));
   }
 }

@@ -5,32 +5,12 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.certificate.elements import (
-    CORNERS,
-    EPS,
-    LAST_STEP,
-    PATH,
-    PATH_WEIGHTS,
-    REST,
-    SAINT_VENANT_KIRCHHOFF,
-    _cofactor,
-    _determinant,
-    _identity,
-    _mean,
-    _trace,
-)
-from stickslip.certificate.enhanced import Beside
-from stickslip.certificate.rings import RingBlock, Strain, _work
+from oracle.block import LAST_STEP, PATH, PATH_WEIGHTS, REST, SAINT_VENANT_KIRCHHOFF
+from oracle.enhanced import DIFFERENCE, MOST_STEPS, PATTERN, Beside
+from oracle.rings import RingBlock, Strain, work_of
+from oracle.shapes import CORNERS
+from oracle.tensors import EPS, cofactor_of, determinant_of, identity_times, mean_of, trace_of
 from stickslip.result import Array
-
-PATTERN = np.array([1.0, -1.0, 1.0, -1.0])
-"""Hourglass pattern of the nodes."""
-
-MOST_STEPS = 60
-"""Steps of Newton's method for alpha, and halvings of one."""
-
-DIFFERENCE = 1e-6
-"""Change of alpha by which the derivative of a stress is told."""
 
 
 def _plus(a: Strain, b: Strain, factor: float = 1.0) -> Strain:
@@ -87,7 +67,7 @@ class CondensedBlock(RingBlock):
         return self.conjugate(self.compatible(u))
 
     def _sum(self, stress: Strain, change: Strain) -> Array:
-        return (self.weight * _work(stress, change)).sum(axis=1)
+        return (self.weight * work_of(stress, change)).sum(axis=1)
 
     def _square(self, strain: Strain) -> Array:
         """sum v E:E."""
@@ -103,11 +83,11 @@ class CondensedBlock(RingBlock):
     def means(self, u: Array) -> tuple[Array, Array]:
         """Cauchy stress and Green-Lagrange strain of the elements [E, 3] as xx yy xy."""
         strain, stretch = self.strains(u), self.stretch(u)
-        f = _identity(np.ones_like(strain[1])) + self.displacement_gradient(u)
-        j = _determinant(f) * (1.0 + stretch)
+        f = identity_times(np.ones_like(strain[1])) + self.displacement_gradient(u)
+        j = determinant_of(f) * (1.0 + stretch)
         cauchy = f @ self.stress_of(u)[0] @ f.swapaxes(2, 3) / j[..., None, None]
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
-        return _mean(part, cauchy), _mean(part, strain[0])
+        return mean_of(part, cauchy), mean_of(part, strain[0])
 
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
         """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
@@ -165,7 +145,7 @@ class PressureBlock(CondensedBlock):
     def volumes(self, strain: Strain) -> tuple[Array, Array]:
         """J - 1 and theta - 1."""
         e, z = strain
-        q = 2.0 * _trace(e) + 4.0 * _determinant(e)
+        q = 2.0 * trace_of(e) + 4.0 * determinant_of(e)
         own = np.expm1(0.5 * (np.log1p(q) + np.log1p(z)))
         return own, self.project(own)
 
@@ -173,7 +153,7 @@ class PressureBlock(CondensedBlock):
         """Ebar of eq. (2.45)."""
         (own, whole), (e, z) = self.volumes(strain), strain
         excess = np.expm1(2.0 / 3.0 * np.log1p((whole - own) / (1.0 + own)))
-        half = _identity(np.full_like(z, 0.5)) + e
+        half = identity_times(np.full_like(z, 0.5)) + e
         return e + excess[..., None, None] * half, z + excess * (1.0 + z)
 
     def on_displacements(self, strain: Strain, stress: Strain) -> Strain:
@@ -181,10 +161,10 @@ class PressureBlock(CondensedBlock):
         (own, whole), (e, z) = self.volumes(strain), strain
         j, theta = 1.0 + own, 1.0 + whole
         r = (theta / j) ** (2.0 / 3.0)
-        c = _identity(np.ones_like(z)) + 2.0 * e
+        c = identity_times(np.ones_like(z)) + 2.0 * e
         a = r * (np.einsum("egij,egij->eg", stress[0], c) + stress[1] * (1.0 + z)) / 3.0
         p = (self.project(a / theta) - a / j) * j
-        inverse = _cofactor(c) / _determinant(c)[..., None, None]
+        inverse = cofactor_of(c) / determinant_of(c)[..., None, None]
         return (
             r[..., None, None] * stress[0] + p[..., None, None] * inverse,
             r * stress[1] + p / (1.0 + z),

@@ -5,16 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.certificate.elements import (
-    CORNERS,
-    EPS,
-    LAST_STEP,
-    PATH,
-    PATH_WEIGHTS,
-    REST,
-    SAINT_VENANT_KIRCHHOFF,
-    Block,
-)
+from oracle.block import LAST_STEP, PATH, PATH_WEIGHTS, REST, SAINT_VENANT_KIRCHHOFF, Block
+from oracle.shapes import CORNERS
+from oracle.tensors import EPS
 from stickslip.result import Array
 
 PATTERN = np.array([1.0, -1.0, 1.0, -1.0])

@@ -5,17 +5,8 @@ A strain is E in the section [E, G, 2, 2] and z = 2 E_33 around the axis [E, G].
 
 import numpy as np
 
-from stickslip.certificate.elements import (
-    PATH,
-    PATH_WEIGHTS,
-    SAINT_VENANT_KIRCHHOFF,
-    Block,
-    _cofactor,
-    _determinant,
-    _identity,
-    _mean,
-    _trace,
-)
+from oracle.block import NEO_HOOKE, PATH, PATH_WEIGHTS, POLYNOMIAL, SAINT_VENANT_KIRCHHOFF, Block
+from oracle.tensors import cofactor_of, determinant_of, identity_times, mean_of, trace_of
 from stickslip.result import Array
 
 Strain = tuple[Array, Array]
@@ -30,7 +21,7 @@ class RingBlock(Block):
     @property
     def is_polynomial(self) -> bool:
         """Whether the law is one of eq. (2.23)."""
-        return self.law != SAINT_VENANT_KIRCHHOFF
+        return self.law in (NEO_HOOKE, POLYNOMIAL)
 
     def stretch(self, u: Array) -> Array:
         """h = u_r/R [E, G]."""
@@ -45,7 +36,7 @@ class RingBlock(Block):
         """W, eqs (2.13) and (2.23)."""
         e, z = strain
         if not self.is_polynomial:
-            trace = _trace(e) + 0.5 * z
+            trace = trace_of(e) + 0.5 * z
             squares = np.einsum("egij,egij->eg", e, e) + 0.25 * z**2
             return 0.5 * self.lame * trace**2 + self.shear * squares
         _, _, x, y, grown = self.invariants(e, z)
@@ -59,8 +50,8 @@ class RingBlock(Block):
         if self.is_polynomial:
             in_plane, around = self.polynomial_stress(e, z)
             return in_plane, around
-        trace = self.lame * (_trace(e) + 0.5 * z)
-        return _identity(trace) + 2.0 * self.shear * e, trace + self.shear * z
+        trace = self.lame * (trace_of(e) + 0.5 * z)
+        return identity_times(trace) + 2.0 * self.shear * e, trace + self.shear * z
 
     def mean_stress(self, start: Strain, end: Strain) -> Strain:
         """S_m of eq. (4.8) with all components."""
@@ -74,7 +65,7 @@ class RingBlock(Block):
         for place, weight in zip(PATH, PATH_WEIGHTS):
             at = middle[0] + 0.5 * place * change[0], middle[1] + 0.5 * place * change[1]
             off, around = self.stress_at(at)
-            f += 0.5 * weight * _work((off - stress[0], around - stress[1]), change)
+            f += 0.5 * weight * work_of((off - stress[0], around - stress[1]), change)
         square = np.einsum("egij,egij->eg", change[0], change[0]) + 0.25 * change[1] ** 2
         ratio = np.divide(f, square, out=np.zeros_like(f), where=square > 0.0)
         return stress[0] + ratio[..., None, None] * change[0], stress[1] + 0.5 * ratio * change[1]
@@ -82,12 +73,12 @@ class RingBlock(Block):
     def viscous_stress(self, start: Strain, end: Strain, dt: float) -> Strain:
         """S_d of eq. (2.36)."""
         (e0, z0), (e1, z1) = start, end
-        c = _identity(np.ones_like(z0)) + e0 + e1
+        c = identity_times(np.ones_like(z0)) + e0 + e1
         around = 1.0 + 0.5 * (z0 + z1)
-        p, hoop = _cofactor(c) / _determinant(c)[..., None, None], 1.0 / around
+        p, hoop = cofactor_of(c) / determinant_of(c)[..., None, None], 1.0 / around
         change, along = e1 - e0, 0.5 * (z1 - z0)
         volume = np.einsum("egij,egij->eg", p, change) + hoop * along
-        factor = self.beta / dt * np.sqrt(_determinant(c) * around)
+        factor = self.beta / dt * np.sqrt(determinant_of(c) * around)
         shape = 2.0 * self.shear * (p @ change @ p)
         wide = self.lame * volume
         return (
@@ -102,11 +93,11 @@ class RingBlock(Block):
     def means(self, u: Array) -> tuple[Array, Array]:
         """Cauchy stress and Green-Lagrange strain of the elements [E, 3] as xx yy xy."""
         strain = self.strains(u)
-        f = _identity(np.ones_like(strain[1])) + self.displacement_gradient(u)
-        j = _determinant(f) * (1.0 + self.stretch(u))
+        f = identity_times(np.ones_like(strain[1])) + self.displacement_gradient(u)
+        j = determinant_of(f) * (1.0 + self.stretch(u))
         cauchy = f @ self.stress_at(strain)[0] @ f.swapaxes(2, 3) / j[..., None, None]
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
-        return _mean(part, cauchy), _mean(part, strain[0])
+        return mean_of(part, cauchy), mean_of(part, strain[0])
 
     def mean_around(self, u: Array) -> Array:
         """Mean of E_33 over the elements [E]."""
@@ -136,6 +127,6 @@ class RingBlock(Block):
         np.add.at(total, self.nodes, np.stack([each, np.zeros_like(each)], axis=2))
 
 
-def _work(stress: Strain, change: Strain) -> Array:
+def work_of(stress: Strain, change: Strain) -> Array:
     """S:dE with all components, change of z being twice that of E_33."""
     return np.einsum("egij,egij->eg", stress[0], change[0]) + 0.5 * stress[1] * change[1]

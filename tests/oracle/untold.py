@@ -1,12 +1,16 @@
-"""Elements of metals (`*PLASTIC`): masses and strains; their stresses follow from a history that the file does not have."""
+"""Elements whose stresses the oracle does not know: masses and strains.
+
+Of metals (`*PLASTIC`) they follow from a history that the file does not have; of other laws the oracle has no equation.
+"""
 
 import numpy as np
 
-from stickslip.certificate.elements import Block, _mean
+from oracle.block import Block
+from oracle.tensors import mean_of
 from stickslip.result import Array
 
 
-class MetalBlock(Block):
+class UntoldBlock(Block):
     """Elements whose stresses are not known from the displacements."""
 
     def condense(self) -> None:
@@ -22,7 +26,7 @@ class MetalBlock(Block):
     def means(self, u: Array) -> tuple[Array, Array]:
         """No stress that is known, and the Green-Lagrange strain."""
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
-        strain = _mean(part, self.strain(self.displacement_gradient(u)))
+        strain = mean_of(part, self.strain(self.displacement_gradient(u)))
         return np.zeros_like(strain), strain
 
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from stickslip.certificate.elements import Block
-from stickslip.certificate.enhanced import patterns
+from oracle.block import Block
+from oracle.enhanced import patterns
 from stickslip.result import Array
 
 
@@ -36,10 +36,9 @@ class ReducedBlock(Block):
         self.weight = volume
 
     @property
-    def stiffness(self) -> float:
+    def diagonal(self) -> Array:
         """As that of a block, with the part of the hourglass modes."""
-        each = np.einsum("eii,ea->ea", self.hourglass, self.gamma**2)
-        return super().stiffness + float(each.max(initial=0.0))
+        return super().diagonal + np.einsum("eii,ea->ea", self.hourglass, self.gamma**2)
 
     def modes(self, u: Array) -> tuple[Array, Array, Array]:
         """F0 [E, 2, 2], q and H = F0^T q [E, 2]."""

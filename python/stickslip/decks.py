@@ -1,9 +1,65 @@
-"""Meshes of four-node quadrilaterals, written as deck cards."""
+"""Texts that programs write decks of: cards, and grids of four-node quadrilaterals.
 
+`deck.Deck` reads and changes whole decks, and appends cards with the same `card`.
+"""
+
+import argparse
 from collections.abc import Callable, Sequence
 from math import cos, pi, sin, sqrt
+from pathlib import Path
 
-from stickslip.cards import card
+
+def card(keyword: str, *rows: Sequence[object]) -> str:
+    """Text of one card: its keyword line and data lines; floats are written with repr."""
+    lines = ["*" + keyword]
+    lines += [
+        ", ".join(repr(float(x)) if isinstance(x, float) else str(x) for x in row) for row in rows
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def material(name: str, young: float, poisson: float, density: float, **damping: float) -> str:
+    """An elastic material; zero parameters of its damping are left out."""
+    parameters = "".join(f", {key.upper()}={value!r}" for key, value in damping.items() if value)
+    return "".join(
+        [
+            card(f"MATERIAL, NAME={name}"),
+            card("ELASTIC", (young, poisson)),
+            card("DENSITY", (density,)),
+            card(f"DAMPING{parameters}") if parameters else "",
+        ]
+    )
+
+
+def elastic(
+    young: float,
+    poisson: float,
+    density: float,
+    *sets: str,
+    thickness: float = 1.0,
+    **damping: float,
+) -> str:
+    """A material and the sections of element sets that are made of it."""
+    return "".join(
+        [
+            material("ELASTIC", young, poisson, density, **damping),
+            *(
+                card(f"SOLID SECTION, ELSET={name}, MATERIAL=ELASTIC", (thickness,))
+                for name in sets
+            ),
+        ]
+    )
+
+
+def dry(friction: float) -> str:
+    """The interaction DRY with a coefficient of friction."""
+    return card("SURFACE INTERACTION, NAME=DRY") + card("FRICTION", (friction,))
+
+
+def step(dt: float, increments: int, *cards: str) -> str:
+    """A step of equal increments with its cards."""
+    head = card(f"STEP, NLGEOM, INC={increments}")
+    return "".join([head, card("DYNAMIC, DIRECT", (dt, increments * dt)), *cards, card("END STEP")])
 
 
 class Grid:
@@ -97,8 +153,11 @@ class Grid:
         )
 
 
-class Mesh:
-    """Any quadrilaterals: nodes and elements by their indices, labels in order."""
+class GridMesh:
+    """Any quadrilaterals: nodes and elements by their indices, labels in order.
+
+    `mesh.Mesh` is for decks that are made of arrays; this one writes its cards itself, with the labels of a first node and element.
+    """
 
     def __init__(
         self,
@@ -155,7 +214,7 @@ def ring(
     across: int,
     first_node: int = 1,
     first_element: int = 1,
-) -> Mesh:
+) -> GridMesh:
     """A ring between two radii; node (k, j) is the k-th around and the j-th from the inside."""
     nodes = []
     for j in range(across + 1):
@@ -173,7 +232,7 @@ def ring(
         for j in range(across)
         for k in range(around)
     ]
-    return Mesh(name, nodes, elements, first_node, first_element)
+    return GridMesh(name, nodes, elements, first_node, first_element)
 
 
 def disc(
@@ -185,7 +244,7 @@ def disc(
     rings: int,
     first_node: int = 1,
     first_element: int = 1,
-) -> Mesh:
+) -> GridMesh:
     """A disc turned by an angle: a square of side x side elements, bulging, with rings around.
 
     It has 4 side nodes on its rim.
@@ -219,4 +278,11 @@ def disc(
         (centre[0] + x * cos(turn) - y * sin(turn), centre[1] + x * sin(turn) + y * cos(turn))
         for x, y in nodes
     ]
-    return Mesh(name, turned, elements, first_node, first_element)
+    return GridMesh(name, turned, elements, first_node, first_element)
+
+
+def write_to_folder(about: str | None, folder: Path, write: Callable[[Path], None]) -> None:
+    """Command line of a script that writes decks: into `folder`, or that of the option `-o`."""
+    parser = argparse.ArgumentParser(description=about)
+    parser.add_argument("-o", "--output", type=Path, default=folder, help="folder of the decks")
+    write(parser.parse_args().output)
