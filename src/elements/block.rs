@@ -42,21 +42,46 @@ pub enum BlockMotion<const N: usize> {
     Between(NodalLanes<N>, NodalLanes<N>),
 }
 
-/// Natural derivatives of the displacements x, then y, at the points: those of [`BlockMotion`].
+/// Natural derivatives of the displacements x, then y, at the points, and the displacements x there.
+pub struct FieldAtPoints<const P: usize> {
+    natural: [[[Lanes; 2]; P]; 2],
+    /// Read in bodies of revolution alone.
+    radial: [Lanes; P],
+}
+
+/// The displacements of [`BlockMotion`] at the points.
 pub enum Derivatives<const P: usize> {
-    /// Of the displacements.
-    At([[[Lanes; 2]; P]; 2]),
-    /// Of the mid configuration and of half the way.
-    Between([[[Lanes; 2]; P]; 2], [[[Lanes; 2]; P]; 2]),
+    /// Displacements.
+    At(FieldAtPoints<P>),
+    /// The mid configuration and half the way.
+    Between(FieldAtPoints<P>, FieldAtPoints<P>),
+}
+
+/// Displacement gradient at a point.
+#[derive(Clone, Copy, Default)]
+pub struct Gradient {
+    /// H in the section.
+    pub h: TensorLanes,
+    /// h = u_r/R around the axis of a body of revolution.
+    pub around: Lanes,
 }
 
 /// Deformation at one integration point.
 #[derive(Clone, Copy)]
 pub enum Deformation {
-    /// Displacement gradient H.
-    At(TensorLanes),
-    /// H of the mid configuration and the strains of start and end.
-    Between(TensorLanes, StrainChange<Lanes>),
+    /// Displacement gradient.
+    At(Gradient),
+    /// That of the mid configuration and the strains of start and end.
+    Between(Gradient, StrainChange<Lanes>),
+}
+
+/// A block with the places of its points in a body of revolution.
+#[derive(Clone, Copy)]
+pub struct PlacedBlock<'a, const N: usize, const P: usize> {
+    /// The elements.
+    pub block: &'a ElementBlock<N, P>,
+    /// 1/R at the points; without a body of revolution none is read (1/length).
+    pub over_radius: &'a [Lanes; P],
 }
 
 impl<const N: usize> BlockMotion<N> {
@@ -75,8 +100,16 @@ impl<const N: usize> BlockMotion<N> {
 
     /// Natural derivatives at the points.
     #[inline(always)]
-    pub fn derivatives<S: IntegratedShape<N, P>, const P: usize>(&self) -> Derivatives<P> {
-        let of = |u: &NodalLanes<N>| [S::derivatives(&u[0]), S::derivatives(&u[1])];
+    pub fn derivatives<S: IntegratedShape<N, P>, const P: usize, const HOOP: bool>(
+        &self,
+    ) -> Derivatives<P> {
+        let of = |u: &NodalLanes<N>| FieldAtPoints {
+            natural: [S::derivatives(&u[0]), S::derivatives(&u[1])],
+            radial: match HOOP {
+                true => S::field(&u[0]),
+                false => [Lanes::ZERO; P],
+            },
+        };
         match self {
             Self::At(u) => Derivatives::At(of(u)),
             Self::Between(mid, half) => Derivatives::Between(of(mid), of(half)),
@@ -85,25 +118,29 @@ impl<const N: usize> BlockMotion<N> {
 }
 
 impl Deformation {
-    /// H of the strain-displacement matrix.
+    /// The gradient of the strain-displacement matrix.
     #[inline(always)]
-    pub fn h(&self) -> &TensorLanes {
+    pub fn gradient(&self) -> &Gradient {
         match self {
-            Self::At(h) | Self::Between(h, _) => h,
+            Self::At(gradient) | Self::Between(gradient, _) => gradient,
         }
     }
 
     /// Second Piola-Kirchhoff stress, eq. (2.3), or energy-momentum stress, eq. (4.8).
     #[inline(always)]
-    pub fn stress(&self, p: usize, law: &impl LaneLaw) -> SymmetricLanes {
-        law.stress_at(p, &self.strains())
+    pub fn stress<const HOOP: bool>(
+        &self,
+        p: usize,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> SymmetricLanes {
+        law.stress_at(p, &self.strains::<HOOP>())
     }
 
     /// Strains at which the material is evaluated.
     #[inline(always)]
-    fn strains(&self) -> Strains<Lanes> {
+    fn strains<const HOOP: bool>(&self) -> Strains<Lanes> {
         match self {
-            Self::At(h) => Strains::At(green_lagrange(h)),
+            Self::At(gradient) => Strains::At(gradient.strain::<HOOP>()),
             Self::Between(_, change) => Strains::Between(*change),
         }
     }
@@ -138,9 +175,31 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
         [S::nodal_sums(&q[0]), S::nodal_sums(&q[1])]
     }
 
-    /// Deformation at a point, given natural derivatives; `positive` takes in det F.
+    /// H = du/dr J^-1 at a point, eq. (2.1).
     #[inline(always)]
-    pub fn deformation(
+    pub fn gradient(&self, p: usize, u: &FieldAtPoints<P>) -> TensorLanes {
+        let [r, s] = &self.inverse[p];
+        let row = |[dr, ds]: [Lanes; 2]| [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]];
+        [row(u.natural[0][p]), row(u.natural[1][p])]
+    }
+}
+
+impl<const N: usize, const P: usize> PlacedBlock<'_, N, P> {
+    /// Displacement gradient at a point.
+    #[inline(always)]
+    fn gradient<const HOOP: bool>(&self, p: usize, u: &FieldAtPoints<P>) -> Gradient {
+        Gradient {
+            h: self.block.gradient(p, u),
+            around: match HOOP {
+                true => u.radial[p] * self.over_radius[p],
+                false => Lanes::ZERO,
+            },
+        }
+    }
+
+    /// Deformation at a point; `positive` takes in det F.
+    #[inline(always)]
+    pub fn deformation<const HOOP: bool>(
         &self,
         p: usize,
         u: &Derivatives<P>,
@@ -148,25 +207,73 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
     ) -> Deformation {
         match u {
             Derivatives::At(u) => {
-                let h = self.gradient(p, u);
-                *positive = positive.and(determinant(&h));
-                Deformation::At(h)
+                let gradient = self.gradient::<HOOP>(p, u);
+                *positive = gradient.is_positive::<HOOP>(*positive);
+                Deformation::At(gradient)
             }
             Derivatives::Between(mid, half) => {
-                let (h, g) = (self.gradient(p, mid), self.gradient(p, half));
-                let end = determinant(&plus(&h, &g));
-                *positive = positive.and(determinant(&h)).and(end);
-                Deformation::Between(h, strain_change(&h, &g))
+                let mid = self.gradient::<HOOP>(p, mid);
+                let half = self.gradient::<HOOP>(p, half);
+                let end = Gradient {
+                    h: plus(&mid.h, &half.h),
+                    around: mid.around + half.around,
+                };
+                *positive = mid.is_positive::<HOOP>(*positive);
+                *positive = end.is_positive::<HOOP>(*positive);
+                Deformation::Between(mid, mid.strain_change::<HOOP>(&half))
             }
         }
     }
+}
 
-    /// H = du/dr J^-1 at a point, eq. (2.1).
+impl Gradient {
+    /// Stretch 1 + h around the axis.
     #[inline(always)]
-    pub fn gradient(&self, p: usize, u: &[[[Lanes; 2]; P]; 2]) -> TensorLanes {
-        let [r, s] = &self.inverse[p];
-        let row = |[dr, ds]: [Lanes; 2]| [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]];
-        [row(u[0][p]), row(u[1][p])]
+    fn stretch_around(&self) -> Lanes {
+        self.around + 1.0
+    }
+
+    /// E = (H + H^T + H^T H)/2 and E_33 = h + h²/2, eq. (2.2) and eq. (2.31).
+    #[inline(always)]
+    pub fn strain<const HOOP: bool>(&self) -> SymmetricLanes {
+        let e = green_lagrange(&self.h);
+        match HOOP {
+            true => SymmetricLanes {
+                z: self.around + self.around * self.around * 0.5,
+                ..e
+            },
+            false => e,
+        }
+    }
+
+    /// The strains of F - G and of F + G, G being half of the way.
+    #[inline(always)]
+    fn strain_change<const HOOP: bool>(&self, way: &Gradient) -> StrainChange<Lanes> {
+        let (mean, half) = strain_change(&self.h, &way.h);
+        if !HOOP {
+            return StrainChange::about(mean, half);
+        }
+        let (h, g) = (self.around, way.around);
+        StrainChange::about(
+            SymmetricLanes {
+                z: h + (h * h + g * g) * 0.5,
+                ..mean
+            },
+            SymmetricLanes {
+                z: self.stretch_around() * g,
+                ..half
+            },
+        )
+    }
+
+    /// Takes in det F, and the stretch around the axis.
+    #[inline(always)]
+    fn is_positive<const HOOP: bool>(&self, others: Positive) -> Positive {
+        let with_section = others.and(determinant(&self.h));
+        match HOOP {
+            true => with_section.and(self.stretch_around()),
+            false => with_section,
+        }
     }
 }
 
@@ -191,16 +298,16 @@ pub fn green_lagrange(h: &TensorLanes) -> SymmetricLanes {
     in_plane([h[0][0] + xx, h[1][1] + yy, shear])
 }
 
-/// Of F0 = F - G and F1 = F + G, F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = F^T G + G^T F.
+/// (E0 + E1)/2 and (E1 - E0)/2 of F0 = F - G and F1 = F + G, F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = 2 (F^T G + G^T F).
 #[inline(always)]
-fn strain_change(h: &TensorLanes, g: &TensorLanes) -> StrainChange<Lanes> {
+fn strain_change(h: &TensorLanes, g: &TensorLanes) -> (SymmetricLanes, SymmetricLanes) {
     let (e, square, f) = (
         green_lagrange(h),
         half_of_square(g),
         deformation_gradient(h),
     );
     let product = |i: usize, j: usize| f[0][i] * g[0][j] + f[1][i] * g[1][j];
-    StrainChange::about(
+    (
         in_plane([e.x + square[0], e.y + square[1], e.w + square[2]]),
         in_plane([
             product(0, 0),
@@ -262,6 +369,18 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
         derivatives
     }
 
+    /// A field at every point.
+    #[inline(always)]
+    fn field(v: &[Lanes; N]) -> [Lanes; P] {
+        let mut values = [Lanes::ZERO; P];
+        for p in 0..P {
+            for a in 0..N {
+                values[p] += v[a] * Self::FUNCTIONS.values[p][a];
+            }
+        }
+        values
+    }
+
     /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivatives`].
     #[inline(always)]
     fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N] {
@@ -313,102 +432,160 @@ pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 impl Deformation {
     /// Tangent of [`Self::stress`] in Voigt order.
     #[inline(always)]
-    fn tangent(&self, p: usize, law: &impl LaneLaw) -> TangentLanes {
-        law.tangent_at(p, &self.strains())
+    fn tangent<const HOOP: bool>(
+        &self,
+        p: usize,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> TangentLanes {
+        law.tangent_at(p, &self.strains::<HOOP>())
     }
 }
 
-/// A material of elements of the plane side by side.
-pub trait LaneLaw: StressAtPoints<Lanes, false> {}
-
-impl<L: StressAtPoints<Lanes, false>> LaneLaw for L {}
-
-/// How force, tangent and results of elements side by side follow from their motion.
-pub trait BlockFormulation {
+/// How force, tangent and results of elements side by side follow from their motion, in the plane or, with `HOOP`, in a body
+/// of revolution.
+pub trait BlockFormulation<const HOOP: bool> {
     /// Internal force, eq. (2.5) (force), and whether det F is positive at all points.
     fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive);
 
     /// Adds the symmetric tangent (force/length): entries [a][b] with a <= b.
     fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     );
 
     /// Results of the elements at displacements.
     fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES];
 }
 
-impl BlockFormulation for Displacement {
-    /// F = int B_L^T S dOmega
+impl<const HOOP: bool> BlockFormulation<HOOP> for Displacement {
+    /// F = int B_L^T S dOmega, with (1 + h) S_33 h_a/R in the direction of the radius in a body of revolution, eq. (2.33).
     #[inline(always)]
     fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
         let mut positive = Positive::default();
         let mut points = [([[Lanes::ZERO; 2]; 2], SymmetricLanes::default()); P];
-        let u = motion.derivatives::<S, P>();
+        let mut hoop = [Lanes::ZERO; P];
+        let u = motion.derivatives::<S, P, HOOP>();
         for p in 0..P {
-            let deformation = block.deformation(p, &u, &mut positive);
-            let s = deformation.stress(p, law).times(block.volume[p]);
-            points[p] = (*deformation.h(), s);
+            let deformation = placed.deformation::<HOOP>(p, &u, &mut positive);
+            let s = deformation.stress(p, law).times(placed.block.volume[p]);
+            let gradient = deformation.gradient();
+            points[p] = (gradient.h, s);
+            if HOOP {
+                hoop[p] = gradient.stretch_around() * s.z * placed.over_radius[p];
+            }
         }
-        (block.nodal_forces::<S>(|p| points[p]), positive)
+        let mut force = placed.block.nodal_forces::<S>(|p| points[p]);
+        if HOOP {
+            for p in 0..P {
+                for a in 0..N {
+                    force[0][a] += hoop[p] * S::FUNCTIONS.values[p][a];
+                }
+            }
+        }
+        (force, positive)
     }
 
     /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6), in the energy-momentum form with B_L of the mid
-    /// configuration.
+    /// configuration; in a body of revolution with the row (1 + h) h_a/R of B_L and with S_33 h_a h_b/R², eq. (2.34).
     ///
     /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     ) {
-        let u = motion.derivatives::<S, P>();
+        let u = motion.derivatives::<S, P, HOOP>();
         for p in 0..P {
-            let deformation = block.deformation(p, &u, &mut Positive::default());
-            let s = deformation.stress(p, law).times(block.volume[p]);
+            let deformation = placed.deformation::<HOOP>(p, &u, &mut Positive::default());
+            let volume = placed.block.volume[p];
+            let s = deformation.stress(p, law).times(volume);
             let c = deformation.tangent(p, law);
-            let c = TangentLanes::of(|i, j| c.0[i][j] * block.volume[p]);
-            let a = elasticity(&deformation_gradient(deformation.h()), &s, &c);
-            add_products(k, &block.gradients::<S>(p), &a);
+            let c = TangentLanes::of(|i, j| c.0[i][j] * volume);
+            let gradient = deformation.gradient();
+            let f = deformation_gradient(&gradient.h);
+            let gradients = placed.block.gradients::<S>(p);
+            add_products(k, &gradients, &elasticity(&f, &s, &c));
+            if HOOP {
+                let rows = from_fn(|a| placed.over_radius[p] * S::FUNCTIONS.values[p][a]);
+                let stretch = gradient.stretch_around();
+                add_hoop(k, (&gradients, &rows), (&f, stretch), (s.z, &c.0[2]));
+            }
         }
     }
 
     #[inline(always)]
     fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES] {
-        let u = motion.derivatives::<S, P>();
+        let u = motion.derivatives::<S, P, HOOP>();
         let mut sums = Sums::new();
         for p in 0..P {
-            let h = *block.deformation(p, &u, &mut Positive::default()).h();
-            let strain = green_lagrange(&h);
+            let deformation = placed.deformation::<HOOP>(p, &u, &mut Positive::default());
+            let gradient = *deformation.gradient();
+            let strain = gradient.strain::<HOOP>();
             let point = ResultPoint {
-                h,
+                h: gradient.h,
                 strain,
-                determinant: determinant(&h),
+                determinant: determinant(&gradient.h),
                 s: law.stress_at(p, &Strains::At(strain)),
+                around: strain.z,
             };
-            sums.add(p, law, &point, block.volume[p]);
+            sums.add(p, law, &point, placed.block.volume[p]);
         }
         sums.results()
+    }
+}
+
+/// Adds what the strain around the axis brings to the tangent of a point, for a <= b: with its row b_a = (1 + h) h_a/R of B_L,
+/// which acts on displacements along the radius, and C_33 of each component of the strain in `c`,
+///
+/// ```text
+/// b_a C_33,. B_b + its transpose + b_a b_b C_3333 + S_33 h_a h_b/R²
+/// ```
+#[inline(always)]
+fn add_hoop<const N: usize>(
+    k: &mut MatrixLanes<N>,
+    (gradients, rows): (&[[Lanes; 2]; N], &[Lanes; N]),
+    (f, stretch): (&TensorLanes, Lanes),
+    (s, c): (Lanes, &[Lanes; 4]),
+) {
+    // (1 + h) times the change of S_33 with the strains in the section of a displacement j of node b
+    let mut of_section = [[Lanes::ZERO; 2]; N];
+    for (of_section, [x, y]) in of_section.iter_mut().zip(gradients) {
+        for j in 0..2 {
+            let shear = f[j][0] * *y + f[j][1] * *x;
+            let change = c[0] * (f[j][0] * *x) + c[1] * (f[j][1] * *y) + c[3] * shear;
+            of_section[j] = stretch * change;
+        }
+    }
+    let both = stretch * stretch * c[2] + s;
+    for second in 0..N {
+        for first in 0..second + 1 {
+            let block = &mut k[first][second];
+            block[0][0] += rows[first] * rows[second] * both;
+            for j in 0..2 {
+                block[0][j] += rows[first] * of_section[second][j];
+                block[j][0] += rows[second] * of_section[first][j];
+            }
+        }
     }
 }
 
@@ -490,6 +667,8 @@ pub struct ResultPoint {
     pub determinant: Lanes,
     /// Stress that does work on the strain of the displacements (force/length^2).
     pub s: SymmetricLanes,
+    /// Strain of the displacements around the axis of a body of revolution.
+    pub around: Lanes,
 }
 
 /// Sums over the integration points, each times its weight.
@@ -502,6 +681,7 @@ pub struct Sums {
     /// Components 11, 22 and 12.
     strain: [Lanes; 3],
     volume: Lanes,
+    around: Lanes,
     /// Largest absolute principal strain so far.
     principal: [f64; LANES],
 }
@@ -516,13 +696,20 @@ impl Sums {
             across: Lanes::ZERO,
             strain: [Lanes::ZERO; 3],
             volume: Lanes::ZERO,
+            around: Lanes::ZERO,
             principal: [0.0; LANES],
         }
     }
 
     /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz/J.
     #[inline(always)]
-    pub fn add(&mut self, p: usize, law: &impl LaneLaw, point: &ResultPoint, weight: Lanes) {
+    pub fn add<const HOOP: bool>(
+        &mut self,
+        p: usize,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+        point: &ResultPoint,
+        weight: Lanes,
+    ) {
         let (h, e) = (&point.h, green_lagrange(&point.h));
         let f = deformation_gradient(h);
         let Across { stretch, stress } = law.across_at(p, &point.strain);
@@ -536,8 +723,9 @@ impl Sums {
         for (sum, e) in self.strain.iter_mut().zip([e.x, e.y, e.w]) {
             *sum += e * weight;
         }
+        self.around += point.around * weight;
         self.volume += weight;
-        self.take_principal(&e);
+        self.take_principal(&e, point.around);
     }
 
     /// Takes in the largest absolute principal strain of a point.
@@ -546,12 +734,13 @@ impl Sums {
     /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
     /// ```
     #[inline(always)]
-    fn take_principal(&mut self, e: &SymmetricLanes) {
+    fn take_principal(&mut self, e: &SymmetricLanes, around: Lanes) {
         let (mean, half) = ((e.x + e.y) * 0.5, (e.x - e.y) * 0.5);
         let shear = (half * half + e.w * e.w).sqrt();
         for (lane, most) in self.principal.iter_mut().enumerate() {
             let strain = mean.0[lane].abs() + shear.0[lane];
             *most = -smaller(-*most, -strain);
+            *most = -smaller(-*most, -around.0[lane].abs());
         }
     }
 
@@ -579,7 +768,7 @@ impl Sums {
             strain: means(&self.strain),
             principal_strain: self.principal[lane],
             plastic_strain: 0.0,
-            strain_around: 0.0,
+            strain_around: self.around.0[lane] / volume,
             hourglass_energy: 0.0,
         }
     }

@@ -13,12 +13,14 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::block::{
-    BlockFormulation, BlockMotion, ElementBlock, IntegratedShape, LaneLaw, MatrixLanes, NodalLanes,
+    BlockFormulation, BlockMotion, ElementBlock, IntegratedShape, MatrixLanes, NodalLanes,
+    PlacedBlock,
 };
 use super::formulation::ElementResult;
 use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, PlaneLaw, Viscosity, in_lanes};
+use crate::materials::{Lanes, Number, PlaneLaw, StressAtPoints, Viscosity, in_lanes};
+use crate::model::Thickness;
 
 /// Elements of a chunk at most.
 pub const MAX_CHUNK: usize = 1024;
@@ -70,13 +72,15 @@ pub trait Chunk: Send + Sync {
 }
 
 /// Elements of one shape, formulation and material.
-pub struct ShapeChunk<const N: usize, const P: usize, S, F> {
+pub struct ShapeChunk<const N: usize, const P: usize, const HOOP: bool, S, F> {
     /// Elements (indices), lane after lane and block after block.
     elements: Vec<usize>,
     /// Node indices, increasing; blocks have places in this list.
     nodes: Vec<usize>,
     /// Blocks; places of the last that no element fills have the last element with no volume.
     blocks: Vec<ElementBlock<N, P>>,
+    /// 1/R at the points of every block; zeros for all blocks of the plane (1/length).
+    over_radius: Vec<[Lanes; P]>,
     law: PlaneLaw,
     viscosity: Option<Viscosity>,
     /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
@@ -85,18 +89,18 @@ pub struct ShapeChunk<const N: usize, const P: usize, S, F> {
     kind: PhantomData<(S, F)>,
 }
 
-impl<const N: usize, const P: usize, S, F> ShapeChunk<N, P, S, F>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F> ShapeChunk<N, P, HOOP, S, F>
 where
     S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation + Sync,
+    F: BlockFormulation<HOOP> + Sync,
 {
     /// A chunk of elements (indices) with their nodes, between nodes at the coordinates `x`, of the
-    /// thickness `t`.
+    /// thickness given.
     pub fn new(
         elements: Vec<usize>,
         of: &[[usize; N]],
         x: &[[f64; 2]],
-        t: f64,
+        thickness: Thickness,
         (law, viscosity): (PlaneLaw, Option<Viscosity>),
     ) -> Self {
         let mut nodes: Vec<usize> = of.iter().flatten().copied().collect();
@@ -107,12 +111,33 @@ where
             let places = from_fn(|lane| of[at(lane)].map(|node| place(&nodes, node)));
             let maps = from_fn(|lane| {
                 let x = SMatrix::from_fn(|i, a| x[of[at(lane)][a]][i]);
-                let t = if first + lane < of.len() { t } else { 0.0 };
-                S::map(&x, t)
+                let is_there = f64::from(u8::from(first + lane < of.len()));
+                match thickness {
+                    Thickness::Of(t) => S::map(&x, t * is_there),
+                    Thickness::Around => {
+                        let radii = radii::<S, N, P>(&x);
+                        let mut map = S::map(&x, is_there);
+                        for (at, radius) in map.iter_mut().zip(radii) {
+                            at.volume *= thickness.at(radius);
+                        }
+                        map
+                    }
+                }
             });
             ElementBlock::new(places, &maps)
         };
+        let over_radius = |first: usize| {
+            let radii: [[f64; P]; LANES] = from_fn(|lane| {
+                let element = &of[(first + lane).min(of.len() - 1)];
+                radii::<S, N, P>(&SMatrix::from_fn(|i, a| x[element[a]][i]))
+            });
+            from_fn(|p| Lanes(from_fn(|lane| 1.0 / radii[lane][p])))
+        };
         ShapeChunk {
+            over_radius: match HOOP {
+                true => (0..of.len()).step_by(LANES).map(over_radius).collect(),
+                false => vec![[Lanes::ZERO; P]],
+            },
             blocks: (0..of.len()).step_by(LANES).map(block).collect(),
             sums: Mutex::new(vec![[0.0; 2]; nodes.len()]),
             elements,
@@ -120,6 +145,15 @@ where
             law,
             viscosity,
             kind: PhantomData,
+        }
+    }
+
+    /// A block with the places of its points.
+    #[inline(always)]
+    fn placed(&self, number: usize) -> PlacedBlock<'_, N, P> {
+        PlacedBlock {
+            block: &self.blocks[number],
+            over_radius: &self.over_radius[if HOOP { number } else { 0 }],
         }
     }
 
@@ -142,7 +176,7 @@ where
 
     fn write_tangents_of(
         &self,
-        law: &impl LaneLaw,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         number: usize,
         motion: Motion,
         tangents: &mut [f64],
@@ -150,7 +184,7 @@ where
         Arch::new().dispatch(Tangents {
             chunk: self,
             law,
-            block: &self.blocks[number],
+            placed: self.placed(number),
             motion,
             tangents,
         });
@@ -173,12 +207,13 @@ where
     fn sweep(
         &self,
         sums: &mut [[f64; 2]],
-        law: &impl LaneLaw,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         motion: impl Fn(&ElementBlock<N, P>) -> BlockMotion<N>,
     ) -> Positive {
         let mut positive = Positive::default();
-        for block in &self.blocks {
-            let (force, of_block) = F::force::<S, N, P>(block, law, &motion(block));
+        for (number, block) in self.blocks.iter().enumerate() {
+            let placed = self.placed(number);
+            let (force, of_block) = F::force::<S, N, P>(&placed, law, &motion(block));
             positive = positive.both(of_block);
             for (a, places) in block.nodes.iter().enumerate() {
                 for (lane, &place) in places.iter().enumerate() {
@@ -214,10 +249,10 @@ where
     }
 }
 
-impl<const N: usize, const P: usize, S, F> Chunk for ShapeChunk<N, P, S, F>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F> Chunk for ShapeChunk<N, P, HOOP, S, F>
 where
     S: IntegratedShape<N, P> + Send + Sync,
-    F: BlockFormulation + Send + Sync,
+    F: BlockFormulation<HOOP> + Send + Sync,
 {
     fn sum_forces(&self, motion: Motion) -> bool {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
@@ -310,18 +345,19 @@ where
 }
 
 /// A sweep over internal forces with the vector instructions of the processor.
-struct ForceSweep<'a, const N: usize, const P: usize, S, F, L> {
-    chunk: &'a ShapeChunk<N, P, S, F>,
+struct ForceSweep<'a, const N: usize, const P: usize, const HOOP: bool, S, F, L> {
+    chunk: &'a ShapeChunk<N, P, HOOP, S, F>,
     law: &'a L,
     motion: Motion<'a>,
     sums: &'a mut [[f64; 2]],
 }
 
-impl<const N: usize, const P: usize, S, F, L> WithSimd for ForceSweep<'_, N, P, S, F, L>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F, L> WithSimd
+    for ForceSweep<'_, N, P, HOOP, S, F, L>
 where
     S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation + Sync,
-    L: LaneLaw,
+    F: BlockFormulation<HOOP> + Sync,
+    L: StressAtPoints<Lanes, HOOP>,
 {
     type Output = Positive;
 
@@ -339,17 +375,18 @@ where
 }
 
 /// Results of all elements with the vector instructions of the processor.
-struct Evaluation<'a, const N: usize, const P: usize, S, F, L> {
-    chunk: &'a ShapeChunk<N, P, S, F>,
+struct Evaluation<'a, const N: usize, const P: usize, const HOOP: bool, S, F, L> {
+    chunk: &'a ShapeChunk<N, P, HOOP, S, F>,
     law: &'a L,
     u: &'a [f64],
 }
 
-impl<const N: usize, const P: usize, S, F, L> WithSimd for Evaluation<'_, N, P, S, F, L>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F, L> WithSimd
+    for Evaluation<'_, N, P, HOOP, S, F, L>
 where
     S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation + Sync,
-    L: LaneLaw,
+    F: BlockFormulation<HOOP> + Sync,
+    L: StressAtPoints<Lanes, HOOP>,
 {
     type Output = Vec<(usize, ElementResult)>;
 
@@ -357,8 +394,9 @@ where
     fn with_simd<V: Simd>(self, _: V) -> Self::Output {
         let Self { chunk, law, u } = self;
         let mut results = Vec::with_capacity(chunk.elements.len());
-        for (block, elements) in chunk.blocks.iter().zip(chunk.elements.chunks(LANES)) {
-            let of_block = F::evaluate::<S, N, P>(block, law, &chunk.at(block, u));
+        for (number, elements) in chunk.elements.chunks(LANES).enumerate() {
+            let placed = chunk.placed(number);
+            let of_block = F::evaluate::<S, N, P>(&placed, law, &chunk.at(placed.block, u));
             results.extend(elements.iter().copied().zip(of_block));
         }
         results
@@ -366,34 +404,36 @@ where
 }
 
 /// Tangents of a block with the vector instructions of the processor.
-struct Tangents<'a, const N: usize, const P: usize, S, F, L> {
-    chunk: &'a ShapeChunk<N, P, S, F>,
+struct Tangents<'a, const N: usize, const P: usize, const HOOP: bool, S, F, L> {
+    chunk: &'a ShapeChunk<N, P, HOOP, S, F>,
     law: &'a L,
-    block: &'a ElementBlock<N, P>,
+    placed: PlacedBlock<'a, N, P>,
     motion: Motion<'a>,
     /// Those of its elements, D x D column by column each.
     tangents: &'a mut [f64],
 }
 
-impl<const N: usize, const P: usize, S, F, L> WithSimd for Tangents<'_, N, P, S, F, L>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F, L> WithSimd
+    for Tangents<'_, N, P, HOOP, S, F, L>
 where
     S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation + Sync,
-    L: LaneLaw,
+    F: BlockFormulation<HOOP> + Sync,
+    L: StressAtPoints<Lanes, HOOP>,
 {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) {
         let Self {
-            chunk, law, block, ..
+            chunk, law, placed, ..
         } = self;
+        let block = placed.block;
         let (mut k, end) = ([[[[Lanes::ZERO; 2]; 2]; N]; N], self.motion.end);
         match self.motion.start {
-            None => F::add_tangent::<S, N, P>(block, law, &chunk.at(block, end), &mut k),
+            None => F::add_tangent::<S, N, P>(&placed, law, &chunk.at(block, end), &mut k),
             Some(start) => {
                 let motion = chunk.between(block, [start, end]);
-                F::add_tangent::<S, N, P>(block, law, &motion, &mut k);
+                F::add_tangent::<S, N, P>(&placed, law, &motion, &mut k);
             }
         }
         let matrices = self.tangents.chunks_exact_mut(4 * N * N);
@@ -401,6 +441,15 @@ where
             write_matrix(lane, &k, matrix);
         }
     }
+}
+
+/// Distances of the points from the axis, of an element between nodes at `x` (length).
+fn radii<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
+    x: &SMatrix<f64, 2, N>,
+) -> [f64; P] {
+    S::FUNCTIONS
+        .values
+        .map(|h| (0..N).map(|a| h[a] * x[(0, a)]).sum())
 }
 
 /// Place of a node in the list of a chunk, which has at most [`MAX_CHUNK`] elements.

@@ -166,9 +166,14 @@ impl AnyElement {
 /// Whether elements of a type and law are swept by blocks.
 pub(super) fn is_in_blocks(element_type: &ElementType, law: &PlaneLaw) -> bool {
     law.variables() == 0
-        && element_type.formulation != Formulation::Enhanced
         && !element_type.has_hourglass_modes()
-        && !element_type.has_all_strains()
+        && match element_type.formulation {
+            Formulation::Displacement | Formulation::Reduced => true,
+            Formulation::MeanDilatation => !element_type.has_all_strains(),
+            Formulation::Enhanced
+            | Formulation::LinearPressure
+            | Formulation::ReducedLinearPressure => false,
+        }
 }
 
 /// A chunk of elements (indices) of the model of one type and section, and their law.
@@ -178,18 +183,28 @@ pub(super) fn new_chunk(model: &Model, elements: &[usize], law: PlaneLaw) -> Box
     let material = &model.materials[section.material];
     let (beta, moduli) = (material.damping.beta, material.law.small_strain());
     let viscosity = Viscosity::of(beta, moduli, element_type.plane);
-    let (t, law) = (section.thickness, (law, viscosity));
+    let law = (law, viscosity);
+    if let Thickness::Around = Thickness::new(element_type, section.thickness) {
+        return ring_chunk(model, elements, element_type, law);
+    }
+    let t = Thickness::Of(section.thickness);
     match (element_type.shape, element_type.formulation) {
-        (Shape::Tri3, _) => chunk::<Triangle, Displacement, _, _>(model, elements, t, law),
+        (Shape::Tri3, _) => chunk::<Triangle, Displacement, _, _, false>(model, elements, t, law),
         (Shape::Quad4, Formulation::MeanDilatation) => {
-            chunk::<Quadrilateral, MeanDilatation, _, _>(model, elements, t, law)
+            chunk::<Quadrilateral, MeanDilatation, _, _, false>(model, elements, t, law)
         }
-        (Shape::Quad4, _) => chunk::<Quadrilateral, Displacement, _, _>(model, elements, t, law),
-        (Shape::Tri6, _) => chunk::<QuadraticTriangle, Displacement, _, _>(model, elements, t, law),
+        (Shape::Quad4, _) => {
+            chunk::<Quadrilateral, Displacement, _, _, false>(model, elements, t, law)
+        }
+        (Shape::Tri6, _) => {
+            chunk::<QuadraticTriangle, Displacement, _, _, false>(model, elements, t, law)
+        }
         (Shape::Quad8, Formulation::Reduced) => {
-            chunk::<ReducedSerendipity, Displacement, _, _>(model, elements, t, law)
+            chunk::<ReducedSerendipity, Displacement, _, _, false>(model, elements, t, law)
         }
-        (Shape::Quad8, _) => chunk::<Serendipity, Displacement, _, _>(model, elements, t, law),
+        (Shape::Quad8, _) => {
+            chunk::<Serendipity, Displacement, _, _, false>(model, elements, t, law)
+        }
     }
 }
 
@@ -215,22 +230,47 @@ where
     Solid::new(first(nodes), S::reference(&S::map(&positions(nodes, x), t)))
 }
 
-/// A chunk of elements of the shape S.
-fn chunk<S, F, const N: usize, const P: usize>(
+/// A chunk of rings in the displacement formulation.
+fn ring_chunk(
     model: &Model,
     elements: &[usize],
-    t: f64,
+    element_type: ElementType,
+    law: (PlaneLaw, Option<Viscosity>),
+) -> Box<dyn Chunk> {
+    let t = Thickness::Around;
+    match (element_type.shape, element_type.formulation) {
+        (Shape::Tri3, _) => chunk::<Triangle, Displacement, _, _, true>(model, elements, t, law),
+        (Shape::Quad4, _) => {
+            chunk::<Quadrilateral, Displacement, _, _, true>(model, elements, t, law)
+        }
+        (Shape::Tri6, _) => {
+            chunk::<QuadraticTriangle, Displacement, _, _, true>(model, elements, t, law)
+        }
+        (Shape::Quad8, Formulation::Reduced) => {
+            chunk::<ReducedSerendipity, Displacement, _, _, true>(model, elements, t, law)
+        }
+        (Shape::Quad8, _) => {
+            chunk::<Serendipity, Displacement, _, _, true>(model, elements, t, law)
+        }
+    }
+}
+
+/// A chunk of elements of the shape S.
+fn chunk<S, F, const N: usize, const P: usize, const HOOP: bool>(
+    model: &Model,
+    elements: &[usize],
+    t: Thickness,
     law: (PlaneLaw, Option<Viscosity>),
 ) -> Box<dyn Chunk>
 where
     S: block::IntegratedShape<N, P> + Send + Sync + 'static,
-    F: block::BlockFormulation + Send + Sync + 'static,
+    F: block::BlockFormulation<HOOP> + Send + Sync + 'static,
 {
     let mesh = &model.mesh;
     let nodes = elements.iter().map(|&e| first(&mesh.elements[e].nodes));
     let nodes: Vec<_> = nodes.collect();
     let x = &mesh.coordinates;
-    Box::new(ShapeChunk::<N, P, S, F>::new(
+    Box::new(ShapeChunk::<N, P, HOOP, S, F>::new(
         elements.to_vec(),
         &nodes,
         x,

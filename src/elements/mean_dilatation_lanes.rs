@@ -7,14 +7,14 @@
 use std::array::from_fn;
 
 use super::block::{
-    BlockFormulation, BlockMotion, Derivatives, ElementBlock, IntegratedShape, LaneLaw,
-    MatrixLanes, NodalLanes, ResultPoint, Sums, SymmetricLanes, TangentLanes, TensorLanes,
+    BlockFormulation, BlockMotion, Derivatives, ElementBlock, IntegratedShape, MatrixLanes,
+    NodalLanes, PlacedBlock, ResultPoint, Sums, SymmetricLanes, TangentLanes, TensorLanes,
     add_products, deformation_gradient, determinant, elasticity, green_lagrange, in_plane, plus,
 };
 use super::formulation::ElementResult;
 use super::mean_dilatation::MeanDilatation;
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, Number, StrainChange, Strains};
+use crate::materials::{Lanes, Number, StrainChange, Strains, StressAtPoints};
 
 /// An integration point with mean quantities of the motion. Start and end are the same at one configuration.
 #[derive(Clone, Copy, Default)]
@@ -114,7 +114,7 @@ impl PointLanes {
 #[inline(always)]
 fn stresses<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     block: &ElementBlock<N, P>,
-    law: &impl LaneLaw,
+    law: &impl StressAtPoints<Lanes, false>,
     motion: &BlockMotion<N>,
     positive: &mut Positive,
 ) -> ([PointLanes; P], [Lanes; P]) {
@@ -123,7 +123,7 @@ fn stresses<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     let volume = weights.iter().fold(Lanes::ZERO, |sum, v| sum + *v);
     let over_volume = volume.inverse();
     let mut theta = [Lanes::ZERO; 2];
-    let u = motion.derivatives::<S, P>();
+    let u = motion.derivatives::<S, P, false>();
     for p in 0..P {
         points[p] = match &u {
             Derivatives::At(u) => PointLanes::new(block.gradient(p, u), &Default::default()),
@@ -154,17 +154,17 @@ fn stresses<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     (points, weights)
 }
 
-impl BlockFormulation for MeanDilatation {
+impl BlockFormulation<false> for MeanDilatation {
     #[inline(always)]
     fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, false>,
         motion: &BlockMotion<N>,
     ) -> (NodalLanes<N>, Positive) {
         let mut positive = Positive::default();
-        let (points, _) = stresses::<S, N, P>(block, law, motion, &mut positive);
-        let force = block.nodal_forces::<S>(|p| {
-            let s = points[p].effective().times(block.volume[p]);
+        let (points, _) = stresses::<S, N, P>(placed.block, law, motion, &mut positive);
+        let force = placed.block.nodal_forces::<S>(|p| {
+            let s = points[p].effective().times(placed.block.volume[p]);
             (points[p].h, s)
         });
         (force, positive)
@@ -180,16 +180,17 @@ impl BlockFormulation for MeanDilatation {
     /// ```
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, false>,
         motion: &BlockMotion<N>,
         k: &mut MatrixLanes<N>,
     ) {
-        let (points, weights) = stresses::<S, N, P>(block, law, motion, &mut Positive::default());
+        let (points, weights) =
+            stresses::<S, N, P>(placed.block, law, motion, &mut Positive::default());
         let mut mixed = [SymmetricLanes::default(); P];
         let mut of_square = Lanes::ZERO;
         for p in 0..P {
-            let (point, volume) = (&points[p], block.volume[p]);
+            let (point, volume) = (&points[p], placed.block.volume[p]);
             let (r, alpha, beta) = (point.ratio, point.inverse_j, point.theta_over_jj);
             let c = law.tangent_at(p, &point.strains_in(motion));
             let y = c.times::<false>(&point.half_c);
@@ -213,10 +214,12 @@ impl BlockFormulation for MeanDilatation {
             a[1][0][1] += pressure;
             a[0][2][1] = a[0][2][1] - pressure;
             a[1][1][0] = a[1][1][0] - pressure;
-            add_products(k, &block.gradients::<S>(p), &a);
+            add_products(k, &placed.block.gradients::<S>(p), &a);
         }
-        let theta = block.nodal_forces::<S>(|p| (points[p].h, points[p].k.times(weights[p])));
-        let mut x = block.nodal_forces::<S>(|p| (points[p].h, mixed[p]));
+        let theta = placed
+            .block
+            .nodal_forces::<S>(|p| (points[p].h, points[p].k.times(weights[p])));
+        let mut x = placed.block.nodal_forces::<S>(|p| (points[p].h, mixed[p]));
         for i in 0..2 {
             for a in 0..N {
                 x[i][a] += theta[i][a] * of_square * 0.5;
@@ -235,11 +238,12 @@ impl BlockFormulation for MeanDilatation {
 
     #[inline(always)]
     fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        block: &ElementBlock<N, P>,
-        law: &impl LaneLaw,
+        placed: &PlacedBlock<N, P>,
+        law: &impl StressAtPoints<Lanes, false>,
         motion: &BlockMotion<N>,
     ) -> [ElementResult; LANES] {
-        let (points, weights) = stresses::<S, N, P>(block, law, motion, &mut Positive::default());
+        let (points, weights) =
+            stresses::<S, N, P>(placed.block, law, motion, &mut Positive::default());
         let mut theta = Lanes::all(1.0);
         for p in 0..P {
             theta += points[p].dilatation[1] * weights[p];
@@ -251,8 +255,9 @@ impl BlockFormulation for MeanDilatation {
                 strain: points[p].strains[1],
                 determinant: theta,
                 s: points[p].effective(),
+                around: Lanes::ZERO,
             };
-            sums.add(p, law, &point, block.volume[p]);
+            sums.add(p, law, &point, placed.block.volume[p]);
         }
         sums.results()
     }
