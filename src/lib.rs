@@ -8,9 +8,15 @@
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list: `vectors`, `archive`, `diagnostics`, `deck`,
-//! `materials`, `model`, `reader`, `flat_deck`, `elements`, `linear`, `lcp`, `contact`, `prepare`, `dynamics`,
-//! `output`, `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//! A module imports only from modules before it in this list: `archive`, `linear`, `lcp`, `vectors`, `diagnostics`,
+//! `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `contact`, `prepare`, `dynamics`, `output`,
+//! `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//!
+//! # Packages
+//!
+//! All layers but `output` and `cli` are in packages of their own (`crates`), so that a change of a file compiles
+//! little anew: `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks` and `stickslip_dynamics`. They stand
+//! here under the names of their modules.
 //!
 //! # Equations
 //!
@@ -71,19 +77,9 @@
 
 #![deny(missing_docs)]
 
-pub mod archive;
 pub mod cli;
-pub mod contact;
-pub mod deck;
-pub mod diagnostics;
-pub mod dynamics;
-pub mod elements;
-pub mod flat_deck;
-pub mod lcp;
-pub mod linear;
-pub mod materials;
-pub mod model;
 pub mod output;
-pub mod prepare;
-pub mod reader;
-pub mod vectors;
+pub use stickslip_decks::{deck, flat_deck, reader};
+pub use stickslip_dynamics::{contact, dynamics, prepare};
+pub use stickslip_mechanics::{diagnostics, elements, materials, model, vectors};
+pub use stickslip_numerics::{archive, lcp, linear};

@@ -47,19 +47,19 @@ class Mutation:
 MUTATIONS = [
     Mutation(
         "a weight of a mean is left out",
-        "src/contact/surface_to_surface.rs",
+        "crates/dynamics/src/contact/surface_to_surface.rs",
         "map(|q| q.weight * q.gap(at))",
         "map(|q| q.gap(at))",
     ),
     Mutation(
         "a coupling turns the other way",
-        "src/dynamics/step/turning.rs",
+        "crates/dynamics/src/dynamics/step/turning.rs",
         "d[2 * node + i] = of_pole[i] + c * j[i]",
         "d[2 * node + i] = of_pole[i] - c * j[i]",
     ),
     Mutation(
         "flatten leaves the largest shear stress out",
-        "src/flat_deck/model.rs",
+        "crates/decks/src/flat_deck/model.rs",
         'parameters.push(set("TAUMAX", number(friction.shear_limit)));',
         "",
     ),

@@ -16,7 +16,7 @@ const ENDS: [usize; 2] = [8, 32];
 const HEAD: &str = "\
 # Messages
 
-Generated from the table of codes (`src/diagnostics/code.rs`) and the decks of `tests/deck/errors.rs`;
+Generated from the table of codes (`crates/mechanics/src/diagnostics/code.rs`) and the decks of `tests/deck/errors.rs`;
 do not edit by hand. `stickslip explain CODE` prints what a code means, its cause and its cure.
 
 A message has a severity, a code, what is wrong, the line with a caret and, where there is something

@@ -449,7 +449,7 @@ fn settings_are_read_and_kept() {
         impact_time: ImpactTime::Event,
         landing: LandingRule::Plastic,
         contact_mass: ContactMass::Consistent,
-        lcp: LcpChoice::Lemke,
+        lcp: LcpMethod::Lemke,
         factorization: Factorization::EveryPass,
         solver: SolverChoice::Sprs,
         tolerance: 1e-9,

@@ -2,7 +2,7 @@
 
 use stickslip::dynamics::{ContactOnBody, Energy, IncrementReport, NodeStatus, SolverCounts};
 use stickslip::model::{
-    Bodies, Contact, LandingRule, LcpChoice, Model, Scheme, Settings, Support, SupportMotion,
+    Bodies, Contact, LandingRule, LcpMethod, Model, Scheme, Settings, Support, SupportMotion,
     SurfaceKind,
 };
 
@@ -242,7 +242,7 @@ fn concentrated_loads_are_those_of_the_increment() {
 /// Totals of a run are the sums over its increments, and the largest of problems and residuals.
 #[test]
 fn the_work_of_a_run_is_that_of_its_increments() {
-    for lcp in [LcpChoice::Hybrid, LcpChoice::Lemke] {
+    for lcp in [LcpMethod::Hybrid, LcpMethod::Lemke] {
         let mut model = oblique_impact(0.3, SS22);
         model.steps[0].settings.lcp = lcp;
         let (kept, summary) = run_to_end(&model);

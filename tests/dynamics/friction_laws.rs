@@ -2,7 +2,7 @@
 //! coefficient of its own slip rate and pressure at every node.
 
 use stickslip::dynamics::IncrementReport;
-use stickslip::model::{Friction, FrictionCurve, FrictionLaw, LcpChoice, Model, Scheme};
+use stickslip::model::{Friction, FrictionCurve, FrictionLaw, LcpMethod, Model, Scheme};
 
 use crate::blocks::{Block, SCHEMES, run_to_end, throw};
 use crate::friction::block_on_base;
@@ -220,7 +220,7 @@ fn rough_surfaces_do_not_slip_on_a_slope_on_which_others_do() {
     let slope: f64 = 40.0_f64.to_radians();
     let down = [slope.sin(), -slope.cos()];
     for scheme in SCHEMES {
-        for lcp in [LcpChoice::Hybrid, LcpChoice::Lemke] {
+        for lcp in [LcpMethod::Hybrid, LcpMethod::Lemke] {
             let (mut model, block) = block_on_base(0.5, down, scheme);
             model.steps[0].settings.lcp = lcp;
             model.contacts[0].interaction.friction = FrictionLaw::Rough.into();

@@ -1,6 +1,6 @@
 //! The hybrid and Lemke's method at every pass give the same motion.
 
-use stickslip::model::{LcpChoice, Model, Settings};
+use stickslip::model::{LcpMethod, Model, Settings};
 
 use crate::blocks::{Block, Keep, add_block, add_contact, fixed, model, run_to_end, step, throw};
 use crate::invariants::oblique_impact;
@@ -12,8 +12,8 @@ fn hybrid_and_lemke_give_the_same_histories() {
         model.steps[0].settings.lcp = lcp;
         run_to_end(&model)
     };
-    let (hybrid, counts) = run(LcpChoice::Hybrid);
-    let (lemke, lemke_counts) = run(LcpChoice::Lemke);
+    let (hybrid, counts) = run(LcpMethod::Hybrid);
+    let (lemke, lemke_counts) = run(LcpMethod::Lemke);
     assert!(lemke_counts.solver.lemke_calls > counts.solver.lemke_calls);
     assert_same_motion(&hybrid, &lemke);
 }
@@ -34,7 +34,7 @@ fn assert_same_motion(run: &Keep, other: &Keep) {
 
 /// Fourteen blocks in a row that land on a base, each with nine nodes and another velocity along it. All nodes of
 /// a rigid base are fixed, else those at its bottom.
-fn row_of_blocks(is_rigid: bool, lcp: LcpChoice) -> Model {
+fn row_of_blocks(is_rigid: bool, lcp: LcpMethod) -> Model {
     const COUNT: usize = 14;
     let mut model = model(1e3, 0.3, 1.0);
     let length = 1.2 * COUNT as f64;
@@ -65,8 +65,8 @@ fn row_of_blocks(is_rigid: bool, lcp: LcpChoice) -> Model {
 #[test]
 fn many_pairs_of_many_bodies_are_solved_by_blocks() {
     for is_rigid in [true, false] {
-        let (blocks, counts) = run_to_end(&row_of_blocks(is_rigid, LcpChoice::Hybrid));
-        let (lemke, _) = run_to_end(&row_of_blocks(is_rigid, LcpChoice::Lemke));
+        let (blocks, counts) = run_to_end(&row_of_blocks(is_rigid, LcpMethod::Hybrid));
+        let (lemke, _) = run_to_end(&row_of_blocks(is_rigid, LcpMethod::Lemke));
         let solver = counts.solver;
         assert!(solver.lcp_size > 100, "{solver:?}");
         assert_eq!(solver.lemke_calls, 0);
@@ -96,8 +96,8 @@ fn many_pairs_of_two_bodies_are_solved_in_parts_along_the_surfaces() {
         model.steps = vec![step(0.002, 2, settings, supports.collect())];
         run_to_end(&model)
     };
-    let (parts, counts) = long_block(LcpChoice::Hybrid);
-    let (lemke, _) = long_block(LcpChoice::Lemke);
+    let (parts, counts) = long_block(LcpMethod::Hybrid);
+    let (lemke, _) = long_block(LcpMethod::Lemke);
     let solver = counts.solver;
     assert!(solver.lcp_size > 240, "{solver:?}");
     assert!(

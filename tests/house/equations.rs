@@ -63,7 +63,7 @@ fn citations_name_equations_that_exist() {
             Err(form) => Some(format!("{path}:{line}: `{form}` should read `eq. (1.2)`")),
         }));
     };
-    for (path, text) in tree().rust_files("src/") {
+    for (path, text) in tree().sources() {
         check(path, citations(text));
     }
     for path in [THEORY, NUMERICS, ARCHITECTURE] {
@@ -76,7 +76,7 @@ fn citations_name_equations_that_exist() {
 fn every_number_is_cited() {
     let theory = read(THEORY);
     let tree = tree();
-    let cited: BTreeSet<Number> = (tree.rust_files("src/"))
+    let cited: BTreeSet<Number> = (tree.sources())
         .flat_map(|(_, text)| citations(text))
         .chain(references(&theory))
         .filter_map(|(_, number)| number.ok())
@@ -97,7 +97,7 @@ fn named_subjects_exist() {
             let subjects = unknown(text, is_source, (name, &page)).into_iter();
             offences.extend(subjects.map(|s| format!("{path}: {name} has no subject `{s}`")));
         };
-        for (path, text) in tree.rust_files("src/").chain(tree.rust_files("tests/")) {
+        for (path, text) in tree.sources().chain(tree.rust_files("tests/")) {
             check(path, text, true);
         }
         for path in [THEORY, NUMERICS, ARCHITECTURE, "docs/performance.md"] {

@@ -1,6 +1,6 @@
 //! Which module names items of which other: paths of the source, resolved through re-exports.
 
-use crate::sources::Source;
+use crate::sources::{Source, within_package};
 use proc_macro2::{TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::slice;
@@ -178,7 +178,7 @@ impl Modules {
 
 /// The module path of a file of the library.
 fn module_path(file: &str) -> Option<Path> {
-    let inner = file.strip_prefix("src/")?.strip_suffix(".rs")?;
+    let inner = within_package(file)?.strip_suffix(".rs")?;
     let mut names: Path = inner.split('/').map(str::to_owned).collect();
     match names.last().map(String::as_str) {
         Some("main") if names.len() == 1 => return None,

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::Path;
 
 /// Folders whose files documents name.
-const FOLDERS: [&str; 7] = [
+const FOLDERS: [&str; 8] = [
     "src/",
+    "crates/",
     "tests/",
     "docs/",
     "scripts/",
@@ -14,6 +15,9 @@ const FOLDERS: [&str; 7] = [
     "verification/",
     "benches/",
 ];
+
+/// Folders that hold the sources of the packages.
+const SOURCES: [&str; 2] = ["src/", "crates/"];
 
 /// Words of the language in backticks.
 const LANGUAGE: [&str; 5] = ["use", "crate", "pub", "mod", "unwrap"];
@@ -47,11 +51,23 @@ impl Tree {
         files.filter(move |(path, _)| path.starts_with(start) && path.ends_with(".rs"))
     }
 
+    /// Rust files of all packages, with their texts.
+    pub fn sources(&self) -> impl Iterator<Item = (&str, &str)> {
+        let packages = SOURCES.iter();
+        packages.flat_map(|folder| self.rust_files(folder))
+    }
+
     /// Whether there is a file or a folder with this path.
     fn has_path(&self, path: &str) -> bool {
         let folder = format!("{}/", path.trim_end_matches('/'));
         let mut paths = self.0.keys();
         paths.any(|own| own == path || own.starts_with(&folder))
+    }
+
+    /// Whether a path of modules and items exists in one of the packages.
+    fn is_item(&self, segments: &[&str]) -> bool {
+        let mut packages = SOURCES.iter();
+        packages.any(|folder| self.has_item(folder, segments))
     }
 
     /// Whether a path of modules and items exists below the modules whose files start with `start`.
@@ -85,7 +101,7 @@ impl Tree {
     /// Whether a type has a function, a variant or a field of this name.
     fn has_member(&self, owner: &str, member: &str) -> bool {
         let is_impl = |line: &str| line.starts_with("impl") && has_word(line, owner);
-        let mut files = self.rust_files("src/");
+        let mut files = self.sources();
         files.any(|(_, text)| {
             let mut blocks = blocks(text, |line| is_impl(line) || defined(line) == Some(owner));
             blocks.any(|line| {
@@ -179,7 +195,7 @@ fn exists(name: &str, tree: &Tree) -> bool {
         return tree.has_path(path);
     }
     if let Some(module) = name.strip_suffix(".rs") {
-        return !module.chars().all(is_letter) || tree.has_item("src/", &[module]);
+        return !module.chars().all(is_letter) || tree.is_item(&[module]);
     }
     let segments: Vec<&str> = name.trim_end_matches("()").split("::").collect();
     let is_word = |s: &&str| !s.is_empty() && s.chars().all(is_letter);
@@ -191,7 +207,7 @@ fn exists(name: &str, tree: &Tree) -> bool {
     if !segments.iter().all(is_word) || !is_item || LANGUAGE.contains(&name) {
         return true;
     }
-    tree.has_item("src/", &segments)
+    tree.is_item(&segments)
 }
 
 #[cfg(test)]

@@ -17,11 +17,13 @@ pub struct Source {
     pub is_test: bool,
 }
 
-/// The source files under `src`, in the order of their paths.
+/// The source files of all packages, in the order of their paths.
 pub fn read_sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut texts = BTreeMap::new();
-    read_folder(root, "src", &mut texts);
+    for folder in ["src", "crates"] {
+        read_folder(root, folder, &mut texts);
+    }
     parse_sources(&texts)
 }
 
@@ -36,6 +38,15 @@ fn read_folder(root: &Path, folder: &str, texts: &mut BTreeMap<String, String>) 
             texts.insert(path, text);
         }
     }
+}
+
+/// Path below the folder `src` of a package.
+pub fn within_package(path: &str) -> Option<&str> {
+    let package = path.strip_prefix("crates/");
+    let path = package
+        .and_then(|path| path.split_once('/'))
+        .map_or(path, |(_, path)| path);
+    path.strip_prefix("src/")
 }
 
 /// Parses source texts given by path.

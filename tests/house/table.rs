@@ -51,7 +51,8 @@ impl<'a> Row<'a> {
     /// File and line of the citation: that of the row's file which is nearest to the row's line, or
     /// the only one elsewhere.
     fn place<'t>(&self, tree: &'t Tree) -> Result<(&'t str, usize), String> {
-        let cited: Vec<(&str, usize)> = (tree.rust_files("src/"))
+        let cited: Vec<(&str, usize)> = tree
+            .sources()
             .flat_map(|(path, text)| {
                 let own = citations(text).into_iter();
                 let own = own.filter(|(_, number)| *number == Ok(self.number));

@@ -1,0 +1,345 @@
+//! The keyword table in words: the reference of all keywords, what is known of one keyword, and the
+//! dimensions as JSON for programs that change the units of a deck.
+
+use super::keywords;
+use super::types::{Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes};
+use crate::diagnostics::wrapped;
+use serde_json::{Map, Value as Json, json};
+use std::fmt::Write;
+
+/// Markdown text of the keyword reference: a table of what is read, each keyword by itself, and
+/// tables of what is not read.
+pub fn keyword_reference() -> String {
+    let read: Vec<&Keyword> = keywords().filter(|k| k.status == Status::Read).collect();
+    let mut text = String::from(HEAD);
+    text.push_str("## Keywords that are read\n\n| keyword | |\n|---|---|\n");
+    for keyword in &read {
+        push_entry(&mut text, keyword);
+    }
+    text.push_str("\n## Each keyword\n");
+    for keyword in &read {
+        push_keyword(&mut text, keyword);
+    }
+    let others = [
+        (Status::Refused, "Keywords that stop with an error"),
+        (Status::Warned, "Keywords that are left out with a warning"),
+        (
+            Status::Ignored,
+            "Keywords that are left out without a warning",
+        ),
+    ];
+    for (status, title) in others {
+        push_list(&mut text, status, title);
+    }
+    text
+}
+
+const HEAD: &str = "\
+# Keywords
+
+This page is generated from the table that the reader uses (`crates/decks/src/deck/keywords/`).
+`stickslip explain KEYWORD` prints what it says about one keyword.
+
+A deck is a text file, ASCII or UTF-8.
+
+* A keyword line begins with `*`, a comment line with `**`. Data lines follow their keyword; commas
+  separate their fields. Empty lines are skipped. An empty field has its default.
+* A keyword line that ends with a comma continues on the next line.
+* Case and blanks in keywords, parameters and names do not matter. A name in quotation marks keeps both.
+* A keyword or parameter may be cut to a unique beginning of at least four letters; a warning says so.
+* Keywords of the model stand before the first step. A keyword that belongs to another one stands
+  directly below it.
+* Node and element numbers run from 1 to 999 999 999, as in Abaqus. Numbers have a decimal point.
+* Units are up to the user: any consistent set gives the same results. `scripts/rescale.py` writes a
+  deck in another set.
+
+An error stops the run before it begins. These are errors:
+
+* a keyword, parameter or value that this page does not list;
+* a data line with more fields than its keyword reads;
+* a NUL byte, or a line of more than 65536 bytes (Abaqus reads 256);
+* a wave speed, or the area, stiffness or mass of an element, that overflows or vanishes in
+  floating-point numbers.
+
+";
+
+/// A keyword that is read, in the table at the beginning: its first sentence, and where it stands.
+fn push_entry(text: &mut String, keyword: &Keyword) {
+    let sentence = keyword
+        .text
+        .trim_end_matches('.')
+        .replace("St. ", "St.\u{a0}");
+    let ends = [": ", "; ", ". "]
+        .iter()
+        .filter_map(|end| sentence.find(end));
+    let first = &sentence[..ends.min().unwrap_or(sentence.len())].replace('\u{a0}', " ");
+    let anchor = keyword.name.to_lowercase().replace(' ', "-");
+    let (name, first) = (keyword.name, plain(first));
+    let _ = writeln!(text, "| [`*{name}`](#{anchor}) | {first} |");
+}
+
+fn push_keyword(text: &mut String, keyword: &Keyword) {
+    let (name, sentence) = (keyword.name, plain(keyword.text));
+    let _ = write!(text, "\n### `*{name}`\n\n{sentence}\n");
+    let (place, data) = (place(keyword), data(keyword.data));
+    let _ = write!(text, "\nIt stands {place}, with {data}.\n");
+    let forms = keyword.data.forms().iter();
+    let forms: String = forms.map(|one| format!("\n* {}", form(one))).collect();
+    if !forms.is_empty() {
+        let _ = writeln!(text, "{forms}");
+    }
+    let (mut read, mut other) = (String::new(), String::new());
+    for parameter in keyword.parameters {
+        push_parameter(&mut read, &mut other, parameter);
+    }
+    if !read.is_empty() {
+        let _ = write!(text, "\n| parameter | meaning |\n|---|---|\n{read}");
+    }
+    if !other.is_empty() {
+        let _ = write!(
+            text,
+            "\n| not read | what happens | why |\n|---|---|---|\n{other}"
+        );
+    }
+    let _ = write!(text, "\n```\n{}\n```\n", keyword.example);
+}
+
+/// A parameter with its values: what is read, and what is not.
+fn push_parameter(read: &mut String, other: &mut String, parameter: &Parameter) {
+    let (form, text) = (written(parameter), plain(&meaning(parameter)));
+    if parameter.status != Status::Read {
+        let _ = writeln!(
+            other,
+            "| `{form}` | {} | {text} |",
+            status(parameter.status)
+        );
+        return;
+    }
+    let _ = writeln!(read, "| `{form}` | {text} |");
+    for value in parameter.values() {
+        let (name, text) = (value.name, plain(value.text));
+        let _ = match value.status {
+            Status::Read => writeln!(read, "| &nbsp;&nbsp;`{name}` | {text} |"),
+            other_status => {
+                let treated = status(other_status);
+                writeln!(
+                    other,
+                    "| `{}={name}` | {treated} | {text} |",
+                    parameter.name
+                )
+            }
+        };
+    }
+}
+
+fn push_list(text: &mut String, status: Status, title: &str) {
+    let _ = write!(text, "\n## {title}\n\n| keyword | |\n|---|---|\n");
+    for keyword in keywords().filter(|k| k.status == status) {
+        let _ = writeln!(text, "| `*{}` | {} |", keyword.name, plain(keyword.text));
+    }
+}
+
+/// A sentence with its stars escaped for Markdown.
+fn plain(sentence: &str) -> String {
+    sentence.replace('*', "\\*")
+}
+
+impl Keyword {
+    /// Text for the screen: treatment, meaning, data lines, parameters and an example.
+    pub fn explanation(&self) -> String {
+        let head = format!("*{}: {}", self.name, treatment(self));
+        let mut text = format!("{}\n{}", wrapped(&head, 0), wrapped(self.text, 0));
+        let forms = self.data.forms().iter();
+        let forms: String = forms
+            .map(|one| wrapped(&format!("  {}", form(one).replace('`', "")), 2))
+            .collect();
+        push(&mut text, "data lines", &forms);
+        let parameters: String = self.parameters.iter().map(parameter).collect();
+        push(&mut text, "parameters", &parameters);
+        let lines = self.example.lines();
+        let example: String = lines.map(|line| format!("  {line}\n")).collect();
+        let title = match self.status {
+            Status::Read => "example",
+            _ => "in its place",
+        };
+        push(&mut text, title, &example);
+        text
+    }
+}
+
+/// What becomes of the keyword.
+fn treatment(keyword: &Keyword) -> String {
+    match keyword.status {
+        Status::Read => {
+            let (place, data) = (place(keyword).replace('`', ""), data(keyword.data));
+            format!("read; it stands {place}, with {data}")
+        }
+        Status::Ignored => "left out silently".to_string(),
+        Status::Warned => "left out with a warning".to_string(),
+        Status::Refused => "stops with an error".to_string(),
+    }
+}
+
+/// Adds a titled part, if there is one.
+fn push(text: &mut String, title: &str, part: &str) {
+    if !part.is_empty() {
+        let _ = write!(text, "\n{title}\n{part}");
+    }
+}
+
+/// The lines of a parameter and of its values.
+fn parameter(parameter: &Parameter) -> String {
+    let treated = status(parameter.status);
+    let head = format!("  {} ({treated}) ", written(parameter));
+    let values = parameter.values().iter().map(|value| {
+        let head = format!("    {} ({}) ", value.name, status(value.status));
+        wrapped(&(head + value.text), 6)
+    });
+    wrapped(&(head + &meaning(parameter)), 4) + &values.collect::<String>()
+}
+
+/// Where a keyword stands.
+pub(super) fn place(keyword: &Keyword) -> String {
+    match keyword.scope {
+        Scope::Model if keyword.name == "STEP" => "after the keywords of the model".to_string(),
+        Scope::Model => "before the first step".to_string(),
+        Scope::Step => "in a step".to_string(),
+        Scope::Anywhere => "before the first step or in a step".to_string(),
+        Scope::Block(name) => format!("under `*{name}`"),
+        Scope::BlockOrAfter(name, other) => format!("under `*{name}` or `*{other}`"),
+        Scope::BlockOrModel(name) => format!("under `*{name}` or before the first step"),
+        Scope::Assembly => "in assembly decks".to_string(),
+    }
+}
+
+/// The data lines of a keyword.
+pub(super) fn data(data: Data) -> &'static str {
+    match data {
+        Data::None => "no data lines",
+        Data::Rows(_) => "data lines",
+        Data::Required(_) => "at least one data line",
+        Data::Text => "free text",
+        Data::Words | Data::Skipped => "data lines that are not looked at",
+    }
+}
+
+/// What the program does with a parameter or value.
+pub(super) fn status(status: Status) -> &'static str {
+    match status {
+        Status::Read => "read",
+        Status::Ignored => "silent",
+        Status::Warned => "warning",
+        Status::Refused => "error",
+    }
+}
+
+/// A parameter as it is written.
+pub(super) fn written(parameter: &Parameter) -> String {
+    let name = parameter.name;
+    match parameter.takes {
+        Takes::Nothing => name.to_string(),
+        Takes::Value | Takes::Choice(_) => format!("{name}="),
+        Takes::Optional | Takes::OptionalChoice(_) => format!("{name}[=]"),
+    }
+}
+
+/// What a parameter means, with its dimension.
+pub(super) fn meaning(parameter: &Parameter) -> String {
+    match parameter.holds().dimension() {
+        Some(dimension) => format!("{} ({dimension})", parameter.text),
+        None => parameter.text.to_string(),
+    }
+}
+
+/// A kind of data lines: which ones, their fields, and the dimensions of those that have one.
+pub(super) fn form(form: &DataLineForm) -> String {
+    let names: Vec<&str> = form.fields().map(|field| field.name).collect();
+    let over = if form.repeating > 0 { ", ..." } else { "" };
+    let dimensions: Vec<String> = form.fields().filter_map(dimension).collect();
+    let dimensions = match dimensions.is_empty() {
+        true => String::new(),
+        false => format!(" ({})", dimensions.join(", ")),
+    };
+    let (condition, names) = (condition(form), names.join(", "));
+    format!("{condition}`{names}{over}`{dimensions}")
+}
+
+fn dimension(field: Field) -> Option<String> {
+    let dimension = field.holds.dimension()?;
+    Some(format!("{}: {dimension}", field.name))
+}
+
+/// Which lines are of a kind.
+fn condition(form: &DataLineForm) -> String {
+    let under = form.parameter.map(|parameter| match parameter {
+        (name, "") => format!("with `{name}`"),
+        (name, value) => format!("with `{name}={value}`"),
+    });
+    let first = form.first.then(|| "first line".to_string());
+    let conditions: Vec<String> = under.into_iter().chain(first).collect();
+    match conditions.is_empty() {
+        true => String::new(),
+        false => conditions.join(", ") + ": ",
+    }
+}
+
+/// What the numbers of accepted keywords measure, as JSON: an object with an entry for every
+/// keyword, each on a line.
+pub fn dimensions_json() -> String {
+    let entries: Vec<String> = keywords().filter_map(entry).collect();
+    format!("{{\n{}\n}}\n", entries.join(",\n"))
+}
+
+/// The entry of a keyword; `None` if what it holds is not known.
+fn entry(keyword: &Keyword) -> Option<String> {
+    let taken = |status: Status| status != Status::Refused;
+    let parameters = keyword.parameters.iter().filter(|p| taken(p.status));
+    let measure = |parameter: &Parameter| match parameter.values() {
+        [] => quantity(parameter.holds()),
+        values => {
+            let taken = values.iter().filter(|value| taken(value.status));
+            taken.map(|value| value.name).collect()
+        }
+    };
+    let parameters: Map<String, Json> = parameters
+        .map(|parameter| (parameter.name.to_string(), measure(parameter)))
+        .collect();
+    let content = match keyword.data {
+        Data::Skipped => return None,
+        Data::Words => json!({"anything": true}),
+        Data::Text => json!({"parameters": parameters, "text": true}),
+        data => {
+            let rows: Vec<Json> = data.forms().iter().map(row).collect();
+            json!({"parameters": parameters, "rows": rows})
+        }
+    };
+    Some(format!("\"{}\": {content}", keyword.name))
+}
+
+fn row(form: &DataLineForm) -> Json {
+    let fields: Vec<Json> = form.fields().map(|field| quantity(field.holds)).collect();
+    let mut row = json!({"fields": fields});
+    if let Some(parameter) = form.parameter {
+        row["parameter"] = json!(parameter);
+    }
+    if let Some(word) = form.word {
+        row["word"] = json!(word);
+    }
+    if form.first {
+        row["first"] = json!(true);
+    }
+    if form.repeating > 0 {
+        row["repeating"] = json!(form.repeating);
+    }
+    row
+}
+
+fn quantity(quantity: Quantity) -> Json {
+    match quantity {
+        Quantity::Plain => Json::Null,
+        Quantity::Of(dimension) => json!(dimension),
+        Quantity::OfOr(dimension, default) => json!({"dimension": dimension, "default": default}),
+        Quantity::OrName(dimension) => json!({"dimension": dimension, "or_name": true}),
+        Quantity::Unknown => json!("unknown"),
+    }
+}

@@ -1,0 +1,44 @@
+//! From text to cards: files, logical lines, keyword lines and data fields.
+//!
+//! A *card* is a keyword line with the data lines under it. [`read`] turns a file and its includes
+//! into a [`Deck`] of cards whose keywords and parameters are known ones, see [`keywords`], with the
+//! cards of parts in the places of their instances; what they mean is left to the reader.
+
+mod assembly;
+mod card;
+mod change;
+mod collect;
+mod content;
+mod expression;
+mod keywords;
+mod lines;
+mod number;
+mod parameters;
+mod resolve;
+mod text;
+
+pub use card::{Card, DataLines, Instance, Param, Placement};
+pub use change::first_change;
+pub use collect::Deck;
+pub use content::{not_regular, open_regular};
+pub use keywords::{
+    Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes, Value,
+    dimensions_json, find_keyword, keyword_reference, keywords,
+};
+pub use lines::Line;
+pub use text::{Name, Text};
+
+use crate::diagnostics::{Diagnostics, Sources};
+use std::path::Path;
+
+/// Reads a deck and the files it includes; parts are copied to their instances.
+pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
+    let deck = collect::read(path, sources, d);
+    assembly::flatten(deck, sources, d)
+}
+
+/// Reads a deck from text; it cannot include files.
+pub fn parse_str(name: &str, text: &str, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
+    let deck = collect::parse_str(name, text, sources, d);
+    assembly::flatten(deck, sources, d)
+}

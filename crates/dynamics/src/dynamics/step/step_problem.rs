@@ -1,0 +1,520 @@
+//! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
+//! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
+//!
+//! Discretization of a model, constant over a run: elements, mass, bodies with their parts, contact
+//! surfaces.
+
+use std::borrow::Cow;
+
+use super::fits::Fits;
+use super::friction::Frictions;
+use super::hinges::Hinges;
+use super::integration::Integration;
+use super::loads::{Interval, Loads};
+use super::mass::Mass;
+use super::parts::{DofRun, Parts};
+use super::turning::TurningBody;
+use super::unknowns::Unknowns;
+use crate::contact::tolerances::COLLAPSED_LENGTH;
+use crate::contact::{
+    Configurations, Constraint, ContactSurfaces, PairTarget, Positions, position,
+};
+use crate::dynamics::results::{Cause, State};
+use crate::elements::{Elements, Motion};
+use crate::lcp::LcpMethod;
+use crate::linear::{LinearError, largest};
+use crate::model::{Impact, ImpactTime, LandingRule, Model, Settings, Step};
+use crate::prepare::{PreparedModel, Redistribution};
+use crate::vectors::distance;
+
+/// The equation of motion of a step.
+pub(crate) struct StepProblem<'m> {
+    pub model: &'m Model,
+    /// Reference coordinates of the nodes, with those of the bodies that turn.
+    pub coordinates: &'m [[f64; 2]],
+    pub elements: &'m Elements,
+    pub mass: &'m Mass,
+    pub redistribution: &'m Redistribution,
+    pub parts: &'m Parts,
+    pub contacts: &'m [ContactSurfaces],
+    pub frictions: Frictions<'m>,
+    pub settings: Settings,
+    pub integration: Integration,
+    pub unknowns: Unknowns<'m>,
+    /// Unknowns of the parts.
+    pub parts_of_unknowns: Vec<DofRun>,
+    pub loads: Loads<'m>,
+    pub fits: Fits<'m>,
+    pub hinges: Hinges,
+}
+
+/// Velocity at the start of an increment.
+pub(crate) struct StartVelocity<'a> {
+    /// V0+, or V0 where the impulses stand beside it.
+    pub v0p: Cow<'a, [f64]>,
+    /// Impulses J = M (V0+ - V0) that are not in the velocity, over all dofs; else none.
+    pub impulse: &'a [f64],
+}
+
+/// Load, internal force and inertia of an iterate.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Equilibrium {
+    /// Displacement U_theta.
+    pub u_theta: Vec<f64>,
+    /// Forces lambda of the hinges.
+    pub hinges: Vec<f64>,
+    /// Forces that hold motions of a static step, each with its dof.
+    pub held: Vec<(usize, f64)>,
+    /// Load R_theta, with the forces C^T lambda of the hinges and those that hold motions.
+    pub load: Vec<f64>,
+    /// Internal force F_theta, with that of damping.
+    pub internal: Vec<f64>,
+    /// Acceleration A.
+    pub acceleration: Vec<f64>,
+    /// Inertia force M A.
+    pub inertia: Vec<f64>,
+    /// Out-of-balance force r without contact.
+    pub out_of_balance: Vec<f64>,
+}
+
+impl Equilibrium {
+    /// Vectors over so many dofs.
+    fn resize(&mut self, dofs: usize) {
+        for vector in [
+            &mut self.u_theta,
+            &mut self.load,
+            &mut self.internal,
+            &mut self.acceleration,
+            &mut self.inertia,
+            &mut self.out_of_balance,
+        ] {
+            vector.resize(dofs, 0.0);
+        }
+    }
+
+    /// r = R_theta - F(U_theta) - M A, eq. (4.5).
+    fn set_out_of_balance(&mut self) {
+        let forces = self.load.iter().zip(&self.internal).zip(&self.inertia);
+        for (r, ((load, internal), inertia)) in self.out_of_balance.iter_mut().zip(forces) {
+            *r = load - internal - inertia;
+        }
+    }
+}
+
+impl<'m> StepProblem<'m> {
+    /// The problem of a step that starts with these displacements and velocities.
+    pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, start: [&[f64]; 2]) -> Self {
+        let Discretization {
+            model,
+            elements,
+            mass,
+            redistribution,
+            parts,
+            turning,
+            coordinates,
+            overlaps,
+            ..
+        } = discretization;
+        let unknowns = Unknowns::new(model, (elements, turning), step, start);
+        StepProblem {
+            model,
+            coordinates,
+            elements,
+            mass,
+            redistribution,
+            parts,
+            contacts: discretization.contacts_of(step),
+            frictions: Frictions::new(model, step),
+            settings: step.settings,
+            integration: Integration::new(step),
+            parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
+            unknowns,
+            hinges: Hinges::new(model, step),
+            loads: Loads::new(model, step, redistribution),
+            fits: Fits::new(model, step, overlaps, |contact| {
+                discretization.contacts[contact].slaves.len()
+            }),
+        }
+    }
+}
+
+impl StepProblem<'_> {
+    /// Lets forces fade over the step that acted at the end of the step before (dof, force).
+    pub fn release(&mut self, forces: &[(usize, f64)]) {
+        let load = |&(dof, force): &(usize, f64)| {
+            let length = self.unknowns.turning.length_of(dof);
+            (dof, length.map_or(force, |length| length * force))
+        };
+        self.loads.release(forces.iter().map(load).collect());
+    }
+
+    /// Solver of the complementarity problems.
+    pub fn method(&self) -> LcpMethod {
+        self.settings.lcp
+    }
+
+    /// Whether damping acts.
+    pub fn has_damping(&self) -> bool {
+        self.integration.has_rates && self.elements.has_damping()
+    }
+
+    /// Whether landing nodes have a velocity that something is done about.
+    fn has_impacts(&self) -> bool {
+        self.integration.has_rates && !self.integration.backward_euler
+    }
+
+    /// Whether impact impulses act.
+    pub fn has_impulses(&self) -> bool {
+        self.has_impacts() && self.settings.impact == Impact::Impulse
+    }
+
+    /// Whether impacts end subincrements.
+    pub fn ends_at_impacts(&self) -> bool {
+        self.has_impacts() && self.settings.impact_time == ImpactTime::Event
+    }
+
+    /// Whether what landings take is given back.
+    pub fn returns_landings(&self) -> bool {
+        self.has_impacts() && self.settings.landing == LandingRule::Return
+    }
+
+    /// V <- P V: nodes without mass follow their donors, except where they are prescribed.
+    pub fn follow_donors(&self, v: &mut [f64]) {
+        self.redistribution
+            .follow(v, |dof| self.unknowns.depends(dof));
+    }
+
+    /// What the tolerance of the passes leaves of the displacement of every node in an increment `d`.
+    pub fn unsolved(&self, d: &[f64]) -> Vec<f64> {
+        let largest = self.parts.largest_of_bodies(d);
+        let unsolved = |&body: &usize| self.settings.tolerance * largest[body];
+        self.parts.of_nodes().iter().map(unsolved).collect()
+    }
+
+    /// Current position of a node.
+    pub fn position(&self, u: &[f64], node: usize) -> [f64; 2] {
+        position(self.coordinates, u, node)
+    }
+
+    /// Current positions of all nodes.
+    pub fn positions<'a>(&'a self, u: &'a [f64]) -> Positions<'a> {
+        Positions::new(&self.model.mesh.coordinates, u)
+    }
+
+    /// Why K* has no factors.
+    pub fn unsolvable(&self, error: LinearError) -> Cause {
+        match error {
+            LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
+                node: self.unknowns.dof[unknown] / 2,
+            },
+            other => other.into(),
+        }
+    }
+
+    /// Every segment must have a length to have a normal.
+    ///
+    /// # Errors
+    /// [`Cause::Collapsed`] with the first segment that has almost no length.
+    pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
+        let x = &self.model.mesh.coordinates;
+        let length = |[p, q]: [[f64; 2]; 2]| distance(p, q);
+        let has_collapsed = |segment: &&[usize; 2]| {
+            let now = length(segment.map(|node| self.position(u, node)));
+            let least = COLLAPSED_LENGTH * length(segment.map(|node| x[node]));
+            now.is_nan() || now <= least
+        };
+        let mut segments = self.contacts.iter().flat_map(|contact| &contact.segments);
+        match segments.find(has_collapsed) {
+            Some(&segment) => Err(Cause::Collapsed { segment }),
+            None => Ok(()),
+        }
+    }
+
+    /// No element may be turned inside out at the end of an increment. The passes see it in the energy-momentum form,
+    /// and with both weights 1; else they see U_theta only.
+    ///
+    /// # Errors
+    /// [`Cause::Inverted`] with the first element that is.
+    pub fn check_end(&self, end: &State) -> Result<(), Cause> {
+        let Integration {
+            theta1,
+            theta2,
+            energy_momentum,
+            ..
+        } = self.integration;
+        if energy_momentum || [theta1, theta2] == [1.0; 2] {
+            return Ok(());
+        }
+        let motion = Motion::at(&end.u, &end.internal);
+        self.elements.internal_force(motion)?;
+        Ok(())
+    }
+
+    /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; rigid
+    /// surfaces have none among themselves.
+    pub fn constraints(
+        &self,
+        pairs: &[PairTarget],
+        [u0, u]: [&[f64]; 2],
+        constraints: &mut Vec<Constraint>,
+    ) {
+        let configurations = self.configurations(u0, u);
+        constraints.clear();
+        constraints.reserve(pairs.len());
+        let moves = |pair: &&PairTarget| {
+            let mut points = pair.points.iter();
+            self.unknowns.moves(&pair.nodes)
+                || points.any(|q| q.nodes().any(|node| self.unknowns.moves(&[node])))
+        };
+        for source in pairs.iter().filter(moves) {
+            let constraint = Constraint::new(source.clone(), &configurations);
+            if self.unknowns.opens(&constraint) {
+                constraints.push(constraint);
+            }
+        }
+    }
+
+    /// The configurations between which constraints of the scheme are linearised.
+    pub fn configurations<'a>(&'a self, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
+        Configurations {
+            form: self.integration.row_form(),
+            x: self.coordinates,
+            u0,
+            u,
+        }
+    }
+
+    /// Writes load, internal force and inertia of the iterate U = U0 + d.
+    pub fn equilibrium(
+        &self,
+        start: &State,
+        velocity: &StartVelocity,
+        [u, d]: [&[f64]; 2],
+        interval: Interval,
+        equilibrium: &mut Equilibrium,
+    ) -> Result<(), Cause> {
+        self.load_and_internal_force(start, &velocity.v0p, [u, d], interval, equilibrium)?;
+        self.inertia(start, velocity, d, interval, equilibrium);
+        Ok(())
+    }
+
+    /// Writes load and internal force of the iterate U = U0 + d. They depend on V0+ only where U_theta does.
+    fn load_and_internal_force(
+        &self,
+        start: &State,
+        v0p: &[f64],
+        [u, d]: [&[f64]; 2],
+        interval: Interval,
+        equilibrium: &mut Equilibrium,
+    ) -> Result<(), Cause> {
+        equilibrium.resize(u.len());
+        let Equilibrium {
+            u_theta,
+            hinges,
+            held,
+            load,
+            internal,
+            ..
+        } = equilibrium;
+        (self.integration).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
+        (self.unknowns.turning).correct_angles(d, self.integration.theta2, u_theta);
+        let motion = self.integration.motion(start, u, u_theta);
+        self.elements.write_internal_force(motion, internal)?;
+        if self.has_damping() {
+            let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
+            internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
+        }
+        // without loads it is zero as it was made
+        if !self.loads.are_none() {
+            let theta1 = self.integration.theta1;
+            (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
+            self.unknowns.turning.scale_moments(d, load);
+        } else if !self.hinges.are_none() || !held.is_empty() {
+            load.fill(0.0);
+        }
+        hinges.resize(self.hinges.count(), 0.0);
+        self.hinges.add_forces(hinges, load);
+        held.iter().for_each(|(dof, force)| load[*dof] += force);
+        Ok(())
+    }
+
+    /// Writes the inertia of the iterate U = U0 + d, and the out-of-balance force with the load and internal
+    /// force at hand.
+    pub fn inertia(
+        &self,
+        start: &State,
+        StartVelocity { v0p, impulse }: &StartVelocity,
+        d: &[f64],
+        interval: Interval,
+        equilibrium: &mut Equilibrium,
+    ) {
+        let Equilibrium {
+            acceleration,
+            inertia,
+            ..
+        } = equilibrium;
+        // without inertia they are zero as they were made
+        if !self.integration.has_rates {
+            return equilibrium.set_out_of_balance();
+        }
+        // A = (2/dt²) (d - dt V0+), eq. (4.1); at supports (V1 - V0)/dt, eq. (4.9)
+        let dt = interval.dt;
+        let c = self.integration.mass_factor(dt);
+        for (a, (d, v0p)) in acceleration.iter_mut().zip(d.iter().zip(v0p.iter())) {
+            *a = c * (d - dt * v0p);
+        }
+        let turning = &self.unknowns.turning;
+        let own = match turning.is_empty() {
+            true => Vec::new(),
+            false => acceleration.clone(),
+        };
+        (self.unknowns).prescribe_acceleration(interval.end, &start.v, dt, acceleration);
+        turning.carry(
+            [&start.u, d],
+            &own,
+            |dof| self.unknowns.is_prescribed(dof),
+            acceleration,
+        );
+        turning.drive([&start.u, d], &start.v, dt, acceleration);
+        self.unknowns.follow(acceleration);
+        self.mass.write_product(acceleration, inertia);
+        // the part -(2/dt) J of impulses J = M (V0+ - V0) that are not in V0+ yet
+        for (inertia, impulse) in inertia.iter_mut().zip(*impulse) {
+            *inertia -= c * dt * impulse;
+        }
+        equilibrium.set_out_of_balance();
+    }
+}
+
+/// All values of some quantities, each over all dofs, must be finite.
+///
+/// # Errors
+/// [`Cause::NotFinite`] with the first quantity and node that is not.
+pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
+    for &(what, values) in quantities {
+        if !largest(values).is_finite()
+            && let Some(dof) = values.iter().position(|value| !value.is_finite())
+        {
+            let node = dof / 2;
+            return Err(Cause::NotFinite { what, node });
+        }
+    }
+    Ok(())
+}
+
+impl State {
+    /// Displacement, velocity and acceleration must be finite.
+    ///
+    /// # Errors
+    /// [`Cause::NotFinite`].
+    pub(crate) fn check_finite(&self) -> Result<(), Cause> {
+        check_finite(&[
+            ("the displacement", &self.u),
+            ("the velocity", &self.v),
+            ("the acceleration", &self.a),
+        ])
+    }
+}
+
+/// sum = a + b
+pub(crate) fn write_sum(a: &[f64], b: &[f64], sum: &mut Vec<f64>) {
+    sum.clear();
+    sum.extend(a.iter().zip(b).map(|(a, b)| a + b));
+}
+
+/// difference = a - b
+pub(crate) fn write_difference(a: &[f64], b: &[f64], difference: &mut Vec<f64>) {
+    difference.clear();
+    difference.extend(a.iter().zip(b).map(|(a, b)| a - b));
+}
+
+/// a + b
+pub(crate) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+/// a - b
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// A prepared model with its elements, their mass, and the bodies and parts that scale convergence.
+pub(crate) struct Discretization<'m> {
+    pub model: &'m Model,
+    contacts: &'m [ContactSurfaces],
+    /// The same without nodes and segments of those that some steps have removed: their indices, and all contacts.
+    remaining: Vec<(&'m [usize], Vec<ContactSurfaces>)>,
+    pub elements: Elements,
+    pub mass: Mass,
+    pub redistribution: &'m Redistribution,
+    pub parts: Parts,
+    pub turning: Vec<TurningBody>,
+    /// Reference coordinates of the nodes, then of the bodies that turn.
+    pub coordinates: Vec<[f64; 2]>,
+    /// Overlaps of slave nodes at the start, of contacts with shrink fits (length).
+    pub overlaps: &'m [Vec<f64>],
+}
+
+/// The contacts of the steps that have removed some.
+fn remaining(prepared: &PreparedModel) -> Vec<(&[usize], Vec<ContactSurfaces>)> {
+    let mut all: Vec<(&[usize], Vec<ContactSurfaces>)> = Vec::new();
+    for step in &prepared.model.steps {
+        let removed = step.contacts.removed.as_slice();
+        if removed.is_empty() || all.iter().any(|(known, _)| *known == removed) {
+            continue;
+        }
+        let of_contact =
+            |(index, surfaces): (usize, &ContactSurfaces)| match removed.contains(&index) {
+                true => ContactSurfaces::new(Vec::new(), &[], Vec::new()),
+                false => surfaces.clone(),
+            };
+        let surfaces = prepared.surfaces.iter().enumerate();
+        all.push((removed, surfaces.map(of_contact).collect()));
+    }
+    all
+}
+
+impl<'m> Discretization<'m> {
+    /// Surfaces of the contacts in a step.
+    fn contacts_of(&self, step: &Step) -> &[ContactSurfaces] {
+        let mut remaining = self.remaining.iter();
+        let found = remaining.find(|(removed, _)| *removed == step.contacts.removed);
+        found.map_or(self.contacts, |(_, contacts)| contacts)
+    }
+
+    /// Whether there are dofs beside those of the nodes.
+    pub fn has_more_dofs(&self) -> bool {
+        !self.turning.is_empty()
+    }
+
+    /// The discretization of a model.
+    pub fn new(prepared: &'m PreparedModel) -> Self {
+        let model = &prepared.model;
+        let mut elements = Elements::new(model);
+        let redistribution = &prepared.redistribution;
+        let mut turning = TurningBody::all(model, &elements);
+        let deforming = (0..elements.len()).filter(|&element| !elements.is_rigid(element));
+        let nodes = deforming.flat_map(|element| elements.nodes(element));
+        let donors = nodes.filter_map(|&node| redistribution.donors(node));
+        let carriers: Vec<usize> = donors.flatten().map(|donor| donor.0).collect();
+        turning.iter_mut().for_each(|body| body.load(&carriers));
+        elements.measure_angles(turning.iter().map(|body| (body.spin / 2, body.length)));
+        let mut coordinates = model.mesh.coordinates.clone();
+        for body in &turning {
+            let centre = body.centre_from(coordinates[body.reference]);
+            coordinates.extend([centre; 2]);
+        }
+        Discretization {
+            model,
+            contacts: &prepared.surfaces,
+            remaining: remaining(prepared),
+            mass: Mass::new((&elements, &turning), redistribution, coordinates.len()),
+            redistribution,
+            parts: Parts::new(model),
+            elements,
+            turning,
+            coordinates,
+            overlaps: &prepared.overlaps,
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! Materials: strain energy, second Piola-Kirchhoff stress and tangent at one integration point, as
+//! functions of the Green-Lagrange strain and of internal variables. Section 2 of
+//! docs/theory.md.
+//!
+//! A deformation gradient F enters through E = (F^T F - I)/2 alone, so that every material is
+//! objective; det F > 0 is checked by the elements. A material point has the components 11, 22, 33 and 12 of a
+//! [`Symmetric`] tensor: 33 is across the plane, or around the axis of a body of revolution. Laws are written once, in any
+//! [`Number`]: that of one element, or those of several side by side. A [`Law`] has the constants
+//! of the deck, a [`PlaneLaw`] is the same in the plane of the elements.
+
+mod constitutive_law;
+mod hyperelastic;
+mod invariants;
+mod law;
+mod law_card;
+mod neo_hooke;
+pub mod number;
+mod ogden;
+mod plane;
+mod plane_stress;
+mod plastic;
+mod polynomial;
+mod saint_venant_kirchhoff;
+mod spectrum;
+mod strains;
+pub mod symmetric;
+mod viscosity;
+mod yield_curve;
+#[cfg(any(test, feature = "testing"))]
+pub mod yielding;
+
+pub use constitutive_law::{BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StressAtPoints};
+pub use hyperelastic::Hyperelastic;
+pub use invariants::{InvariantEnergy, VolumeEnergy};
+pub(crate) use law::in_lanes;
+pub use law::{Committed, Constants, Law, PlaneLaw};
+pub use law_card::LawCard;
+pub use neo_hooke::NeoHooke;
+pub use number::{Lanes, Number};
+pub use ogden::Ogden;
+pub use plane::{Plane, SmallStrainModuli};
+pub use plane_stress::PlaneStress;
+pub use plastic::{PlanePlastic, Plastic};
+pub use polynomial::Polynomial;
+pub use saint_venant_kirchhoff::{PlaneSaintVenantKirchhoff, SaintVenantKirchhoff};
+pub use strains::{Across, StrainChange, StrainMeasure, Strains};
+pub use symmetric::{Symmetric, Tangent, contract};
+pub use viscosity::Viscosity;

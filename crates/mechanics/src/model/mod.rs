@@ -1,0 +1,410 @@
+//! The problem as plain data, all names resolved to indices: mesh, materials and sections, sets, surfaces,
+//! contacts, constraints, steps with loads and settings. Sections 1 to 4 of docs/theory.md.
+//!
+//! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
+//! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n. A rigid body that turns has
+//! two more nodes, which only these vectors know: its centre of mass, and one whose direction 0 is its angle.
+
+mod amplitude;
+mod connector;
+mod contact;
+mod element_type;
+mod friction;
+mod mesh;
+mod sets;
+mod side;
+mod step;
+mod thickness;
+mod tie;
+
+pub use crate::lcp::LcpMethod;
+pub use crate::linear::SolverChoice;
+pub use crate::materials::Plane;
+use crate::materials::{Law, SmallStrainModuli};
+pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
+pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
+pub use contact::{
+    ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Heat, Hinge,
+    Interaction, Reach, RigidBody, RigidPart, RigidProfile, Surface, SurfaceKind, Wear,
+};
+pub use element_type::{ElementType, Formulation, Shape, Topology};
+pub use friction::{Friction, FrictionCurve, FrictionLaw};
+pub use mesh::sides;
+pub use mesh::{Bodies, Element, ElementsAtNodes, Face, Mesh, NO_SECTION, Nodes, Set};
+pub use sets::{
+    HistorySet, Instance, NamedSets, NodalVariable, RequestedFields, element_name, node_name,
+};
+pub use side::{Segment, Side, SideNodes};
+use std::collections::{BTreeMap, BTreeSet};
+pub use step::{
+    BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, FormerFriction,
+    Frames, FrictionChange, Impact, ImpactTime, Incrementation, Increments, Interference,
+    LandingRule, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme, Settings, Step,
+    Support, SupportMotion, Traction, Variation,
+};
+pub use thickness::Thickness;
+pub use tie::{NEAR, nearest_of};
+pub use tie::{Tie, TieReach, TiedNode};
+
+/// A whole problem: the content of a deck, checked, with all names resolved to indices.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Model {
+    /// Text of `*HEADING`, lines joined by a blank.
+    pub title: String,
+    /// Nodes and elements.
+    pub mesh: Mesh,
+    /// Named sets of nodes and elements, those of the history, and instances of parts.
+    pub sets: NamedSets,
+    /// Named surfaces.
+    pub surfaces: Vec<Surface>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Sections: material and thickness of elements.
+    pub sections: Vec<Section>,
+    /// Springs and dashpots.
+    pub connectors: Vec<Connector>,
+    /// Contacts: one per data line of `*CONTACT PAIR`, then general contact.
+    pub contacts: Vec<Contact>,
+    /// Amplitude curves.
+    pub amplitudes: Vec<Amplitude>,
+    /// Ties, whose equations are among the others.
+    pub ties: Vec<Tie>,
+    /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
+    pub equations: Vec<Equation>,
+    /// Hinges between bodies.
+    pub hinges: Vec<Hinge>,
+    /// Initial velocity, `2 N` entries (length/time), then those of the bodies that turn, with their
+    /// angular velocity (1/time).
+    pub initial_velocity: Vec<f64>,
+    /// Steps in order.
+    pub steps: Vec<Step>,
+    /// Rigid surfaces with their reference nodes, and bodies that turn.
+    pub rigid_bodies: Vec<RigidBody>,
+    /// Requests of checkpoints, in the order of their steps.
+    pub restarts: Vec<RestartOutput>,
+}
+
+impl Model {
+    /// Adds a section of this thickness of another material, without damping.
+    pub fn add_section(&mut self, law: Law, density: f64, thickness: f64) {
+        let material = self.materials.len();
+        self.materials.push(Material {
+            name: format!("M{material}"),
+            law,
+            density,
+            damping: Damping::default(),
+        });
+        self.sections.push(Section {
+            material,
+            thickness,
+        });
+    }
+
+    /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a rigid body has beside those of the
+    /// mesh, its reference node.
+    pub fn node_name(&self, node: usize) -> String {
+        node_name(self.node_of(node), &self.mesh, &self.sets.instances)
+    }
+
+    /// The node of the mesh that a pair of dofs belongs to: beyond those of the nodes the reference node of the rigid body.
+    pub fn node_of(&self, node: usize) -> usize {
+        let beyond = node.checked_sub(self.mesh.node_count());
+        let body = beyond.and_then(|k| self.rigid_bodies.get(k / 2));
+        body.map_or(node, |body| body.reference)
+    }
+
+    /// What the deck calls an element: its number, or `Instance.number`.
+    pub fn element_name(&self, element: usize) -> String {
+        element_name(element, &self.mesh, &self.sets.instances)
+    }
+
+    /// Number of degrees of freedom: 2 of every node, and 4 of every rigid body.
+    pub fn dof_count(&self) -> usize {
+        self.mesh.dof_count() + 4 * self.rigid_bodies.len()
+    }
+
+    /// The node that is the centre of mass of a rigid body.
+    pub fn centre_of(&self, body: &RigidBody) -> usize {
+        self.mesh.node_count() + 2 * body.number
+    }
+
+    /// The dof that is the angle of a rigid body.
+    pub fn angle_of(&self, body: &RigidBody) -> usize {
+        2 * (self.centre_of(body) + 1)
+    }
+
+    /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither it nor a step
+    /// before it turns: a hinge between them has nothing to hold there.
+    pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
+        let has_not_turned = |body: &&RigidBody| {
+            let angle = self.angle_of(body);
+            let is_still = |step: &Step| step.motion_of(angle).is_some_and(SupportMotion::is_still);
+            let mut before = (self.steps.iter()).take_while(|other| !std::ptr::eq(*other, step));
+            before.all(is_still) && is_still(step)
+        };
+        let motion_of = |node: usize| {
+            let rides = |body: &&RigidBody| {
+                body.reference == node || body.nodes.binary_search(&node).is_ok()
+            };
+            match self.rigid_bodies.iter().find(rides) {
+                None => step.motion_of(2 * node + axis),
+                Some(body) => (Some(body).filter(has_not_turned))
+                    .and_then(|body| step.motion_of(2 * body.reference + axis)),
+            }
+        };
+        let [a, b] = nodes.map(motion_of);
+        a.is_some() && a == b
+    }
+
+    /// Pairs of nodes at one place that equations of their own join in both directions, the smaller index first: such an
+    /// equation has a third node at most, as the one of a pre-tension section.
+    pub fn joined_nodes(&self) -> BTreeSet<[usize; 2]> {
+        let mesh = &self.mesh;
+        let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();
+        for equation in &self.equations {
+            let nodes: BTreeSet<usize> = equation.dofs().map(|dof| dof / 2).collect();
+            let of_mesh = nodes.iter().filter(|&&node| node < mesh.node_count());
+            let nodes: Vec<usize> = of_mesh.copied().collect();
+            for (i, &a) in nodes.iter().enumerate().filter(|_| nodes.len() <= 3) {
+                let same = |b: &&usize| mesh.coordinates[**b] == mesh.coordinates[a];
+                for &b in nodes[i + 1..].iter().filter(same) {
+                    *counts.entry([a, b]).or_default() += 1;
+                }
+            }
+        }
+        let both = counts.into_iter().filter(|(_, count)| *count >= 2);
+        both.map(|(pair, _)| pair).collect()
+    }
+
+    /// Mass of an element: density x volume.
+    pub fn element_mass(&self, element: &Element) -> f64 {
+        let section = &self.sections[element.section];
+        let density = self.materials[section.material].density;
+        density * self.mesh.volume(element, section.thickness)
+    }
+
+    /// How thick an element is.
+    pub fn thickness(&self, element: &Element) -> Thickness {
+        Thickness::new(
+            element.element_type,
+            self.sections[element.section].thickness,
+        )
+    }
+
+    /// Speed of longitudinal waves in an element (length/time).
+    pub fn wave_speed(&self, element: &Element) -> f64 {
+        let material = &self.materials[self.sections[element.section].material];
+        material.wave_speed(element.element_type.plane)
+    }
+
+    /// Whether accumulated plastic strains are written: where a material may flow, and where the deck names them.
+    pub fn writes_plastic_strain(&self) -> bool {
+        self.sets.fields.plastic_strain || self.has_plasticity()
+    }
+
+    /// Whether elements have hourglass modes.
+    pub fn has_hourglass_modes(&self) -> bool {
+        let mut elements = self.mesh.elements.iter();
+        elements.any(|element| element.element_type.has_hourglass_modes())
+    }
+
+    /// Whether a material may flow.
+    fn has_plasticity(&self) -> bool {
+        let mut materials = self.materials.iter();
+        materials.any(|material| matches!(material.law, Law::Plastic(_)))
+    }
+
+    /// Whether the law of an element (index) is meant for small strains.
+    pub fn is_for_small_strains(&self, element: usize) -> bool {
+        let section = &self.sections[self.mesh.elements[element].section];
+        self.materials[section.material].law.is_for_small_strains()
+    }
+
+    /// Whether the mass of contact surfaces is redistributed in a step.
+    pub fn redistributes_mass(&self) -> bool {
+        let redistributes = |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
+        self.steps.iter().any(redistributes)
+    }
+
+    /// Whether the coefficient of friction of a contact is not always the same.
+    pub fn has_varying_friction(&self) -> bool {
+        let mut all = (0..self.contacts.len()).map(|contact| self.friction_range(contact));
+        let is_varying = |contact: &Contact| !contact.interaction.friction.is_constant();
+        self.contacts.iter().any(is_varying) || all.any(|[first, other]| first != other)
+    }
+
+    /// Two coefficients of friction of a contact, which are the same where it is constant in all steps: those of
+    /// [`Friction::range`], or the largest and the smallest one where steps change it.
+    pub fn friction_range(&self, contact: usize) -> [f64; 2] {
+        let own = self.contacts[contact].interaction.friction.range();
+        let changes = self.steps.iter().flat_map(|step| &step.contacts.friction);
+        let all = changes
+            .filter(|change| change.contact == contact)
+            .flat_map(|change| change.friction.range())
+            .collect::<Vec<f64>>();
+        match all.is_empty() {
+            true => own,
+            false => {
+                let all = || all.iter().chain(&own).copied();
+                [
+                    all().fold(0.0, f64::max),
+                    all().fold(f64::INFINITY, f64::min),
+                ]
+            }
+        }
+    }
+
+    /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
+    pub fn is_check_only(&self) -> bool {
+        self.steps.iter().any(|step| step.settings.is_check_only)
+    }
+
+    /// Overlaps that contacts allow in the first step.
+    fn first_interferences(&self) -> impl Iterator<Item = &Load<Interference>> {
+        let first = self.steps.first();
+        first.into_iter().flat_map(|step| &step.interferences)
+    }
+
+    /// Whether a contact (index) presses the overlap of the start out in the first step.
+    pub fn shrinks(&self, contact: usize) -> bool {
+        let mut all = self.first_interferences();
+        all.any(|load| load.at.contact == contact && load.at.is_shrink)
+    }
+
+    /// Whether a contact (index) allows an overlap in the first step.
+    pub fn is_fitted(&self, contact: usize) -> bool {
+        let mut all = self.first_interferences();
+        all.any(|load| load.at.contact == contact)
+    }
+
+    /// Overlap that a contact (index) allows all its slave nodes at the start of the analysis (length).
+    pub fn allowed_at_start(&self, contact: usize) -> f64 {
+        let at_start = |load: &Load<Interference>| match load.variation {
+            Variation::Constant => load.magnitude,
+            Variation::Ramp { from } => from,
+            Variation::Amplitude(index) => load.magnitude * self.amplitudes[index].at(0.0),
+        };
+        let all = self.first_interferences();
+        let own = all.filter(|load| load.at.contact == contact && !load.at.is_shrink);
+        own.map(at_start).sum()
+    }
+
+    /// The disc that the slave surface of a contact is, if it is rigid.
+    pub fn disc(&self, contact: &Contact) -> Option<Disc> {
+        let SurfaceKind::Rigid(profile) = &self.surfaces[contact.slave].kind else {
+            return None;
+        };
+        let (circle, first) = (profile.arcs.first()?, profile.segments.first()?);
+        Some(Disc {
+            centre: profile.centre?,
+            arm: first[0],
+            radius: circle.radius,
+        })
+    }
+
+    /// Slave nodes of a contact, of a disc its centre.
+    pub fn slave_nodes(&self, contact: &Contact) -> Vec<usize> {
+        if let Some(disc) = self.disc(contact) {
+            return vec![disc.centre];
+        }
+        let mut nodes = self.surfaces[contact.slave].nodes(&self.mesh);
+        nodes.retain(|node| contact.left_out.binary_search(node).is_err());
+        nodes
+    }
+
+    /// Segments [a, b] of all rigid surfaces.
+    pub fn rigid_segments(&self) -> Vec<[usize; 2]> {
+        let segments = self.surfaces.iter().map(|surface| match &surface.kind {
+            SurfaceKind::Rigid(profile) => profile.segments.as_slice(),
+            SurfaceKind::Faces(_) | SurfaceKind::Nodes(_) => &[],
+        });
+        segments.flatten().copied().collect()
+    }
+}
+
+/// A material: its law with the constants of the deck, and its density.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Name in the deck.
+    pub name: String,
+    /// Law of the stress.
+    pub law: Law,
+    /// Density rho of the reference configuration (mass/length^3).
+    pub density: f64,
+    /// Damping.
+    pub damping: Damping,
+}
+
+/// Damping of a material: none by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Damping {
+    /// Damping in proportion to the mass (1/time).
+    pub alpha: f64,
+    /// Damping in proportion to the elasticity at small strains (time).
+    pub beta: f64,
+}
+
+impl Material {
+    /// Speed of longitudinal waves (length/time): sqrt(E/((1 - nu^2) rho)) in plane stress,
+    /// sqrt(E (1 - nu)/((1 + nu) (1 - 2 nu) rho)) in plane strain and in bodies of revolution.
+    pub fn wave_speed(&self, plane: Plane) -> f64 {
+        let SmallStrainModuli { young, poisson: nu } = self.law.small_strain();
+        let factor = match plane {
+            Plane::Stress => 1.0 / (1.0 - nu * nu),
+            Plane::Strain | Plane::Revolution => (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        };
+        (young * factor / self.density).sqrt()
+    }
+}
+
+/// Edges of the elements and the waves along them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeScales {
+    /// The shortest edge (length); infinite without elements.
+    pub shortest: f64,
+    /// Largest speed of longitudinal waves (length/time).
+    pub wave_speed: f64,
+    /// Shortest time of a wave along an edge; infinite without a material.
+    pub time: f64,
+}
+
+impl EdgeScales {
+    /// Measures the elements of a mesh, not all of which need have a section.
+    pub fn new(mesh: &Mesh, sections: &[Section], materials: &[Material]) -> Self {
+        // elements of a section in each plane; at last those without section
+        let planes = [Plane::Stress, Plane::Strain, Plane::Revolution];
+        let group = |element: &Element| {
+            let section = element.section.min(sections.len());
+            let plane = element.element_type.plane as usize;
+            (planes.len() * section + plane).min(planes.len() * sections.len())
+        };
+        let edges = mesh.shortest_sides(planes.len() * sections.len() + 1, group);
+        let speeds = sections.iter().flat_map(|section| {
+            let material = &materials[section.material];
+            planes.map(|plane| material.wave_speed(plane))
+        });
+        let used = edges
+            .iter()
+            .zip(speeds)
+            .filter(|(edge, _)| edge.is_finite());
+        let nothing = EdgeScales {
+            shortest: edges.iter().copied().fold(f64::INFINITY, f64::min),
+            wave_speed: 0.0,
+            time: f64::INFINITY,
+        };
+        used.fold(nothing, |scales, (edge, speed)| EdgeScales {
+            wave_speed: scales.wave_speed.max(speed),
+            time: scales.time.min(edge / speed),
+            ..scales
+        })
+    }
+}
+
+/// Material and thickness of a group of elements.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// Index into `Model::materials`.
+    pub material: usize,
+    /// Thickness t (length); without a meaning for bodies of revolution.
+    pub thickness: f64,
+}

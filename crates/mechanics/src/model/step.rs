@@ -1,0 +1,480 @@
+//! Steps: time increments, prescribed displacements and loads with their variation in time, times of field output, and
+//! the settings of the solver. Docs/theory.md, section 4 (time, convergence), 6 (impacts) and 8 (complementarity).
+
+use super::{Amplitude, Face, Friction, TimeBase};
+use crate::lcp::LcpMethod;
+use crate::linear::SolverChoice;
+
+/// One step with everything that acts in it, whether given in it or in an earlier step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Name of the step, if it has one.
+    pub name: Option<String>,
+    /// Its procedure.
+    pub procedure: Procedure,
+    /// Its increments.
+    pub increments: Increments,
+    /// Settings of the solver.
+    pub settings: Settings,
+    /// Prescribed dofs, sorted by dof, each at most once.
+    pub supports: Vec<Support>,
+    /// Concentrated forces.
+    pub point_loads: Vec<Load<PointLoad>>,
+    /// Body forces.
+    pub body_forces: Vec<Load<BodyForce>>,
+    /// Centrifugal forces.
+    pub centrifugal_forces: Vec<Load<CentrifugalForce>>,
+    /// Follower pressures.
+    pub pressures: Vec<Load<Pressure>>,
+    /// Dead tractions.
+    pub tractions: Vec<Load<Traction>>,
+    /// Overlaps that contacts allow, by contact.
+    pub interferences: Vec<Load<Interference>>,
+    /// What it changes of the contacts.
+    pub contacts: ContactChanges,
+    /// When field frames are written.
+    pub frames: Frames,
+}
+
+impl Step {
+    /// A dynamic step in which nothing acts, with what a deck has by default.
+    pub fn new(increments: Increments) -> Self {
+        Step {
+            name: None,
+            procedure: Procedure::Dynamic,
+            increments,
+            settings: Settings::default(),
+            supports: Vec::new(),
+            point_loads: Vec::new(),
+            body_forces: Vec::new(),
+            centrifugal_forces: Vec::new(),
+            pressures: Vec::new(),
+            tractions: Vec::new(),
+            interferences: Vec::new(),
+            contacts: ContactChanges::default(),
+            frames: Frames::default(),
+        }
+    }
+
+    /// The motion of a dof, if it is prescribed.
+    pub fn motion_of(&self, dof: usize) -> Option<SupportMotion> {
+        let place = (self.supports).binary_search_by_key(&dof, |support| support.dof);
+        place.ok().map(|index| self.supports[index].motion)
+    }
+}
+
+/// What is different of the contacts in a step, whether it or an earlier one has changed it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ContactChanges {
+    /// Contacts that do not act (indices, increasing).
+    pub removed: Vec<usize>,
+    /// Contacts with another friction than that of their interaction, by increasing contacts.
+    pub friction: Vec<FrictionChange>,
+}
+
+/// Friction of a contact in a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrictionChange {
+    /// The contact (index).
+    pub contact: usize,
+    /// Its friction, in the end where another one gives way to it.
+    pub friction: Friction,
+    /// Friction that gives way to it.
+    pub from: Option<FormerFriction>,
+}
+
+/// Friction that gives way to another one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FormerFriction {
+    /// The friction.
+    pub friction: Friction,
+    /// Amplitude (index) whose value, from 0 to 1, is the part that has given way; without, it grows linearly over the
+    /// step from 0 to 1.
+    pub amplitude: Option<usize>,
+}
+
+impl ContactChanges {
+    /// Whether a coefficient of friction ramps over the step.
+    pub fn ramp(&self) -> bool {
+        let mut former = self
+            .friction
+            .iter()
+            .filter_map(|change| change.from.as_ref());
+        former.any(|former| former.amplitude.is_none())
+    }
+}
+
+/// When checkpoints are written, from a step on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RestartOutput {
+    /// Number of the step, from 1.
+    pub from_step: usize,
+    /// Increments of a step between two checkpoints; its last increment has one too. 0: none.
+    pub every: usize,
+    /// Whether earlier checkpoints of the step are kept.
+    pub keeps_all: bool,
+}
+
+/// Procedure of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Procedure {
+    /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
+    Dynamic,
+    /// The equation of motion by the backward Euler rule, which takes the energy of vibrations (`*DYNAMIC,
+    /// APPLICATION=QUASI-STATIC`).
+    QuasiStatic,
+    /// Equilibrium without inertia, damping and impacts (`*STATIC`).
+    Static,
+}
+
+/// Time increments of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Increments {
+    /// Increment dt (time).
+    pub dt: f64,
+    /// Duration T of the step (time).
+    pub period: f64,
+    /// Smallest increment a cutback may reach (time); by default 0, in a static step without DIRECT 1e-5 of the
+    /// duration, or the increment if that is smaller.
+    pub dt_min: f64,
+    /// Largest increment (time).
+    pub dt_max: f64,
+    /// What decides their length.
+    pub incrementation: Incrementation,
+}
+
+impl Increments {
+    /// Increments of one length over a step, which cutbacks may make as short as they like (DIRECT).
+    pub fn fixed(dt: f64, period: f64) -> Self {
+        Increments {
+            dt,
+            period,
+            dt_min: 0.0,
+            dt_max: dt,
+            incrementation: Incrementation::Fixed,
+        }
+    }
+}
+
+/// What decides how long the increments of a step are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Incrementation {
+    /// The deck: they have one length but for cutbacks (DIRECT).
+    Fixed,
+    /// The passes that they take.
+    Passes,
+    /// Their truncation error.
+    Error {
+        /// The largest, beside the displacements of the step so far.
+        tolerance: f64,
+    },
+}
+
+/// When field frames are written. The start and the end of a step are always written.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Frames {
+    /// The program's default number of frames.
+    #[default]
+    Default,
+    /// This many, evenly spaced over the step.
+    Count(usize),
+    /// At multiples of this time since the start of the step.
+    Every(f64),
+    /// Each time this number of increments is done.
+    Increments(usize),
+    /// At these step times, increasing.
+    Times(Vec<f64>),
+}
+
+/// How a load's magnitude follows time within its step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Variation {
+    /// The full magnitude from the start of the step.
+    Constant,
+    /// Linear over the step up to the full magnitude.
+    Ramp {
+        /// Magnitude at the start of the step.
+        from: f64,
+    },
+    /// Magnitude times the amplitude with this index.
+    Amplitude(usize),
+}
+
+/// A load: its kind and place (`at`), its full magnitude and its variation in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Load<T> {
+    /// Loaded dof, element or face, and direction.
+    pub at: T,
+    /// Full magnitude.
+    pub magnitude: f64,
+    /// How the magnitude follows time.
+    pub variation: Variation,
+}
+
+impl<T> Load<T> {
+    /// Magnitudes at start and end of the step; none where an amplitude gives them.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        match self.variation {
+            Variation::Constant => Some([self.magnitude; 2]),
+            Variation::Ramp { from } => Some([from, self.magnitude]),
+            Variation::Amplitude(_) => None,
+        }
+    }
+
+    /// The load with these magnitudes at start and end of the step, linear in between.
+    pub fn between(self, [from, magnitude]: [f64; 2]) -> Self {
+        let variation = match from == magnitude {
+            true => Variation::Constant,
+            false => Variation::Ramp { from },
+        };
+        Load {
+            magnitude,
+            variation,
+            ..self
+        }
+    }
+}
+
+/// Concentrated force (magnitude: force) on one dof, `2 node + direction`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointLoad {
+    /// Loaded dof.
+    pub dof: usize,
+}
+
+/// Force per reference volume along a fixed direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyForce {
+    /// Loaded element.
+    pub element: usize,
+    /// Direction; a unit vector.
+    pub direction: [f64; 2],
+    /// Whether the magnitude is an acceleration (GRAV: multiplied by the density) or a force per
+    /// volume (BX, BY).
+    pub per_mass: bool,
+}
+
+/// Centrifugal force (magnitude: square of the angular velocity, 1/time^2) of the mass of an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CentrifugalForce {
+    /// Loaded element.
+    pub element: usize,
+    /// Place of the axis in the plane, which is perpendicular to it; in bodies of revolution the axis is x = 0 (length).
+    pub axis: [f64; 2],
+}
+
+/// Follower pressure (magnitude: force/length^2, positive into the body) on the current face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pressure {
+    /// Loaded face.
+    pub face: Face,
+}
+
+/// Dead traction (magnitude: force per reference area) along a fixed direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Traction {
+    /// Loaded face.
+    pub face: Face,
+    /// Direction; a unit vector.
+    pub direction: [f64; 2],
+}
+
+/// Overlap that a contact allows (magnitude: length, the same for all its slave nodes; of a shrink fit the part of what
+/// each node overlaps at the start of the analysis).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interference {
+    /// Index of the contact.
+    pub contact: usize,
+    /// Whether every node may overlap by what it does at the start of the analysis.
+    pub is_shrink: bool,
+}
+
+/// A dof whose displacement is prescribed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Support {
+    /// Prescribed dof, `2 node + direction`.
+    pub dof: usize,
+    /// Its displacement in time.
+    pub motion: SupportMotion,
+}
+
+/// Motion of a support within a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SupportMotion {
+    /// Linear over the step from the displacement at its start to `to` (length) at its end.
+    Ramp {
+        /// Displacement at the end of the step.
+        to: f64,
+    },
+    /// `value` (length) times the amplitude with index `amplitude`.
+    Amplitude {
+        /// Factor of the amplitude.
+        value: f64,
+        /// Index into `Model::amplitudes`.
+        amplitude: usize,
+    },
+    /// A velocity or an acceleration, which displacement and velocity of the start of the step go on
+    /// with.
+    Rate {
+        /// What is prescribed.
+        rate: Rate,
+        /// Its value, or the factor of the amplitude (length/time, length/time^2).
+        value: f64,
+        /// Index into `Model::amplitudes`; without, the rate is constant.
+        amplitude: Option<usize>,
+    },
+}
+
+impl SupportMotion {
+    /// Whether the support stays where it is at the start of the analysis.
+    pub fn is_still(self) -> bool {
+        match self {
+            SupportMotion::Ramp { to } => to == 0.0,
+            SupportMotion::Amplitude { value, .. } | SupportMotion::Rate { value, .. } => {
+                value == 0.0
+            }
+        }
+    }
+
+    /// How a support that no card changes goes on after a step of this duration: what follows an
+    /// amplitude in step time keeps its last value.
+    pub fn after_step(self, period: f64, amplitudes: &[Amplitude]) -> SupportMotion {
+        let last = |index: usize| {
+            let curve = amplitudes.get(index);
+            let curve = curve.filter(|curve| curve.time == TimeBase::Step);
+            curve.map(|curve| curve.at(period))
+        };
+        match self {
+            SupportMotion::Amplitude { value, amplitude } => match last(amplitude) {
+                Some(last) => SupportMotion::Ramp { to: value * last },
+                None => self,
+            },
+            SupportMotion::Rate {
+                rate,
+                value,
+                amplitude,
+            } => match amplitude.and_then(last) {
+                Some(last) => SupportMotion::Rate {
+                    rate,
+                    value: value * last,
+                    amplitude: None,
+                },
+                None => self,
+            },
+            SupportMotion::Ramp { .. } => self,
+        }
+    }
+}
+
+/// The derivative of the displacement that is prescribed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rate {
+    /// The first.
+    Velocity,
+    /// The second.
+    Acceleration,
+}
+
+/// Settings of `*STICKSLIP` and `*NO ANALYSIS` for one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Time integration.
+    pub scheme: Scheme,
+    /// Impact impulses on or off.
+    pub impact: Impact,
+    /// When nodes land.
+    pub impact_time: ImpactTime,
+    /// What becomes of the energy that landings take.
+    pub landing: LandingRule,
+    /// Mass of the nodes of contact surfaces, the same in all steps.
+    pub contact_mass: ContactMass,
+    /// Solver of the complementarity problem.
+    pub lcp: LcpMethod,
+    /// When the effective matrix is factorised again.
+    pub factorization: Factorization,
+    /// Sparse factorisation.
+    pub solver: SolverChoice,
+    /// Relative tolerance of an increment's convergence.
+    pub tolerance: f64,
+    /// Largest number of passes of an increment.
+    pub max_passes: usize,
+    /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
+    pub is_check_only: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            scheme: Scheme::EnergyMomentum,
+            impact: Impact::Impulse,
+            impact_time: ImpactTime::Increment,
+            landing: LandingRule::Plastic,
+            contact_mass: ContactMass::Consistent,
+            lcp: LcpMethod::Hybrid,
+            factorization: Factorization::Keep,
+            solver: SolverChoice::Faer,
+            tolerance: 1e-11,
+            max_passes: 50,
+            is_check_only: false,
+        }
+    }
+}
+
+/// Time integration scheme.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scheme {
+    /// Implicit mid-point rule with the averaged stress, and energy-momentum contact.
+    EnergyMomentum,
+    /// Single-step SS22 of Zienkiewicz, Wood & Hine (1984), stable for theta2 >= theta1 >= 1/2.
+    Ss22 {
+        /// Weight of velocity and load.
+        theta1: f64,
+        /// Weight of the acceleration.
+        theta2: f64,
+    },
+}
+
+/// Change of the velocity of landing nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Impact {
+    /// Impulses at the start of the increment.
+    Impulse,
+    /// No impulses.
+    None,
+}
+
+/// When nodes land.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImpactTime {
+    /// Within the increment.
+    Increment,
+    /// At the time of the impact, which ends a subincrement.
+    Event,
+}
+
+/// What becomes of the energy that the normal contact forces take at landings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LandingRule {
+    /// It is lost.
+    Plastic,
+    /// It is given back as kinetic energy.
+    Return,
+}
+
+/// Mass of the nodes of contact surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ContactMass {
+    /// That of the elements.
+    Consistent,
+    /// Carried by the nodes behind the surface.
+    Redistributed,
+}
+
+/// When the effective matrix is factorised again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Factorization {
+    /// Kept as long as the passes converge quickly.
+    Keep,
+    /// At every pass.
+    EveryPass,
+}

@@ -1,0 +1,132 @@
+//! Archive of what a run carries from increment to increment: values one after the other, exact in bits. One function
+//! of each structure lists what it carries, both to write and to read it, so that the two cannot differ. docs/restart.md.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Values that are written, or read in the same order.
+pub enum Archive<'a> {
+    /// What has been written.
+    Writing(Vec<u8>),
+    /// What is left to read.
+    Reading(&'a [u8]),
+}
+
+/// Why an archive cannot be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum ArchiveError {
+    /// It ends early, or a value is none of its kind.
+    #[error("its content is not that of a checkpoint")]
+    Content,
+    /// It is of a model of another size.
+    #[error("it is of another model")]
+    Size,
+    /// The factors that it describes cannot be made.
+    #[error("its matrix has no factors")]
+    Factors,
+}
+
+/// Carries the fields of a structure: those in brackets by their own functions, those behind the semicolon not at all. A
+/// field that is not named is an error of the compiler.
+#[macro_export]
+macro_rules! carry_fields {
+    ($archive:ident, $of:expr => $type:ident {
+        $([$($part:ident),*])? $($field:ident),* $(; $($left:ident),*)?
+    }) => {{
+        let $type { $($($part,)*)? $($field,)* $($($left: _,)*)? } = $of;
+        $($($part.carry($archive)?;)*)?
+        $($archive.carry($field)?;)*
+        Ok::<(), $crate::archive::ArchiveError>(())
+    }};
+}
+pub use carry_fields;
+
+impl Archive<'_> {
+    /// An archive to write.
+    pub fn new() -> Self {
+        Archive::Writing(Vec::new())
+    }
+
+    /// What has been written.
+    pub fn into_bytes(self) -> Vec<u8> {
+        match self {
+            Archive::Writing(bytes) => bytes,
+            Archive::Reading(_) => Vec::new(),
+        }
+    }
+
+    /// Whether values are read.
+    pub fn is_reading(&self) -> bool {
+        matches!(self, Archive::Reading(_))
+    }
+
+    /// Writes a value, or replaces it by the one that is read.
+    ///
+    /// # Errors
+    /// What is read is no such value.
+    pub fn carry<T: Serialize + DeserializeOwned>(
+        &mut self,
+        value: &mut T,
+    ) -> Result<(), ArchiveError> {
+        match self {
+            Archive::Writing(bytes) => {
+                let written = postcard::to_extend(value, std::mem::take(bytes));
+                *bytes = written.map_err(|_| ArchiveError::Content)?;
+            }
+            Archive::Reading(bytes) => {
+                let read = postcard::take_from_bytes(bytes);
+                (*value, *bytes) = read.map_err(|_| ArchiveError::Content)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes values, or replaces them by as many that are read.
+    ///
+    /// # Errors
+    /// What is read are not as many such values.
+    pub fn carry_values<T: Serialize + DeserializeOwned + Clone>(
+        &mut self,
+        values: &mut [T],
+    ) -> Result<(), ArchiveError> {
+        let mut all = values.to_vec();
+        self.carry(&mut all)?;
+        if all.len() != values.len() {
+            return Err(ArchiveError::Size);
+        }
+        values.clone_from_slice(&all);
+        Ok(())
+    }
+}
+
+impl Default for Archive<'_> {
+    fn default() -> Self {
+        Archive::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_come_back_bit_by_bit() {
+        let numbers = [0.1, -0.0, f64::NAN, f64::INFINITY, 5e-324, 1e300];
+        let mut archive = Archive::new();
+        let (mut values, mut more) = (numbers, Some(vec![(3_usize, "text".to_owned())]));
+        archive.carry_values(&mut values).expect("written");
+        archive.carry(&mut more).expect("written");
+        let bytes = archive.into_bytes();
+        let mut archive = Archive::Reading(&bytes);
+        (values, more) = ([0.0; 6], None);
+        archive.carry_values(&mut values).expect("read");
+        archive.carry(&mut more).expect("read");
+        assert_eq!(values.map(f64::to_bits), numbers.map(f64::to_bits));
+        assert_eq!(more, Some(vec![(3, "text".to_owned())]));
+        let mut values = [0.0; 5];
+        let other = Archive::Reading(&bytes).carry_values(&mut values);
+        assert_eq!(other, Err(ArchiveError::Size));
+        let cut = Archive::Reading(&bytes[..20]).carry_values(&mut values);
+        assert_eq!(cut, Err(ArchiveError::Content));
+    }
+}

@@ -1,0 +1,7 @@
+//! Sparse factorisations and complementarity problems, which know nothing of mechanics.
+
+#![deny(missing_docs)]
+
+pub mod archive;
+pub mod lcp;
+pub mod linear;

@@ -1,0 +1,45 @@
+//! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if
+//! need be, further blocks, their factorisations, and parts of their inverses.
+
+mod assembled;
+mod checked;
+mod largest;
+mod multifrontal;
+mod nodal_matrix;
+mod solver;
+mod sprs_ldl;
+mod transformation;
+
+pub use assembled::{AddedBlocks, Assembled};
+pub use checked::CheckedSolver;
+pub use largest::{SMALLEST, larger, largest};
+pub use multifrontal::{MultifrontalLdl, factor_entries};
+pub use nodal_matrix::NodalMatrix;
+pub use solver::{LinearError, LinearSolver};
+pub use sprs_ldl::SprsLdl;
+pub use transformation::{Rotation, Transformation};
+
+/// Sparse factorisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SolverChoice {
+    /// Multifrontal LDL^T in faer's order.
+    Faer,
+    /// sprs-ldl with an AMD permutation.
+    Sprs,
+}
+
+/// The solver that the deck chooses.
+pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
+    match choice {
+        SolverChoice::Faer => Box::new(MultifrontalLdl::default()),
+        SolverChoice::Sprs => Box::new(SprsLdl::default()),
+    }
+}
+
+/// Two of them, for matrices whose patterns may be the same: one takes over the analysis of the other.
+pub fn two_linear_solvers(choice: SolverChoice) -> [Box<dyn LinearSolver>; 2] {
+    match choice {
+        SolverChoice::Faer => MultifrontalLdl::two().map(|solver| Box::new(solver) as _),
+        SolverChoice::Sprs => [(); 2].map(|()| linear_solver(choice)),
+    }
+}
