@@ -840,6 +840,20 @@ mod tests {
         model
     }
 
+    /// Rings in the displacement formulation, off the axis.
+    fn rings() -> Vec<Model> {
+        let [elastic, _, rubber] = models().map(|m| m.materials[0].law.clone());
+        let mut all = vec![
+            model(elastic.clone(), ElementType::CAX4),
+            model(rubber.clone(), ElementType::CAX4),
+            quadratic_model(rubber, ElementType::CAX8),
+            quadratic_model(elastic, ElementType::CAX8R),
+        ];
+        let coordinates = all.iter_mut().flat_map(|m| &mut m.mesh.coordinates);
+        coordinates.for_each(|x| x[0] += 0.7);
+        all
+    }
+
     fn assert_near(one: &ElementResult, other: &ElementResult) {
         let all = |r: &ElementResult| {
             let [sx, sy, sxy] = r.stress;
@@ -853,6 +867,7 @@ mod tests {
                 ey,
                 exy,
                 r.principal_strain,
+                r.strain_around,
                 r.energy,
             ]
         };
@@ -881,6 +896,7 @@ mod tests {
             .iter()
             .chain(&quadratic)
             .chain(&with_mean_dilatation())
+            .chain(&rings())
             .flat_map(|m| [(m, between), (m, Motion::at(&u1, &[]))])
         {
             let elements = Elements::new(model);

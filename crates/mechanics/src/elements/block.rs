@@ -68,11 +68,11 @@ pub struct Gradient {
 
 /// Deformation at one integration point.
 #[derive(Clone, Copy)]
-pub enum Deformation {
-    /// Displacement gradient.
-    At(Gradient),
-    /// That of the mid configuration and the strains of start and end.
-    Between(Gradient, StrainChange<Lanes>),
+pub struct Deformation {
+    /// Displacement gradient of the strain-displacement matrix: that of the mid configuration in the energy-momentum form.
+    pub gradient: Gradient,
+    /// Strains at which the material is evaluated.
+    pub strains: Strains<Lanes>,
 }
 
 /// A block with the places of its points in a body of revolution.
@@ -113,35 +113,6 @@ impl<const N: usize> BlockMotion<N> {
         match self {
             Self::At(u) => Derivatives::At(of(u)),
             Self::Between(mid, half) => Derivatives::Between(of(mid), of(half)),
-        }
-    }
-}
-
-impl Deformation {
-    /// The gradient of the strain-displacement matrix.
-    #[inline(always)]
-    pub fn gradient(&self) -> &Gradient {
-        match self {
-            Self::At(gradient) | Self::Between(gradient, _) => gradient,
-        }
-    }
-
-    /// Second Piola-Kirchhoff stress, eq. (2.3), or energy-momentum stress, eq. (4.8).
-    #[inline(always)]
-    pub fn stress<const HOOP: bool>(
-        &self,
-        p: usize,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-    ) -> SymmetricLanes {
-        law.stress_at(p, &self.strains::<HOOP>())
-    }
-
-    /// Strains at which the material is evaluated.
-    #[inline(always)]
-    fn strains<const HOOP: bool>(&self) -> Strains<Lanes> {
-        match self {
-            Self::At(gradient) => Strains::At(gradient.strain::<HOOP>()),
-            Self::Between(_, change) => Strains::Between(*change),
         }
     }
 }
@@ -209,7 +180,10 @@ impl<const N: usize, const P: usize> PlacedBlock<'_, N, P> {
             Derivatives::At(u) => {
                 let gradient = self.gradient::<HOOP>(p, u);
                 *positive = gradient.is_positive::<HOOP>(*positive);
-                Deformation::At(gradient)
+                Deformation {
+                    gradient,
+                    strains: Strains::At(gradient.strain::<HOOP>()),
+                }
             }
             Derivatives::Between(mid, half) => {
                 let mid = self.gradient::<HOOP>(p, mid);
@@ -220,7 +194,10 @@ impl<const N: usize, const P: usize> PlacedBlock<'_, N, P> {
                 };
                 *positive = mid.is_positive::<HOOP>(*positive);
                 *positive = end.is_positive::<HOOP>(*positive);
-                Deformation::Between(mid, mid.strain_change::<HOOP>(&half))
+                Deformation {
+                    gradient: mid,
+                    strains: Strains::Between(mid.strain_change::<HOOP>(&half)),
+                }
             }
         }
     }
@@ -429,18 +406,6 @@ fn derivative<const N: usize>(v: &[Lanes; N], natural: &[[f64; 2]; N]) -> [Lanes
 /// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.
 pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 
-impl Deformation {
-    /// Tangent of [`Self::stress`] in Voigt order.
-    #[inline(always)]
-    fn tangent<const HOOP: bool>(
-        &self,
-        p: usize,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-    ) -> TangentLanes {
-        law.tangent_at(p, &self.strains::<HOOP>())
-    }
-}
-
 /// How force, tangent and results of elements side by side follow from their motion, in the plane or, with `HOOP`, in a body
 /// of revolution.
 pub trait BlockFormulation<const HOOP: bool> {
@@ -481,8 +446,10 @@ impl<const HOOP: bool> BlockFormulation<HOOP> for Displacement {
         let u = motion.derivatives::<S, P, HOOP>();
         for p in 0..P {
             let deformation = placed.deformation::<HOOP>(p, &u, &mut positive);
-            let s = deformation.stress(p, law).times(placed.block.volume[p]);
-            let gradient = deformation.gradient();
+            let s = law
+                .stress_at(p, &deformation.strains)
+                .times(placed.block.volume[p]);
+            let gradient = &deformation.gradient;
             points[p] = (gradient.h, s);
             if HOOP {
                 hoop[p] = gradient.stretch_around() * s.z * placed.over_radius[p];
@@ -514,10 +481,10 @@ impl<const HOOP: bool> BlockFormulation<HOOP> for Displacement {
         for p in 0..P {
             let deformation = placed.deformation::<HOOP>(p, &u, &mut Positive::default());
             let volume = placed.block.volume[p];
-            let s = deformation.stress(p, law).times(volume);
-            let c = deformation.tangent(p, law);
+            let s = law.stress_at(p, &deformation.strains).times(volume);
+            let c = law.tangent_at(p, &deformation.strains);
             let c = TangentLanes::of(|i, j| c.0[i][j] * volume);
-            let gradient = deformation.gradient();
+            let gradient = &deformation.gradient;
             let f = deformation_gradient(&gradient.h);
             let gradients = placed.block.gradients::<S>(p);
             add_products(k, &gradients, &elasticity(&f, &s, &c));
@@ -539,7 +506,7 @@ impl<const HOOP: bool> BlockFormulation<HOOP> for Displacement {
         let mut sums = Sums::new();
         for p in 0..P {
             let deformation = placed.deformation::<HOOP>(p, &u, &mut Positive::default());
-            let gradient = *deformation.gradient();
+            let gradient = deformation.gradient;
             let strain = gradient.strain::<HOOP>();
             let point = ResultPoint {
                 h: gradient.h,

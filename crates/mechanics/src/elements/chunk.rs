@@ -19,7 +19,7 @@ use super::block::{
 use super::formulation::ElementResult;
 use super::solid::{Motion, TangentPart, take_positive_part};
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, Number, PlaneLaw, StressAtPoints, Viscosity, in_lanes};
+use crate::materials::{Lanes, PlaneLaw, StressAtPoints, Viscosity, in_lanes};
 use crate::model::Thickness;
 
 /// Elements of a chunk at most.
