@@ -82,7 +82,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         })
     }
 
-    /// Symmetric part of 2 dS/dE1 of [`Self::mean_stress`] (force/length^2): [`corrected_tangent`] with C = C(E_m) and
+    /// Symmetric part of 2 dS/dE1 of [`Self::mean_stress`] (force/length^2): `corrected_tangent` with C = C(E_m) and
     /// g = S(E1) - S(E_m) - C(E_m):dE/2.
     #[inline(always)]
     fn mean_tangent(&self, change: &StrainChange<T>) -> Tangent<T>
