@@ -71,18 +71,19 @@ class RingBlock(Block):
         return stress[0] + ratio[..., None, None] * change[0], stress[1] + 0.5 * ratio * change[1]
 
     def viscous_stress(self, start: Strain, end: Strain, dt: float) -> Strain:
-        """S_d of eq. (2.36)."""
+        """S_d of eq. (4.17) with G of eq. (2.36)."""
         (e0, z0), (e1, z1) = start, end
-        c = identity_times(np.ones_like(z0)) + e0 + e1
-        around = 1.0 + 0.5 * (z0 + z1)
-        p, hoop = cofactor_of(c) / determinant_of(c)[..., None, None], 1.0 / around
+        ones = np.ones_like(z0)
+        c, around = identity_times(ones) + e0 + e1, 1.0 + 0.5 * (z0 + z1)
         change, along = e1 - e0, 0.5 * (z1 - z0)
-        volume = np.einsum("egij,egij->eg", p, change) + hoop * along
-        factor = self.beta / dt * np.sqrt(determinant_of(c) * around)
-        shape = 2.0 * self.shear * (p @ change @ p)
-        wide = self.lame * volume
+        j0, j1 = (np.sqrt(determinant_of(identity_times(ones) + 2.0 * e) * (1.0 + z)) for e, z in (start, end))
+        over = 2.0 / (j0 + j1)
+        g = cofactor_of(c) * around[..., None, None] + cofactor_of(change) * (along / 3.0)[..., None, None]
+        g, hoop = g * over[..., None, None], (determinant_of(c) + determinant_of(change) / 3.0) * over
+        wide = self.lame * (np.einsum("egij,egij->eg", g, change) + hoop * along)
+        factor = self.beta / dt * over
         return (
-            factor[..., None, None] * (shape + wide[..., None, None] * p),
+            factor[..., None, None] * (2.0 * self.shear * (g @ change @ g) + wide[..., None, None] * g),
             factor * (2.0 * self.shear * hoop * along * hoop + wide * hoop),
         )
 
