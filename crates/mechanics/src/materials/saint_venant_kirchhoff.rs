@@ -55,20 +55,29 @@ impl SaintVenantKirchhoff {
     /// ```
     pub fn in_plane(&self, plane: Plane) -> PlaneSaintVenantKirchhoff {
         let (e, nu) = (self.young, self.poisson);
-        let mu = e / (2.0 * (1.0 + nu));
-        let (lambda, contraction) = match plane {
-            Plane::Stress => (e * nu / (1.0 - nu * nu), nu / (1.0 - nu)),
-            Plane::Strain | Plane::Revolution => (e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.0),
-        };
-        let across = match plane {
-            Plane::Stress => 0.0,
-            Plane::Strain | Plane::Revolution => 1.0,
-        };
-        PlaneSaintVenantKirchhoff {
-            lambda,
-            mu,
-            contraction,
-            across,
+        match plane {
+            Plane::Stress => {
+                let c = e / (1.0 - nu * nu);
+                PlaneSaintVenantKirchhoff {
+                    diagonal: c,
+                    mixed: c * nu,
+                    shear: c * (1.0 - nu) / 2.0,
+                    contraction: nu / (1.0 - nu),
+                    across: 0.0,
+                    is_plane_stress: true,
+                }
+            }
+            Plane::Strain | Plane::Revolution => {
+                let c = e / ((1.0 + nu) * (1.0 - 2.0 * nu));
+                PlaneSaintVenantKirchhoff {
+                    diagonal: c * (1.0 - nu),
+                    mixed: c * nu,
+                    shear: c * (1.0 - 2.0 * nu) / 2.0,
+                    contraction: 0.0,
+                    across: nu,
+                    is_plane_stress: false,
+                }
+            }
         }
     }
 }
@@ -76,20 +85,23 @@ impl SaintVenantKirchhoff {
 /// St. Venant-Kirchhoff material in plane stress, in plane strain or in a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneSaintVenantKirchhoff {
-    /// lambda, or lambda' of plane stress (force/length^2).
-    lambda: f64,
-    /// mu (force/length^2).
-    mu: f64,
+    /// lambda + 2 mu, C_1111 (force/length^2).
+    diagonal: f64,
+    /// lambda, C_1122 (force/length^2).
+    mixed: f64,
+    /// mu, C_1212 (force/length^2).
+    shear: f64,
     /// E_33 = -contraction (E_11 + E_22) of plane stress.
     contraction: f64,
-    /// 1, or 0 without a stress across.
+    /// S_33 = across (S_11 + S_22) without E_33.
     across: f64,
+    is_plane_stress: bool,
 }
 
 impl PlaneSaintVenantKirchhoff {
     /// lambda and mu at small strains (force/length^2).
     pub(super) fn lame(&self) -> (f64, f64) {
-        (self.lambda, self.mu)
+        (self.mixed, self.shear)
     }
 }
 
@@ -98,7 +110,11 @@ impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirc
     #[inline(always)]
     fn energy(&self, e: &Symmetric<T>) -> T {
         let s = Hyperelastic::<T, HOOP>::stress(self, e);
-        s.contract::<HOOP>(e) * 0.5
+        let of_plane = (s.x * e.x + s.y * e.y) * 0.5 + s.w * e.w;
+        match HOOP {
+            true => of_plane + s.z * e.z * 0.5,
+            false => of_plane,
+        }
     }
 
     /// W1 - W0 = S(E_m):(E1 - E0)
@@ -108,35 +124,31 @@ impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirc
         s.contract::<HOOP>(&change.change())
     }
 
-    /// S = lambda tr(E) I + 2 mu E, eq. (2.13)
+    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13)
     #[inline(always)]
     fn stress(&self, e: &Symmetric<T>) -> Symmetric<T> {
-        let of_plane = e.x + e.y;
-        let trace = match HOOP {
-            true => of_plane + e.z,
-            false => of_plane,
-        };
-        let (pressure, shear) = (trace * self.lambda, 2.0 * self.mu);
-        let across = match HOOP {
-            true => (pressure + e.z * shear) * self.across,
-            false => pressure * self.across,
-        };
-        Symmetric {
-            z: across,
-            ..e.map(|e| e * shear).plus_isotropic(pressure)
+        let (x, y) = (
+            e.x * self.diagonal + e.y * self.mixed,
+            e.x * self.mixed + e.y * self.diagonal,
+        );
+        let w = e.w * (2.0 * self.shear);
+        if !HOOP || self.is_plane_stress {
+            return Symmetric::new(x, y, (x + y) * self.across, w);
         }
+        let around = e.z * self.mixed;
+        let z = (e.x + e.y) * self.mixed + e.z * self.diagonal;
+        Symmetric::new(x + around, y + around, z, w)
     }
 
     #[inline(always)]
     fn tangent(&self, _e: &Symmetric<T>) -> Tangent<T> {
-        let (diagonal, mixed) = (self.lambda + 2.0 * self.mu, self.lambda);
         Tangent::of(|i, j| {
             T::all(match (i, j) {
-                (2, _) | (_, 2) if self.across == 0.0 => 0.0,
-                (3, 3) => self.mu,
+                (2, _) | (_, 2) if self.is_plane_stress => 0.0,
+                (3, 3) => self.shear,
                 (3, _) | (_, 3) => 0.0,
-                _ if i == j => diagonal,
-                _ => mixed,
+                _ if i == j => self.diagonal,
+                _ => self.mixed,
             })
         })
     }

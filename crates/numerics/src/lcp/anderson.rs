@@ -1,7 +1,7 @@
 //! Acceleration of an iteration x <- f(x) by its last steps (Anderson 1965), in the form of generalised conjugate
 //! residuals.
 
-use super::dense::{axpy, dot};
+use super::dense::axpy;
 
 /// A step of an iteration x <- f(x).
 #[derive(Debug, Clone)]
@@ -94,6 +94,11 @@ impl<const N: usize> Acceleration<N> {
 
 fn norm(vector: &[f64]) -> f64 {
     dot(vector, vector).sqrt()
+}
+
+/// Plain sum of products.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]
