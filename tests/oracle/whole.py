@@ -50,17 +50,13 @@ class CondensedBlock(RingBlock):
         """Strains that the material has."""
         raise NotImplementedError
 
-    def on_displacements(self, strain: Strain, stress: Strain) -> Strain:
-        """Stress that does work on the strains of the displacements, from that of the material."""
-        raise NotImplementedError
-
     def energy(self, u: Array) -> Array:
         """Strain energy of each element."""
         return (self.weight * self.density_of(self.of_material(self.compatible(u)))).sum(axis=1)
 
     def conjugate(self, strain: Strain) -> Strain:
         """S that does work on the strains of the displacements, at these."""
-        return self.on_displacements(strain, self.stress_at(self.of_material(strain)))
+        raise NotImplementedError
 
     def stress_of(self, u: Array) -> Strain:
         """S of the output at the displacements."""
@@ -115,14 +111,11 @@ class CondensedBlock(RingBlock):
 
     def viscous_of(self, c0: Strain, c1: Strain, dt: float) -> Strain:
         """Viscous stress on the strains of the displacements."""
-        e0, e1 = self.of_material(c0), self.of_material(c1)
-        viscous = self.viscous_stress(e0, e1, dt)
-        stress = self.on_displacements(_times(_plus(c0, c1), 0.5), viscous)
-        return self.doing(stress, _plus(c1, c0, -1.0), self._sum(viscous, _plus(e1, e0, -1.0)))
+        raise NotImplementedError
 
 
 class PressureBlock(CondensedBlock):
-    """Elements with the volume ratio of eq. (2.45)."""
+    """Elements with the volume ratio of eq. (2.45), whose stress between two displacements is that of eq. (2.11)."""
 
     functions: int
     """Number of functions of the volume ratio: 1 or 3."""
@@ -156,19 +149,56 @@ class PressureBlock(CondensedBlock):
         half = identity_times(np.full_like(z, 0.5)) + e
         return e + excess[..., None, None] * half, z + excess * (1.0 + z)
 
-    def on_displacements(self, strain: Strain, stress: Strain) -> Strain:
-        """S of eq. (2.46)."""
-        (own, whole), (e, z) = self.volumes(strain), strain
-        j, theta = 1.0 + own, 1.0 + whole
-        r = (theta / j) ** (2.0 / 3.0)
-        c = identity_times(np.ones_like(z)) + 2.0 * e
-        a = r * (np.einsum("egij,egij->eg", stress[0], c) + stress[1] * (1.0 + z)) / 3.0
-        p = (self.project(a / theta) - a / j) * j
-        inverse = cofactor_of(c) / determinant_of(c)[..., None, None]
+    def conjugate(self, strain: Strain) -> Strain:
+        """S of eq. (2.11) at one strain, K being J C^-1."""
+        own, _ = self.volumes(strain)
+        c = identity_times(np.ones_like(own)) + 2.0 * strain[0]
+        k = cofactor_of(c) * ((1.0 + own) / determinant_of(c))[..., None, None], (1.0 + own) / (1.0 + strain[1])
+        return self._effective((strain, strain), k, self.stress_at(self.of_material(strain)))
+
+    def between(self, u0: Array, u1: Array, stress: Strain) -> Strain:
+        """S of eq. (2.11) between two displacements with K of eq. (2.46), from that of the material."""
+        halfway = 0.5 * (u0 + u1)
+        section = [
+            determinant_of(identity_times(np.ones(self.weight.shape)) + self.displacement_gradient(u))
+            for u in (u0, halfway, u1)
+        ]
+        f = identity_times(np.ones(self.weight.shape)) + self.displacement_gradient(halfway)
+        around = 1.0 + self.stretch(halfway)
+        k = cofactor_of(f.swapaxes(2, 3) @ f) * (around / section[1])[..., None, None]
+        both = self.strains(u0), self.strains(u1)
+        return self._effective(both, (k, 0.5 * (section[0] + section[2]) / around), stress)
+
+    def _effective(self, both: tuple[Strain, Strain], k: Strain, stress: Strain) -> Strain:
+        """r_m S + (A - a theta_m) K."""
+        j, theta = ([1.0 + grown for grown in ends] for ends in zip(*(self.volumes(strain) for strain in both)))
+        root = [np.cbrt(t / own) for own, t in zip(j, theta)]
+        slope = (root[0] + root[1]) / (root[0] ** 2 + root[0] * root[1] + root[1] ** 2)
+        e, z = _plus(*both)
+        of_c = np.einsum("egij,egij->eg", stress[0], identity_times(np.full_like(z, 0.5)) + 0.5 * e)
+        a = slope * (of_c + stress[1] * (0.5 + 0.25 * z)) / (j[0] * j[1])
+        pressure = self.project(a * 0.5 * (j[0] + j[1])) - a * 0.5 * (theta[0] + theta[1])
+        ratio = 0.5 * (root[0] ** 2 + root[1] ** 2)
         return (
-            r[..., None, None] * stress[0] + p[..., None, None] * inverse,
-            r * stress[1] + p / (1.0 + z),
+            ratio[..., None, None] * stress[0] + pressure[..., None, None] * k[0],
+            ratio * stress[1] + pressure * k[1],
         )
+
+    def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
+        """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
+        if not halfway:
+            super().add_forces(total, u0, u1, halfway)
+            return
+        e0, e1 = (self.of_material(self.strains(u)) for u in (u0, u1))
+        self._add_at(total, self.between(u0, u1, self.mean_stress(e0, e1)), 0.5 * (u0 + u1))
+
+    def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
+        """Adds F_d of eq. (4.16)."""
+        if dt != 0.0 and self.beta != 0.0:
+            e0, e1 = (self.of_material(self.strains(u)) for u in (u0, u1))
+            self._add_at(total, self.between(u0, u1, self.viscous_stress(e0, e1, dt)), 0.5 * (u0 + u1))
+        if dt != 0.0 and self.alpha != 0.0:
+            self.add_mass(total, (self.alpha / dt) * (u1 - u0))
 
 
 class Patterns:

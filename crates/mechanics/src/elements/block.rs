@@ -1,17 +1,15 @@
-//! Elements of one shape and material side by side: internal force, tangent, and the results of
-//! [`crate::elements::ElementResult`]. Section 2 of docs/theory.md; docs/numerics.md, Sweeps over elements.
+//! Elements of one shape side by side, and their kinematics: displacement gradients and strains at the integration points at
+//! one configuration or between two (energy-momentum form), and the sums over the points that force and tangent are. Section
+//! 2 of docs/theory.md; docs/numerics.md, Sweeps over elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
 
 use std::array::from_fn;
 
-use nalgebra::{SMatrix, SVector};
-
-use super::displacement::Displacement;
-use super::formulation::{ElementResult, Jacobian, Reference, ShapeFunctions, smaller};
+use super::shapes::{IntegratedShape, Jacobian};
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Across, Lanes, Number, StrainChange, Strains, StressAtPoints};
+use crate::materials::{Lanes, StrainChange, Strains};
 
 /// A symmetric tensor of several elements.
 pub type SymmetricLanes = crate::materials::Symmetric<Lanes>;
@@ -75,13 +73,19 @@ pub struct Deformation {
     pub strains: Strains<Lanes>,
 }
 
-/// A block with the places of its points in a body of revolution.
-#[derive(Clone, Copy)]
-pub struct PlacedBlock<'a, const N: usize, const P: usize> {
+/// A block in a motion, with what its formulation has in the reference configuration.
+pub struct MovedBlock<'a, const N: usize, const P: usize, R> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
-    /// 1/R at the points; without a body of revolution none is read (1/length).
+    /// 1/R at the points: zero in plane strain, the ring of an infinite radius; in elements of the plane none is read
+    /// (1/length).
     pub over_radius: &'a [Lanes; P],
+    /// What the formulation has beside the points.
+    pub reference: &'a R,
+    /// Displacements of the nodes.
+    pub motion: BlockMotion<N>,
+    /// The elements' own variables that the last accepted increment has committed; none at the start.
+    pub own_variables: [&'a [f64]; LANES],
 }
 
 impl<const N: usize> BlockMotion<N> {
@@ -130,22 +134,6 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
         }
     }
 
-    /// sum_p B_L^T S of stresses with their weights in displacement gradients H (force).
-    #[inline(always)]
-    pub fn nodal_forces<S: IntegratedShape<N, P>>(
-        &self,
-        h_and_s: impl Fn(usize) -> (TensorLanes, SymmetricLanes),
-    ) -> NodalLanes<N> {
-        let mut q = [[[Lanes::ZERO; 2]; P]; 2];
-        for p in 0..P {
-            // B_L^T S of node a is F S dh_a/dX = (F S J^-T) dh_a/dr, J = dX/dr
-            let (h, s) = h_and_s(p);
-            let piola = times_symmetric(&deformation_gradient(&h), &s);
-            [q[0][p], q[1][p]] = times_transposed(&piola, &self.inverse[p]);
-        }
-        [S::nodal_sums(&q[0]), S::nodal_sums(&q[1])]
-    }
-
     /// H = du/dr J^-1 at a point, eq. (2.1).
     #[inline(always)]
     pub fn gradient(&self, p: usize, u: &FieldAtPoints<P>) -> TensorLanes {
@@ -155,10 +143,16 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
     }
 }
 
-impl<const N: usize, const P: usize> PlacedBlock<'_, N, P> {
+impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
+    /// Natural derivatives at the points.
+    #[inline(always)]
+    pub fn derivatives<S: IntegratedShape<N, P>, const HOOP: bool>(&self) -> Derivatives<P> {
+        self.motion.derivatives::<S, P, HOOP>()
+    }
+
     /// Displacement gradient at a point.
     #[inline(always)]
-    fn gradient<const HOOP: bool>(&self, p: usize, u: &FieldAtPoints<P>) -> Gradient {
+    pub fn gradient<const HOOP: bool>(&self, p: usize, u: &FieldAtPoints<P>) -> Gradient {
         Gradient {
             h: self.block.gradient(p, u),
             around: match HOOP {
@@ -177,36 +171,138 @@ impl<const N: usize, const P: usize> PlacedBlock<'_, N, P> {
         positive: &mut Positive,
     ) -> Deformation {
         match u {
-            Derivatives::At(u) => {
-                let gradient = self.gradient::<HOOP>(p, u);
-                *positive = gradient.is_positive::<HOOP>(*positive);
-                Deformation {
-                    gradient,
-                    strains: Strains::At(gradient.strain::<HOOP>()),
-                }
-            }
+            Derivatives::At(u) => Deformation::at::<HOOP>(self.gradient::<HOOP>(p, u), positive),
             Derivatives::Between(mid, half) => {
                 let mid = self.gradient::<HOOP>(p, mid);
-                let half = self.gradient::<HOOP>(p, half);
-                let end = Gradient {
-                    h: plus(&mid.h, &half.h),
-                    around: mid.around + half.around,
-                };
-                *positive = mid.is_positive::<HOOP>(*positive);
-                *positive = end.is_positive::<HOOP>(*positive);
-                Deformation {
-                    gradient: mid,
-                    strains: Strains::Between(mid.strain_change::<HOOP>(&half)),
+                Deformation::between::<HOOP>(mid, &self.gradient::<HOOP>(p, half), positive)
+            }
+        }
+    }
+
+    /// h_a/R of the nodes at a point.
+    #[inline(always)]
+    pub fn hoop_row<S: IntegratedShape<N, P>>(&self, p: usize) -> [Lanes; N] {
+        from_fn(|a| self.over_radius[p] * S::FUNCTIONS.values[p][a])
+    }
+
+    /// sum_p B_L^T S of stresses with their weights in displacement gradients (force), with (1 + h) S_33 h_a/R in the
+    /// direction of the radius in a body of revolution, eq. (2.33).
+    #[inline(always)]
+    pub fn nodal_forces<S: IntegratedShape<N, P>, const HOOP: bool>(
+        &self,
+        gradient_and_stress: impl Fn(usize) -> (Gradient, SymmetricLanes),
+    ) -> NodalLanes<N> {
+        let mut q = [[[Lanes::ZERO; 2]; P]; 2];
+        let mut hoop = [Lanes::ZERO; P];
+        for p in 0..P {
+            // B_L^T S of node a is F S dh_a/dX = (F S J^-T) dh_a/dr, J = dX/dr
+            let (gradient, s) = gradient_and_stress(p);
+            let piola = times_symmetric(&deformation_gradient(&gradient.h), &s);
+            [q[0][p], q[1][p]] = times_transposed(&piola, &self.block.inverse[p]);
+            if HOOP {
+                hoop[p] = gradient.stretch_around() * s.z * self.over_radius[p];
+            }
+        }
+        let mut force = [S::nodal_sums(&q[0]), S::nodal_sums(&q[1])];
+        if HOOP {
+            for p in 0..P {
+                for a in 0..N {
+                    force[0][a] += hoop[p] * S::FUNCTIONS.values[p][a];
                 }
             }
+        }
+        force
+    }
+
+    /// Smallest det F at the points, halfway and at the end; NaN where one is.
+    pub fn least_determinant<S: IntegratedShape<N, P>, const HOOP: bool>(&self) -> [f64; LANES] {
+        let u = self.derivatives::<S, HOOP>();
+        let mut least = [f64::INFINITY; LANES];
+        let mut take_in = |gradient: &Gradient| {
+            let (section, stretch) = (determinant(&gradient.h), gradient.stretch_around());
+            for (lane, least) in least.iter_mut().enumerate() {
+                let of_section = section.0[lane];
+                *least = smaller(*least, of_section);
+                if HOOP {
+                    *least = smaller(*least, of_section * stretch.0[lane]);
+                }
+            }
+        };
+        for p in 0..P {
+            match &u {
+                Derivatives::At(u) => take_in(&self.gradient::<HOOP>(p, u)),
+                Derivatives::Between(mid, half) => {
+                    let mid = self.gradient::<HOOP>(p, mid);
+                    take_in(&mid);
+                    take_in(&mid.plus(&self.gradient::<HOOP>(p, half)));
+                }
+            }
+        }
+        least
+    }
+}
+
+/// Sum over N nodes, points or components.
+#[inline(always)]
+pub fn sum<const N: usize>(of: impl Fn(usize) -> Lanes) -> Lanes {
+    let mut sum = Lanes::ZERO;
+    for k in 0..N {
+        sum += of(k);
+    }
+    sum
+}
+
+/// a.b
+#[inline(always)]
+pub fn dot<const M: usize>(a: &[Lanes; M], b: &[Lanes; M]) -> Lanes {
+    sum::<M>(|k| a[k] * b[k])
+}
+
+/// The smaller of two values; NaN when one is.
+pub fn smaller(a: f64, b: f64) -> f64 {
+    if a < b || a.is_nan() { a } else { b }
+}
+
+impl Deformation {
+    /// That of one configuration.
+    #[inline(always)]
+    pub fn at<const HOOP: bool>(gradient: Gradient, positive: &mut Positive) -> Self {
+        *positive = gradient.is_positive::<HOOP>(*positive);
+        Deformation {
+            gradient,
+            strains: Strains::At(gradient.strain::<HOOP>()),
+        }
+    }
+
+    /// That between two, from H of the mid configuration and half its change.
+    #[inline(always)]
+    pub fn between<const HOOP: bool>(
+        mid: Gradient,
+        half: &Gradient,
+        positive: &mut Positive,
+    ) -> Self {
+        *positive = mid.is_positive::<HOOP>(*positive);
+        *positive = mid.plus(half).is_positive::<HOOP>(*positive);
+        Deformation {
+            gradient: mid,
+            strains: Strains::Between(mid.strain_change::<HOOP>(half)),
         }
     }
 }
 
 impl Gradient {
+    /// Sum with another.
+    #[inline(always)]
+    pub fn plus(&self, other: &Gradient) -> Gradient {
+        Gradient {
+            h: plus(&self.h, &other.h),
+            around: self.around + other.around,
+        }
+    }
+
     /// Stretch 1 + h around the axis.
     #[inline(always)]
-    fn stretch_around(&self) -> Lanes {
+    pub fn stretch_around(&self) -> Lanes {
         self.around + 1.0
     }
 
@@ -225,7 +321,7 @@ impl Gradient {
 
     /// The strains of F - G and of F + G, G being half of the way.
     #[inline(always)]
-    fn strain_change<const HOOP: bool>(&self, way: &Gradient) -> StrainChange<Lanes> {
+    pub fn strain_change<const HOOP: bool>(&self, way: &Gradient) -> StrainChange<Lanes> {
         let (mean, half) = strain_change(&self.h, &way.h);
         if !HOOP {
             return StrainChange::about(mean, half);
@@ -245,7 +341,7 @@ impl Gradient {
 
     /// Takes in det F, and the stretch around the axis.
     #[inline(always)]
-    fn is_positive<const HOOP: bool>(&self, others: Positive) -> Positive {
+    pub fn is_positive<const HOOP: bool>(&self, others: Positive) -> Positive {
         let with_section = others.and(determinant(&self.h));
         match HOOP {
             true => with_section.and(self.stretch_around()),
@@ -330,196 +426,8 @@ pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
     [row(a[0]), row(a[1])]
 }
 
-/// Shape functions of N nodes at P integration points, and the two sums over the nodes that a sweep
-/// needs, each with as few operations as the shape allows.
-pub trait IntegratedShape<const N: usize, const P: usize> {
-    /// The shape functions.
-    const FUNCTIONS: ShapeFunctions<N, P>;
-
-    /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at every point.
-    #[inline(always)]
-    fn derivatives(v: &[Lanes; N]) -> [[Lanes; 2]; P] {
-        let mut derivatives = [[Lanes::ZERO; 2]; P];
-        for p in 0..P {
-            derivatives[p] = derivative(v, &Self::FUNCTIONS.natural[p]);
-        }
-        derivatives
-    }
-
-    /// A field at every point.
-    #[inline(always)]
-    fn field(v: &[Lanes; N]) -> [Lanes; P] {
-        let mut values = [Lanes::ZERO; P];
-        for p in 0..P {
-            for a in 0..N {
-                values[p] += v[a] * Self::FUNCTIONS.values[p][a];
-            }
-        }
-        values
-    }
-
-    /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivatives`].
-    #[inline(always)]
-    fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N] {
-        let mut sums = [Lanes::ZERO; N];
-        for p in 0..P {
-            for a in 0..N {
-                let [r, s] = Self::FUNCTIONS.natural[p][a];
-                sums[a] += q[p][0] * r + q[p][1] * s;
-            }
-        }
-        sums
-    }
-
-    /// Consistent mass per density of an element of thickness `t` between nodes at `x`, m_ab = int h_a h_b dOmega
-    /// (length^3).
-    fn mass(x: &SMatrix<f64, 2, N>, t: f64) -> SMatrix<f64, N, N>;
-
-    /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
-    fn nodal_volumes(x: &SMatrix<f64, 2, N>, t: f64) -> SVector<f64, N>;
-
-    /// The map to the element of thickness `t` between nodes at `x`, column a for node a (length): all that differs
-    /// between two elements of a shape.
-    fn map(x: &SMatrix<f64, 2, N>, t: f64) -> [Jacobian; P] {
-        Self::FUNCTIONS.jacobians(x, t)
-    }
-
-    /// The element with a map.
-    fn reference(map: &[Jacobian; P]) -> Reference<N, P> {
-        Reference {
-            points: Self::FUNCTIONS.points(map),
-        }
-    }
-}
-
-/// sum_a v_a dh_a/dr_i.
-#[inline(always)]
-fn derivative<const N: usize>(v: &[Lanes; N], natural: &[[f64; 2]; N]) -> [Lanes; 2] {
-    let mut sum = [Lanes::ZERO; 2];
-    for a in 0..N {
-        sum[0] += v[a] * natural[a][0];
-        sum[1] += v[a] * natural[a][1];
-    }
-    sum
-}
-
 /// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.
 pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
-
-/// How force, tangent and results of elements side by side follow from their motion, in the plane or, with `HOOP`, in a body
-/// of revolution.
-pub trait BlockFormulation<const HOOP: bool> {
-    /// Internal force, eq. (2.5) (force), and whether det F is positive at all points.
-    fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        placed: &PlacedBlock<N, P>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: &BlockMotion<N>,
-    ) -> (NodalLanes<N>, Positive);
-
-    /// Adds the symmetric tangent (force/length): entries [a][b] with a <= b.
-    fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        placed: &PlacedBlock<N, P>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: &BlockMotion<N>,
-        k: &mut MatrixLanes<N>,
-    );
-
-    /// Results of the elements at displacements.
-    fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        placed: &PlacedBlock<N, P>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: &BlockMotion<N>,
-    ) -> [ElementResult; LANES];
-}
-
-impl<const HOOP: bool> BlockFormulation<HOOP> for Displacement {
-    /// F = int B_L^T S dOmega, with (1 + h) S_33 h_a/R in the direction of the radius in a body of revolution, eq. (2.33).
-    #[inline(always)]
-    fn force<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        placed: &PlacedBlock<N, P>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: &BlockMotion<N>,
-    ) -> (NodalLanes<N>, Positive) {
-        let mut positive = Positive::default();
-        let mut points = [([[Lanes::ZERO; 2]; 2], SymmetricLanes::default()); P];
-        let mut hoop = [Lanes::ZERO; P];
-        let u = motion.derivatives::<S, P, HOOP>();
-        for p in 0..P {
-            let deformation = placed.deformation::<HOOP>(p, &u, &mut positive);
-            let s = law
-                .stress_at(p, &deformation.strains)
-                .times(placed.block.volume[p]);
-            let gradient = &deformation.gradient;
-            points[p] = (gradient.h, s);
-            if HOOP {
-                hoop[p] = gradient.stretch_around() * s.z * placed.over_radius[p];
-            }
-        }
-        let mut force = placed.block.nodal_forces::<S>(|p| points[p]);
-        if HOOP {
-            for p in 0..P {
-                for a in 0..N {
-                    force[0][a] += hoop[p] * S::FUNCTIONS.values[p][a];
-                }
-            }
-        }
-        (force, positive)
-    }
-
-    /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6), in the energy-momentum form with B_L of the mid
-    /// configuration; in a body of revolution with the row (1 + h) h_a/R of B_L and with S_33 h_a h_b/R², eq. (2.34).
-    ///
-    /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.
-    #[inline(always)]
-    fn add_tangent<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        placed: &PlacedBlock<N, P>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: &BlockMotion<N>,
-        k: &mut MatrixLanes<N>,
-    ) {
-        let u = motion.derivatives::<S, P, HOOP>();
-        for p in 0..P {
-            let deformation = placed.deformation::<HOOP>(p, &u, &mut Positive::default());
-            let volume = placed.block.volume[p];
-            let s = law.stress_at(p, &deformation.strains).times(volume);
-            let c = law.tangent_at(p, &deformation.strains);
-            let c = TangentLanes::of(|i, j| c.0[i][j] * volume);
-            let gradient = &deformation.gradient;
-            let f = deformation_gradient(&gradient.h);
-            let gradients = placed.block.gradients::<S>(p);
-            add_products(k, &gradients, &elasticity(&f, &s, &c));
-            if HOOP {
-                let rows = from_fn(|a| placed.over_radius[p] * S::FUNCTIONS.values[p][a]);
-                let stretch = gradient.stretch_around();
-                add_hoop(k, (&gradients, &rows), (&f, stretch), (s.z, &c.0[2]));
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn evaluate<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-        placed: &PlacedBlock<N, P>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: &BlockMotion<N>,
-    ) -> [ElementResult; LANES] {
-        let u = motion.derivatives::<S, P, HOOP>();
-        let mut sums = Sums::new();
-        for p in 0..P {
-            let deformation = placed.deformation::<HOOP>(p, &u, &mut Positive::default());
-            let gradient = deformation.gradient;
-            let strain = gradient.strain::<HOOP>();
-            let point = ResultPoint {
-                h: gradient.h,
-                strain,
-                determinant: determinant(&gradient.h),
-                s: law.stress_at(p, &Strains::At(strain)),
-                around: strain.z,
-            };
-            sums.add(p, law, &point, placed.block.volume[p]);
-        }
-        sums.results()
-    }
-}
 
 /// Adds what the strain around the axis brings to the tangent of a point, for a <= b: with its row b_a = (1 + h) h_a/R of B_L,
 /// which acts on displacements along the radius, and C_33 of each component of the strain in `c`,
@@ -528,7 +436,7 @@ impl<const HOOP: bool> BlockFormulation<HOOP> for Displacement {
 /// b_a C_33,. B_b + its transpose + b_a b_b C_3333 + S_33 h_a h_b/R²
 /// ```
 #[inline(always)]
-fn add_hoop<const N: usize>(
+pub fn add_hoop<const N: usize>(
     k: &mut MatrixLanes<N>,
     (gradients, rows): (&[[Lanes; 2]; N], &[Lanes; N]),
     (f, stretch): (&TensorLanes, Lanes),
@@ -620,123 +528,6 @@ pub fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N],
                     k[first][second][i][j] += g[first][0] * stress[0] + g[first][1] * stress[1];
                 }
             }
-        }
-    }
-}
-
-/// What the results of an integration point follow from.
-pub struct ResultPoint {
-    /// Displacement gradient H.
-    pub h: TensorLanes,
-    /// Strain that the material has.
-    pub strain: SymmetricLanes,
-    /// Determinant of the deformation gradient in the plane that the material has.
-    pub determinant: Lanes,
-    /// Stress that does work on the strain of the displacements (force/length^2).
-    pub s: SymmetricLanes,
-    /// Strain of the displacements around the axis of a body of revolution.
-    pub around: Lanes,
-}
-
-/// Sums over the integration points, each times its weight.
-#[derive(Clone, Copy)]
-pub struct Sums {
-    energy: Lanes,
-    /// Components 11, 22 and 12.
-    stress: [Lanes; 3],
-    across: Lanes,
-    /// Components 11, 22 and 12.
-    strain: [Lanes; 3],
-    volume: Lanes,
-    around: Lanes,
-    /// Largest absolute principal strain so far.
-    principal: [f64; LANES],
-}
-
-impl Sums {
-    /// No points.
-    #[inline(always)]
-    pub fn new() -> Self {
-        Sums {
-            energy: Lanes::ZERO,
-            stress: [Lanes::ZERO; 3],
-            across: Lanes::ZERO,
-            strain: [Lanes::ZERO; 3],
-            volume: Lanes::ZERO,
-            around: Lanes::ZERO,
-            principal: [0.0; LANES],
-        }
-    }
-
-    /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz/J.
-    #[inline(always)]
-    pub fn add<const HOOP: bool>(
-        &mut self,
-        p: usize,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        point: &ResultPoint,
-        weight: Lanes,
-    ) {
-        let (h, e) = (&point.h, green_lagrange(&point.h));
-        let f = deformation_gradient(h);
-        let Across { stretch, stress } = law.across_at(p, &point.strain);
-        let sigma = times_transposed(&times_symmetric(&f, &point.s), &f);
-        let over_j = weight / (determinant(h) * stretch);
-        self.energy += law.energy_at(p, &point.strain) * weight;
-        self.stress[0] += sigma[0][0] * over_j;
-        self.stress[1] += sigma[1][1] * over_j;
-        self.stress[2] += sigma[0][1] * over_j;
-        self.across += stress * stretch / point.determinant * weight;
-        for (sum, e) in self.strain.iter_mut().zip([e.x, e.y, e.w]) {
-            *sum += e * weight;
-        }
-        self.around += point.around * weight;
-        self.volume += weight;
-        self.take_principal(&e, point.around);
-    }
-
-    /// Takes in the largest absolute principal strain of a point.
-    ///
-    /// ```text
-    /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
-    /// ```
-    #[inline(always)]
-    fn take_principal(&mut self, e: &SymmetricLanes, around: Lanes) {
-        let (mean, half) = ((e.x + e.y) * 0.5, (e.x - e.y) * 0.5);
-        let shear = (half * half + e.w * e.w).sqrt();
-        for (lane, most) in self.principal.iter_mut().enumerate() {
-            let strain = mean.0[lane].abs() + shear.0[lane];
-            *most = -smaller(-*most, -strain);
-            *most = -smaller(-*most, -around.0[lane].abs());
-        }
-    }
-
-    /// The means of the elements.
-    #[inline(always)]
-    pub fn results(&self) -> [ElementResult; LANES] {
-        from_fn(|lane| self.result(lane))
-    }
-
-    /// The means of one element.
-    #[inline(always)]
-    fn result(&self, lane: usize) -> ElementResult {
-        let volume = self.volume.0[lane];
-        let means = |sums: &[Lanes; 3]| {
-            [
-                sums[0].0[lane] / volume,
-                sums[1].0[lane] / volume,
-                sums[2].0[lane] / volume,
-            ]
-        };
-        ElementResult {
-            energy: self.energy.0[lane],
-            stress: means(&self.stress),
-            across: self.across.0[lane] / volume,
-            strain: means(&self.strain),
-            principal_strain: self.principal[lane],
-            plastic_strain: 0.0,
-            strain_around: self.around.0[lane] / volume,
-            hourglass_energy: 0.0,
         }
     }
 }

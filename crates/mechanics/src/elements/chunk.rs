@@ -1,4 +1,4 @@
-//! Chunks: elements of one shape and material in blocks, with the nodes that they share. What a chunk
+//! Chunks: elements of one type and material in blocks, with the nodes that they share. What a chunk
 //! reads and adds to fits the first caches, and chunks are swept on any number of threads.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
@@ -6,20 +6,21 @@
 
 use std::array::from_fn;
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use nalgebra::SMatrix;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
-use super::block::{
-    BlockFormulation, BlockMotion, ElementBlock, IntegratedShape, MatrixLanes, NodalLanes,
-    PlacedBlock,
-};
-use super::formulation::ElementResult;
-use super::solid::{Motion, TangentPart, take_positive_part};
+use super::block::{BlockMotion, ElementBlock, MatrixLanes, MovedBlock, NodalLanes};
+use super::formulation::{Formulation, PlacedBlock};
+use super::motion::{Motion, TangentPart, take_positive_part};
+use super::results::{ElementResult, PointResult, Sums};
+use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, PlaneLaw, StressAtPoints, Viscosity, in_lanes};
+use crate::materials::{Lanes, Number, PlaneLaw, StressAtPoints, Viscosity, in_lanes};
 use crate::model::Thickness;
 
 /// Elements of a chunk at most.
@@ -39,8 +40,14 @@ pub struct TangentSweep<'a> {
     pub wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
-/// Elements that are swept together.
+/// Elements that are swept together. An element is named by its place among them where it is not by its index.
 pub trait Chunk: Send + Sync {
+    /// Elements (indices).
+    fn elements(&self) -> &[usize];
+
+    /// Where the internal variables of the elements are among those of all.
+    fn variables(&self) -> Range<usize>;
+
     /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
     /// sums. False where an element is turned inside out.
     fn sum_forces(&self, motion: Motion) -> bool;
@@ -51,14 +58,31 @@ pub trait Chunk: Send + Sync {
     /// Adds the forces of the viscosity in a motion, over the length of the increment, to the sums, eq. (4.16).
     fn sum_viscous(&self, motion: Motion);
 
+    /// Work of the viscosity in a motion, times the length of the increment, eq. (4.18) (force length time).
+    fn viscous_work(&self, motion: Motion) -> f64;
+
     /// Adds the sums to a vector over all dofs, and makes them zero.
     fn add_sums(&self, total: &mut [f64]);
 
     /// Makes the sums zero.
     fn clear_sums(&self);
 
-    /// Elements (indices) with strain energy, stress and strain at displacements `u`.
-    fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)>;
+    /// Smallest determinant of the deformation gradient of every element, halfway and at the end of a motion; NaN where
+    /// an element has no force.
+    fn determinants(&self, motion: Motion) -> Vec<f64>;
+
+    /// Strain energy, stress and strain of every element at displacements `u`.
+    fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult>;
+
+    /// Results of the points of an element at displacements `u`.
+    fn at_points(&self, place: usize, u: &[f64], variables: &[f64]) -> SmallVec<[PointResult; 9]>;
+
+    /// Writes the internal variables at the end of a motion into those of all elements, and gives the energy dissipated on
+    /// the way to them (force length).
+    fn update(&self, motion: Motion, updated: &mut [f64]) -> f64;
+
+    /// Tangent of an element in a motion, D x D column by column.
+    fn tangent(&self, place: usize, motion: Motion) -> Vec<f64>;
 
     /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
     /// D column by column. The tangents are made in `space`: those of the whole chunk in parallel where there are
@@ -71,149 +95,220 @@ pub trait Chunk: Send + Sync {
     );
 }
 
+/// Internal variables of one element: those of its points, one after the other, and its own behind them.
+#[derive(Clone, Copy)]
+struct VariableLayout {
+    of_points: usize,
+    own: usize,
+}
+
+impl VariableLayout {
+    fn count(&self) -> usize {
+        self.of_points + self.own
+    }
+}
+
 /// Elements of one shape, formulation and material.
-pub struct ShapeChunk<const N: usize, const P: usize, const HOOP: bool, S, F> {
+pub struct ShapeChunk<const N: usize, const P: usize, const HOOP: bool, S, F>
+where
+    F: Formulation<N, P, HOOP>,
+{
     /// Elements (indices), lane after lane and block after block.
     elements: Vec<usize>,
-    /// Node indices, increasing; blocks have places in this list.
+    /// Node indices, increasing; blocks have places in this list. Behind them are those of the places of the last block that
+    /// no element fills, which repeat the last element.
     nodes: Vec<usize>,
-    /// Blocks; places of the last that no element fills have the last element with no volume.
+    /// Number of the former.
+    node_count: usize,
     blocks: Vec<ElementBlock<N, P>>,
     /// 1/R at the points of every block; zeros for all blocks of the plane (1/length).
     over_radius: Vec<[Lanes; P]>,
+    /// What the formulation has beside the points of every block.
+    references: Vec<F::Reference>,
     law: PlaneLaw,
     viscosity: Option<Viscosity>,
+    layout: VariableLayout,
+    /// Where the internal variables of the first element begin.
+    first_variable: usize,
     /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
     /// them.
     sums: Mutex<Vec<[f64; 2]>>,
-    kind: PhantomData<(S, F)>,
+    kind: PhantomData<S>,
+}
+
+/// A chunk in a motion, of which a law gives the stresses.
+#[derive(Clone, Copy)]
+struct Sweep<'a, C, L> {
+    chunk: &'a C,
+    /// Gives the law of a block.
+    law: L,
+    motion: Motion<'a>,
 }
 
 impl<const N: usize, const P: usize, const HOOP: bool, S, F> ShapeChunk<N, P, HOOP, S, F>
 where
-    S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation<HOOP> + Sync,
+    S: IntegratedShape<N, P> + Send + Sync,
+    F: Formulation<N, P, HOOP>,
 {
     /// A chunk of elements (indices) with their nodes, between nodes at the coordinates `x`, of the
-    /// thickness given.
+    /// thickness given. Their internal variables begin at a place.
     pub fn new(
         elements: Vec<usize>,
         of: &[[usize; N]],
         x: &[[f64; 2]],
         thickness: Thickness,
         (law, viscosity): (PlaneLaw, Option<Viscosity>),
+        first_variable: usize,
     ) -> Self {
         let mut nodes: Vec<usize> = of.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
+        let node_count = nodes.len();
+        let last = of.len() - 1;
+        nodes.extend(of[last]);
         let block = |first: usize| {
-            let at = |lane: usize| (first + lane).min(of.len() - 1);
-            let places = from_fn(|lane| of[at(lane)].map(|node| place(&nodes, node)));
+            let at = |lane: usize| (first + lane).min(last);
+            let places = from_fn(|lane| match first + lane <= last {
+                true => of[at(lane)].map(|node| place(&nodes[..node_count], node)),
+                false => from_fn(|a| (node_count + a) as u16),
+            });
             let maps = from_fn(|lane| {
                 let x = SMatrix::from_fn(|i, a| x[of[at(lane)][a]][i]);
-                let is_there = f64::from(u8::from(first + lane < of.len()));
-                match thickness {
-                    Thickness::Of(t) => S::map(&x, t * is_there),
-                    Thickness::Around => {
-                        let radii = radii::<S, N, P>(&x);
-                        let mut map = S::map(&x, is_there);
-                        for (at, radius) in map.iter_mut().zip(radii) {
-                            at.volume *= thickness.at(radius);
-                        }
-                        map
-                    }
-                }
+                S::FUNCTIONS.jacobians(&x, thickness)
             });
             ElementBlock::new(places, &maps)
         };
-        let over_radius = |first: usize| {
-            let radii: [[f64; P]; LANES] = from_fn(|lane| {
-                let element = &of[(first + lane).min(of.len() - 1)];
-                radii::<S, N, P>(&SMatrix::from_fn(|i, a| x[element[a]][i]))
+        let firsts = || (0..of.len()).step_by(LANES);
+        let blocks: Vec<ElementBlock<N, P>> = firsts().map(block).collect();
+        let places = |first: usize| -> [[Lanes; 2]; P] {
+            let nodal: NodalLanes<N> = from_fn(|i| {
+                from_fn(|a| Lanes(from_fn(|lane| x[of[(first + lane).min(last)][a]][i])))
             });
-            from_fn(|p| Lanes(from_fn(|lane| 1.0 / radii[lane][p])))
+            let [x, y] = [S::field(&nodal[0]), S::field(&nodal[1])];
+            from_fn(|p| [x[p], y[p]])
+        };
+        let over_radius = |places: &[[Lanes; 2]; P]| match thickness {
+            Thickness::Around => places.map(|[r, _]| Lanes::all(1.0) / r),
+            Thickness::Of(_) => [Lanes::ZERO; P],
+        };
+        let tangent = law.initial_tangent();
+        let viscous_tangent = viscosity.as_ref().map(Viscosity::initial_tangent);
+        let reference = |(first, block): (usize, &ElementBlock<N, P>)| {
+            let places = places(first);
+            F::reference::<S>(&PlacedBlock {
+                block,
+                over_radius: &over_radius(&places),
+                places: &places,
+                tangent: &tangent,
+                viscous_tangent: viscous_tangent.as_ref(),
+            })
         };
         ShapeChunk {
+            references: firsts().zip(&blocks).map(reference).collect(),
             over_radius: match HOOP {
-                true => (0..of.len()).step_by(LANES).map(over_radius).collect(),
+                true => firsts().map(|first| over_radius(&places(first))).collect(),
                 false => vec![[Lanes::ZERO; P]],
             },
-            blocks: (0..of.len()).step_by(LANES).map(block).collect(),
+            blocks,
             sums: Mutex::new(vec![[0.0; 2]; nodes.len()]),
             elements,
             nodes,
+            node_count,
+            layout: VariableLayout {
+                of_points: F::POINTS * law.variables(),
+                own: F::own_variables(law.is_metal()),
+            },
+            first_variable,
             law,
             viscosity,
             kind: PhantomData,
         }
     }
 
-    /// A block with the places of its points.
+    /// Variables of the elements of a block among those of all; none where there are none. Places that no element fills have
+    /// those of the last.
     #[inline(always)]
-    fn placed(&self, number: usize) -> PlacedBlock<'_, N, P> {
-        PlacedBlock {
+    fn variables_of<'a>(&self, all: &'a [f64], block: usize) -> [&'a [f64]; LANES] {
+        let count = self.layout.count();
+        from_fn(|lane| {
+            let element = (LANES * block + lane).min(self.elements.len() - 1);
+            let first = self.first_variable + element * count;
+            all.get(first..first + count).unwrap_or_default()
+        })
+    }
+
+    /// Those of its points.
+    #[inline(always)]
+    fn of_points<'a>(&self, all: &'a [f64], block: usize) -> [&'a [f64]; LANES] {
+        let all = self.variables_of(all, block);
+        all.map(|all| all.get(..self.layout.of_points).unwrap_or_default())
+    }
+
+    /// A block in a motion.
+    #[inline(always)]
+    fn moved<'a>(
+        &'a self,
+        number: usize,
+        motion: Motion<'a>,
+    ) -> MovedBlock<'a, N, P, F::Reference> {
+        match motion.start {
+            None => self.at(number, motion),
+            Some(start) => self.between(number, start, motion),
+        }
+    }
+
+    /// At the end of a motion.
+    #[inline(always)]
+    fn at<'a>(&'a self, number: usize, motion: Motion<'a>) -> MovedBlock<'a, N, P, F::Reference> {
+        let end = self.gather(&self.blocks[number], motion.end);
+        self.with(number, BlockMotion::At(end), motion.committed)
+    }
+
+    /// Between displacements of the start and the end of a motion.
+    #[inline(always)]
+    fn between<'a>(
+        &'a self,
+        number: usize,
+        start: &[f64],
+        motion: Motion<'a>,
+    ) -> MovedBlock<'a, N, P, F::Reference> {
+        let block = &self.blocks[number];
+        let (start, end) = (self.gather(block, start), self.gather(block, motion.end));
+        self.with(number, BlockMotion::between(&start, &end), motion.committed)
+    }
+
+    #[inline(always)]
+    fn with<'a>(
+        &'a self,
+        number: usize,
+        motion: BlockMotion<N>,
+        committed: &'a [f64],
+    ) -> MovedBlock<'a, N, P, F::Reference> {
+        MovedBlock {
             block: &self.blocks[number],
             over_radius: &self.over_radius[if HOOP { number } else { 0 }],
-        }
-    }
-
-    /// Writes the tangents of the elements of a block.
-    fn write_tangents(&self, number: usize, sweep: &TangentSweep, tangents: &mut [f64]) {
-        match &self.viscosity {
-            Some(viscosity) if sweep.viscous => {
-                self.write_tangents_of(viscosity, number, sweep.motion, tangents);
-            }
-            _ => in_lanes!(&self.law, law => {
-                self.write_tangents_of(law, number, sweep.motion, tangents)
-            }),
-        }
-        if sweep.part == TangentPart::Positive {
-            for matrix in tangents.chunks_exact_mut(4 * N * N) {
-                take_positive_part(matrix, 2 * N);
-            }
-        }
-    }
-
-    fn write_tangents_of(
-        &self,
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        number: usize,
-        motion: Motion,
-        tangents: &mut [f64],
-    ) {
-        Arch::new().dispatch(Tangents {
-            chunk: self,
-            law,
-            placed: self.placed(number),
+            reference: &self.references[number],
             motion,
-            tangents,
-        });
+            own_variables: match self.layout.own {
+                0 => [&[]; LANES],
+                _ => self
+                    .variables_of(committed, number)
+                    .map(|all| all.get(self.layout.of_points..).unwrap_or_default()),
+            },
+        }
     }
 
-    /// Whether some nodes move otherwise than the others. If none does no element is strained, as in
-    /// bodies that are fixed.
-    fn is_strained(&self, motion: Motion) -> bool {
-        let differs = |u: &[f64]| {
-            let u = u.as_chunks::<2>().0;
-            let first = u[self.nodes[0]];
-            let mut others = self.nodes.iter().map(|&node| u[node]);
-            others.any(|u| u[0] - first[0] != 0.0 || u[1] - first[1] != 0.0)
-        };
-        differs(motion.end) || motion.start.is_some_and(differs)
-    }
-
-    /// Adds the forces of all blocks, each in the motion that `motion` gives.
+    /// Adds the forces of all blocks, each in the motion that `moved` gives, to the sums.
     #[inline(always)]
-    fn sweep(
-        &self,
+    fn sweep<'a, L: StressAtPoints<Lanes, HOOP>>(
+        &'a self,
         sums: &mut [[f64; 2]],
-        law: &impl StressAtPoints<Lanes, HOOP>,
-        motion: impl Fn(&ElementBlock<N, P>) -> BlockMotion<N>,
+        law: impl Fn(usize) -> L,
+        moved: impl Fn(usize) -> MovedBlock<'a, N, P, F::Reference>,
     ) -> Positive {
         let mut positive = Positive::default();
         for (number, block) in self.blocks.iter().enumerate() {
-            let placed = self.placed(number);
-            let (force, of_block) = F::force::<S, N, P>(&placed, law, &motion(block));
+            let (force, of_block) = F::force::<S>(&moved(number), &law(number));
             positive = positive.both(of_block);
             for (a, places) in block.nodes.iter().enumerate() {
                 for (lane, &place) in places.iter().enumerate() {
@@ -225,14 +320,17 @@ where
         positive
     }
 
-    #[inline(always)]
-    fn at(&self, block: &ElementBlock<N, P>, u: &[f64]) -> BlockMotion<N> {
-        BlockMotion::At(self.gather(block, u))
-    }
-
-    #[inline(always)]
-    fn between(&self, block: &ElementBlock<N, P>, u: [&[f64]; 2]) -> BlockMotion<N> {
-        BlockMotion::between(&self.gather(block, u[0]), &self.gather(block, u[1]))
+    /// Whether some nodes move otherwise than the others, or along the radius, or a material remembers more than its strain.
+    /// If not, no element is strained, as in bodies that are fixed.
+    fn is_strained(&self, motion: Motion) -> bool {
+        let differs = |u: &[f64]| {
+            let u = u.as_chunks::<2>().0;
+            let first = u[self.nodes[0]];
+            let mut others = self.nodes.iter().map(|&node| u[node]);
+            let is_wider = HOOP && first[0] != 0.0;
+            is_wider || others.any(|u| u[0] - first[0] != 0.0 || u[1] - first[1] != 0.0)
+        };
+        self.layout.of_points > 0 || differs(motion.end) || motion.start.is_some_and(differs)
     }
 
     /// Entries of a vector over all dofs at the nodes of a block.
@@ -247,24 +345,60 @@ where
         }
         values
     }
+
+    /// Elements (indices) of a block.
+    fn elements_of(&self, block: usize) -> &[usize] {
+        let first = LANES * block;
+        &self.elements[first..(first + LANES).min(self.elements.len())]
+    }
+
+    /// Writes the tangents of the elements of a block.
+    fn write_tangents(&self, number: usize, sweep: &TangentSweep, tangents: &mut [f64]) {
+        let (chunk, motion) = (self, sweep.motion);
+        match &self.viscosity {
+            Some(viscosity) if sweep.viscous => {
+                let law = |_: usize| *viscosity;
+                let sweep = Sweep { chunk, law, motion };
+                Arch::new().dispatch(Tangents(sweep, number, tangents));
+            }
+            _ => in_lanes!(&self.law, of => {
+            let law = |number| of(self.of_points(motion.committed, number));
+                let sweep = Sweep { chunk, law, motion };
+                Arch::new().dispatch(Tangents(sweep, number, tangents));
+            }),
+        }
+        if sweep.part == TangentPart::Positive {
+            for matrix in tangents.chunks_exact_mut(4 * N * N) {
+                take_positive_part(matrix, 2 * N);
+            }
+        }
+    }
 }
 
 impl<const N: usize, const P: usize, const HOOP: bool, S, F> Chunk for ShapeChunk<N, P, HOOP, S, F>
 where
     S: IntegratedShape<N, P> + Send + Sync,
-    F: BlockFormulation<HOOP> + Send + Sync,
+    F: Formulation<N, P, HOOP>,
 {
+    fn elements(&self) -> &[usize] {
+        &self.elements
+    }
+
+    fn variables(&self) -> Range<usize> {
+        let count = self.elements.len() * self.layout.count();
+        self.first_variable..self.first_variable + count
+    }
+
     fn sum_forces(&self, motion: Motion) -> bool {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.is_strained(motion) {
             return true;
         }
-        let positive = in_lanes!(&self.law, law => Arch::new().dispatch(ForceSweep {
-            chunk: self,
-            law,
-            motion,
-            sums: &mut sums,
-        }));
+        let chunk = self;
+        let positive = in_lanes!(&self.law, of => {
+            let law = |number| of(self.of_points(motion.committed, number));
+            Arch::new().dispatch(Forces(Sweep { chunk, law, motion }, &mut sums))
+        });
         positive.everywhere()
     }
 
@@ -274,24 +408,36 @@ where
 
     fn sum_viscous(&self, motion: Motion) {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(law) = self.viscosity.as_ref().filter(|_| self.is_strained(motion)) {
-            Arch::new().dispatch(ForceSweep {
-                chunk: self,
-                law,
-                motion,
-                sums: &mut sums,
-            });
+        if let Some(viscosity) = self.viscosity.as_ref().filter(|_| self.is_strained(motion)) {
+            let (chunk, law) = (self, |_: usize| *viscosity);
+            Arch::new().dispatch(Forces(Sweep { chunk, law, motion }, &mut sums));
         }
+    }
+
+    fn viscous_work(&self, motion: Motion) -> f64 {
+        let Some(viscosity) = &self.viscosity else {
+            return 0.0;
+        };
+        let mut work = 0.0;
+        for number in 0..self.blocks.len() {
+            let of_block = F::work::<S>(&self.moved(number, motion), viscosity);
+            work += of_block.0[..self.elements_of(number).len()]
+                .iter()
+                .sum::<f64>();
+        }
+        work
     }
 
     fn add_sums(&self, total: &mut [f64]) {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
+        let (sums, unused) = sums.split_at_mut(self.node_count);
         let total = total.as_chunks_mut::<2>().0;
-        for (&node, sum) in self.nodes.iter().zip(sums.iter_mut()) {
+        for (&node, sum) in self.nodes.iter().zip(sums) {
             let [x, y] = std::mem::take(sum);
             total[node][0] += x;
             total[node][1] += y;
         }
+        unused.fill([0.0; 2]);
     }
 
     fn clear_sums(&self) {
@@ -299,8 +445,84 @@ where
         sums.fill([0.0; 2]);
     }
 
-    fn evaluate(&self, u: &[f64]) -> Vec<(usize, ElementResult)> {
-        in_lanes!(&self.law, law => Arch::new().dispatch(Evaluation { chunk: self, law, u }))
+    fn determinants(&self, motion: Motion) -> Vec<f64> {
+        let mut all = Vec::with_capacity(self.elements.len());
+        for number in 0..self.blocks.len() {
+            let at = self.moved(number, motion);
+            let least = at.least_determinant::<S, HOOP>();
+            let z0 = self.of_points(motion.committed, number);
+            let positive = in_lanes!(&self.law, of => F::force::<S>(&at, &of(z0)).1);
+            for lane in 0..self.elements_of(number).len() {
+                all.push(match positive.at(lane) {
+                    false if least[lane] > 0.0 => f64::NAN,
+                    _ => least[lane],
+                });
+            }
+        }
+        all
+    }
+
+    fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
+        let (chunk, motion) = (self, Motion::at(u, variables));
+        in_lanes!(&self.law, of => {
+            let law = |number| of(self.of_points(variables, number));
+            Arch::new().dispatch(Evaluation(Sweep { chunk, law, motion }))
+        })
+    }
+
+    fn at_points(&self, place: usize, u: &[f64], variables: &[f64]) -> SmallVec<[PointResult; 9]> {
+        let (number, lane) = (place / LANES, place % LANES);
+        let at = self.moved(number, Motion::at(u, variables));
+        in_lanes!(&self.law, of => {
+            let law = |number| of(self.of_points(variables, number));
+            let law = law(number);
+            let points = F::results::<S>(&at, &law);
+            let of = |p: usize| {
+                let mut sums = Sums::new();
+                sums.add::<HOOP>(p, &law, &points[p], Lanes::all(1.0));
+                PointResult {
+                    result: sums.result(lane),
+                    gradient: points[p].gradient.h.map(|row| row.map(|h| h.0[lane])),
+                }
+            };
+            (0..F::POINTS).map(of).collect()
+        })
+    }
+
+    fn update(&self, motion: Motion, updated: &mut [f64]) -> f64 {
+        if self.layout.count() == 0 {
+            return 0.0;
+        }
+        let (count, mut dissipated) = (self.layout.count(), 0.0);
+        for number in 0..self.blocks.len() {
+            let at = self.moved(number, motion);
+            let z0 = self.of_points(motion.committed, number);
+            let mut z1 = z0.map(<[f64]>::to_vec);
+            let mut own = at.own_variables.map(<[f64]>::to_vec);
+            let of_block = in_lanes!(&self.law, of => {
+                F::update::<S, _>(&at, &of(z0), of, (&mut z1, &mut own))
+            });
+            for (lane, _) in self.elements_of(number).iter().enumerate() {
+                let first = self.first_variable + (LANES * number + lane) * count;
+                let (points, rest) = updated[first..first + count].split_at_mut(z1[lane].len());
+                points.copy_from_slice(&z1[lane]);
+                rest.copy_from_slice(&own[lane]);
+                dissipated += of_block.0[lane];
+            }
+        }
+        dissipated
+    }
+
+    fn tangent(&self, place: usize, motion: Motion) -> Vec<f64> {
+        let sweep = TangentSweep {
+            motion,
+            part: TangentPart::Whole,
+            viscous: false,
+            wanted: &|_| true,
+        };
+        let mut all = vec![0.0; LANES * 4 * N * N];
+        self.write_tangents(place / LANES, &sweep, &mut all);
+        all[place % LANES * 4 * N * N..][..4 * N * N].to_vec()
     }
 
     fn for_each_tangent(
@@ -309,14 +531,11 @@ where
         space: &mut Vec<f64>,
         add: &mut dyn FnMut(usize, &[f64]),
     ) {
-        let elements = |number: usize| {
-            let first = LANES * number;
-            &self.elements[first..(first + LANES).min(self.elements.len())]
-        };
-        let wanted = |number: &usize| elements(*number).iter().any(|&e| (sweep.wanted)(e));
+        let wanted = |number: &usize| self.elements_of(*number).iter().any(|&e| (sweep.wanted)(e));
         let of_block = LANES * 4 * N * N;
         let mut add_block = |number: usize, tangents: &[f64]| {
-            for (&element, k) in elements(number)
+            for (&element, k) in self
+                .elements_of(number)
                 .iter()
                 .zip(tangents.chunks_exact(4 * N * N))
             {
@@ -345,111 +564,92 @@ where
 }
 
 /// A sweep over internal forces with the vector instructions of the processor.
-struct ForceSweep<'a, const N: usize, const P: usize, const HOOP: bool, S, F, L> {
-    chunk: &'a ShapeChunk<N, P, HOOP, S, F>,
-    law: &'a L,
-    motion: Motion<'a>,
-    sums: &'a mut [[f64; 2]],
-}
+struct Forces<'a, 'b, C, L>(Sweep<'a, C, L>, &'b mut [[f64; 2]]);
 
-impl<const N: usize, const P: usize, const HOOP: bool, S, F, L> WithSimd
-    for ForceSweep<'_, N, P, HOOP, S, F, L>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F, L, M> WithSimd
+    for Forces<'_, '_, ShapeChunk<N, P, HOOP, S, F>, M>
 where
-    S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation<HOOP> + Sync,
+    S: IntegratedShape<N, P> + Send + Sync,
+    F: Formulation<N, P, HOOP>,
     L: StressAtPoints<Lanes, HOOP>,
+    M: Fn(usize) -> L,
 {
     type Output = Positive;
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Positive {
-        let Self {
-            chunk, law, sums, ..
-        } = self;
-        let end = self.motion.end;
-        match self.motion.start {
-            None => chunk.sweep(sums, law, |block| chunk.at(block, end)),
-            Some(start) => chunk.sweep(sums, law, |block| chunk.between(block, [start, end])),
+        // compiled for both kinds of motion: with a choice in every block the sweep takes 1.3 times as long
+        let Self(Sweep { chunk, law, motion }, sums) = self;
+        match motion.start {
+            None => chunk.sweep(sums, law, |block| chunk.at(block, motion)),
+            Some(start) => chunk.sweep(sums, law, |block| chunk.between(block, start, motion)),
         }
     }
 }
 
 /// Results of all elements with the vector instructions of the processor.
-struct Evaluation<'a, const N: usize, const P: usize, const HOOP: bool, S, F, L> {
-    chunk: &'a ShapeChunk<N, P, HOOP, S, F>,
-    law: &'a L,
-    u: &'a [f64],
-}
+struct Evaluation<'a, C, L>(Sweep<'a, C, L>);
 
-impl<const N: usize, const P: usize, const HOOP: bool, S, F, L> WithSimd
-    for Evaluation<'_, N, P, HOOP, S, F, L>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F, L, M> WithSimd
+    for Evaluation<'_, ShapeChunk<N, P, HOOP, S, F>, M>
 where
-    S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation<HOOP> + Sync,
+    S: IntegratedShape<N, P> + Send + Sync,
+    F: Formulation<N, P, HOOP>,
     L: StressAtPoints<Lanes, HOOP>,
+    M: Fn(usize) -> L,
 {
-    type Output = Vec<(usize, ElementResult)>;
+    type Output = Vec<ElementResult>;
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Self::Output {
-        let Self { chunk, law, u } = self;
+        let Sweep { chunk, law, motion } = self.0;
         let mut results = Vec::with_capacity(chunk.elements.len());
-        for (number, elements) in chunk.elements.chunks(LANES).enumerate() {
-            let placed = chunk.placed(number);
-            let of_block = F::evaluate::<S, N, P>(&placed, law, &chunk.at(placed.block, u));
-            results.extend(elements.iter().copied().zip(of_block));
+        for number in 0..chunk.blocks.len() {
+            let (at, law) = (chunk.at(number, motion), law(number));
+            let (points, mut sums) = (F::results::<S>(&at, &law), Sums::new());
+            for (p, point) in points[..F::POINTS].iter().enumerate() {
+                sums.add::<HOOP>(p, &law, point, point.weight);
+            }
+            let of_modes = F::hourglass_energy::<S>(&at, &law);
+            for lane in 0..chunk.elements_of(number).len() {
+                let mut result = sums.result(lane);
+                result.hourglass_energy = of_modes.0[lane];
+                result.energy += result.hourglass_energy;
+                results.push(result);
+            }
         }
         results
     }
 }
 
-/// Tangents of a block with the vector instructions of the processor.
-struct Tangents<'a, const N: usize, const P: usize, const HOOP: bool, S, F, L> {
-    chunk: &'a ShapeChunk<N, P, HOOP, S, F>,
-    law: &'a L,
-    placed: PlacedBlock<'a, N, P>,
-    motion: Motion<'a>,
-    /// Those of its elements, D x D column by column each.
-    tangents: &'a mut [f64],
-}
+/// Tangents of a block, D x D column by column each, with the vector instructions of the processor.
+struct Tangents<'a, 'b, C, L>(Sweep<'a, C, L>, usize, &'b mut [f64]);
 
-impl<const N: usize, const P: usize, const HOOP: bool, S, F, L> WithSimd
-    for Tangents<'_, N, P, HOOP, S, F, L>
+impl<const N: usize, const P: usize, const HOOP: bool, S, F, L, M> WithSimd
+    for Tangents<'_, '_, ShapeChunk<N, P, HOOP, S, F>, M>
 where
-    S: IntegratedShape<N, P> + Sync,
-    F: BlockFormulation<HOOP> + Sync,
+    S: IntegratedShape<N, P> + Send + Sync,
+    F: Formulation<N, P, HOOP>,
     L: StressAtPoints<Lanes, HOOP>,
+    M: Fn(usize) -> L,
 {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) {
-        let Self {
-            chunk, law, placed, ..
-        } = self;
-        let block = placed.block;
-        let (mut k, end) = ([[[[Lanes::ZERO; 2]; 2]; N]; N], self.motion.end);
-        match self.motion.start {
-            None => F::add_tangent::<S, N, P>(&placed, law, &chunk.at(block, end), &mut k),
+        let Self(Sweep { chunk, law, motion }, number, tangents) = self;
+        let mut k = [[[[Lanes::ZERO; 2]; 2]; N]; N];
+        let law = law(number);
+        match motion.start {
+            None => F::add_tangent::<S>(&chunk.at(number, motion), &law, &mut k),
             Some(start) => {
-                let motion = chunk.between(block, [start, end]);
-                F::add_tangent::<S, N, P>(&placed, law, &motion, &mut k);
+                F::add_tangent::<S>(&chunk.between(number, start, motion), &law, &mut k);
             }
         }
-        let matrices = self.tangents.chunks_exact_mut(4 * N * N);
-        for (lane, matrix) in matrices.enumerate() {
+        for (lane, matrix) in tangents.chunks_exact_mut(4 * N * N).enumerate() {
             write_matrix(lane, &k, matrix);
         }
     }
-}
-
-/// Distances of the points from the axis, of an element between nodes at `x` (length).
-fn radii<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
-    x: &SMatrix<f64, 2, N>,
-) -> [f64; P] {
-    S::FUNCTIONS
-        .values
-        .map(|h| (0..N).map(|a| h[a] * x[(0, a)]).sum())
 }
 
 /// Place of a node in the list of a chunk, which has at most [`MAX_CHUNK`] elements.

@@ -6,7 +6,7 @@
 use nalgebra::{Matrix2, Vector2};
 use smallvec::SmallVec;
 
-use super::solid::{Increment, Motion, TangentPart};
+use super::motion::{Increment, Motion, TangentPart};
 use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Model};
 
 /// Two entries for each node.

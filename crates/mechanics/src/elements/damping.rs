@@ -1,83 +1,50 @@
-//! Damping of an element: impulse in an increment, damping matrix, dissipated energy. Section 4 of
-//! docs/theory.md, Damping.
+//! Damping of an element that is proportional to its mass: impulse in an increment, damping matrix. That of the viscosity is a
+//! sweep of its chunk. Section 4 of docs/theory.md, Damping.
 
-use super::element::AnyElement;
-use super::solid::{ElementMatrix, ElementVector, Increment, MAX_DOFS, Motion, TangentPart};
-use crate::materials::{Plane, Viscosity};
-use crate::model::{Damping, Material};
+use super::MAX_DOFS;
+use super::motion::{ElementMatrix, ElementVector, Increment, Motion, NO_MATRIX, dofs};
 
 /// Damping of an element whose material has it.
-pub(super) struct ElementDamping {
-    viscosity: Option<Viscosity>,
+pub(super) struct MassDamping {
+    /// Element (index).
+    pub element: usize,
     /// alpha M per direction, n x n column by column (mass/time).
-    mass: Option<Vec<f64>>,
+    pub mass: Vec<f64>,
 }
 
-impl ElementDamping {
-    /// Damping of an element of a material, if it has any; `mass` gives its mass with a density.
-    pub fn new(mass: impl Fn(f64) -> Vec<f64>, material: &Material, plane: Plane) -> Option<Self> {
-        let Damping { alpha, beta } = material.damping;
-        let viscosity = Viscosity::of(beta, material.law.small_strain(), plane);
-        let mass = (alpha > 0.0).then(|| mass(alpha * material.density));
-        (viscosity.is_some() || mass.is_some()).then_some(ElementDamping { viscosity, mass })
-    }
-
-    /// int B_L^T S_d dt dOmega with B_L of the mid configuration, eq. (4.16).
-    pub fn viscous_impulse(&self, element: &AnyElement, increment: Increment) -> ElementVector {
-        let viscosity = self.viscosity.as_ref();
-        viscosity.map_or([0.0; MAX_DOFS], |v| element.force(v, between(increment)).0)
-    }
-
-    /// alpha M d between some nodes, eq. (4.16), where there is any.
-    pub fn mass_impulse(&self, nodes: &[usize], d: &[f64]) -> Option<ElementVector> {
-        self.mass.as_ref()?;
+impl MassDamping {
+    /// alpha M d between some nodes, eq. (4.16).
+    pub fn impulse(&self, nodes: &[usize], d: &[f64]) -> ElementVector {
         let mut impulse = [0.0; MAX_DOFS];
-        for (a, b, m) in self.mass_entries(nodes.len()) {
+        for (a, b, m) in self.entries(nodes.len()) {
             for i in 0..2 {
                 impulse[2 * a + i] += m * d[2 * nodes[b] + i];
             }
         }
-        Some(impulse)
+        impulse
     }
 
-    /// int S_d dt:dE dOmega + d.(alpha M d), eq. (4.18).
-    pub fn work(&self, element: &AnyElement, increment: Increment, d: &[f64]) -> f64 {
-        let viscosity = self.viscosity.as_ref();
-        let viscous = viscosity.map_or(0.0, |v| element.work(v, between(increment)));
-        let impulse = self.mass_impulse(element.nodes(), d).into_iter().flatten();
-        let of_mass = element.dofs().zip(impulse).map(|(dof, p)| p * d[dof]);
-        viscous + of_mass.sum::<f64>()
+    /// d.(alpha M d), eq. (4.18).
+    pub fn work(&self, nodes: &[usize], d: &[f64]) -> f64 {
+        let impulse = self.impulse(nodes, d);
+        let terms = dofs(nodes).zip(impulse);
+        terms.map(|(dof, p)| p * d[dof]).sum()
     }
 
-    /// 1/2 (int B_L^T 2 V B_L + B_NL^T S_d dt B_NL dOmega), eq. (4.19), or its positive part.
-    pub fn viscous_tangent(
-        &self,
-        element: &AnyElement,
-        increment: Increment,
-        part: TangentPart,
-    ) -> ElementMatrix {
-        let viscosity = self.viscosity.as_ref();
-        viscosity.map_or([0.0; MAX_DOFS * MAX_DOFS], |viscosity| {
-            let tangent = element.tangent(viscosity, between(increment), part);
-            tangent.map(|entry| entry / 2.0)
-        })
-    }
-
-    /// alpha M between `n` nodes, eq. (4.19), where there is any.
-    pub fn mass_matrix(&self, n: usize) -> Option<ElementMatrix> {
-        self.mass.as_ref()?;
-        let mut matrix = [0.0; MAX_DOFS * MAX_DOFS];
-        for (a, b, m) in self.mass_entries(n) {
+    /// alpha M between `n` nodes, eq. (4.19).
+    pub fn matrix(&self, n: usize) -> ElementMatrix {
+        let mut matrix = NO_MATRIX;
+        for (a, b, m) in self.entries(n) {
             for i in 0..2 {
                 matrix[(2 * b + i) * 2 * n + 2 * a + i] += m;
             }
         }
-        Some(matrix)
+        matrix
     }
 
     /// Entries of alpha M of `n` nodes: row, column, value.
-    fn mass_entries(&self, n: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        let entries = self.mass.iter().flatten().enumerate();
+    fn entries(&self, n: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+        let entries = self.mass.iter().enumerate();
         entries.map(move |(k, &m)| (k % n, k / n, m))
     }
 }
@@ -92,11 +59,10 @@ pub(super) fn between([u0, u1]: Increment) -> Motion {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::elements::Elements;
+    use crate::elements::{Elements, TangentPart};
     use crate::materials::yielding::Yielding;
     use crate::materials::{Law, NeoHooke};
-    use crate::model::{Element, ElementType, Formulation, Model, Section};
+    use crate::model::{Damping, Element, ElementType, Formulation, Material, Model, Section};
 
     const DAMPING: Damping = Damping {
         alpha: 0.7,

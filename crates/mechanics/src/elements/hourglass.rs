@@ -15,80 +15,94 @@
 //! The least energy over the flow is V W(E; m) + (y - y_p).Kh (y - y_p)/2 but for a constant. Of W an element knows the
 //! derivatives by E and by m, which is quadratic in y.
 
+use std::array::from_fn;
+
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 
-use crate::materials::{Metal, StrainChange, Symmetric};
+use super::block::{SymmetricLanes, TangentLanes, dot};
+use crate::materials::number::LANES;
+use crate::materials::{Lanes, Metal, Number, StrainChange, Symmetric};
 
-/// Amplitudes of the modes in a motion.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Amplitudes<const M: usize> {
+/// Amplitudes of the M modes in a motion.
+#[derive(Clone, Copy)]
+pub enum Amplitudes<const M: usize> {
     /// At one configuration.
-    At(SVector<f64, M>),
+    At([Lanes; M]),
     /// At the start and at the end of an increment.
-    Between(SVector<f64, M>, SVector<f64, M>),
+    Between([Lanes; M], [Lanes; M]),
     /// The same, of a viscosity.
-    Change(SVector<f64, M>, SVector<f64, M>),
+    Change([Lanes; M], [Lanes; M]),
 }
+
+/// Stiffness Kh of the modes (energy over the square of the amplitudes).
+pub type ModeStiffness<const M: usize> = [[Lanes; M]; M];
 
 /// The elastic potential of the modes, (y - y_p).Kh (y - y_p)/2 + k y_p.Kh y_p/2.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct HourglassPotential<const M: usize> {
-    /// Kh (energy over the square of the amplitudes).
-    stiffness: SMatrix<f64, M, M>,
+pub struct HourglassPotential<const M: usize> {
+    /// Kh
+    pub stiffness: ModeStiffness<M>,
     /// y_p, the amplitudes that have flown.
-    flown: SVector<f64, M>,
+    flown: [Lanes; M],
     /// k = H_k/(3 mu).
-    kinematic: f64,
+    kinematic: Lanes,
 }
 
-/// Internal variables of the modes: y_p.
-pub(super) const fn variables(modes: usize) -> usize {
-    modes
+impl<const M: usize> Amplitudes<M> {
+    fn ends(&self) -> [&[Lanes; M]; 2] {
+        match self {
+            Amplitudes::At(y) => [y, y],
+            Amplitudes::Between(y0, y1) | Amplitudes::Change(y0, y1) => [y0, y1],
+        }
+    }
 }
 
 impl<const M: usize> HourglassPotential<M> {
-    /// That of a stiffness Kh, of a metal with y_p.
-    pub fn new(stiffness: SMatrix<f64, M, M>, metal: Option<&Metal>) -> Self {
-        match metal {
-            None => HourglassPotential {
-                stiffness,
-                flown: SVector::zeros(),
-                kinematic: 0.0,
-            },
-            Some(metal) => {
-                let [shear, kinematic] = metal.law.moduli();
-                HourglassPotential {
-                    stiffness,
-                    flown: SVector::from_fn(|k, _| metal.of_modes[k]),
-                    kinematic: kinematic / shear,
-                }
-            }
+    /// That of a stiffness Kh, of metals with their y_p.
+    pub fn new(
+        stiffness: ModeStiffness<M>,
+        metals: &[Option<Metal>; LANES],
+        flown: &[&[f64]; LANES],
+    ) -> Self {
+        let of = |k: usize, lane: usize| flown[lane].get(k).copied().unwrap_or_default();
+        HourglassPotential {
+            stiffness,
+            flown: from_fn(|k| Lanes::of_lanes(|lane| of(k, lane))),
+            kinematic: Lanes::of_lanes(|lane| metals[lane].as_ref().map_or(0.0, hardening)),
         }
     }
 
-    /// Kh, the tangent of [`Self::stress`] or twice its derivative by the end.
-    pub fn stiffness(&self) -> &SMatrix<f64, M, M> {
-        &self.stiffness
+    /// Kh x
+    fn force(&self, x: &[Lanes; M]) -> [Lanes; M] {
+        from_fn(|k| dot(&self.stiffness[k], x))
     }
 
     /// Stress that does work on the amplitudes.
-    pub fn stress(&self, amplitudes: &Amplitudes<M>) -> SVector<f64, M> {
-        let amplitudes = match amplitudes {
-            Amplitudes::At(y) => y - self.flown,
-            Amplitudes::Change(y0, y1) => (y1 - y0) / 2.0,
-            Amplitudes::Between(y0, y1) => (y0 + y1) / 2.0 - self.flown,
-        };
-        self.stiffness * amplitudes
+    pub fn stress(&self, amplitudes: &Amplitudes<M>) -> [Lanes; M] {
+        self.force(&from_fn(|k| match amplitudes {
+            Amplitudes::At(y) => y[k] - self.flown[k],
+            Amplitudes::Change(y0, y1) => (y1[k] - y0[k]) * 0.5,
+            Amplitudes::Between(y0, y1) => (y0[k] + y1[k]) * 0.5 - self.flown[k],
+        }))
     }
 
     /// The potential, or the work of a stress between two configurations.
-    pub fn energy(&self, amplitudes: &Amplitudes<M>, stress: &SVector<f64, M>) -> f64 {
-        let half = |x: SVector<f64, M>| x.dot(&(self.stiffness * x)) / 2.0;
+    pub fn energy(&self, amplitudes: &Amplitudes<M>, stress: &[Lanes; M]) -> Lanes {
+        let half = |x: &[Lanes; M]| dot(x, &self.force(x)) * 0.5;
         match amplitudes {
-            Amplitudes::At(y) => half(y - self.flown) + self.kinematic * half(self.flown),
-            Amplitudes::Change(y0, y1) | Amplitudes::Between(y0, y1) => stress.dot(&(y1 - y0)),
+            Amplitudes::At(y) => {
+                half(&from_fn(|k| y[k] - self.flown[k])) + self.kinematic * half(&self.flown)
+            }
+            Amplitudes::Change(y0, y1) | Amplitudes::Between(y0, y1) => {
+                dot(stress, &from_fn(|k| y1[k] - y0[k]))
+            }
         }
     }
+}
+
+/// k = H_k/(3 mu) of a metal.
+fn hardening(metal: &Metal) -> f64 {
+    let [shear, kinematic] = metal.law.moduli();
+    kinematic / shear
 }
 
 /// The tensor of strains (11, 22, 33, 2*12).
@@ -156,13 +170,19 @@ pub(super) enum JointPath<const M: usize> {
 }
 
 impl<const M: usize> JointPath<M> {
-    /// Those of strains with the amplitudes of the modes.
-    pub fn new([e0, e1]: [Vector4<f64>; 2], amplitudes: &Amplitudes<M>) -> Self {
-        match *amplitudes {
-            Amplitudes::At(y) => JointPath::At(Joint { e: e1, y }),
-            Amplitudes::Between(y0, y1) | Amplitudes::Change(y0, y1) => {
-                JointPath::Between(Joint { e: e0, y: y0 }, Joint { e: e1, y: y1 })
+    /// Those of strains with the amplitudes of the modes, of one element.
+    fn new(strains: &[SymmetricLanes; 2], amplitudes: &Amplitudes<M>, lane: usize) -> Self {
+        let ends = amplitudes.ends();
+        let [start, end] = from_fn(|end| {
+            let e = strains[end].lane(lane);
+            Joint {
+                e: Vector4::new(e.x, e.y, e.z, 2.0 * e.w),
+                y: SVector::from_fn(|k, _| ends[end][k].0[lane]),
             }
+        });
+        match amplitudes {
+            Amplitudes::At(_) => JointPath::At(end),
+            Amplitudes::Between(..) | Amplitudes::Change(..) => JointPath::Between(start, end),
         }
     }
 }
@@ -171,16 +191,23 @@ impl<const M: usize> JointPath<M> {
 /// elastic one of the modes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BentMetal<'a, const M: usize> {
-    modes: HourglassPotential<M>,
+    /// Kh
+    stiffness: SMatrix<f64, M, M>,
+    /// y_p
+    flown: SVector<f64, M>,
+    /// k
+    kinematic: f64,
     metal: Metal<'a>,
     volume: f64,
 }
 
 impl<'a, const M: usize> BentMetal<'a, M> {
-    /// That of an element with a volume (length^3).
-    pub fn new(modes: &HourglassPotential<M>, metal: Metal<'a>, volume: f64) -> Self {
+    /// That of one element with a volume (length^3).
+    fn new(potential: &HourglassPotential<M>, metal: Metal<'a>, volume: f64, lane: usize) -> Self {
         BentMetal {
-            modes: *modes,
+            stiffness: SMatrix::from_fn(|i, j| potential.stiffness[i][j].0[lane]),
+            flown: SVector::from_fn(|k, _| potential.flown[k].0[lane]),
+            kinematic: potential.kinematic.0[lane],
             metal,
             volume,
         }
@@ -192,13 +219,13 @@ impl<'a, const M: usize> BentMetal<'a, M> {
 
     /// x = y - (1 + k) y_p.
     fn relative(&self, y: &SVector<f64, M>) -> SVector<f64, M> {
-        y - self.modes.flown * (1.0 + self.modes.kinematic)
+        y - self.flown * (1.0 + self.kinematic)
     }
 
     /// m, half of its derivative by y, 3 mu/V Kh x.
     fn square(&self, y: &SVector<f64, M>) -> (f64, SVector<f64, M>) {
         let x = self.relative(y);
-        let half = self.modes.stiffness * x * (self.shear() / self.volume);
+        let half = self.stiffness * x * (self.shear() / self.volume);
         (half.dot(&x).max(0.0), half)
     }
 
@@ -231,7 +258,7 @@ impl<'a, const M: usize> BentMetal<'a, M> {
             ey: Vector4::from(state.stress_by_modes.components())
                 * half.transpose()
                 * (2.0 * self.volume),
-            yy: self.modes.stiffness * (2.0 * self.shear() * first)
+            yy: self.stiffness * (2.0 * self.shear() * first)
                 + half * half.transpose() * (4.0 * self.volume * second),
         }
     }
@@ -242,7 +269,7 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         e.w /= 2.0;
         Joint {
             e,
-            y: self.modes.stiffness * n.y,
+            y: self.stiffness * n.y,
         }
     }
 
@@ -300,91 +327,117 @@ impl<'a, const M: usize> BentMetal<'a, M> {
             let shear = if k == 3 { 0.5 } else { 1.0 };
             tangent.ee[(k, k)] += factor * self.volume * self.shear() * shear;
         }
-        tangent.yy += self.modes.stiffness * factor;
+        tangent.yy += self.stiffness * factor;
         tangent.add_product(&m, &m, -2.0 * factor / squared);
         tangent.add_product(&m, &g, 2.0 / squared);
         tangent
     }
 
     /// The squares m at the start and at the end.
-    pub fn squares(&self, amplitudes: &Amplitudes<M>) -> [f64; 2] {
-        let ends = match amplitudes {
-            Amplitudes::At(y) => [y, y],
-            Amplitudes::Between(y0, y1) | Amplitudes::Change(y0, y1) => [y0, y1],
-        };
-        ends.map(|y| self.square(y).0)
+    pub fn squares(&self, path: &JointPath<M>) -> [f64; 2] {
+        let (JointPath::At(end) | JointPath::Between(_, end)) = path;
+        let (JointPath::At(start) | JointPath::Between(start, _)) = path;
+        [start, end].map(|at| self.square(&at.y).0)
     }
 
     /// Writes y_p at the end of an increment in which a part of the trial strain flows.
-    pub fn update(&self, amplitudes: &Amplitudes<M>, part: f64, updated: &mut [f64]) {
-        let (Amplitudes::At(end) | Amplitudes::Between(_, end) | Amplitudes::Change(_, end)) =
-            amplitudes;
-        let flown = self.modes.flown + self.relative(end) * part;
+    pub fn update(&self, path: &JointPath<M>, part: f64, updated: &mut [f64]) {
+        let (JointPath::At(end) | JointPath::Between(_, end)) = path;
+        let flown = self.flown + self.relative(&end.y) * part;
         updated.copy_from_slice(flown.as_slice());
     }
 }
 
-/// The modes of an element in a motion, with the strain of its point where that is a metal.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ModesInMotion<'a, const M: usize> {
+/// Second derivatives by strain (11, 22, 33, 2*12) and amplitudes of the elements of a block.
+pub struct BlockTangent<const M: usize> {
+    /// By the strain twice.
+    pub ee: TangentLanes,
+    /// By the strain and the amplitudes.
+    pub ey: [[Lanes; M]; 4],
+    /// By the amplitudes twice.
+    pub yy: ModeStiffness<M>,
+}
+
+/// The modes of elements in a motion, with the strain of their point where that is a metal.
+pub struct ModesInMotion<'a, const M: usize> {
     potential: HourglassPotential<M>,
-    amplitudes: Amplitudes<M>,
-    bent: Option<(BentMetal<'a, M>, JointPath<M>)>,
-    /// S of a metal (force/length^2).
-    pub metal_stress: Option<Vector4<f64>>,
+    metals: [Option<(BentMetal<'a, M>, JointPath<M>)>; LANES],
+    /// V S of metals (force length).
+    pub metal_stress: Option<SymmetricLanes>,
     /// Stress that does work on the amplitudes.
-    pub stress: SVector<f64, M>,
+    pub stress: [Lanes; M],
     /// Stored energy of the modes, or the work of their stress (force length).
-    pub energy: f64,
+    pub energy: Lanes,
 }
 
 impl<'a, const M: usize> ModesInMotion<'a, M> {
-    /// Those of a stiffness Kh, of an element with a volume (length^3) and with strains of its point at the start and at the end.
+    /// Those of a potential, of elements with a volume (length^3) and with strains of their point at the start and at the end.
     pub fn new(
-        stiffness: SMatrix<f64, M, M>,
-        metal: Option<Metal<'a>>,
-        volume: f64,
-        strains: [Vector4<f64>; 2],
-        amplitudes: Amplitudes<M>,
+        potential: HourglassPotential<M>,
+        metals: [Option<Metal<'a>>; LANES],
+        volume: Lanes,
+        strains: &[SymmetricLanes; 2],
+        amplitudes: &Amplitudes<M>,
     ) -> Self {
-        let potential = HourglassPotential::new(stiffness, metal.as_ref());
-        let bent = metal.map(|metal| {
-            let path = JointPath::new(strains, &amplitudes);
-            (BentMetal::new(&potential, metal, volume), path)
+        let metals = from_fn(|lane| {
+            let bent = BentMetal::new(&potential, metals[lane]?, volume.0[lane], lane);
+            Some((bent, JointPath::new(strains, amplitudes, lane)))
         });
-        let of_both = bent.as_ref().map(|(bent, path)| bent.stress(path));
-        let elastic = potential.stress(&amplitudes);
-        let stress = of_both.map_or(elastic, |of_both| elastic + of_both.y);
+        let of_both = metals.each_ref().map(|metal: &Option<(BentMetal<M>, _)>| {
+            metal.as_ref().map(|(bent, path)| bent.stress(path))
+        });
+        let mut stress = potential.stress(amplitudes);
+        for (lane, of_both) in of_both.iter().enumerate() {
+            for (k, of_modes) in of_both.iter().flat_map(|both| both.y.iter().enumerate()) {
+                stress[k].0[lane] += of_modes;
+            }
+        }
+        let of_point = |lane: usize| {
+            let e = of_both[lane].map_or(Vector4::zeros(), |both| both.e);
+            Symmetric::new(e.x, e.y, e.z, e.w)
+        };
+        let is_metal = of_both.iter().any(Option::is_some);
         ModesInMotion {
-            metal_stress: of_both.map(|of_both| of_both.e / volume),
-            energy: potential.energy(&amplitudes, &stress),
+            metal_stress: is_metal.then(|| SymmetricLanes::of_lanes(of_point)),
+            energy: potential.energy(amplitudes, &stress),
             stress,
             potential,
-            amplitudes,
-            bent,
+            metals,
         }
     }
 
     /// Kh.
-    pub fn stiffness(&self) -> &SMatrix<f64, M, M> {
-        self.potential.stiffness()
+    pub fn stiffness(&self) -> &ModeStiffness<M> {
+        &self.potential.stiffness
     }
 
-    /// The tangent of V S of a metal and of what its flow adds to the stress of the modes.
-    pub fn metal_tangent(&self) -> Option<JointTangent<M>> {
-        self.bent.as_ref().map(|(bent, path)| bent.tangent(path))
+    /// The tangent of V S of metals and of what their flow adds to the stress of the modes.
+    pub fn metal_tangent(&self) -> Option<BlockTangent<M>> {
+        self.metal_stress?;
+        let of = |metal: &Option<(BentMetal<M>, _)>| {
+            metal.as_ref().map(|(bent, path)| bent.tangent(path))
+        };
+        let all = self.metals.each_ref().map(of);
+        let entry = |of: &dyn Fn(&JointTangent<M>) -> f64| {
+            Lanes::of_lanes(|lane| all[lane].as_ref().map_or(0.0, of))
+        };
+        Some(BlockTangent {
+            ee: TangentLanes::of(|i, j| entry(&|tangent| tangent.ee[(i, j)])),
+            ey: from_fn(|i| from_fn(|k| entry(&|tangent| tangent.ey[(i, k)]))),
+            yy: from_fn(|i| from_fn(|k| entry(&|tangent| tangent.yy[(i, k)]))),
+        })
     }
 
-    /// A metal with the squares of its modes at the start and at the end of the motion.
-    pub fn metal(&self) -> Option<(Metal<'a>, [f64; 2])> {
-        let bent = self.bent.as_ref();
-        bent.map(|(bent, _)| (bent.metal, bent.squares(&self.amplitudes)))
+    /// The metal of an element with the squares of its modes at the start and at the end of the motion.
+    pub fn metal(&self, lane: usize) -> Option<(Metal<'a>, [f64; 2])> {
+        let metal = self.metals[lane].as_ref();
+        metal.map(|(bent, path)| (bent.metal, bent.squares(path)))
     }
 
-    /// Writes the variables of the modes, where a part of the trial strain of a metal flows.
-    pub fn update(&self, part: f64, updated: &mut [f64]) {
-        if let Some((bent, _)) = &self.bent {
-            bent.update(&self.amplitudes, part, updated);
+    /// Writes the variables of the modes of an element, where a part of the trial strain of a metal flows.
+    pub fn update(&self, lane: usize, part: f64, updated: &mut [f64]) {
+        if let Some((bent, path)) = &self.metals[lane] {
+            bent.update(path, part, updated);
         }
     }
 }
@@ -452,11 +505,14 @@ mod tests {
         let metal = Metal {
             law,
             of_point: &AT_REST[..Flow::variables(law)],
-            of_modes,
         };
-        let stiffness = Matrix2::new(3.0, 0.4, 0.4, 2.0) * units;
-        let modes = HourglassPotential::new(stiffness, Some(&metal));
-        BentMetal::new(&modes, metal, VOLUME)
+        BentMetal {
+            stiffness: Matrix2::new(3.0, 0.4, 0.4, 2.0) * units,
+            flown: Vector2::from_column_slice(of_modes),
+            kinematic: hardening(&metal),
+            metal,
+            volume: VOLUME,
+        }
     }
 
     fn unit(j: usize) -> Joint<2> {
@@ -484,8 +540,8 @@ mod tests {
     /// Derivatives of the whole potential, of strain and modes.
     fn whole(bent: &BentMetal<2>, at: &Joint<2>) -> (Joint<2>, JointTangent<2>) {
         let (mut stress, mut tangent) = (bent.stress_at(at), bent.tangent_at(at));
-        stress.y += bent.modes.stress(&Amplitudes::At(at.y));
-        tangent.yy += bent.modes.stiffness;
+        stress.y += bent.stiffness * (at.y - bent.flown);
+        tangent.yy += bent.stiffness;
         (stress, tangent)
     }
 
@@ -611,10 +667,14 @@ mod tests {
         let metal = Metal {
             law: &law,
             of_point: &[0.0; 5],
-            of_modes: &[0.0; 2],
         };
-        let modes = HourglassPotential::new(stiffness, Some(&metal));
-        let bent = BentMetal::new(&modes, metal, 1.0);
+        let bent = BentMetal {
+            stiffness,
+            flown: Vector2::zeros(),
+            kinematic: 0.0,
+            metal,
+            volume: 1.0,
+        };
         let at: Joint<2> = Joint {
             e: Vector4::zeros(),
             y: Vector2::new(30.0, 40.0),

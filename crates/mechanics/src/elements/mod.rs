@@ -8,28 +8,34 @@ mod block;
 mod chunk;
 mod connector;
 mod damping;
+mod dilatation;
 mod displacement;
 mod element;
 mod enhanced_strain;
 mod formulation;
 mod hourglass;
 mod local_solution;
-mod mean_dilatation;
-mod mean_dilatation_lanes;
 mod mean_gradient;
+mod motion;
 mod recovery;
 mod reduced;
-mod ring;
+mod results;
 mod shapes;
-mod solid;
 mod stretch;
 #[cfg(test)]
 mod testing;
 
+use crate::model::ElementType;
+
 pub use all::{Elements, Inverted, Updated};
 pub use connector::{ConnectorState, PlacedConnector};
 pub use element::ElementInertia;
-pub use formulation::{ElementResult, Strained, most_strained};
 pub use mean_gradient::{MeanGradient, logarithmic_of};
+pub use motion::{Increment, Motion, TangentPart};
 pub use recovery::{ElementNodes, LocalResult};
-pub use solid::{Increment, Motion, TangentPart};
+pub use results::{ElementResult, Strained, most_strained};
+
+/// Largest number of nodes of an element.
+const MAX_NODES: usize = ElementType::MOST_NODES;
+/// Largest number of dofs of an element.
+const MAX_DOFS: usize = 2 * MAX_NODES;

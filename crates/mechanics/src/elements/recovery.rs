@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::Matrix2;
 use smallvec::SmallVec;
 
 use super::all::Elements;
-use super::formulation::{ElementResult, PointResult};
 use super::mean_gradient::{logarithmic_of, logarithmic_strain};
+use super::results::{ElementResult, PointResult};
 use super::shapes::{CORNERS, DEGREE_5, GAUSS};
 use crate::model::Shape;
 
@@ -50,15 +51,14 @@ impl Elements {
     /// Results at the integration points of an element at displacements `u`, with the internal variables there; zero in
     /// elements of rigid bodies.
     pub fn at_points(&self, element: usize, u: &[f64], variables: &[f64]) -> LocalResults {
-        let own = self.element(element);
-        if self.is_rigid(element) {
-            return SmallVec::from_elem(LocalResult::default(), own.points());
-        }
-        let points = own.at_points(&self.material(element, variables), u);
-        let local = |(point, _): (PointResult, f64)| LocalResult {
-            logarithmic_strain: logarithmic_strain(&point.gradient),
-            logarithmic_around: logarithmic_of(point.strain_around),
-            result: ElementResult::of_points([(point, 1.0)].into_iter()),
+        let Some((chunk, place)) = self.chunk_of(element) else {
+            return SmallVec::from_elem(LocalResult::default(), self.points(element));
+        };
+        let points = chunk.at_points(place, u, variables);
+        let local = |PointResult { result, gradient }: PointResult| LocalResult {
+            logarithmic_strain: logarithmic_strain(&Matrix2::from(gradient).transpose()),
+            logarithmic_around: logarithmic_of(result.strain_around),
+            result,
         };
         points.into_iter().map(local).collect()
     }

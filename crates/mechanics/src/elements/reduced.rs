@@ -1,357 +1,446 @@
-//! The four-node quadrilateral with one strain (CPE4R, CPS4R), that of its mean gradients, and a potential of its
-//! hourglass modes. Section 2 of docs/theory.md.
+//! The four-node quadrilateral with one strain (CPE4R, CPS4R), that of its mean gradients, and the ring with its section
+//! (CAX4R): a potential of their hourglass modes and, in a ring, of the change of the strain around the axis, without which one
+//! layer of elements could tilt freely. Section 2 of docs/theory.md, One strain and hourglass stiffness.
 //!
 //! # Derivation
 //!
-//! With u = sum u_a h_a, F = F0 + q x grad h exactly: F0 = I + sum u_a x b_a, q = sum gamma_a u_a. H = F0^T q does not
-//! change when the element turns. The potential is that of the element with enhanced strains at small strains:
+//! With u = sum u_a h_a, b the mean gradients and m the mean of grad h over the volume, F = F0 + q x (grad h - m) exactly:
+//! F0 = I + sum u_a x b_a, q = sum gamma_a u_a. At small strains the element with enhanced strains has, beside the mean strain,
+//! those of H = F0^T q and of E_33 less its mean, whose energy with the mean strain is zero. Its energy with C of the law at E
+//! = 0, least in alpha, is the potential:
 //!
 //! ```text
-//! Phi = V W(E0) + H.Kh H/2,  Kh = K_HH - K_Ha K_aa^-1 K_aH
+//! y = (H, E_33 - mean E_33 at the four points),   e = sym(H x (grad h - m)) + y_33 e_33 e_33 + M alpha
+//! Phi = V W(E0) + y.Kh y/2,   Kh = K_yy - K_ya K_aa^-1 K_ay
 //! ```
 //!
-//! H is quadratic in the displacements, so that dH = F0m^T dq + dF0^T qm holds exactly between two configurations, and
-//! the force with Kh (H0 + H1)/2 at halfway does exactly the work of the hourglass energy.
+//! y does not change when the element turns, and is quadratic in the displacements, so that dy = (dy/du at halfway) du holds
+//! exactly between two configurations, and the force with Kh (y0 + y1)/2 at halfway does the work of the hourglass energy.
 
-use nalgebra::{Matrix2, Matrix3, SMatrix, Vector2, Vector4};
+// Loops over points, nodes and directions: indices are those of the formulas.
+#![allow(clippy::needless_range_loop)]
 
-use super::enhanced_strain::Modes;
-use super::formulation::{
-    Configuration, ElementFormulation, IntegrationPoint, PointState, Reference, add_geometric,
-    determinant, green_lagrange, of_plane, smaller, strain_displacement, voigt,
+use std::array::from_fn;
+
+use super::block::{
+    BlockMotion, Deformation, Gradient, MatrixLanes, MovedBlock, NodalLanes, SymmetricLanes,
+    TangentLanes, add_hoop, add_products, deformation_gradient, dot, elasticity, sum,
 };
-use super::hourglass::{Amplitudes, ModesInMotion, variables};
-use crate::materials::{Committed, Strains, StressAtPoints};
+use super::enhanced_strain::{Modes, hourglass};
+use super::formulation::{BlockVariables, Formulation, PlacedBlock, PointState};
+use super::hourglass::{Amplitudes, HourglassPotential, ModeStiffness, ModesInMotion};
+use super::results::ResultPoint;
+use super::shapes::IntegratedShape;
+use crate::materials::number::{LANES, Positive};
+use crate::materials::{Lanes, Number, Strains, StressAtPoints, Tangent};
 
-/// One strain of the element and hourglass stiffness. All points of the quadrilateral have that strain: they give the
-/// weights and the hourglass modes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ReducedIntegration;
+/// One strain and a potential of M modes: two, and in a ring four of E_33 more. Their stiffness comes from A enhanced strains.
+pub struct ReducedIntegration<const M: usize, const A: usize>;
 
-/// What the hourglass modes of a configuration give, the potential of eq. (2.42) and its stress.
-struct Hourglass<'a> {
-    modes: ModesInMotion<'a, 2>,
-    /// F0 and q at the displacements of the strain-displacement matrix.
-    f: Matrix2<f64>,
-    q: Vector2<f64>,
+/// Nodes of the quadrilateral, and its points.
+const N: usize = 4;
+/// Hourglass modes in the plane.
+const PLANE_MODES: usize = 2;
+
+/// Elements as one point each, with their hourglass modes, in the reference configuration.
+pub struct OnePoint<const M: usize> {
+    /// Mean gradients b (1/length).
+    mean: [[Lanes; 2]; N],
+    /// Means of h_a/R (1/length).
+    around: [Lanes; N],
+    /// h_a/R at the four points less their means.
+    around_at: [[Lanes; N]; N],
+    /// gamma of eq. (2.26).
+    gamma: [Lanes; N],
+    /// Weights of the four points over the volume.
+    parts: [Lanes; N],
+    /// Volume (length^3).
+    volume: Lanes,
+    /// Kh of the law.
+    stiffness: ModeStiffness<M>,
+    /// Kh of the viscosity.
+    viscous_stiffness: ModeStiffness<M>,
 }
 
-impl<'a> Hourglass<'a> {
-    fn new<const N: usize, const P: usize>(
-        element: &Reference<N, P>,
-        modes: &Modes<N, P>,
-        material: &'a impl StressAtPoints,
-        configuration: &Configuration<N>,
-    ) -> Self {
-        let c = match configuration {
-            // a viscosity has no stress at one configuration
-            Configuration::At(_) if material.is_viscous() => Matrix3::zeros(),
-            _ => voigt(&material.initial_tangent()),
-        };
-        let of = |u: &SMatrix<f64, 2, N>| (Matrix2::identity() + u * modes.mean, u * modes.gamma);
-        let h = |(f, q): (Matrix2<f64>, Vector2<f64>)| f.tr_mul(&q);
-        let (ends, amplitudes) = match configuration {
-            Configuration::At(u) => ([u, u], Amplitudes::At(h(of(u)))),
-            Configuration::Between(u0, u1) => {
-                let [h0, h1] = [u0, u1].map(|u| h(of(u)));
-                // the tangent of a viscosity is that by the mean of the strains: twice that by their change
-                let amplitudes = match material.is_viscous() {
-                    true => Amplitudes::Change(h0, h1),
-                    false => Amplitudes::Between(h0, h1),
-                };
-                ([u0, u1], amplitudes)
+/// Elements as one point each in a motion, with their modes.
+struct Moved<'a, const M: usize> {
+    deformation: Deformation,
+    /// Whether det F is positive, in the mean and at the four points.
+    positive: Positive,
+    modes: ModesInMotion<'a, M>,
+    /// F0 and q at the displacements of the strain-displacement matrix.
+    f: [[Lanes; 2]; 2],
+    q: [Lanes; 2],
+    /// Stretches around the axis at the four points, halfway.
+    stretches: [Lanes; N],
+}
+
+impl<const M: usize> OnePoint<M> {
+    fn new<S: IntegratedShape<N, N>, const A: usize>(placed: &PlacedBlock<N, N>) -> Self {
+        let modes = Modes::<A>::new::<S>(placed);
+        let (weights, parts) = (&placed.block.volume, modes.parts);
+        let gradients: [[[Lanes; 2]; N]; N] = from_fn(|p| placed.block.gradients::<S>(p));
+        let hoop: [[Lanes; N]; N] =
+            from_fn(|p| from_fn(|a| placed.over_radius[p] * S::FUNCTIONS.values[p][a]));
+        let around = from_fn(|a| sum::<N>(|p| hoop[p][a] * parts[p]));
+        let mean_slope: [Lanes; 2] = from_fn(|i| sum::<N>(|p| modes.slope[p][i] * parts[p]));
+        let column = |p: usize, k: usize| {
+            let [x, y]: [Lanes; 2] = from_fn(|i| modes.slope[p][i] - mean_slope[i]);
+            let (zero, half) = (Lanes::ZERO, Lanes::all(0.5));
+            match k {
+                0 => SymmetricLanes::new(x, zero, zero, y * half),
+                1 => SymmetricLanes::new(zero, y, zero, x * half),
+                _ => SymmetricLanes {
+                    z: Lanes::all(f64::from(u8::from(k - PLANE_MODES == p))),
+                    ..SymmetricLanes::default()
+                },
             }
         };
-        let strains = ends.map(|u| {
-            let e = green_lagrange(&(u * modes.mean));
-            Vector4::new(e.m11, e.m22, 0.0, 2.0 * e.m12)
-        });
-        let (stiffness, metal) = (stiffness(element, modes, &c), material.metal(P));
-        let (f, q) = of(&((ends[0] + ends[1]) / 2.0));
-        Hourglass {
-            modes: ModesInMotion::new(stiffness, metal, element.volume(), strains, amplitudes),
-            f,
-            q,
+        let stiffness = |c: &Tangent| modes.condensed::<M>(c, weights, column);
+        OnePoint {
+            mean: from_fn(|a| from_fn(|i| sum::<N>(|p| gradients[p][a][i] * parts[p]))),
+            around_at: from_fn(|p| from_fn(|a| hoop[p][a] - around[a])),
+            around,
+            gamma: modes.gamma,
+            parts,
+            volume: sum::<N>(|p| weights[p]),
+            stiffness: stiffness(placed.tangent),
+            viscous_stiffness: placed
+                .viscous_tangent
+                .map_or([[Lanes::ZERO; M]; M], stiffness),
         }
     }
 
-    /// Rows of dH by the displacements: b_a q_i + F0^T e_i gamma_a.
-    fn rows<const N: usize, const P: usize, const D: usize>(
+    /// Mean displacement gradient of displacements of the nodes.
+    #[inline(always)]
+    fn gradient<const HOOP: bool>(&self, u: &NodalLanes<N>) -> Gradient {
+        Gradient {
+            h: from_fn(|i| from_fn(|j| sum::<N>(|a| u[i][a] * self.mean[a][j]))),
+            around: match HOOP {
+                true => sum::<N>(|a| u[0][a] * self.around[a]),
+                false => Lanes::ZERO,
+            },
+        }
+    }
+}
+
+impl<'a, const M: usize> Moved<'a, M> {
+    /// The motion of the point and of the modes of eq. (2.44).
+    #[inline(always)]
+    fn new<S: IntegratedShape<N, N>, const HOOP: bool>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &'a impl StressAtPoints<Lanes, HOOP>,
+    ) -> Self {
+        let one = at.reference;
+        let (mut positive, u) = (Positive::default(), at.derivatives::<S, HOOP>());
+        let (mid, half) = match &at.motion {
+            BlockMotion::At(u) => (one.gradient::<HOOP>(u), Gradient::default()),
+            BlockMotion::Between(mid, half) => {
+                (one.gradient::<HOOP>(mid), one.gradient::<HOOP>(half))
+            }
+        };
+        let (q, half_q) = match &at.motion {
+            BlockMotion::At(u) => (hourglass(&one.gamma, u), [Lanes::ZERO; 2]),
+            BlockMotion::Between(mid, half) => {
+                (hourglass(&one.gamma, mid), hourglass(&one.gamma, half))
+            }
+        };
+        let deformation = match &at.motion {
+            BlockMotion::At(_) => Deformation::at::<HOOP>(mid, &mut positive),
+            BlockMotion::Between(..) => Deformation::between::<HOOP>(mid, &half, &mut positive),
+        };
+        // H = F0^T q at the start and at the end
+        let f = deformation_gradient(&mid.h);
+        let [h0, h1]: [[Lanes; 2]; 2] = [-1.0, 1.0].map(|side| {
+            let f: [[Lanes; 2]; 2] = from_fn(|i| from_fn(|k| f[i][k] + half.h[i][k] * side));
+            let q: [Lanes; 2] = from_fn(|i| q[i] + half_q[i] * side);
+            from_fn(|k| f[0][k] * q[0] + f[1][k] * q[1])
+        });
+        // E_33 at the four points at the start and at the end
+        let (mut around, mut stretches) = ([[Lanes::ZERO; N]; 2], [Lanes::all(1.0); N]);
+        for p in 0..N {
+            let deformation = at.deformation::<HOOP>(p, &u, &mut positive);
+            if HOOP {
+                let (start, end) = match deformation.strains {
+                    Strains::At(e) => (e.z, e.z),
+                    Strains::Between(change) => (change.start.z, change.end.z),
+                };
+                (around[0][p], around[1][p]) = (start, end);
+                stretches[p] = deformation.gradient.stretch_around();
+            }
+        }
+        let amplitudes = |h: &[Lanes; 2], around: &[Lanes; N]| {
+            let mean = sum::<N>(|p| around[p] * one.parts[p]);
+            from_fn(|k| match k < PLANE_MODES {
+                true => h[k],
+                false => around[k - PLANE_MODES] - mean,
+            })
+        };
+        let (y0, y1) = (amplitudes(&h0, &around[0]), amplitudes(&h1, &around[1]));
+        let (amplitudes, strains) = match deformation.strains {
+            Strains::At(e) => (Amplitudes::At(y1), [e, e]),
+            Strains::Between(change) => {
+                // the tangent of a viscosity is that by the mean of the strains: twice that by their change
+                let amplitudes = match law.is_viscous() {
+                    true => Amplitudes::Change(y0, y1),
+                    false => Amplitudes::Between(y0, y1),
+                };
+                (amplitudes, [change.start, change.end])
+            }
+        };
+        let stiffness = match law.is_viscous() {
+            true => &one.viscous_stiffness,
+            false => &one.stiffness,
+        };
+        let metals = from_fn(|lane| law.metal(lane));
+        let potential = HourglassPotential::new(*stiffness, &metals, &at.own_variables);
+        Moved {
+            modes: ModesInMotion::new(potential, metals, one.volume, &strains, &amplitudes),
+            deformation,
+            positive,
+            f,
+            q,
+            stretches,
+        }
+    }
+
+    /// S of the point times the volume.
+    #[inline(always)]
+    fn weighted_stress<const HOOP: bool>(
         &self,
-        modes: &Modes<N, P>,
-    ) -> SMatrix<f64, 2, D> {
-        SMatrix::from_fn(|k, j| {
-            let (a, i) = (j / 2, j % 2);
-            modes.mean[(a, k)] * self.q[i] + self.f[(i, k)] * modes.gamma[a]
+        one: &OnePoint<M>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> SymmetricLanes {
+        match self.modes.metal_stress {
+            Some(s) => s,
+            None => law
+                .stress_at(0, &self.deformation.strains)
+                .times(one.volume),
+        }
+    }
+
+    /// dy by displacement i of node a: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R less its mean.
+    #[inline(always)]
+    fn row(&self, one: &OnePoint<M>, a: usize, i: usize) -> [Lanes; M] {
+        let around = |p: usize| self.stretches[p] * (one.around_at[p][a] + one.around[a]);
+        let mean = match M > PLANE_MODES && i == 0 {
+            true => sum::<N>(|p| around(p) * one.parts[p]),
+            false => Lanes::ZERO,
+        };
+        from_fn(|k| match (k < PLANE_MODES, i) {
+            (true, _) => one.mean[a][k] * self.q[i] + self.f[i][k] * one.gamma[a],
+            (false, 0) => around(k - PLANE_MODES) - mean,
+            (false, _) => Lanes::ZERO,
         })
     }
 }
 
-/// Kh of the tangent C at small strains: the energy of sym(H x grad h) + M alpha, least in alpha (force/length).
-fn stiffness<const N: usize, const P: usize>(
-    element: &Reference<N, P>,
-    modes: &Modes<N, P>,
-    c: &Matrix3<f64>,
-) -> Matrix2<f64> {
-    let (mut k, mut mixed) = (Matrix2::zeros(), SMatrix::<f64, 2, 4>::zeros());
-    for (p, point) in element.points.iter().enumerate() {
-        let slope = modes.slope[p];
-        let b = SMatrix::<f64, 3, 2>::new(slope.x, 0.0, 0.0, slope.y, slope.y, slope.x);
-        let cb = c * b * point.volume;
-        k += b.transpose() * cb;
-        mixed += cb.transpose() * modes.columns(p);
-    }
-    match modes.stiffness(element, |_| *c).try_inverse() {
-        Some(inverse) => k - mixed * inverse * mixed.transpose(),
-        None => k,
-    }
-}
+impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
+    for ReducedIntegration<M, A>
+{
+    type Reference = OnePoint<M>;
 
-/// The element as one point: mean gradients and volume.
-fn center<const N: usize, const P: usize>(
-    element: &Reference<N, P>,
-    modes: &Modes<N, P>,
-) -> IntegrationPoint<N> {
-    IntegrationPoint {
-        shape: element.points[0].shape,
-        gradient: modes.mean,
-        volume: element.volume(),
-    }
-}
+    const POINTS: usize = 1;
 
-/// Deformation and stress of the element.
-fn state<const N: usize, const P: usize>(
-    modes: &Modes<N, P>,
-    material: &impl StressAtPoints,
-    hourglass: &Hourglass,
-    configuration: &Configuration<N>,
-) -> PointState {
-    let of = |u: &SMatrix<f64, 2, N>| u * modes.mean;
-    let (h, strains, least) = match configuration {
-        Configuration::At(u) => {
-            let h = of(u);
-            (
-                h,
-                Strains::At(of_plane(&green_lagrange(&h))),
-                determinant(&h),
-            )
+    fn own_variables(is_metal: bool) -> usize {
+        match is_metal {
+            true => M,
+            false => 0,
         }
-        Configuration::Between(u0, u1) => {
-            let [h0, h1] = [u0, u1].map(of);
-            let h = (h0 + h1) / 2.0;
-            let [e0, e1] = [h0, h1].map(|h| of_plane(&green_lagrange(&h)));
-            let strains = Strains::between(&e0, &e1);
-            (h, strains, smaller(determinant(&h), determinant(&h1)))
-        }
-    };
-    PointState {
-        h,
-        strains,
-        material_determinant: determinant(&h),
-        s: match hourglass.modes.metal_stress {
-            Some(s) => Matrix2::new(s.x, s.w, s.w, s.y),
-            None => material.stress_at(0, &strains).in_plane(),
-        },
-        determinant: least,
     }
-}
 
-impl ElementFormulation for ReducedIntegration {
-    /// The one state of the element for each of its points.
-    fn for_each_state<const N: usize, const P: usize>(
-        element: &Reference<N, P>,
-        material: &impl StressAtPoints,
-        configuration: &Configuration<N>,
+    fn reference<S: IntegratedShape<N, N>>(placed: &PlacedBlock<N, N>) -> OnePoint<M> {
+        OnePoint::new::<S, A>(placed)
+    }
+
+    #[inline(always)]
+    fn for_each_state<S: IntegratedShape<N, N>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
         mut visit: impl FnMut(usize, &PointState),
-    ) {
-        let modes = Modes::new(element);
-        let hourglass = Hourglass::new(element, &modes, material, configuration);
-        let state = state(&modes, material, &hourglass, configuration);
-        for p in 0..P {
-            visit(p, &state);
-        }
-    }
-
-    /// V F0 S b_a + q (b_a.f) + F0 f gamma_a, eq. (2.43), with the smallest determinant of F at the points too.
-    fn internal_force<const N: usize, const P: usize>(
-        element: &Reference<N, P>,
-        material: &impl StressAtPoints,
-        configuration: &Configuration<N>,
-    ) -> (SMatrix<f64, 2, N>, f64) {
-        let modes = Modes::new(element);
-        let hourglass = Hourglass::new(element, &modes, material, configuration);
-        let state = state(&modes, material, &hourglass, configuration);
-        let (f, q, stress) = (&hourglass.f, &hourglass.q, &hourglass.modes.stress);
-        let force = state.f() * state.s * modes.mean.transpose() * element.volume()
-            + q * (modes.mean * stress).transpose()
-            + f * stress * modes.gamma.transpose();
-        let end = match configuration {
-            Configuration::At(u) | Configuration::Between(_, u) => u,
+    ) -> Positive {
+        let moved = Moved::new::<S, HOOP>(at, law);
+        let over_volume = Lanes::all(1.0) / at.reference.volume;
+        let state = PointState {
+            gradient: &moved.deformation.gradient,
+            strains: &moved.deformation.strains,
+            s: moved
+                .weighted_stress::<HOOP>(at.reference, law)
+                .times(over_volume),
         };
-        let of_points = element
-            .points
-            .iter()
-            .map(|p| determinant(&(end * p.gradient)));
-        let least = of_points.fold(state.determinant, |least, det| smaller(det, least));
-        (force, least)
+        visit(0, &state);
+        moved.positive
     }
 
-    /// The variables of the one strain at all points, and those of the hourglass modes of a metal behind them.
-    fn update<const N: usize, const P: usize>(
-        element: &Reference<N, P>,
-        material: &Committed,
-        configuration: &Configuration<N>,
-        updated: &mut [f64],
-    ) -> f64 {
-        let modes = Modes::new(element);
-        let hourglass = Hourglass::new(element, &modes, material, configuration);
-        let strains = state(&modes, material, &hourglass, configuration).strains;
-        let mut dissipated = 0.0;
-        let Some((metal, squares)) = hourglass.modes.metal() else {
-            for (p, point) in element.points.iter().enumerate() {
-                dissipated += material.update(p, &strains, updated) * point.volume;
-            }
-            return dissipated;
-        };
-        let (of_points, own) = updated.split_at_mut(updated.len() - variables(2));
-        let count = of_points.len() / P;
-        let mut part = 0.0;
-        for (z1, point) in of_points.chunks_exact_mut(count).zip(&element.points) {
-            let [of_point, flows] = metal.law.update(&strains, metal.of_point, squares, z1);
-            dissipated += of_point * point.volume;
-            part = flows;
-        }
-        hourglass.modes.update(part, own);
-        dissipated
-    }
-
-    fn hourglass_energy<const N: usize, const P: usize>(
-        element: &Reference<N, P>,
-        material: &impl StressAtPoints,
-        configuration: &Configuration<N>,
-    ) -> f64 {
-        let modes = Modes::new(element);
-        (Hourglass::new(element, &modes, material, configuration).modes).energy
-    }
-
-    /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D^2 H, G the rows of dH, D^2 H_k = b_ak gamma_b + gamma_a b_bk
-    /// in both directions; in a metal C and Kh are those of one potential, with what they have in common.
-    fn tangent<const N: usize, const P: usize, const D: usize>(
-        element: &Reference<N, P>,
-        material: &impl StressAtPoints,
-        configuration: &Configuration<N>,
-    ) -> SMatrix<f64, D, D> {
-        let modes = Modes::new(element);
-        let hourglass = Hourglass::new(element, &modes, material, configuration);
-        let (point, state) = (
-            center(element, &modes),
-            state(&modes, material, &hourglass, configuration),
-        );
-        let b = strain_displacement::<N, D>(&point, &state.f());
-        let rows = hourglass.rows::<N, P, D>(&modes);
-        let mut k = rows.transpose() * (hourglass.modes.stiffness() * rows);
-        match hourglass.modes.metal_tangent() {
-            None => {
-                let c = voigt(&material.tangent_at(0, &state.strains));
-                k += b.transpose() * (c * b) * point.volume;
-            }
-            Some(of_both) => {
-                let b = SMatrix::<f64, 4, D>::from_fn(|i, j| match i {
-                    2 => 0.0,
-                    3 => b[(2, j)],
-                    _ => b[(i, j)],
-                });
-                let mixed = b.transpose() * (of_both.ey * rows);
-                k += b.transpose() * (of_both.ee * b) + rows.transpose() * (of_both.yy * rows);
-                k += mixed + mixed.transpose();
-            }
-        }
-        add_geometric(&mut k, &point, &state.s);
-        let along = modes.mean * hourglass.modes.stress;
-        for (a, b) in (0..N).flat_map(|a| (0..N).map(move |b| (a, b))) {
-            let second = along[a] * modes.gamma[b] + modes.gamma[a] * along[b];
-            for i in 0..2 {
-                k[(2 * a + i, 2 * b + i)] += second;
-            }
-        }
-        k
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::elements::enhanced_strain::EnhancedStrain;
-    use crate::elements::formulation::evaluate;
-    use crate::elements::testing::{Sample, check_compressed, laws, quad};
-    use crate::materials::{Law, Plane, Plastic, SmallStrainModuli};
-
-    #[test]
-    fn elements_of_one_strain_fulfil_what_all_have_to() {
-        for law in laws() {
-            quad().check_all::<ReducedIntegration, 8>(&law);
-        }
-        check_compressed::<ReducedIntegration>();
-    }
-
-    #[test]
-    fn small_strains_are_those_of_enhanced_strains() {
-        for law in laws() {
-            let found = quad().tangent::<ReducedIntegration, 8>(&law, SMatrix::zeros());
-            let exact = quad().tangent::<EnhancedStrain, 8>(&law, SMatrix::zeros());
-            assert!((found - exact).norm() < 1e-13 * exact.norm());
-        }
-    }
-
-    #[test]
-    fn a_metal_keeps_its_force_and_its_energy_when_an_increment_is_committed() {
-        let metal = Law::Plastic(Plastic {
-            moduli: SmallStrainModuli {
-                young: 1000.0,
-                poisson: 0.3,
-            },
-            hardening: [[0.0, 2.0], [1.0, 2.1]].into(),
-            kinematic: 0.0,
+    /// V F0 S b_a + dy.f, eq. (2.43), with det F at the points too.
+    #[inline(always)]
+    fn force<S: IntegratedShape<N, N>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> (NodalLanes<N>, Positive) {
+        let (moved, one) = (Moved::new::<S, HOOP>(at, law), at.reference);
+        let s = moved.weighted_stress::<HOOP>(one, law);
+        let f = &moved.f;
+        let piola: [[Lanes; 2]; 2] =
+            from_fn(|i| [f[i][0] * s.x + f[i][1] * s.w, f[i][0] * s.w + f[i][1] * s.y]);
+        let hoop = moved.deformation.gradient.stretch_around() * s.z;
+        let force = from_fn(|i| {
+            from_fn(|a| {
+                let [x, y] = one.mean[a];
+                let of_modes = dot(&moved.row(one, a, i), &moved.modes.stress);
+                let of_section = piola[i][0] * x + piola[i][1] * y + of_modes;
+                match HOOP && i == 0 {
+                    true => of_section + hoop * one.around[a],
+                    false => of_section,
+                }
+            })
         });
-        let Sample { x, element } = quad();
-        let energy = |material: &Committed, u: &SMatrix<f64, 2, 4>| {
-            evaluate::<ReducedIntegration, 4, 4>(&element, material, u).energy
+        (force, moved.positive)
+    }
+
+    /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D²y, G the rows of dy, D²H_k = b_ak gamma_b + gamma_a b_bk in both
+    /// directions and D²E_33 = h_a h_b/R² in that of the radius; in a metal C and Kh are those of one potential, with what
+    /// they have in common.
+    #[inline(always)]
+    fn add_tangent<S: IntegratedShape<N, N>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+        k: &mut MatrixLanes<N>,
+    ) {
+        let (moved, one) = (Moved::new::<S, HOOP>(at, law), at.reference);
+        let of_both = moved.modes.metal_tangent();
+        let c = match &of_both {
+            Some(of_both) => of_both.ee,
+            None => {
+                let c = law.tangent_at(0, &moved.deformation.strains);
+                TangentLanes::of(|i, j| c.0[i][j] * one.volume)
+            }
         };
-        for law in [Plane::Strain, Plane::Stress].map(|plane| metal.in_plane(plane)) {
-            // drawn and bent
-            for [draw, bend] in [[0.2, 0.05], [0.02, 0.05], [0.0, 0.05], [0.3, 0.005]] {
-                let d = SMatrix::<f64, 2, 4>::from_fn(|i, a| {
-                    let side = if a % 2 == 0 { bend } else { -bend };
-                    [
-                        draw * x[(0, a)] + side,
-                        -draw * x[(1, a)] / 2.0 + side / 3.0,
-                    ][i]
-                });
-                let mut z = vec![0.0; 4 * law.variables() + variables(2)];
-                for step in 0..20 {
-                    let [u0, u1] = [step, step + 1].map(|k| d * (f64::from(k) / 20.0));
-                    let (increment, mut updated) = (Configuration::Between(u0, u1), z.clone());
-                    let material = Committed::new(&law, &z);
-                    let dissipated =
-                        ReducedIntegration::update(&element, &material, &increment, &mut updated);
-                    let after = Committed::new(&law, &updated);
-                    let force = |material: &Committed, configuration: &Configuration<4>| {
-                        ReducedIntegration::internal_force(&element, material, configuration).0
-                    };
-                    let work = force(&material, &increment).dot(&(u1 - u0));
-                    let change = energy(&after, &u1) - energy(&material, &u0) + dissipated;
-                    assert!(dissipated >= 0.0);
-                    assert!(
-                        (work - change).abs() < 1e-12 * work.abs(),
-                        "{work} {change}"
-                    );
-                    let end = Configuration::At(u1);
-                    let (before, after) = (force(&material, &end), force(&after, &end));
-                    let jump = (before - after).norm();
-                    assert!(jump < 1e-11 * before.norm(), "{draw} {bend} {step}: {jump}");
-                    z = updated;
+        let s = moved.weighted_stress::<HOOP>(one, law);
+        let stretch = moved.deformation.gradient.stretch_around();
+        add_products(k, &one.mean, &elasticity(&moved.f, &s, &c));
+        if HOOP {
+            add_hoop(
+                k,
+                (&one.mean, &one.around),
+                (&moved.f, stretch),
+                (s.z, &c.0[2]),
+            );
+        }
+        let rows: [[[Lanes; M]; 2]; N] = from_fn(|a| from_fn(|i| moved.row(one, a, i)));
+        let mut stiffness = *moved.modes.stiffness();
+        if let Some(of_both) = &of_both {
+            for l in 0..M {
+                for m in 0..M {
+                    stiffness[l][m] += of_both.yy[l][m];
                 }
             }
         }
+        for b in 0..N {
+            for j in 0..2 {
+                let stress: [Lanes; M] = from_fn(|m| dot(&stiffness[m], &rows[b][j]));
+                for a in 0..b + 1 {
+                    for i in 0..2 {
+                        k[a][b][i][j] += dot(&rows[a][i], &stress);
+                    }
+                }
+            }
+        }
+        if let Some(of_both) = &of_both {
+            // ey y of every displacement, and its work on the strain (11, 22, 33, 2*12) of another
+            let of_strain: [[[Lanes; 4]; 2]; N] =
+                from_fn(|a| from_fn(|i| from_fn(|e| dot(&of_both.ey[e], &rows[a][i]))));
+            let (f, mean) = (&moved.f, &one.mean);
+            let work = |a: usize, i: usize, stress: &[Lanes; 4]| {
+                let ([x, y], [fx, fy]) = (mean[a], f[i]);
+                let of_section =
+                    stress[0] * (fx * x) + stress[1] * (fy * y) + stress[3] * (fx * y + fy * x);
+                match HOOP && i == 0 {
+                    true => of_section + stress[2] * (stretch * one.around[a]),
+                    false => of_section,
+                }
+            };
+            for b in 0..N {
+                for a in 0..b + 1 {
+                    for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        k[a][b][i][j] +=
+                            work(a, i, &of_strain[b][j]) + work(b, j, &of_strain[a][i]);
+                    }
+                }
+            }
+        }
+        let stress = &moved.modes.stress;
+        let along = |a: usize| one.mean[a][0] * stress[0] + one.mean[a][1] * stress[1];
+        for b in 0..N {
+            for a in 0..b + 1 {
+                let second = along(a) * one.gamma[b] + one.gamma[a] * along(b);
+                k[a][b][0][0] += second;
+                k[a][b][1][1] += second;
+                if HOOP {
+                    let square = |p: usize| {
+                        (one.around_at[p][a] + one.around[a])
+                            * (one.around_at[p][b] + one.around[b])
+                    };
+                    let mean = sum::<N>(|p| square(p) * one.parts[p]);
+                    k[a][b][0][0] += sum::<N>(|p| stress[PLANE_MODES + p] * (square(p) - mean));
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn results<S: IntegratedShape<N, N>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> [ResultPoint; N] {
+        let mut points = [ResultPoint::default(); N];
+        Self::for_each_state::<S>(at, law, |_, state| {
+            points[0] = state.result(at.reference.volume);
+        });
+        points
+    }
+
+    #[inline(always)]
+    fn hourglass_energy<S: IntegratedShape<N, N>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> Lanes {
+        Moved::new::<S, HOOP>(at, law).modes.energy
+    }
+
+    fn work<S: IntegratedShape<N, N>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+    ) -> Lanes {
+        let moved = Moved::new::<S, HOOP>(at, law);
+        let s = moved.weighted_stress::<HOOP>(at.reference, law);
+        match moved.deformation.strains {
+            Strains::At(_) => Lanes::ZERO,
+            Strains::Between(change) => s.contract::<HOOP>(&change.change()) + moved.modes.energy,
+        }
+    }
+
+    fn update<'z, S: IntegratedShape<N, N>, L: StressAtPoints<Lanes, HOOP>>(
+        at: &MovedBlock<N, N, OnePoint<M>>,
+        law: &L,
+        _after: impl Fn([&'z [f64]; LANES]) -> L,
+        (z1, own): (&'z mut BlockVariables, &mut BlockVariables),
+    ) -> Lanes {
+        let (moved, volume) = (Moved::new::<S, HOOP>(at, law), at.reference.volume);
+        let mut dissipated = Lanes::ZERO;
+        for lane in 0..LANES {
+            let strains = moved.deformation.strains.lane(lane);
+            let of_point = match moved.modes.metal(lane) {
+                None => law.update_at(lane, 0, &strains, &mut z1[lane]),
+                Some((metal, squares)) => {
+                    let z0 = metal.of_point;
+                    let [dissipated, part] = metal.law.update(&strains, z0, squares, &mut z1[lane]);
+                    moved.modes.update(lane, part, &mut own[lane]);
+                    dissipated
+                }
+            };
+            dissipated.0[lane] = of_point * volume.0[lane];
+        }
+        dissipated
     }
 }

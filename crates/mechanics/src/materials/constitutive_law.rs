@@ -1,7 +1,9 @@
 //! What an element asks of a material at an integration point. Sections 2 and 4 of docs/theory.md.
 
+use std::array::from_fn;
+
 use super::hyperelastic::Hyperelastic;
-use super::number::Number;
+use super::number::{LANES, Number};
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
@@ -79,15 +81,13 @@ pub struct BentTangent {
     pub stress_by_modes: Symmetric,
 }
 
-/// A metal with the internal variables of a point, and those of the hourglass modes of its element.
+/// A metal with the internal variables of a point.
 #[derive(Debug, Clone, Copy)]
 pub struct Metal<'a> {
     /// The law.
     pub law: &'a dyn MetalLaw,
     /// Variables of the point.
     pub of_point: &'a [f64],
-    /// Variables of the hourglass modes.
-    pub of_modes: &'a [f64],
 }
 
 /// A stress that follows from the strains at the integration points of elements: that of their material, or that of its
@@ -99,18 +99,24 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
     /// Tangent of [`Self::stress_at`] at a point, or the symmetric part of twice its derivative by E1 (force/length^2).
     fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T>;
 
-    /// Stresses of the first points, all of one kind of strains.
-    fn stresses_at(&self, strains: &[Strains<T>], s: &mut [Symmetric<T>]) {
-        for (point, (strains, s)) in strains.iter().zip(s).enumerate() {
-            *s = self.stress_at(point, strains);
-        }
+    /// [`Self::stress_at`] of the elements that are wanted; others may have any.
+    fn stress_where(
+        &self,
+        _wanted: [bool; LANES],
+        point: usize,
+        strains: &Strains<T>,
+    ) -> Symmetric<T> {
+        self.stress_at(point, strains)
     }
 
-    /// Tangents of the first points, all of one kind of strains.
-    fn tangents_at(&self, strains: &[Strains<T>], c: &mut [Tangent<T>]) {
-        for (point, (strains, c)) in strains.iter().zip(c).enumerate() {
-            *c = self.tangent_at(point, strains);
-        }
+    /// [`Self::tangent_at`] of the elements that are wanted; others may have any.
+    fn tangent_where(
+        &self,
+        _wanted: [bool; LANES],
+        point: usize,
+        strains: &Strains<T>,
+    ) -> Tangent<T> {
+        self.tangent_at(point, strains)
     }
 
     /// Stored energy W at a point (force/length^2).
@@ -124,24 +130,26 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         false
     }
 
-    /// Tangent at no strain without internal variables; that of no change of the strains where the stress is that of a
-    /// change (force/length^2).
-    fn initial_tangent(&self) -> Tangent<T>;
-
     /// The measure of strain in which the potential of the stress is convex: that of logarithms where the law fulfils Hill's
     /// inequality. That of a viscosity is quadratic in the strains of Green and Lagrange.
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Green
     }
 
-    /// The variables of an element behind those of its points; none of a law without an element.
-    fn beyond(&self, _points: usize) -> &[f64] {
-        &[]
+    /// The metal at the first point of an element.
+    fn metal(&self, _lane: usize) -> Option<Metal<'_>> {
+        None
     }
 
-    /// A metal with its variables of the first point, and with those behind the points.
-    fn metal(&self, _points: usize) -> Option<Metal<'_>> {
-        None
+    /// Accumulated plastic strain at a point of an element.
+    fn plastic_strain_at(&self, _lane: usize, _point: usize) -> f64 {
+        0.0
+    }
+
+    /// Writes the internal variables of an element at the end of the strains of a point into those of all its points, and
+    /// gives the energy dissipated on the way (force/length^2).
+    fn update_at(&self, _lane: usize, _point: usize, _strains: &Strains, _z1: &mut [f64]) -> f64 {
+        0.0
     }
 }
 
@@ -171,40 +179,75 @@ impl<T: Number, const HOOP: bool, L: Hyperelastic<T, HOOP>> StressAtPoints<T, HO
         self.0.across(e)
     }
 
-    fn initial_tangent(&self) -> Tangent<T> {
-        self.0.tangent(&Symmetric::zeros())
-    }
-
     fn convex_in(&self) -> StrainMeasure {
         self.0.convex_in()
     }
 }
 
-/// Stresses that are evaluated for one element after the other.
-pub struct OneByOne<S>(pub S);
+/// Elements side by side whose stresses are evaluated one after the other.
+pub struct OneByOne<S>(pub [S; LANES]);
 
 impl<T: Number, const HOOP: bool, S: StressAtPoints> StressAtPoints<T, HOOP> for OneByOne<S> {
     fn stress_at(&self, point: usize, strains: &Strains<T>) -> Symmetric<T> {
-        Symmetric::of_lanes(|lane| self.0.stress_at(point, &strains.lane(lane)))
+        Symmetric::of_lanes(|lane| self.0[lane].stress_at(point, &strains.lane(lane)))
     }
 
     fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T> {
-        Tangent::of_lanes(|lane| self.0.tangent_at(point, &strains.lane(lane)))
+        Tangent::of_lanes(|lane| self.0[lane].tangent_at(point, &strains.lane(lane)))
+    }
+
+    fn stress_where(
+        &self,
+        wanted: [bool; LANES],
+        point: usize,
+        strains: &Strains<T>,
+    ) -> Symmetric<T> {
+        Symmetric::of_lanes(|lane| match wanted[lane] {
+            true => self.0[lane].stress_at(point, &strains.lane(lane)),
+            false => Symmetric::zeros(),
+        })
+    }
+
+    fn tangent_where(
+        &self,
+        wanted: [bool; LANES],
+        point: usize,
+        strains: &Strains<T>,
+    ) -> Tangent<T> {
+        Tangent::of_lanes(|lane| match wanted[lane] {
+            true => self.0[lane].tangent_at(point, &strains.lane(lane)),
+            false => Tangent::default(),
+        })
     }
 
     fn energy_at(&self, point: usize, e: &Symmetric<T>) -> T {
-        T::of_lanes(|lane| self.0.energy_at(point, &e.lane(lane)))
+        T::of_lanes(|lane| self.0[lane].energy_at(point, &e.lane(lane)))
     }
 
     fn across_at(&self, point: usize, e: &Symmetric<T>) -> Across<T> {
-        let of = |lane: usize| self.0.across_at(point, &e.lane(lane));
+        let all: [Across; LANES] = from_fn(|lane| match lane < T::ELEMENTS {
+            true => self.0[lane].across_at(point, &e.lane(lane)),
+            false => Across::default(),
+        });
         Across {
-            stretch: T::of_lanes(|lane| of(lane).stretch),
-            stress: T::of_lanes(|lane| of(lane).stress),
+            stretch: T::of_lanes(|lane| all[lane].stretch),
+            stress: T::of_lanes(|lane| all[lane].stress),
         }
     }
 
-    fn initial_tangent(&self) -> Tangent<T> {
-        Tangent::of_lanes(|_| self.0.initial_tangent())
+    fn convex_in(&self) -> StrainMeasure {
+        self.0[0].convex_in()
+    }
+
+    fn metal(&self, lane: usize) -> Option<Metal<'_>> {
+        self.0[lane].metal(0)
+    }
+
+    fn plastic_strain_at(&self, lane: usize, point: usize) -> f64 {
+        self.0[lane].plastic_strain_at(0, point)
+    }
+
+    fn update_at(&self, lane: usize, point: usize, strains: &Strains, z1: &mut [f64]) -> f64 {
+        self.0[lane].update_at(0, point, strains, z1)
     }
 }

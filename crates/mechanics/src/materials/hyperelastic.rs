@@ -376,7 +376,7 @@ mod tests {
                 };
                 let mean = lanes([[0.7, -0.2], [-0.2, 0.9], [0.3, 0.1]], size);
                 let half = lanes([[0.1, -0.3], [0.4, 0.2], [-0.2, 0.1]], step);
-                let (own, one) = (Elastic(law), OneByOne(Elastic(law)));
+                let (own, one) = (Elastic(law), OneByOne([Elastic(law), Elastic(law)]));
                 for strains in [
                     Strains::At(mean),
                     Strains::Between(StrainChange::about(mean, half)),
@@ -401,7 +401,11 @@ mod tests {
                 }
                 let energies = [
                     StressAtPoints::<Lanes, false>::energy_at(&own, 0, &mean),
-                    StressAtPoints::<Lanes, false>::energy_at(&OneByOne(Elastic(law)), 0, &mean),
+                    StressAtPoints::<Lanes, false>::energy_at(
+                        &OneByOne([Elastic(law), Elastic(law)]),
+                        0,
+                        &mean,
+                    ),
                 ];
                 let [a, b] = energies.map(|energy| energy.0[1]);
                 assert!((a - b).abs() <= 1e-12 * b.abs());

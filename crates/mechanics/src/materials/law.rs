@@ -5,15 +5,16 @@
 use std::ops::Range;
 
 use super::hyperelastic::Hyperelastic;
-use super::number::{LANES, Lanes};
+use super::number::LANES;
 use super::plane_stress::PlaneStress;
 use super::strains::Strains;
 use super::symmetric::{Symmetric, Tangent};
 #[cfg(any(test, feature = "testing"))]
 use super::yielding::Yielding;
 use super::{
-    Across, Flow, LawCard, Metal, NeoHooke, Ogden, Plane, PlanePlastic, PlaneSaintVenantKirchhoff,
-    Plastic, Polynomial, SaintVenantKirchhoff, SmallStrainModuli, StrainMeasure, StressAtPoints,
+    Across, Flow, LawCard, Metal, NeoHooke, Ogden, OneByOne, Plane, PlanePlastic,
+    PlaneSaintVenantKirchhoff, Plastic, Polynomial, SaintVenantKirchhoff, SmallStrainModuli,
+    StrainMeasure, StressAtPoints,
 };
 
 /// Law of a material with the constants of the deck.
@@ -196,27 +197,40 @@ impl PlaneLaw {
         }
     }
 
+    /// Tangent at no strain without internal variables (force/length^2).
+    pub fn initial_tangent(&self) -> Tangent {
+        match self.kind() {
+            Kind::Elastic(law) => law.tangent(&Symmetric::zeros()),
+            Kind::Flow(law) => {
+                let z0 = vec![0.0; law.variables()];
+                law.tangent(&Strains::At(Symmetric::zeros()), &z0)
+            }
+        }
+    }
+
     /// Whether the law is that of a metal.
     pub fn is_metal(&self) -> bool {
         matches!(self, PlaneLaw::Plastic(_))
     }
 }
 
-/// Evaluates an expression for a plane law without internal variables as a [`StressAtPoints`] of elements side by side.
+/// Evaluates an expression with a function that gives a plane law as the [`StressAtPoints`] of elements side by side, from the
+/// internal variables of their points.
 macro_rules! in_lanes {
-    ($law:expr, $in_lanes:ident => $value:expr) => {
+    ($law:expr, $of_variables:ident => $value:expr) => {
         match $law {
             $crate::materials::PlaneLaw::SaintVenantKirchhoff(law) => {
-                let $in_lanes = &$crate::materials::Elastic(law);
+                let $of_variables =
+                    |_: [&[f64]; $crate::materials::number::LANES]| $crate::materials::Elastic(law);
                 $value
             }
             $crate::materials::PlaneLaw::NeoHooke(law) => {
-                let $in_lanes = &$crate::materials::Elastic(law);
+                let $of_variables =
+                    |_: [&[f64]; $crate::materials::number::LANES]| $crate::materials::Elastic(law);
                 $value
             }
             law => {
-                let $in_lanes =
-                    &$crate::materials::OneByOne($crate::materials::Committed::new(law, &[]));
+                let $of_variables = |z| $crate::materials::Committed::side_by_side(law, z);
                 $value
             }
         }
@@ -238,17 +252,9 @@ impl<'a> Committed<'a> {
         Committed { law, variables }
     }
 
-    /// The law with other variables.
-    pub fn with<'b>(&self, variables: &'b [f64]) -> Committed<'b>
-    where
-        'a: 'b,
-    {
-        Committed::new(self.law, variables)
-    }
-
-    /// Whether the internal variables of the element begin with some.
-    pub fn are_first_variables(&self, variables: &[f64]) -> bool {
-        self.variables.starts_with(variables)
+    /// A law with the variables of all points of elements side by side.
+    pub fn side_by_side(law: &'a PlaneLaw, variables: [&'a [f64]; LANES]) -> OneByOne<Self> {
+        OneByOne(variables.map(|z| Committed::new(law, z)))
     }
 
     /// Internal variables of a point among those of the element.
@@ -259,27 +265,6 @@ impl<'a> Committed<'a> {
 
     fn at(&self, point: usize) -> &[f64] {
         &self.variables[self.of_point(point)]
-    }
-
-    /// Accumulated plastic strain of a point.
-    pub fn plastic_strain(&self, point: usize) -> f64 {
-        match self.law.kind() {
-            Kind::Elastic(_) => 0.0,
-            Kind::Flow(law) => law.plastic_strain(self.at(point)),
-        }
-    }
-
-    /// Internal variables of a point at the end of the strains, written to `updated`, and the energy dissipated on
-    /// the way to them per volume (force/length^2).
-    pub fn update(&self, point: usize, strains: &Strains, updated: &mut [f64]) -> f64 {
-        match self.law.kind() {
-            Kind::Elastic(_) => 0.0,
-            Kind::Flow(law) => {
-                let z0 = self.at(point);
-                law.update(strains, z0, &mut updated[self.of_point(point)]);
-                law.dissipation(strains, z0)
-            }
-        }
     }
 }
 
@@ -298,35 +283,6 @@ impl StressAtPoints for Committed<'_> {
         }
     }
 
-    /// Points of a neo-Hookean material side by side: an element with enhanced strains takes 1.6 times as long with one after
-    /// the other.
-    fn stresses_at(&self, strains: &[Strains], s: &mut [Symmetric]) {
-        let PlaneLaw::NeoHooke(law) = self.law else {
-            let all = strains.iter().zip(s).enumerate();
-            return all.for_each(|(point, (strains, s))| *s = self.stress_at(point, strains));
-        };
-        side_by_side(
-            strains,
-            s,
-            |strains| neo_hooke(law).stress_of(strains),
-            Symmetric::lane,
-        );
-    }
-
-    /// As [`Self::stresses_at`].
-    fn tangents_at(&self, strains: &[Strains], c: &mut [Tangent]) {
-        let PlaneLaw::NeoHooke(law) = self.law else {
-            let all = strains.iter().zip(c).enumerate();
-            return all.for_each(|(point, (strains, c))| *c = self.tangent_at(point, strains));
-        };
-        side_by_side(
-            strains,
-            c,
-            |strains| neo_hooke(law).tangent_of(strains),
-            Tangent::lane,
-        );
-    }
-
     fn energy_at(&self, point: usize, e: &Symmetric) -> f64 {
         match self.law.kind() {
             Kind::Elastic(law) => law.energy(e),
@@ -341,16 +297,6 @@ impl StressAtPoints for Committed<'_> {
         }
     }
 
-    fn initial_tangent(&self) -> Tangent {
-        match self.law.kind() {
-            Kind::Elastic(law) => law.tangent(&Symmetric::zeros()),
-            Kind::Flow(law) => {
-                let z0 = vec![0.0; law.variables()];
-                law.tangent(&Strains::At(Symmetric::zeros()), &z0)
-            }
-        }
-    }
-
     fn convex_in(&self) -> StrainMeasure {
         match self.law.kind() {
             Kind::Elastic(law) => law.convex_in(),
@@ -358,44 +304,31 @@ impl StressAtPoints for Committed<'_> {
         }
     }
 
-    /// The variables behind those of the points.
-    fn beyond(&self, points: usize) -> &[f64] {
-        let own = self.variables.get(points * self.law.variables()..);
-        own.unwrap_or_default()
-    }
-
-    /// A metal with the variables of the first point and those behind all points, where there are some.
-    fn metal(&self, points: usize) -> Option<Metal<'_>> {
+    fn metal(&self, _lane: usize) -> Option<Metal<'_>> {
         let Kind::Flow(law) = self.law.kind() else {
             return None;
         };
-        let law = law.as_metal()?;
-        let of_modes = self.beyond(points);
-        (!of_modes.is_empty()).then(|| Metal {
+        law.as_metal().map(|law| Metal {
             law,
             of_point: self.at(0),
-            of_modes,
         })
     }
-}
 
-/// The law in lanes and all components.
-fn neo_hooke(law: &NeoHooke) -> &impl Hyperelastic<Lanes, true> {
-    law
-}
+    fn plastic_strain_at(&self, _lane: usize, point: usize) -> f64 {
+        match self.law.kind() {
+            Kind::Elastic(_) => 0.0,
+            Kind::Flow(law) => law.plastic_strain(self.at(point)),
+        }
+    }
 
-/// Values at points, which stand in the lanes side by side, the last one in all that are left.
-fn side_by_side<V, W>(
-    strains: &[Strains],
-    values: &mut [W],
-    of: impl Fn(&Strains<Lanes>) -> V,
-    lane: impl Fn(&V, usize) -> W,
-) {
-    for (strains, values) in strains.chunks(LANES).zip(values.chunks_mut(LANES)) {
-        let last = strains.len() - 1;
-        let all = of(&Strains::of_lanes(|lane| strains[lane.min(last)]));
-        for (number, value) in values.iter_mut().enumerate() {
-            *value = lane(&all, number);
+    fn update_at(&self, _lane: usize, point: usize, strains: &Strains, z1: &mut [f64]) -> f64 {
+        match self.law.kind() {
+            Kind::Elastic(_) => 0.0,
+            Kind::Flow(law) => {
+                let z0 = self.at(point);
+                law.update(strains, z0, &mut z1[self.of_point(point)]);
+                law.dissipation(strains, z0)
+            }
         }
     }
 }
@@ -430,7 +363,7 @@ mod tests {
         for (p, (e0, e1)) in start.strains.iter().zip(&strains).enumerate() {
             let strains = Strains::between(e0, e1);
             work += material.stress_at(p, &strains).contract::<true>(&(e1 - e0));
-            dissipated += material.update(p, &strains, &mut committed);
+            dissipated += material.update_at(0, p, &strains, &mut committed);
         }
         let step = strains[0] - start.strains[0];
         let end = State { strains, committed };
@@ -489,7 +422,7 @@ mod tests {
         let material = Committed::new(&PLANE_LAW, &start);
         let strains = Strains::At(Symmetric::new(0.05, 0.01, 0.0, 0.0));
         let mut updated = [0.0; 8];
-        material.update(0, &strains, &mut updated);
+        material.update_at(0, 0, &strains, &mut updated);
         let (now, after) = (
             material.stress_at(0, &strains),
             Committed::new(&PLANE_LAW, &updated).stress_at(0, &strains),

@@ -207,6 +207,20 @@ impl Positive {
         Positive([self.0[0] & other.0[0], self.0[1] & other.0[1]])
     }
 
+    /// Whether an element has had positive numbers only.
+    pub fn at(self, lane: usize) -> bool {
+        self.0[lane] == u64::MAX
+    }
+
+    /// Numbers of the elements that have had positive numbers only, and NaN of others.
+    #[inline(always)]
+    pub fn or_nan(self, value: Lanes) -> Lanes {
+        Lanes::of_lanes(|lane| match self.at(lane) {
+            true => value.0[lane],
+            false => f64::NAN,
+        })
+    }
+
     /// Whether all elements have had positive numbers only.
     pub fn everywhere(self) -> bool {
         self == Positive::default()

@@ -14,7 +14,7 @@ pub enum StrainMeasure {
 }
 
 /// What happens across the plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Across<T = f64> {
     /// Stretch F_33.
     pub stretch: T,

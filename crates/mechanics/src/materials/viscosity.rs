@@ -66,6 +66,14 @@ impl Viscosity {
     }
 }
 
+impl Viscosity {
+    /// Tangent of no change of the strains (force time/length^2).
+    pub fn initial_tangent(&self) -> Tangent {
+        let none = Strains::Between(StrainChange::default());
+        StressAtPoints::<f64, true>::tangent_at(self, 0, &none)
+    }
+}
+
 /// Stresses are taken over the length of the increment (force time/length^2). There are none at a strain that does not
 /// change, nothing is stored, and there is no stress across the plane.
 impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
@@ -118,11 +126,6 @@ impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
 
     fn is_viscous(&self) -> bool {
         true
-    }
-
-    fn initial_tangent(&self) -> Tangent<T> {
-        let none = Strains::Between(StrainChange::default());
-        StressAtPoints::<T, HOOP>::tangent_at(self, 0, &none)
     }
 }
 

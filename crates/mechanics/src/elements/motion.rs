@@ -1,0 +1,92 @@
+//! Motions in which elements are evaluated, and what of their tangents is assembled. Sections 2 and 4 of docs/theory.md.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::MAX_DOFS;
+
+/// Values of one element in the order of its dofs; the first D are used.
+pub(super) type ElementVector = [f64; MAX_DOFS];
+/// Square matrix of one element, column by column; the first D^2 entries are used.
+pub(super) type ElementMatrix = [f64; MAX_DOFS * MAX_DOFS];
+
+/// 0
+pub(super) const NO_MATRIX: ElementMatrix = [0.0; MAX_DOFS * MAX_DOFS];
+
+/// Dofs of the nodes of an element, in the order of element vectors.
+pub(super) fn dofs(nodes: &[usize]) -> impl Iterator<Item = usize> + '_ {
+    nodes.iter().flat_map(|n| [2 * n, 2 * n + 1])
+}
+
+/// Displacements of start and end of an increment, 2 N entries each.
+pub type Increment<'a> = [&'a [f64]; 2];
+
+/// Displacements of all nodes between which the elements are evaluated (2 N entries each), and the
+/// internal variables of their materials.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    /// Displacements of the start in the energy-momentum form; without it forces are those of the end.
+    pub start: Option<&'a [f64]>,
+    /// Displacements of the end.
+    pub end: &'a [f64],
+    /// Internal variables that the last accepted increment has committed, element by element.
+    pub committed: &'a [f64],
+    /// The increment in which damping acts; without it there is none.
+    pub increment: Option<Increment<'a>>,
+}
+
+/// What of the tangents of the elements a matrix is assembled from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TangentPart {
+    /// All of them.
+    Whole,
+    /// Their positive part: the eigenvalues of every element that are negative are zero instead, so
+    /// that no sum is indefinite, whatever the stresses and the material.
+    Positive,
+}
+
+impl<'a> Motion<'a> {
+    /// Displacements at which forces are those of the displacements.
+    pub fn at(end: &'a [f64], committed: &'a [f64]) -> Self {
+        Motion {
+            start: None,
+            end,
+            committed,
+            increment: None,
+        }
+    }
+}
+
+/// Round-off and iterations of the eigenvalues of an element, which converge in two or three each.
+const EIGENVALUES: (f64, usize) = (f64::EPSILON, 1000);
+
+/// K+ = sum max(lambda, 0) v v^T over the eigenpairs of a symmetric matrix of size `d`, eq. (4.14), in
+/// its place.
+pub(super) fn take_positive_part(k: &mut [f64], d: usize) {
+    let whole = DMatrix::from_column_slice(d, d, k);
+    let (eps, iterations) = EIGENVALUES;
+    let Some(pairs) = SymmetricEigen::try_new(whole, eps, iterations) else {
+        return;
+    };
+    let positive = pairs.eigenvalues.map(|lambda| lambda.max(0.0));
+    let scaled = &pairs.eigenvectors * DMatrix::from_diagonal(&positive);
+    k.copy_from_slice((scaled * pairs.eigenvectors.transpose()).as_slice());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positive_part_by_hand() {
+        // eigenvalues 3 and -1 with (1, 1) and (1, -1)
+        let mut k = [1.0, 2.0, 2.0, 1.0];
+        take_positive_part(&mut k, 2);
+        assert!(k.iter().all(|value| (value - 1.5).abs() < 1e-15), "{k:?}");
+        let mut k = [4.0, 1.0, 1.0, 4.0];
+        take_positive_part(&mut k, 2);
+        assert!(
+            (k[0] - 4.0).abs() < 1e-15 && (k[1] - 1.0).abs() < 1e-15,
+            "{k:?}"
+        );
+    }
+}
