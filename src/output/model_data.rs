@@ -322,7 +322,7 @@ const THICKNESS: Meaning = (
 );
 const LAW: Meaning = (
     "1",
-    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another hyperelastic law, 3 metal with J2 plasticity",
+    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another polynomial of the invariants, 3 metal with J2 plasticity, 4 Ogden",
 );
 const SHAPE: Meaning = (
     "force/length^2",

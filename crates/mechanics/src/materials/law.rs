@@ -98,7 +98,9 @@ impl Law {
                 powers: law.terms,
                 ..Constants::default()
             },
-            _ => Constants::default(),
+            Law::SaintVenantKirchhoff(_) | Law::Plastic(_) => Constants::default(),
+            #[cfg(any(test, feature = "testing"))]
+            Law::Yielding(_) => Constants::default(),
         }
     }
 
