@@ -93,7 +93,7 @@ LOCAL = """*NODE
 3, 1., 1.
 4, 0., 1.
 9, 1., 3.
-*ELEMENT, TYPE=CPE4R, ELSET=E
+*ELEMENT, TYPE=CPE4I, ELSET=E
 1, 1, 2, 3, 4
 *SOLID SECTION, ELSET=E, MATERIAL=M
 1.
@@ -122,7 +122,7 @@ S
 S
 *END STEP
 """
-"""One element, with values at its point and its nodes, and a spring."""
+"""One element, with values at its points and its nodes, and a spring."""
 
 SLOW = ("beam_lands_with_events", "stack_with_events")
 REJECTED = ("cycle", "faulty_include", "keyword_in_rows", "missing_include")
