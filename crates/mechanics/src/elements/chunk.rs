@@ -578,7 +578,7 @@ where
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, _: V) -> Positive {
-        // compiled for both kinds of motion: with a choice in every block the sweep takes 1.3 times as long
+        // compiled for both kinds of motion: with a choice in every block CPE4H takes 1.1 times as long, and 1.3 of neo-Hooke
         let Self(Sweep { chunk, law, motion }, sums) = self;
         match motion.start {
             None => chunk.sweep(sums, law, |block| chunk.at(block, motion)),

@@ -24,9 +24,7 @@ impl PointState<'_> {
     pub fn result(&self, weight: Lanes) -> ResultPoint {
         ResultPoint::new(*self.gradient, self.strains.end(), self.s, weight)
     }
-}
 
-impl PointState<'_> {
     /// Writes the internal variables of a point at the end of its strains, and gives the energy dissipated on the way to them
     /// (force/length^2).
     pub fn update<const HOOP: bool>(
