@@ -40,21 +40,6 @@ pub enum BlockMotion<const N: usize> {
     Between(NodalLanes<N>, NodalLanes<N>),
 }
 
-/// Natural derivatives of the displacements x, then y, at the points, and the displacements x there.
-pub struct FieldAtPoints<const P: usize> {
-    natural: [[[Lanes; 2]; P]; 2],
-    /// Read in bodies of revolution alone.
-    radial: [Lanes; P],
-}
-
-/// The displacements of [`BlockMotion`] at the points.
-pub enum Derivatives<const P: usize> {
-    /// Displacements.
-    At(FieldAtPoints<P>),
-    /// The mid configuration and half the way.
-    Between(FieldAtPoints<P>, FieldAtPoints<P>),
-}
-
 /// Displacement gradient at a point.
 #[derive(Clone, Copy, Default)]
 pub struct Gradient {
@@ -101,24 +86,6 @@ impl<const N: usize> BlockMotion<N> {
         }
         Self::Between(mid, half)
     }
-
-    /// Natural derivatives at the points.
-    #[inline(always)]
-    pub fn derivatives<S: IntegratedShape<N, P>, const P: usize, const HOOP: bool>(
-        &self,
-    ) -> Derivatives<P> {
-        let of = |u: &NodalLanes<N>| FieldAtPoints {
-            natural: [S::derivatives(&u[0]), S::derivatives(&u[1])],
-            radial: match HOOP {
-                true => S::field(&u[0]),
-                false => [Lanes::ZERO; P],
-            },
-        };
-        match self {
-            Self::At(u) => Derivatives::At(of(u)),
-            Self::Between(mid, half) => Derivatives::Between(of(mid), of(half)),
-        }
-    }
 }
 
 impl<const N: usize, const P: usize> ElementBlock<N, P> {
@@ -133,30 +100,22 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
             volume: from_fn(|p| of(p, &|at| at.volume)),
         }
     }
-
-    /// H = du/dr J^-1 at a point, eq. (2.1).
-    #[inline(always)]
-    pub fn gradient(&self, p: usize, u: &FieldAtPoints<P>) -> TensorLanes {
-        let [r, s] = &self.inverse[p];
-        let row = |[dr, ds]: [Lanes; 2]| [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]];
-        [row(u.natural[0][p]), row(u.natural[1][p])]
-    }
 }
 
 impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
-    /// Natural derivatives at the points.
+    /// Displacement gradient H = du/dr J^-1 at a point, eq. (2.1), of displacements of the nodes.
     #[inline(always)]
-    pub fn derivatives<S: IntegratedShape<N, P>, const HOOP: bool>(&self) -> Derivatives<P> {
-        self.motion.derivatives::<S, P, HOOP>()
-    }
-
-    /// Displacement gradient at a point.
-    #[inline(always)]
-    pub fn gradient<const HOOP: bool>(&self, p: usize, u: &FieldAtPoints<P>) -> Gradient {
+    pub fn gradient<S: IntegratedShape<N, P>, const HOOP: bool>(
+        &self,
+        p: usize,
+        u: &NodalLanes<N>,
+    ) -> Gradient {
+        let [r, s] = &self.block.inverse[p];
+        let row = |[dr, ds]: [Lanes; 2]| [dr * r[0] + ds * s[0], dr * r[1] + ds * s[1]];
         Gradient {
-            h: self.block.gradient(p, u),
+            h: [row(S::derivative(p, &u[0])), row(S::derivative(p, &u[1]))],
             around: match HOOP {
-                true => u.radial[p] * self.over_radius[p],
+                true => S::value(p, &u[0]) * self.over_radius[p],
                 false => Lanes::ZERO,
             },
         }
@@ -164,17 +123,16 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
 
     /// Deformation at a point; `positive` takes in det F.
     #[inline(always)]
-    pub fn deformation<const HOOP: bool>(
+    pub fn deformation<S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
         p: usize,
-        u: &Derivatives<P>,
         positive: &mut Positive,
     ) -> Deformation {
-        match u {
-            Derivatives::At(u) => Deformation::at::<HOOP>(self.gradient::<HOOP>(p, u), positive),
-            Derivatives::Between(mid, half) => {
-                let mid = self.gradient::<HOOP>(p, mid);
-                Deformation::between::<HOOP>(mid, &self.gradient::<HOOP>(p, half), positive)
+        let gradient = |u| self.gradient::<S, HOOP>(p, u);
+        match &self.motion {
+            BlockMotion::At(u) => Deformation::at::<HOOP>(gradient(u), positive),
+            BlockMotion::Between(mid, half) => {
+                Deformation::between::<HOOP>(gradient(mid), &gradient(half), positive)
             }
         }
     }
@@ -185,38 +143,22 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         from_fn(|a| self.over_radius[p] * S::FUNCTIONS.values[p][a])
     }
 
-    /// sum_p B_L^T S of stresses with their weights in displacement gradients (force), with (1 + h) S_33 h_a/R in the
-    /// direction of the radius in a body of revolution, eq. (2.33).
+    /// sum_p B_L^T S of stresses with their weights in displacement gradients (force).
     #[inline(always)]
-    pub fn nodal_forces<S: IntegratedShape<N, P>, const HOOP: bool>(
+    pub fn nodal_forces<'a, S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
-        gradient_and_stress: impl Fn(usize) -> (Gradient, SymmetricLanes),
+        gradient_and_stress: impl Fn(usize) -> (&'a Gradient, SymmetricLanes),
     ) -> NodalLanes<N> {
-        let mut q = [[[Lanes::ZERO; 2]; P]; 2];
-        let mut hoop = [Lanes::ZERO; P];
+        let mut forces = PointForces::<P>::default();
         for p in 0..P {
-            // B_L^T S of node a is F S dh_a/dX = (F S J^-T) dh_a/dr, J = dX/dr
             let (gradient, s) = gradient_and_stress(p);
-            let piola = times_symmetric(&deformation_gradient(&gradient.h), &s);
-            [q[0][p], q[1][p]] = times_transposed(&piola, &self.block.inverse[p]);
-            if HOOP {
-                hoop[p] = gradient.stretch_around() * s.z * self.over_radius[p];
-            }
+            forces.take::<N, HOOP, R>(self, p, gradient, &s);
         }
-        let mut force = [S::nodal_sums(&q[0]), S::nodal_sums(&q[1])];
-        if HOOP {
-            for p in 0..P {
-                for a in 0..N {
-                    force[0][a] += hoop[p] * S::FUNCTIONS.values[p][a];
-                }
-            }
-        }
-        force
+        forces.sum::<S, N, HOOP>()
     }
 
     /// Smallest det F at the points, halfway and at the end; NaN where one is.
     pub fn least_determinant<S: IntegratedShape<N, P>, const HOOP: bool>(&self) -> [f64; LANES] {
-        let u = self.derivatives::<S, HOOP>();
         let mut least = [f64::INFINITY; LANES];
         let mut take_in = |gradient: &Gradient| {
             let (section, stretch) = (determinant(&gradient.h), gradient.stretch_around());
@@ -229,16 +171,68 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
             }
         };
         for p in 0..P {
-            match &u {
-                Derivatives::At(u) => take_in(&self.gradient::<HOOP>(p, u)),
-                Derivatives::Between(mid, half) => {
-                    let mid = self.gradient::<HOOP>(p, mid);
+            let gradient = |u| self.gradient::<S, HOOP>(p, u);
+            match &self.motion {
+                BlockMotion::At(u) => take_in(&gradient(u)),
+                BlockMotion::Between(mid, half) => {
+                    let mid = gradient(mid);
                     take_in(&mid);
-                    take_in(&mid.plus(&self.gradient::<HOOP>(p, half)));
+                    take_in(&mid.plus(&gradient(half)));
                 }
             }
         }
         least
+    }
+}
+
+/// Stresses at the points, as forces follow from them.
+pub struct PointForces<const P: usize> {
+    /// F S J^-T with the weight, row by row.
+    q: [[[Lanes; 2]; P]; 2],
+    /// (1 + h) S_33/R with the weight; read in bodies of revolution alone.
+    hoop: [Lanes; P],
+}
+
+impl<const P: usize> Default for PointForces<P> {
+    #[inline(always)]
+    fn default() -> Self {
+        PointForces {
+            q: [[[Lanes::ZERO; 2]; P]; 2],
+            hoop: [Lanes::ZERO; P],
+        }
+    }
+}
+
+impl<const P: usize> PointForces<P> {
+    /// Takes the stress of a point with its weight, in a displacement gradient.
+    #[inline(always)]
+    pub fn take<const N: usize, const HOOP: bool, R>(
+        &mut self,
+        at: &MovedBlock<N, P, R>,
+        p: usize,
+        gradient: &Gradient,
+        s: &SymmetricLanes,
+    ) {
+        // B_L^T S of node a is F S dh_a/dX = (F S J^-T) dh_a/dr, J = dX/dr
+        let piola = times_symmetric(&deformation_gradient(&gradient.h), s);
+        [self.q[0][p], self.q[1][p]] = times_transposed(&piola, &at.block.inverse[p]);
+        if HOOP {
+            self.hoop[p] = gradient.stretch_around() * s.z * at.over_radius[p];
+        }
+    }
+
+    /// sum_p B_L^T S (force), with (1 + h) S_33 h_a/R in the direction of the radius in a body of revolution, eq. (2.33).
+    #[inline(always)]
+    pub fn sum<S: IntegratedShape<N, P>, const N: usize, const HOOP: bool>(&self) -> NodalLanes<N> {
+        let mut force = [S::nodal_sums(&self.q[0]), S::nodal_sums(&self.q[1])];
+        if HOOP {
+            for p in 0..P {
+                for a in 0..N {
+                    force[0][a] += self.hoop[p] * S::FUNCTIONS.values[p][a];
+                }
+            }
+        }
+        force
     }
 }
 

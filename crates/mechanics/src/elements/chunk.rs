@@ -10,17 +10,16 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use nalgebra::SMatrix;
-use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
 use super::block::{BlockMotion, ElementBlock, MatrixLanes, MovedBlock, NodalLanes};
 use super::formulation::{Formulation, PlacedBlock};
 use super::motion::{Motion, TangentPart, take_positive_part};
-use super::results::{ElementResult, PointResult, Sums};
+use super::results::{ElementResult, PointResult, ResultPoint, Sums};
 use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, Number, PlaneLaw, StressAtPoints, Viscosity, in_lanes};
+use crate::materials::{AnyLaw, Elastic, Lanes, LawInLanes, Number, PlaneLaw, Viscosity};
 use crate::model::Thickness;
 
 /// Elements of a chunk at most.
@@ -136,15 +135,6 @@ where
     kind: PhantomData<S>,
 }
 
-/// A chunk in a motion, of which a law gives the stresses.
-#[derive(Clone, Copy)]
-struct Sweep<'a, C, L> {
-    chunk: &'a C,
-    /// Gives the law of a block.
-    law: L,
-    motion: Motion<'a>,
-}
-
 impl<const N: usize, const P: usize, const HOOP: bool, S, F> ShapeChunk<N, P, HOOP, S, F>
 where
     S: IntegratedShape<N, P> + Send + Sync,
@@ -184,8 +174,7 @@ where
             let nodal: NodalLanes<N> = from_fn(|i| {
                 from_fn(|a| Lanes(from_fn(|lane| x[of[(first + lane).min(last)][a]][i])))
             });
-            let [x, y] = [S::field(&nodal[0]), S::field(&nodal[1])];
-            from_fn(|p| [x[p], y[p]])
+            from_fn(|p| [S::value(p, &nodal[0]), S::value(p, &nodal[1])])
         };
         let over_radius = |places: &[[Lanes; 2]; P]| match thickness {
             Thickness::Around => places.map(|[r, _]| Lanes::all(1.0) / r),
@@ -298,26 +287,61 @@ where
         }
     }
 
-    /// Adds the forces of all blocks, each in the motion that `moved` gives, to the sums.
-    #[inline(always)]
-    fn sweep<'a, L: StressAtPoints<Lanes, HOOP>>(
-        &'a self,
-        sums: &mut [[f64; 2]],
-        law: impl Fn(usize) -> L,
-        moved: impl Fn(usize) -> MovedBlock<'a, N, P, F::Reference>,
-    ) -> Positive {
+    /// Adds the forces of all blocks to the sums, of the material or of its viscosity.
+    fn sweep(&self, motion: Motion, viscosity: Option<&Viscosity>) -> Positive {
+        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
         let mut positive = Positive::default();
-        for (number, block) in self.blocks.iter().enumerate() {
-            let (force, of_block) = F::force::<S>(&moved(number), &law(number));
-            positive = positive.both(of_block);
-            for (a, places) in block.nodes.iter().enumerate() {
-                for (lane, &place) in places.iter().enumerate() {
-                    let [x, y] = sums[usize::from(place)];
-                    sums[usize::from(place)] = [x + force[0][a].0[lane], y + force[1][a].0[lane]];
+        if !self.is_strained(motion) {
+            return positive;
+        }
+        let blocks = 0..self.blocks.len();
+        match (&self.law, viscosity) {
+            (PlaneLaw::SaintVenantKirchhoff(law), None) if F::FOR_EACH_LAW => {
+                for number in blocks {
+                    let at = self.moved(number, motion);
+                    let of_block = F::force::<S>(&at, &Elastic(law));
+                    positive = positive.both(add_force(&at, &of_block, &mut sums));
+                }
+            }
+            (PlaneLaw::NeoHooke(law), None) if F::FOR_EACH_LAW => {
+                for number in blocks {
+                    let at = self.moved(number, motion);
+                    let of_block = F::force::<S>(&at, &Elastic(law));
+                    positive = positive.both(add_force(&at, &of_block, &mut sums));
+                }
+            }
+            _ => {
+                for number in blocks {
+                    let (at, law) = (
+                        self.moved(number, motion),
+                        self.law_of(number, motion.committed),
+                    );
+                    let of_block = match viscosity {
+                        Some(viscosity) => Self::force(&at, viscosity),
+                        None => Self::force(&at, law.any()),
+                    };
+                    positive = positive.both(add_force(&at, &of_block, &mut sums));
                 }
             }
         }
         positive
+    }
+
+    /// The force by any law, and whether det F is positive; compiled once.
+    #[inline(never)]
+    fn force(at: &MovedBlock<N, P, F::Reference>, law: &AnyLaw<HOOP>) -> (NodalLanes<N>, Positive) {
+        F::force::<S>(at, law)
+    }
+
+    /// The results of points by any law; compiled once.
+    #[inline(never)]
+    fn results(at: &MovedBlock<N, P, F::Reference>, law: &AnyLaw<HOOP>) -> [ResultPoint; P] {
+        F::results::<S>(at, law)
+    }
+
+    /// The law of a block, with the variables of its points among those of all elements.
+    fn law_of<'a>(&'a self, block: usize, variables: &'a [f64]) -> LawInLanes<'a> {
+        self.law.in_lanes(self.of_points(variables, block))
     }
 
     /// Whether some nodes move otherwise than the others, or along the radius, or a material remembers more than its strain.
@@ -354,18 +378,15 @@ where
 
     /// Writes the tangents of the elements of a block.
     fn write_tangents(&self, number: usize, sweep: &TangentSweep, tangents: &mut [f64]) {
-        let (chunk, motion) = (self, sweep.motion);
-        match &self.viscosity {
-            Some(viscosity) if sweep.viscous => {
-                let law = |_: usize| *viscosity;
-                let sweep = Sweep { chunk, law, motion };
-                Arch::new().dispatch(Tangents(sweep, number, tangents));
-            }
-            _ => in_lanes!(&self.law, of => {
-            let law = |number| of(self.of_points(motion.committed, number));
-                let sweep = Sweep { chunk, law, motion };
-                Arch::new().dispatch(Tangents(sweep, number, tangents));
-            }),
+        let law = self.law_of(number, sweep.motion.committed);
+        let law: &AnyLaw<HOOP> = match &self.viscosity {
+            Some(viscosity) if sweep.viscous => viscosity,
+            _ => law.any(),
+        };
+        let mut k = [[[[Lanes::ZERO; 2]; 2]; N]; N];
+        F::add_tangent::<S>(&self.moved(number, sweep.motion), law, &mut k);
+        for (lane, matrix) in tangents.chunks_exact_mut(4 * N * N).enumerate() {
+            write_matrix(lane, &k, matrix);
         }
         if sweep.part == TangentPart::Positive {
             for matrix in tangents.chunks_exact_mut(4 * N * N) {
@@ -390,16 +411,7 @@ where
     }
 
     fn sum_forces(&self, motion: Motion) -> bool {
-        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        if !self.is_strained(motion) {
-            return true;
-        }
-        let chunk = self;
-        let positive = in_lanes!(&self.law, of => {
-            let law = |number| of(self.of_points(motion.committed, number));
-            Arch::new().dispatch(Forces(Sweep { chunk, law, motion }, &mut sums))
-        });
-        positive.everywhere()
+        self.sweep(motion, None).everywhere()
     }
 
     fn is_viscous(&self) -> bool {
@@ -407,10 +419,8 @@ where
     }
 
     fn sum_viscous(&self, motion: Motion) {
-        let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(viscosity) = self.viscosity.as_ref().filter(|_| self.is_strained(motion)) {
-            let (chunk, law) = (self, |_: usize| *viscosity);
-            Arch::new().dispatch(Forces(Sweep { chunk, law, motion }, &mut sums));
+        if self.is_viscous() {
+            self.sweep(motion, self.viscosity.as_ref());
         }
     }
 
@@ -450,8 +460,8 @@ where
         for number in 0..self.blocks.len() {
             let at = self.moved(number, motion);
             let least = at.least_determinant::<S, HOOP>();
-            let z0 = self.of_points(motion.committed, number);
-            let positive = in_lanes!(&self.law, of => F::force::<S>(&at, &of(z0)).1);
+            let law = self.law_of(number, motion.committed);
+            let positive = Self::force(&at, law.any()).1;
             for lane in 0..self.elements_of(number).len() {
                 all.push(match positive.at(lane) {
                     false if least[lane] > 0.0 => f64::NAN,
@@ -463,30 +473,39 @@ where
     }
 
     fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
-        let (chunk, motion) = (self, Motion::at(u, variables));
-        in_lanes!(&self.law, of => {
-            let law = |number| of(self.of_points(variables, number));
-            Arch::new().dispatch(Evaluation(Sweep { chunk, law, motion }))
-        })
+        let motion = Motion::at(u, variables);
+        let mut results = Vec::with_capacity(self.elements.len());
+        for number in 0..self.blocks.len() {
+            let (at, law) = (self.moved(number, motion), self.law_of(number, variables));
+            let (points, mut sums) = (Self::results(&at, law.any()), Sums::new());
+            for (p, point) in points[..F::POINTS].iter().enumerate() {
+                sums.add::<HOOP>(p, law.any(), point, point.weight);
+            }
+            let of_modes = F::hourglass_energy::<S>(&at, law.any());
+            for lane in 0..self.elements_of(number).len() {
+                let mut result = sums.result(lane);
+                result.hourglass_energy = of_modes.0[lane];
+                result.energy += result.hourglass_energy;
+                results.push(result);
+            }
+        }
+        results
     }
 
     fn at_points(&self, place: usize, u: &[f64], variables: &[f64]) -> SmallVec<[PointResult; 9]> {
         let (number, lane) = (place / LANES, place % LANES);
         let at = self.moved(number, Motion::at(u, variables));
-        in_lanes!(&self.law, of => {
-            let law = |number| of(self.of_points(variables, number));
-            let law = law(number);
-            let points = F::results::<S>(&at, &law);
-            let of = |p: usize| {
-                let mut sums = Sums::new();
-                sums.add::<HOOP>(p, &law, &points[p], Lanes::all(1.0));
-                PointResult {
-                    result: sums.result(lane),
-                    gradient: points[p].gradient.h.map(|row| row.map(|h| h.0[lane])),
-                }
-            };
-            (0..F::POINTS).map(of).collect()
-        })
+        let law = self.law_of(number, variables);
+        let points = Self::results(&at, law.any());
+        let of = |p: usize| {
+            let mut sums = Sums::new();
+            sums.add::<HOOP>(p, law.any(), &points[p], Lanes::all(1.0));
+            PointResult {
+                result: sums.result(lane),
+                gradient: points[p].gradient.h.map(|row| row.map(|h| h.0[lane])),
+            }
+        };
+        (0..F::POINTS).map(of).collect()
     }
 
     fn update(&self, motion: Motion, updated: &mut [f64]) -> f64 {
@@ -499,9 +518,8 @@ where
             let z0 = self.of_points(motion.committed, number);
             let mut z1 = z0.map(<[f64]>::to_vec);
             let mut own = at.own_variables.map(<[f64]>::to_vec);
-            let of_block = in_lanes!(&self.law, of => {
-                F::update::<S, _>(&at, &of(z0), of, (&mut z1, &mut own))
-            });
+            let (law, with) = (self.law.in_lanes(z0), |z| self.law.in_lanes(z));
+            let of_block = F::update::<S>(&at, law.any(), with, (&mut z1, &mut own));
             for (lane, _) in self.elements_of(number).iter().enumerate() {
                 let first = self.first_variable + (LANES * number + lane) * count;
                 let (points, rest) = updated[first..first + count].split_at_mut(z1[lane].len());
@@ -563,93 +581,20 @@ where
     }
 }
 
-/// A sweep over internal forces with the vector instructions of the processor.
-struct Forces<'a, 'b, C, L>(Sweep<'a, C, L>, &'b mut [[f64; 2]]);
-
-impl<const N: usize, const P: usize, const HOOP: bool, S, F, L, M> WithSimd
-    for Forces<'_, '_, ShapeChunk<N, P, HOOP, S, F>, M>
-where
-    S: IntegratedShape<N, P> + Send + Sync,
-    F: Formulation<N, P, HOOP>,
-    L: StressAtPoints<Lanes, HOOP>,
-    M: Fn(usize) -> L,
-{
-    type Output = Positive;
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) -> Positive {
-        // compiled for both kinds of motion: with a choice in every block CPE4H takes 1.1 times as long, and 1.3 of neo-Hooke
-        let Self(Sweep { chunk, law, motion }, sums) = self;
-        match motion.start {
-            None => chunk.sweep(sums, law, |block| chunk.at(block, motion)),
-            Some(start) => chunk.sweep(sums, law, |block| chunk.between(block, start, motion)),
+/// Adds the internal forces of a block to sums over the nodes of a chunk, and gives whether det F is positive.
+#[inline(always)]
+fn add_force<const N: usize, const P: usize, R>(
+    at: &MovedBlock<N, P, R>,
+    (force, positive): &(NodalLanes<N>, Positive),
+    sums: &mut [[f64; 2]],
+) -> Positive {
+    for (a, places) in at.block.nodes.iter().enumerate() {
+        for (lane, &place) in places.iter().enumerate() {
+            let [x, y] = sums[usize::from(place)];
+            sums[usize::from(place)] = [x + force[0][a].0[lane], y + force[1][a].0[lane]];
         }
     }
-}
-
-/// Results of all elements with the vector instructions of the processor.
-struct Evaluation<'a, C, L>(Sweep<'a, C, L>);
-
-impl<const N: usize, const P: usize, const HOOP: bool, S, F, L, M> WithSimd
-    for Evaluation<'_, ShapeChunk<N, P, HOOP, S, F>, M>
-where
-    S: IntegratedShape<N, P> + Send + Sync,
-    F: Formulation<N, P, HOOP>,
-    L: StressAtPoints<Lanes, HOOP>,
-    M: Fn(usize) -> L,
-{
-    type Output = Vec<ElementResult>;
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) -> Self::Output {
-        let Sweep { chunk, law, motion } = self.0;
-        let mut results = Vec::with_capacity(chunk.elements.len());
-        for number in 0..chunk.blocks.len() {
-            let (at, law) = (chunk.at(number, motion), law(number));
-            let (points, mut sums) = (F::results::<S>(&at, &law), Sums::new());
-            for (p, point) in points[..F::POINTS].iter().enumerate() {
-                sums.add::<HOOP>(p, &law, point, point.weight);
-            }
-            let of_modes = F::hourglass_energy::<S>(&at, &law);
-            for lane in 0..chunk.elements_of(number).len() {
-                let mut result = sums.result(lane);
-                result.hourglass_energy = of_modes.0[lane];
-                result.energy += result.hourglass_energy;
-                results.push(result);
-            }
-        }
-        results
-    }
-}
-
-/// Tangents of a block, D x D column by column each, with the vector instructions of the processor.
-struct Tangents<'a, 'b, C, L>(Sweep<'a, C, L>, usize, &'b mut [f64]);
-
-impl<const N: usize, const P: usize, const HOOP: bool, S, F, L, M> WithSimd
-    for Tangents<'_, '_, ShapeChunk<N, P, HOOP, S, F>, M>
-where
-    S: IntegratedShape<N, P> + Send + Sync,
-    F: Formulation<N, P, HOOP>,
-    L: StressAtPoints<Lanes, HOOP>,
-    M: Fn(usize) -> L,
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, _: V) {
-        let Self(Sweep { chunk, law, motion }, number, tangents) = self;
-        let mut k = [[[[Lanes::ZERO; 2]; 2]; N]; N];
-        let law = law(number);
-        match motion.start {
-            None => F::add_tangent::<S>(&chunk.at(number, motion), &law, &mut k),
-            Some(start) => {
-                F::add_tangent::<S>(&chunk.between(number, start, motion), &law, &mut k);
-            }
-        }
-        for (lane, matrix) in tangents.chunks_exact_mut(4 * N * N).enumerate() {
-            write_matrix(lane, &k, matrix);
-        }
-    }
+    *positive
 }
 
 /// Place of a node in the list of a chunk, which has at most [`MAX_CHUNK`] elements.

@@ -28,14 +28,14 @@
 use std::array::from_fn;
 
 use super::block::{
-    BlockMotion, Derivatives, Gradient, MatrixLanes, MovedBlock, SymmetricLanes, TangentLanes,
+    BlockMotion, Gradient, MatrixLanes, MovedBlock, SymmetricLanes, TangentLanes, TensorLanes,
     add_hoop, add_products, deformation_gradient, determinant, elasticity,
 };
 use super::formulation::{Formulation, PlacedBlock, PointState};
 use super::results::ResultPoint;
 use super::shapes::IntegratedShape;
 use crate::materials::number::Positive;
-use crate::materials::{Lanes, Number, Strains, StressAtPoints};
+use crate::materials::{AnyLaw, Lanes, Number, Strains, StressAtPoints};
 
 /// The volume ratio of the element at every integration point: the first K of 1, x and y, made orthogonal.
 pub struct Dilatation<const K: usize>;
@@ -121,79 +121,69 @@ impl<const K: usize, const P: usize> VolumeFunctions<K, P> {
 }
 
 impl DilatedPoint {
-    /// The motion of a point with H of the mid configuration and half its change.
+    /// Takes H of the mid configuration and half its change.
     #[inline(always)]
-    fn new<const HOOP: bool>(gradient: Gradient, half: &Gradient) -> Self {
+    fn take_motion<const HOOP: bool>(&mut self, gradient: Gradient, half: &Gradient) {
         let back = Gradient {
-            h: half.h.map(|row| row.map(|g| g * -1.0)),
+            h: [
+                [half.h[0][0] * -1.0, half.h[0][1] * -1.0],
+                [half.h[1][0] * -1.0, half.h[1][1] * -1.0],
+            ],
             around: half.around * -1.0,
         };
         let ends = [gradient.plus(&back), gradient.plus(half)];
-        let strains = ends.map(|end| end.strain::<HOOP>());
-        let of_section = ends.map(
-            |Gradient {
-                 h: [[xx, xy], [yx, yy]],
-                 ..
-             }| xx + yy + (xx * yy - xy * yx),
-        );
+        self.gradient = gradient;
+        self.strains = [ends[0].strain::<HOOP>(), ends[1].strain::<HOOP>()];
+        let grown = |&[[xx, xy], [yx, yy]]: &TensorLanes| xx + yy + (xx * yy - xy * yx);
+        let of_section = [grown(&ends[0].h), grown(&ends[1].h)];
+        self.dilatation = of_section;
         let [[xx, xy], [yx, yy]] = deformation_gradient(&gradient.h);
         let over_j = Lanes::all(1.0) / determinant(&gradient.h);
-        let mean = strains[0].with(&strains[1], |e0, e1| (e0 + e1) * 0.5);
         // K of the section, det F_m (F_m^T F_m)^-1
-        let k = SymmetricLanes::new(
+        self.k = SymmetricLanes::new(
             (xy * xy + yy * yy) * over_j,
             (xx * xx + yx * yx) * over_j,
             Lanes::ZERO,
             (xx * xy + yx * yy) * over_j * -1.0,
         );
-        let half_c = SymmetricLanes::new(mean.x + 0.5, mean.y + 0.5, Lanes::ZERO, mean.w);
-        let point = DilatedPoint {
-            gradient,
-            strains,
-            dilatation: of_section,
-            half_c,
-            k,
-            ..DilatedPoint::default()
-        };
-        if !HOOP {
-            return point;
-        }
-        // J = J_section (1 + h): dJ = (1 + h_m) dJ_section + (mean of J_section) dh,  dE_33 = (1 + h_m) dh
-        let stretch = gradient.stretch_around();
-        let mean_j = (of_section[0] + of_section[1]) * 0.5 + 1.0;
-        DilatedPoint {
-            dilatation: from_fn(|i| {
-                of_section[i] + ends[i].around + of_section[i] * ends[i].around
-            }),
-            half_c: SymmetricLanes {
-                z: mean.z + 0.5,
-                ..half_c
-            },
-            k: SymmetricLanes {
-                z: mean_j / stretch,
-                ..k.times(stretch)
-            },
-            ..point
+        let mean = (self.strains[0]).with(&self.strains[1], |e0, e1| (e0 + e1) * 0.5);
+        self.half_c = SymmetricLanes::new(mean.x + 0.5, mean.y + 0.5, Lanes::ZERO, mean.w);
+        if HOOP {
+            // J = J_section (1 + h): dJ = (1 + h_m) dJ_section + (mean of J_section) dh,  dE_33 = (1 + h_m) dh
+            let stretch = gradient.stretch_around();
+            let mean_j = (of_section[0] + of_section[1]) * 0.5 + 1.0;
+            for i in 0..2 {
+                let around = ends[i].around;
+                self.dilatation[i] = of_section[i] + around + of_section[i] * around;
+            }
+            self.half_c.z = mean.z + 0.5;
+            self.k = self.k.times(stretch);
+            self.k.z = mean_j / stretch;
         }
     }
 
     /// Takes the strain that the material has, eq. (2.10), and the means, with theta - 1 of start and end.
     #[inline(always)]
     fn take_volume<const HOOP: bool>(&mut self, theta: [Lanes; 2]) {
-        let [j0, j1] = self.dilatation.map(|j| j + 1.0);
+        let [j0, j1] = [self.dilatation[0] + 1.0, self.dilatation[1] + 1.0];
         let inverse = Lanes::all(1.0) / (j0 * j1);
         // rho - 1
-        let mut excess: [Lanes; 2] =
-            from_fn(|i| (theta[i] - self.dilatation[i]) * [j1, j0][i] * inverse);
+        let mut excess = [
+            (theta[0] - self.dilatation[0]) * j1 * inverse,
+            (theta[1] - self.dilatation[1]) * j0 * inverse,
+        ];
         self.slopes = [Lanes::all(1.0), Lanes::ZERO];
         if HOOP {
             // c² - 1 = (c - 1)(c + 1) with c - 1 = (rho - 1)/(c² + c + 1)
-            let c = excess.map(|excess| {
+            let cube_root = |excess: Lanes| {
                 let rho = excess + 1.0;
                 let inverse = rho.inverse_cbrt();
                 rho * (inverse * inverse)
-            });
-            excess = from_fn(|i| excess[i] * (c[i] + 1.0) / (c[i] * c[i] + c[i] + 1.0));
+            };
+            let c = [cube_root(excess[0]), cube_root(excess[1])];
+            for i in 0..2 {
+                excess[i] = excess[i] * (c[i] + 1.0) / (c[i] * c[i] + c[i] + 1.0);
+            }
             let mean = (c[0] + c[1]) * 0.5;
             self.slopes = [
                 (c[0] + c[1]) / (c[0] * c[0] + c[0] * c[1] + c[1] * c[1]),
@@ -249,7 +239,7 @@ impl DilatedPoint {
 #[inline(always)]
 fn stresses<S, const K: usize, const N: usize, const P: usize, const HOOP: bool>(
     at: &MovedBlock<N, P, VolumeFunctions<K, P>>,
-    law: &impl StressAtPoints<Lanes, HOOP>,
+    law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
     positive: &mut Positive,
 ) -> [DilatedPoint; P]
 where
@@ -257,19 +247,18 @@ where
 {
     let mut points = [DilatedPoint::default(); P];
     let mut theta = [[Lanes::ZERO; K]; 2];
-    let (u, functions) = (at.derivatives::<S, HOOP>(), at.reference);
+    let functions = at.reference;
     for p in 0..P {
-        points[p] = match &u {
-            Derivatives::At(u) => {
-                DilatedPoint::new::<HOOP>(at.gradient::<HOOP>(p, u), &Gradient::default())
+        let gradient = |u| at.gradient::<S, HOOP>(p, u);
+        let point = &mut points[p];
+        match &at.motion {
+            BlockMotion::At(u) => point.take_motion::<HOOP>(gradient(u), &Gradient::default()),
+            BlockMotion::Between(mid, half) => {
+                point.take_motion::<HOOP>(gradient(mid), &gradient(half));
             }
-            Derivatives::Between(mid, half) => {
-                let half = at.gradient::<HOOP>(p, half);
-                DilatedPoint::new::<HOOP>(at.gradient::<HOOP>(p, mid), &half)
-            }
-        };
-        let dilatation = points[p].dilatation;
-        *positive = points[p].gradient.is_positive::<HOOP>(*positive);
+        }
+        let dilatation = point.dilatation;
+        *positive = point.gradient.is_positive::<HOOP>(*positive);
         *positive = positive.and(dilatation[1] + 1.0);
         // theta - 1 = sum psi_k int psi_k (J - 1) dOmega/V, eq. (2.45)
         for (theta, j) in theta.iter_mut().zip(dilatation) {
@@ -287,7 +276,11 @@ where
         if HOOP {
             *positive = positive.and(point.theta);
         }
-        point.s = law.stress_at(p, &point.strains_in(&at.motion));
+        let [e0, e1] = &point.strains;
+        point.s = match &at.motion {
+            BlockMotion::At(_) => law.stress_at(p, &Strains::At(*e1)),
+            BlockMotion::Between(..) => law.stress_at(p, &Strains::between(e0, e1)),
+        };
         for k in 0..K {
             shared[k] += point.by_rho::<HOOP>() * point.inverse_j * functions.weighted[p][k];
         }
@@ -304,6 +297,8 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
 {
     type Reference = VolumeFunctions<K, P>;
 
+    const FOR_EACH_LAW: bool = K == 1 && !HOOP;
+
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference {
         VolumeFunctions::new(&placed.block.volume, placed.places)
     }
@@ -311,7 +306,7 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
     #[inline(always)]
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
         mut visit: impl FnMut(usize, &PointState),
     ) -> Positive {
         let mut positive = Positive::default();
@@ -339,7 +334,7 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         k: &mut MatrixLanes<N>,
     ) {
         let points = stresses::<S, K, N, P, HOOP>(at, law, &mut Positive::default());
@@ -402,8 +397,9 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
                 let rows = at.hoop_row::<S>(p);
                 add_hoop(k, (&gradients, &rows), (&f, stretch), (s.z, &c.0[2]));
                 let [[xx, xy], [yx, yy]] = f;
-                let of_node =
-                    |[x, y]: [Lanes; 2]| [yy * x - yx * y, xx * y - xy * x].map(|dj| dj * pressure);
+                let of_node = |[x, y]: [Lanes; 2]| {
+                    [(yy * x - yx * y) * pressure, (xx * y - xy * x) * pressure]
+                };
                 for b in 0..N {
                     for a in 0..b + 1 {
                         let (first, second) = (of_node(gradients[a]), of_node(gradients[b]));
@@ -415,19 +411,20 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
                 }
             }
         }
-        let theta: [_; K] = from_fn(|number| {
-            at.nodal_forces::<S, HOOP>(|p| {
+        let mut theta = [[[Lanes::ZERO; N]; 2]; K];
+        for number in 0..K {
+            theta[number] = at.nodal_forces::<S, HOOP>(|p| {
                 let weight = functions.weighted[p][number];
-                (points[p].gradient, points[p].k.times(weight))
-            })
-        });
+                (&points[p].gradient, points[p].k.times(weight))
+            });
+        }
         for number in 0..K {
             let mut x = at.nodal_forces::<S, HOOP>(|p| {
                 let of_function = match number {
                     0 => mixed[p],
                     _ => mixed[p].times(functions.values[p][number]),
                 };
-                (points[p].gradient, of_function)
+                (&points[p].gradient, of_function)
             });
             for i in 0..2 {
                 for a in 0..N {
@@ -452,7 +449,7 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
     #[inline(always)]
     fn results<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> [ResultPoint; P] {
         let points = stresses::<S, K, N, P, HOOP>(at, law, &mut Positive::default());
         from_fn(|p| ResultPoint {

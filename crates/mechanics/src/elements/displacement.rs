@@ -7,7 +7,7 @@ use super::block::{
 use super::formulation::{Formulation, PlacedBlock, PointState};
 use super::shapes::IntegratedShape;
 use crate::materials::number::Positive;
-use crate::materials::{Lanes, StressAtPoints};
+use crate::materials::{AnyLaw, Lanes, StressAtPoints};
 
 /// Strains of the displacements, E = (F^T F - I)/2, with E_33 = h + h²/2 of h = u_r/R in a body of revolution, eq. (2.31).
 pub struct Displacement;
@@ -15,17 +15,19 @@ pub struct Displacement;
 impl<const N: usize, const P: usize, const HOOP: bool> Formulation<N, P, HOOP> for Displacement {
     type Reference = ();
 
+    const FOR_EACH_LAW: bool = true;
+
     fn reference<S: IntegratedShape<N, P>>(_placed: &PlacedBlock<N, P>) {}
 
     #[inline(always)]
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, ()>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
         mut visit: impl FnMut(usize, &PointState),
     ) -> Positive {
-        let (mut positive, u) = (Positive::default(), at.derivatives::<S, HOOP>());
+        let mut positive = Positive::default();
         for p in 0..P {
-            let deformation = at.deformation::<HOOP>(p, &u, &mut positive);
+            let deformation = at.deformation::<S, HOOP>(p, &mut positive);
             let state = PointState {
                 gradient: &deformation.gradient,
                 strains: &deformation.strains,
@@ -47,12 +49,11 @@ impl<const N: usize, const P: usize, const HOOP: bool> Formulation<N, P, HOOP> f
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, ()>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         k: &mut MatrixLanes<N>,
     ) {
-        let u = at.derivatives::<S, HOOP>();
         for p in 0..P {
-            let deformation = at.deformation::<HOOP>(p, &u, &mut Positive::default());
+            let deformation = at.deformation::<S, HOOP>(p, &mut Positive::default());
             let volume = at.block.volume[p];
             let s = law.stress_at(p, &deformation.strains).times(volume);
             let c = law.tangent_at(p, &deformation.strains);

@@ -32,7 +32,7 @@ use super::results::ResultPoint;
 use super::shapes::{CORNERS, IntegratedShape};
 use super::stretch::{AddedStrain, MeanStrain, Tensor, Variation};
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, Number, Strains, StressAtPoints, Tangent};
+use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
 /// Strains of the displacements and A of the element: four, and in a body of revolution five.
 pub struct EnhancedStrain<const A: usize>;
@@ -201,7 +201,7 @@ fn product(a: &[Lanes; 2], b: &[Lanes; 2]) -> SymmetricLanes {
 }
 
 /// A block with enhanced strains in a motion under a law.
-struct Solution<'a, 'b, const A: usize, const HOOP: bool, L> {
+struct Solution<'a, 'b, const A: usize, const HOOP: bool, L: ?Sized> {
     at: &'a MovedBlock<'b, N, N, Modes<A>>,
     law: &'a L,
 }
@@ -230,7 +230,7 @@ impl Compatible {
     fn new<S: IntegratedShape<N, N>, const A: usize, const HOOP: bool>(
         at: &MovedBlock<N, N, Modes<A>>,
     ) -> Self {
-        let (u, modes) = (at.derivatives::<S, HOOP>(), at.reference);
+        let modes = at.reference;
         let (q, half) = match &at.motion {
             BlockMotion::At(u) => (hourglass(&modes.gamma, u), [Lanes::ZERO; 2]),
             BlockMotion::Between(mid, half) => {
@@ -249,8 +249,7 @@ impl Compatible {
             positive: Positive::default(),
         };
         for p in 0..N {
-            let Deformation { gradient, strains } =
-                at.deformation::<HOOP>(p, &u, &mut all.positive);
+            let Deformation { gradient, strains } = at.deformation::<S, HOOP>(p, &mut all.positive);
             let square = modes.square(p);
             all.gradients[p] = gradient;
             match strains {
@@ -271,7 +270,7 @@ impl Compatible {
     }
 }
 
-impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP>>
+impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     Solution<'_, '_, A, HOOP, L>
 {
     fn modes(&self) -> &Modes<A> {
@@ -612,7 +611,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
     #[inline(always)]
     fn for_each_state<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
         mut visit: impl FnMut(usize, &PointState),
     ) -> Positive {
         let states = Solution { at, law }.states::<S>();
@@ -624,13 +623,13 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
     ) -> (NodalLanes<N>, Positive) {
         let (states, weights) = (Solution { at, law }.states::<S>(), &at.block.volume);
         let modes = at.reference;
         let mut force = at.nodal_forces::<S, HOOP>(|p| {
             (
-                states.compatible.gradients[p],
+                &states.compatible.gradients[p],
                 states.s[p].times(weights[p]),
             )
         });
@@ -647,7 +646,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         k: &mut MatrixLanes<N>,
     ) {
         let solution = Solution { at, law };
@@ -733,7 +732,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
     #[inline(always)]
     fn results<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> [ResultPoint; N] {
         let states = Solution { at, law }.states::<S>();
         from_fn(|p| {
@@ -752,7 +751,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
     /// That of the stress that does work on the strains of the displacements.
     fn work<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> Lanes {
         Solution { at, law }
             .states::<S>()
@@ -762,10 +761,10 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
     /// The element keeps alpha: that of the end with the new variables, or with the old ones where none is found. Where a point
     /// has flown D is what Phi has more than the stored energy: that of the points alone would have an error of first order in
     /// alpha.
-    fn update<'z, S: IntegratedShape<N, N>, L: StressAtPoints<Lanes, HOOP>>(
+    fn update<'z, S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
-        law: &L,
-        after: impl Fn([&'z [f64]; LANES]) -> L,
+        law: &AnyLaw<HOOP>,
+        of_variables: impl Fn([&'z [f64]; LANES]) -> LawInLanes<'z>,
         (z1, own): (&'z mut BlockVariables, &mut BlockVariables),
     ) -> Lanes {
         let before = Solution { at, law };
@@ -779,8 +778,11 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         };
         let (mut alpha, has_flown) = (*alpha1, dissipated.0.map(|dissipated| dissipated != 0.0));
         if has_flown != [false; LANES] {
-            let law = after(z1.each_ref().map(Vec::as_slice));
-            let after = Solution { at, law: &law };
+            let law = of_variables(z1.each_ref().map(Vec::as_slice));
+            let after = Solution {
+                at,
+                law: law.any::<HOOP>(),
+            };
             let flown = after.least(end, alpha1);
             let is_found = |lane: usize| flown.iter().all(|a| a.0[lane].is_finite());
             for lane in (0..LANES).filter(|&lane| has_flown[lane] && is_found(lane)) {

@@ -2,11 +2,13 @@
 //! its nodes. Force, tangent, results, work and internal variables of elements side by side follow from these. Sections 2 and
 //! 4 of docs/theory.md (paper eq. 12).
 
-use super::block::{ElementBlock, Gradient, MatrixLanes, MovedBlock, NodalLanes, SymmetricLanes};
+use super::block::{
+    ElementBlock, Gradient, MatrixLanes, MovedBlock, NodalLanes, PointForces, SymmetricLanes,
+};
 use super::results::ResultPoint;
 use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, Number, Strains, StressAtPoints, Tangent};
+use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
 /// Deformation and stress at an integration point.
 pub struct PointState<'a> {
@@ -30,7 +32,7 @@ impl PointState<'_> {
     pub fn update<const HOOP: bool>(
         &self,
         p: usize,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         z1: &mut BlockVariables,
     ) -> Lanes {
         Lanes::of_lanes(|lane| law.update_at(lane, p, &self.strains.lane(lane), &mut z1[lane]))
@@ -62,6 +64,10 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     /// What elements have beside their points in the reference configuration.
     type Reference: Send + Sync;
 
+    /// Whether the force is compiled for each law that has formulas for elements side by side, as where a call of the law
+    /// takes a good part of its time.
+    const FOR_EACH_LAW: bool = false;
+
     /// Points at which the material has its stress.
     const POINTS: usize = P;
 
@@ -77,7 +83,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     /// follows. Gives whether det F is positive at all points.
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
         visit: impl FnMut(usize, &PointState),
     ) -> Positive;
 
@@ -85,19 +91,20 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     #[inline(always)]
     fn force<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
     ) -> (NodalLanes<N>, Positive) {
-        let mut points = [(Gradient::default(), SymmetricLanes::default()); P];
+        let mut forces = PointForces::default();
         let positive = Self::for_each_state::<S>(at, law, |p, state| {
-            points[p] = (*state.gradient, state.s.times(at.block.volume[p]));
+            let s = state.s.times(at.block.volume[p]);
+            forces.take::<N, HOOP, _>(at, p, state.gradient, &s);
         });
-        (at.nodal_forces::<S, HOOP>(|p| points[p]), positive)
+        (forces.sum::<S, N, HOOP>(), positive)
     }
 
     /// Adds the symmetric tangent K = dF/du (force/length): entries [a][b] with a <= b.
     fn add_tangent<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         k: &mut MatrixLanes<N>,
     );
 
@@ -105,7 +112,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     #[inline(always)]
     fn results<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> [ResultPoint; P] {
         let mut points = [ResultPoint::default(); P];
         Self::for_each_state::<S>(at, law, |p, state| {
@@ -118,7 +125,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     #[inline(always)]
     fn hourglass_energy<S: IntegratedShape<N, P>>(
         _at: &MovedBlock<N, P, Self::Reference>,
-        _law: &impl StressAtPoints<Lanes, HOOP>,
+        _law: &AnyLaw<HOOP>,
     ) -> Lanes {
         Lanes::ZERO
     }
@@ -127,7 +134,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     #[inline(always)]
     fn work<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> Lanes {
         let mut work = Lanes::ZERO;
         Self::for_each_state::<S>(at, law, |p, state| {
@@ -140,11 +147,11 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     }
 
     /// Writes the internal variables at the end of a motion: those of the points, and those of the elements. Gives the energy
-    /// dissipated on the way to them, int D dOmega (force length). `after` gives the law with variables of the points.
-    fn update<'z, S: IntegratedShape<N, P>, L: StressAtPoints<Lanes, HOOP>>(
+    /// dissipated on the way to them, int D dOmega (force length). `of_variables` gives the law with variables of the points.
+    fn update<'z, S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
-        law: &L,
-        _after: impl Fn([&'z [f64]; LANES]) -> L,
+        law: &AnyLaw<HOOP>,
+        _of_variables: impl Fn([&'z [f64]; LANES]) -> LawInLanes<'z>,
         (z1, _own): (&'z mut BlockVariables, &mut BlockVariables),
     ) -> Lanes {
         let mut dissipated = Lanes::ZERO;

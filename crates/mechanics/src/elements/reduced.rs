@@ -32,7 +32,7 @@ use super::hourglass::{Amplitudes, HourglassPotential, ModeStiffness, ModesInMot
 use super::results::ResultPoint;
 use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{Lanes, Number, Strains, StressAtPoints, Tangent};
+use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
 /// One strain and a potential of M modes: two, and in a ring four of E_33 more. Their stiffness comes from A enhanced strains.
 pub struct ReducedIntegration<const M: usize, const A: usize>;
@@ -129,10 +129,10 @@ impl<'a, const M: usize> Moved<'a, M> {
     #[inline(always)]
     fn new<S: IntegratedShape<N, N>, const HOOP: bool>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &'a impl StressAtPoints<Lanes, HOOP>,
+        law: &'a (impl StressAtPoints<Lanes, HOOP> + ?Sized),
     ) -> Self {
         let one = at.reference;
-        let (mut positive, u) = (Positive::default(), at.derivatives::<S, HOOP>());
+        let mut positive = Positive::default();
         let (mid, half) = match &at.motion {
             BlockMotion::At(u) => (one.gradient::<HOOP>(u), Gradient::default()),
             BlockMotion::Between(mid, half) => {
@@ -159,7 +159,7 @@ impl<'a, const M: usize> Moved<'a, M> {
         // E_33 at the four points at the start and at the end
         let (mut around, mut stretches) = ([[Lanes::ZERO; N]; 2], [Lanes::all(1.0); N]);
         for p in 0..N {
-            let deformation = at.deformation::<HOOP>(p, &u, &mut positive);
+            let deformation = at.deformation::<S, HOOP>(p, &mut positive);
             if HOOP {
                 let (start, end) = match deformation.strains {
                     Strains::At(e) => (e.z, e.z),
@@ -209,7 +209,7 @@ impl<'a, const M: usize> Moved<'a, M> {
     fn weighted_stress<const HOOP: bool>(
         &self,
         one: &OnePoint<M>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
     ) -> SymmetricLanes {
         match self.modes.metal_stress {
             Some(s) => s,
@@ -256,7 +256,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
     #[inline(always)]
     fn for_each_state<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
         mut visit: impl FnMut(usize, &PointState),
     ) -> Positive {
         let moved = Moved::new::<S, HOOP>(at, law);
@@ -276,7 +276,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
     ) -> (NodalLanes<N>, Positive) {
         let (moved, one) = (Moved::new::<S, HOOP>(at, law), at.reference);
         let s = moved.weighted_stress::<HOOP>(one, law);
@@ -304,7 +304,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         k: &mut MatrixLanes<N>,
     ) {
         let (moved, one) = (Moved::new::<S, HOOP>(at, law), at.reference);
@@ -391,7 +391,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
     #[inline(always)]
     fn results<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> [ResultPoint; N] {
         let mut points = [ResultPoint::default(); N];
         Self::for_each_state::<S>(at, law, |_, state| {
@@ -403,14 +403,14 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
     #[inline(always)]
     fn hourglass_energy<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> Lanes {
         Moved::new::<S, HOOP>(at, law).modes.energy
     }
 
     fn work<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
     ) -> Lanes {
         let moved = Moved::new::<S, HOOP>(at, law);
         let s = moved.weighted_stress::<HOOP>(at.reference, law);
@@ -420,10 +420,10 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
         }
     }
 
-    fn update<'z, S: IntegratedShape<N, N>, L: StressAtPoints<Lanes, HOOP>>(
+    fn update<'z, S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
-        law: &L,
-        _after: impl Fn([&'z [f64]; LANES]) -> L,
+        law: &AnyLaw<HOOP>,
+        _of_variables: impl Fn([&'z [f64]; LANES]) -> LawInLanes<'z>,
         (z1, own): (&'z mut BlockVariables, &mut BlockVariables),
     ) -> Lanes {
         let (moved, volume) = (Moved::new::<S, HOOP>(at, law), at.reference.volume);

@@ -6,7 +6,7 @@ use super::block::{
     times_transposed,
 };
 use crate::materials::number::LANES;
-use crate::materials::{Across, Lanes, Number, StressAtPoints};
+use crate::materials::{Across, AnyLaw, Lanes, Number};
 
 /// Strain energy of one element, and its stress and strain averaged over the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -133,7 +133,7 @@ impl Sums {
     pub fn add<const HOOP: bool>(
         &mut self,
         p: usize,
-        law: &impl StressAtPoints<Lanes, HOOP>,
+        law: &AnyLaw<HOOP>,
         point: &ResultPoint,
         weight: Lanes,
     ) {

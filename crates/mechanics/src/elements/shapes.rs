@@ -106,29 +106,29 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
     /// The shape functions.
     const FUNCTIONS: ShapeFunctions<N, P>;
 
-    /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at every point.
+    /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at a point.
     #[inline(always)]
-    fn derivatives(v: &[Lanes; N]) -> [[Lanes; 2]; P] {
-        let mut derivatives = [[Lanes::ZERO; 2]; P];
-        for p in 0..P {
-            derivatives[p] = derivative(v, &Self::FUNCTIONS.natural[p]);
+    fn derivative(p: usize, v: &[Lanes; N]) -> [Lanes; 2] {
+        let mut sum = [Lanes::ZERO; 2];
+        for a in 0..N {
+            let [r, s] = Self::FUNCTIONS.natural[p][a];
+            sum[0] += v[a] * r;
+            sum[1] += v[a] * s;
         }
-        derivatives
+        sum
     }
 
-    /// A field at every point.
+    /// A field at a point.
     #[inline(always)]
-    fn field(v: &[Lanes; N]) -> [Lanes; P] {
-        let mut values = [Lanes::ZERO; P];
-        for p in 0..P {
-            for a in 0..N {
-                values[p] += v[a] * Self::FUNCTIONS.values[p][a];
-            }
+    fn value(p: usize, v: &[Lanes; N]) -> Lanes {
+        let mut value = Lanes::ZERO;
+        for a in 0..N {
+            value += v[a] * Self::FUNCTIONS.values[p][a];
         }
-        values
+        value
     }
 
-    /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivatives`].
+    /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivative`] at all points.
     #[inline(always)]
     fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N] {
         let mut sums = [Lanes::ZERO; N];
@@ -149,17 +149,6 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
     fn nodal_volumes(x: &SMatrix<f64, 2, N>, thickness: Thickness) -> SVector<f64, N>;
 }
 
-/// sum_a v_a dh_a/dr_i.
-#[inline(always)]
-fn derivative<const N: usize>(v: &[Lanes; N], natural: &[[f64; 2]; N]) -> [Lanes; 2] {
-    let mut sum = [Lanes::ZERO; 2];
-    for a in 0..N {
-        sum[0] += v[a] * natural[a][0];
-        sum[1] += v[a] * natural[a][1];
-    }
-    sum
-}
-
 /// The triangle: linear shape functions h = (1 - r - s, r, s) at its centroid.
 pub struct Triangle;
 
@@ -171,8 +160,8 @@ impl IntegratedShape<3, 1> for Triangle {
     };
 
     #[inline(always)]
-    fn derivatives(v: &[Lanes; 3]) -> [[Lanes; 2]; 1] {
-        [[v[1] - v[0], v[2] - v[0]]]
+    fn derivative(_p: usize, v: &[Lanes; 3]) -> [Lanes; 2] {
+        [v[1] - v[0], v[2] - v[0]]
     }
 
     #[inline(always)]
@@ -222,12 +211,12 @@ impl IntegratedShape<4, 4> for Quadrilateral {
 
     /// dv/dr depends on s alone and dv/ds on r alone: both follow from the differences along the edges.
     #[inline(always)]
-    fn derivatives(v: &[Lanes; 4]) -> [[Lanes; 2]; 4] {
+    fn derivative(p: usize, v: &[Lanes; 4]) -> [Lanes; 2] {
         let (bottom, top) = (v[1] - v[0], v[2] - v[3]);
         let (left, right) = (v[3] - v[0], v[2] - v[1]);
-        let r = [bottom * NEAR + top * FAR, bottom * FAR + top * NEAR];
-        let s = [left * NEAR + right * FAR, left * FAR + right * NEAR];
-        [[r[0], s[0]], [r[0], s[1]], [r[1], s[1]], [r[1], s[0]]]
+        let [below, above] = [[NEAR, FAR], [FAR, NEAR]][p / 2];
+        let [before, behind] = [[NEAR, FAR], [FAR, NEAR]][(p + 1) / 2 % 2];
+        [bottom * below + top * above, left * before + right * behind]
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use super::hyperelastic::Hyperelastic;
-use super::number::{LANES, Number};
+use super::number::{LANES, Lanes, Number};
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
@@ -152,6 +152,9 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         0.0
     }
 }
+
+/// The stress of elements side by side by any law.
+pub type AnyLaw<'a, const HOOP: bool> = dyn StressAtPoints<Lanes, HOOP> + 'a;
 
 /// The stresses of an elastic law.
 pub struct Elastic<'a, L>(pub &'a L);

@@ -77,9 +77,8 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         T: Number,
     {
         let (s, n) = (self.stress(&change.mean), change.change());
-        corrected_stress::<T, HOOP>(&s, &n, || {
-            self.energy_change(change) - s.contract::<HOOP>(&n)
-        })
+        let f = self.energy_change(change) - s.contract::<HOOP>(&n);
+        corrected_stress::<T, HOOP>(&s, &n, f)
     }
 
     /// Symmetric part of 2 dS/dE1 of [`Self::mean_stress`] (force/length^2): `corrected_tangent` with C = C(E_m) and
@@ -90,14 +89,10 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         T: Number,
     {
         let (c, n) = (self.tangent(&change.mean), change.change());
-        corrected_tangent::<T, HOOP>(&c, &n, || {
-            let s = self.stress(&change.mean);
-            let f = self.energy_change(change) - s.contract::<HOOP>(&n);
-            (
-                f,
-                self.stress(&change.end) - s - c.times::<HOOP>(&change.half),
-            )
-        })
+        let s = self.stress(&change.mean);
+        let f = self.energy_change(change) - s.contract::<HOOP>(&n);
+        let g = self.stress(&change.end) - s - c.times::<HOOP>(&change.half);
+        corrected_tangent::<T, HOOP>(&c, &n, (f, &g))
     }
 
     /// Stress at a strain or between two.
@@ -130,9 +125,9 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
 pub fn corrected_stress<T: Number, const HOOP: bool>(
     s: &Symmetric<T>,
     n: &Symmetric<T>,
-    f: impl FnOnce() -> T,
+    f: T,
 ) -> Symmetric<T> {
-    let factor = over(f(), n.contract::<HOOP>(n), NO_CHANGE);
+    let factor = over(f, n.contract::<HOOP>(n), NO_CHANGE);
     *s + n.times(factor)
 }
 
@@ -146,9 +141,8 @@ pub fn corrected_stress<T: Number, const HOOP: bool>(
 pub fn corrected_tangent<T: Number, const HOOP: bool>(
     c: &Tangent<T>,
     n: &Symmetric<T>,
-    f_and_g: impl FnOnce() -> (T, Symmetric<T>),
+    (f, g): (T, &Symmetric<T>),
 ) -> Tangent<T> {
-    let (f, g) = f_and_g();
     let of_mixed = over(T::all(1.0), n.contract::<HOOP>(n), NO_CHANGE_OF_TANGENT);
     let of_unit = f * of_mixed * 2.0;
     let of_square = of_unit * of_mixed * -2.0;

@@ -231,14 +231,15 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
     /// ```
     #[inline(always)]
     fn energy_change(&self, change: &StrainChange<T>) -> T {
-        let [v0, v1] = [change.start, change.end].map(|e| Invariants::new::<HOOP>(&e));
+        let v0 = Invariants::new::<HOOP>(&change.start);
+        let v1 = Invariants::new::<HOOP>(&change.end);
         let StrainChange { mean, half, .. } = change;
         let of_plane = half.x + half.y;
         let dq = (mean.y * half.x + mean.x * half.y - mean.w * half.w * 2.0) * 8.0;
         let (di, dm, dn) = match HOOP {
             true => {
                 let around = ((mean.x + mean.y) * half.z + mean.z * of_plane) * 8.0;
-                let [q0, q1] = [&v0.g, &v1.g].map(minor);
+                let (q0, q1) = (minor(&v0.g), minor(&v1.g));
                 let dn = half.z * (q0 + q1) * 2.0 + mean.z * dq * 2.0;
                 ((of_plane + half.z) * 4.0, dq + around, dn)
             }

@@ -12,7 +12,7 @@ use super::symmetric::{Symmetric, Tangent};
 #[cfg(any(test, feature = "testing"))]
 use super::yielding::Yielding;
 use super::{
-    Across, Flow, LawCard, Metal, NeoHooke, Ogden, OneByOne, Plane, PlanePlastic,
+    Across, AnyLaw, Elastic, Flow, LawCard, Metal, NeoHooke, Ogden, OneByOne, Plane, PlanePlastic,
     PlaneSaintVenantKirchhoff, Plastic, Polynomial, SaintVenantKirchhoff, SmallStrainModuli,
     StrainMeasure, StressAtPoints,
 };
@@ -216,29 +216,39 @@ impl PlaneLaw {
     }
 }
 
-/// Evaluates an expression with a function that gives a plane law as the [`StressAtPoints`] of elements side by side, from the
-/// internal variables of their points.
-macro_rules! in_lanes {
-    ($law:expr, $of_variables:ident => $value:expr) => {
-        match $law {
-            $crate::materials::PlaneLaw::SaintVenantKirchhoff(law) => {
-                let $of_variables =
-                    |_: [&[f64]; $crate::materials::number::LANES]| $crate::materials::Elastic(law);
-                $value
-            }
-            $crate::materials::PlaneLaw::NeoHooke(law) => {
-                let $of_variables =
-                    |_: [&[f64]; $crate::materials::number::LANES]| $crate::materials::Elastic(law);
-                $value
-            }
-            law => {
-                let $of_variables = |z| $crate::materials::Committed::side_by_side(law, z);
-                $value
-            }
-        }
-    };
+/// A law of elements side by side, with the internal variables of their points.
+pub enum LawInLanes<'a> {
+    /// St. Venant-Kirchhoff material.
+    SaintVenantKirchhoff(Elastic<'a, PlaneSaintVenantKirchhoff>),
+    /// Neo-Hookean material.
+    NeoHooke(Elastic<'a, NeoHooke>),
+    /// A law that is evaluated for one element after the other.
+    OneByOne(OneByOne<Committed<'a>>),
 }
-pub(crate) use in_lanes;
+
+impl PlaneLaw {
+    /// The law of elements side by side with the variables of all their points.
+    #[inline(always)]
+    pub fn in_lanes<'a>(&'a self, variables: [&'a [f64]; LANES]) -> LawInLanes<'a> {
+        match self {
+            PlaneLaw::SaintVenantKirchhoff(law) => LawInLanes::SaintVenantKirchhoff(Elastic(law)),
+            PlaneLaw::NeoHooke(law) => LawInLanes::NeoHooke(Elastic(law)),
+            law => LawInLanes::OneByOne(Committed::side_by_side(law, variables)),
+        }
+    }
+}
+
+impl LawInLanes<'_> {
+    /// What is asked of it.
+    #[inline(always)]
+    pub fn any<const HOOP: bool>(&self) -> &AnyLaw<'_, HOOP> {
+        match self {
+            LawInLanes::SaintVenantKirchhoff(law) => law,
+            LawInLanes::NeoHooke(law) => law,
+            LawInLanes::OneByOne(law) => law,
+        }
+    }
+}
 
 /// A law with the internal variables that the last accepted increment has committed at the integration points of an
 /// element, point after point.

@@ -29,11 +29,12 @@ mod yield_curve;
 #[cfg(any(test, feature = "testing"))]
 pub mod yielding;
 
-pub use constitutive_law::{BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StressAtPoints};
+pub use constitutive_law::{
+    AnyLaw, BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StressAtPoints,
+};
 pub use hyperelastic::Hyperelastic;
 pub use invariants::{InvariantEnergy, VolumeEnergy};
-pub(crate) use law::in_lanes;
-pub use law::{Committed, Constants, Law, PlaneLaw};
+pub use law::{Committed, Constants, Law, LawInLanes, PlaneLaw};
 pub use law_card::LawCard;
 pub use neo_hooke::NeoHooke;
 pub use number::{Lanes, Number};

@@ -104,6 +104,7 @@ impl Number for f64 {
 
 /// A number of every element of a block; the default is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(align(16))]
 pub struct Lanes(pub [f64; LANES]);
 
 /// Which elements have had positive numbers only: all bits of their entry are set.

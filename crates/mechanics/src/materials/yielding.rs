@@ -143,9 +143,8 @@ impl Flow for Yielding {
         };
         let start = self.start(&change.start, z0);
         let mean = (start + end.stress) / 2.0;
-        corrected_stress::<f64, true>(&mean, &change.change(), || {
-            in_plane(&(end.stress - start), &end.flow) / 2.0
-        })
+        let f = in_plane(&(end.stress - start), &end.flow) / 2.0;
+        corrected_stress::<f64, true>(&mean, &change.change(), f)
     }
 
     /// With dZ/dE = I - (dS/dE)/G.
@@ -159,11 +158,10 @@ impl Flow for Yielding {
             z: 0.0,
             ..of_stress
         };
-        corrected_tangent::<f64, true>(&end.tangent, &change.change(), || {
-            let times = |e: &Symmetric| end.tangent.times::<true>(e);
-            let g = times(&end.flow) + of_stress - times(&of_stress) / self.g;
-            (in_plane(&of_stress, &end.flow) / 2.0, g / 2.0)
-        })
+        let times = |e: &Symmetric| end.tangent.times::<true>(e);
+        let g = times(&end.flow) + of_stress - times(&of_stress) / self.g;
+        let f = in_plane(&of_stress, &end.flow) / 2.0;
+        corrected_tangent::<f64, true>(&end.tangent, &change.change(), (f, &(g / 2.0)))
     }
 
     fn stored_energy(&self, e: &Symmetric, z: &[f64]) -> f64 {
