@@ -215,7 +215,7 @@ impl IntegratedShape<4, 4> for Quadrilateral {
         let (bottom, top) = (v[1] - v[0], v[2] - v[3]);
         let (left, right) = (v[3] - v[0], v[2] - v[1]);
         let [below, above] = [[NEAR, FAR], [FAR, NEAR]][p / 2];
-        let [before, behind] = [[NEAR, FAR], [FAR, NEAR]][(p + 1) / 2 % 2];
+        let [before, behind] = [[NEAR, FAR], [FAR, NEAR]][usize::from(p == 1 || p == 2)];
         [bottom * below + top * above, left * before + right * behind]
     }
 
