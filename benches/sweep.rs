@@ -28,8 +28,8 @@ fn grid(n: usize, element_type: ElementType, law: Law) -> Model {
         material: 0,
         thickness: 1.0,
     });
-    let count = element_type.shape.topology().nodes;
-    let is_triangle = count.is_multiple_of(3);
+    let count = element_type.topology().nodes;
+    let is_triangle = element_type.topology().sides.len() == 3;
     // a quadratic element covers two steps of the grid of the nodes
     let step = if matches!(count, 3 | 4) { 1 } else { 2 };
     let side = step * n + 1;
