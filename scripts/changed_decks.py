@@ -208,18 +208,22 @@ def _hand(matrix: Array) -> float:
 def _turned_loads(rows: list[list[str]], matrix: Array) -> list[list[str]]:
     """Rows of `*DLOAD`: gravity, body forces, pressures, tractions."""
     forces: dict[str, Array] = {}
+    given: dict[str, Array] = {}
     new: list[list[str]] = []
     for row in rows:
         if row[1] in ("BX", "BY"):
-            forces.setdefault(row[0], np.zeros(2))["XY".index(row[1][1])] += float(row[2])
+            axis = "XY".index(row[1][1])
+            forces.setdefault(row[0], np.zeros(2))[axis] += float(row[2])
+            given.setdefault(row[0], np.zeros(2))[axis] = 1.0
         elif row[1] == "GRAV" or row[1].startswith("TRVEC"):
             new.append([*row[:3], *_written(matrix @ _numbers(row[3:5]))])
         else:
             new.append(row)
     for target, force in forces.items():
-        for axis, value in zip("XY", matrix @ force):
-            if value != 0.0:
-                new.append([target, "B" + axis, repr(float(value))])
+        # a load of zero takes that of an earlier step away
+        for axis, value in enumerate(matrix @ force):
+            if (np.abs(matrix) @ given[target])[axis] > 0.0:
+                new.append([target, "B" + "XY"[axis], repr(float(value))])
     return new
 
 

@@ -91,6 +91,14 @@ def test_two_corners_that_meet_do_not_depend_on_the_way_of_the_passes(
     assert found["VTKHDF/PointData/V"].max() < TOLERANCE
 
 
+def test_a_load_that_is_taken_back_stays_so(tmp_path: Path) -> None:
+    path = tmp_path / "deck.inp"
+    path.write_text("*NODE\n1, 0., 0.\n*STEP\n*STATIC\n0.5, 1.\n*DLOAD\nALL, BY, 0.\n*END STEP\n")
+    mirrored = changed.turned(Deck.read(path), np.diag([1.0, -1.0]))
+    (load,) = mirrored.find("DLOAD")
+    assert load.rows == [["ALL", "BY", "0.0"]]
+
+
 def test_it_says_what_cannot_be_written_otherwise(tmp_path: Path) -> None:
     deck = flat(binary(), Deck.read(EVERY_CARD).write(tmp_path / "every_card.inp"))
     with pytest.raises(Unchangeable, match="ALPHA damps the velocity itself"):
