@@ -119,7 +119,7 @@ need_program() {
     if [ -x "$PROGRAM" ]; then
         say "building (release) what has changed"
     else
-        say "building (release); the first time this takes about five minutes of processor time," \
+        say "building (release); the first time this takes about six minutes of processor time," \
             "shared by $(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1) processors"
     fi
     (cd "$ROOT" && cargo build --release "${quiet[@]}" --locked "${FEATURES[@]}" </dev/null) ||
