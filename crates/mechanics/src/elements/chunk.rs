@@ -19,7 +19,9 @@ use super::motion::{Motion, TangentPart, take_positive_part};
 use super::results::{ElementResult, PointResult, ResultPoint, Sums};
 use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
-use crate::materials::{AnyLaw, Elastic, Lanes, LawInLanes, Number, PlaneLaw, Viscosity};
+use crate::materials::{
+    AnyLaw, Elastic, Lanes, LawInLanes, Number, PlaneLaw, StressAtPoints, Viscosity,
+};
 use crate::model::Thickness;
 
 /// Elements of a chunk at most.
@@ -290,39 +292,44 @@ where
     /// Adds the forces of all blocks to the sums, of the material or of its viscosity.
     fn sweep(&self, motion: Motion, viscosity: Option<&Viscosity>) -> Positive {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut positive = Positive::default();
         if !self.is_strained(motion) {
-            return positive;
+            return Positive::default();
         }
-        let blocks = 0..self.blocks.len();
         match (&self.law, viscosity) {
             (PlaneLaw::SaintVenantKirchhoff(law), None) if F::FOR_EACH_LAW => {
-                for number in blocks {
-                    let at = self.moved(number, motion);
-                    let of_block = F::force::<S>(&at, &Elastic(law));
-                    positive = positive.both(add_force(&at, &of_block, &mut sums));
-                }
+                self.add_elastic(motion, &Elastic(law), &mut sums)
             }
             (PlaneLaw::NeoHooke(law), None) if F::FOR_EACH_LAW => {
-                for number in blocks {
-                    let at = self.moved(number, motion);
-                    let of_block = F::force::<S>(&at, &Elastic(law));
-                    positive = positive.both(add_force(&at, &of_block, &mut sums));
-                }
+                self.add_elastic(motion, &Elastic(law), &mut sums)
             }
             _ => {
-                for number in blocks {
-                    let (at, law) = (
-                        self.moved(number, motion),
-                        self.law_of(number, motion.committed),
-                    );
+                let mut positive = Positive::default();
+                for number in 0..self.blocks.len() {
+                    let at = self.moved(number, motion);
+                    let law = self.law_of(number, motion.committed);
                     let of_block = match viscosity {
                         Some(viscosity) => Self::force(&at, viscosity),
                         None => Self::force(&at, law.any()),
                     };
                     positive = positive.both(add_force(&at, &of_block, &mut sums));
                 }
+                positive
             }
+        }
+    }
+
+    /// Adds the forces of all blocks by a law without internal variables to the sums.
+    fn add_elastic(
+        &self,
+        motion: Motion,
+        law: &impl StressAtPoints<Lanes, HOOP>,
+        sums: &mut [[f64; 2]],
+    ) -> Positive {
+        let mut positive = Positive::default();
+        for number in 0..self.blocks.len() {
+            let at = self.moved(number, motion);
+            let of_block = F::force::<S>(&at, law);
+            positive = positive.both(add_force(&at, &of_block, sums));
         }
         positive
     }

@@ -276,11 +276,7 @@ where
         if HOOP {
             *positive = positive.and(point.theta);
         }
-        let [e0, e1] = &point.strains;
-        point.s = match &at.motion {
-            BlockMotion::At(_) => law.stress_at(p, &Strains::At(*e1)),
-            BlockMotion::Between(..) => law.stress_at(p, &Strains::between(e0, e1)),
-        };
+        point.s = law.stress_at(p, &point.strains_in(&at.motion));
         for k in 0..K {
             shared[k] += point.by_rho::<HOOP>() * point.inverse_j * functions.weighted[p][k];
         }
