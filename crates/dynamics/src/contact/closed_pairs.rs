@@ -18,8 +18,11 @@ pub struct ClosedPair {
     pub force: [f64; 2],
     /// Its coefficient of friction mu.
     pub mu: f64,
-    /// Whether it sticks or slides.
+    /// Whether it sticks or slides in the solution of the complementarity problem. The force of one that slides is at its
+    /// limit, though it need not have moved.
     pub state: ContactState,
+    /// Whether it has slipped.
+    pub slips: bool,
 }
 
 impl ClosedPair {
@@ -31,7 +34,19 @@ impl ClosedPair {
             force,
             mu: constraint.mu,
             state,
+            slips: state != ContactState::Stick,
         }
+    }
+
+    /// How far its friction is beyond that of a coefficient mu, or off it where the pair slips (force), eq. (3.6).
+    ///
+    /// ```text
+    /// |Pt| - mu Pn,   of a pair that slips ||Pt| - mu Pn|
+    /// ```
+    pub fn out_of_cone(&self, mu: f64) -> f64 {
+        let [pn, pt] = self.force;
+        let excess = pt.abs() - mu * pn;
+        if self.slips { excess.abs() } else { excess }
     }
 
     /// Its constraint between other configurations, at whose start the same target holds it.
@@ -75,6 +90,14 @@ impl ClosedPairs {
         assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
     }
 
+    /// Says which of the pairs at their limits have slipped. Without friction a pair always slips.
+    pub fn mark_slips(&mut self, has_moved: impl Fn(ConstraintKey) -> bool) {
+        for pair in &mut self.0 {
+            pair.slips =
+                pair.state != ContactState::Stick && (pair.mu == 0.0 || has_moved(pair.key));
+        }
+    }
+
     /// Keeps the pairs for which a condition holds.
     pub fn retain(&mut self, holds: impl Fn(&ClosedPair) -> bool) {
         self.0.retain(holds);
@@ -105,10 +128,9 @@ impl ClosedPairs {
         self.0.is_empty()
     }
 
-    /// Number of pairs that stick.
+    /// Number of pairs that do not slip.
     pub fn sticking(&self) -> usize {
-        let sticks = |pair: &&ClosedPair| pair.state == ContactState::Stick;
-        self.0.iter().filter(sticks).count()
+        self.0.iter().filter(|pair| !pair.slips).count()
     }
 
     /// Whether a constraint is closed.
@@ -123,9 +145,12 @@ impl ClosedPairs {
 
     /// State of a constraint; a node that has come to another segment keeps the one it had.
     pub fn state(&self, key: ConstraintKey) -> ContactState {
-        self.find(key)
-            .or(self.of_slave(key.slave).first())
-            .map_or(ContactState::Open, |pair| pair.state)
+        (self.last_of(key)).map_or(ContactState::Open, |pair| pair.state)
+    }
+
+    /// The pair of a constraint; of a node that has come to another segment, its pair there.
+    pub fn last_of(&self, key: ConstraintKey) -> Option<&ClosedPair> {
+        self.find(key).or(self.of_slave(key.slave).first())
     }
 
     /// The pairs of a slave node.
@@ -139,5 +164,46 @@ impl ClosedPairs {
     fn find(&self, key: ConstraintKey) -> Option<&ClosedPair> {
         let place = self.0.binary_search_by_key(&key, |pair| pair.key).ok()?;
         Some(&self.0[place])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing;
+    use super::*;
+
+    fn pair(state: ContactState, slips: bool, pt: f64) -> ClosedPair {
+        ClosedPair {
+            force: [2.0, pt],
+            mu: 0.5,
+            state,
+            slips,
+            ..testing::closed_pair(0, 0)
+        }
+    }
+
+    #[test]
+    fn too_little_friction_is_out_of_the_cone_where_a_pair_slips() {
+        let out = |slips, pt| pair(ContactState::SlipPlus, slips, pt).out_of_cone(0.5);
+        assert_eq!([1.25, -1.25].map(|pt| out(false, pt)), [0.25; 2]);
+        assert_eq!([1.25, -0.75].map(|pt| out(true, pt)), [0.25; 2]);
+        assert_eq!(out(false, 0.75), -0.25);
+    }
+
+    #[test]
+    fn only_a_pair_at_its_limit_slips_and_one_without_friction_always() {
+        let slips = |state, mu, has_moved| {
+            let mut closed = ClosedPairs(vec![ClosedPair {
+                mu,
+                ..pair(state, true, 1.0)
+            }]);
+            closed.mark_slips(|_| has_moved);
+            assert_eq!(closed.sticking(), usize::from(!closed.0[0].slips));
+            closed.0[0].slips
+        };
+        assert!(!slips(ContactState::Stick, 0.5, true));
+        assert!(slips(ContactState::SlipMinus, 0.5, true));
+        assert!(!slips(ContactState::SlipMinus, 0.5, false));
+        assert!(slips(ContactState::SlipMinus, 0.0, false));
     }
 }

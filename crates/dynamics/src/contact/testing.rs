@@ -78,6 +78,7 @@ pub(crate) fn closed_pair(slave: usize, segment: usize) -> ClosedPair {
         force: [0.0; 2],
         mu: 0.0,
         state: ContactState::Stick,
+        slips: false,
     }
 }
 

@@ -338,7 +338,9 @@ impl<'m> Attempt<'_, 'm> {
             let correction = trace.correction();
             if !ends {
                 equal_forces.take_in(correction, settled);
-                factors.take_in(correction, equal_forces.moves_more())?;
+                // friction that falls with the slip rate moves away from that at rest
+                let may_grow = equal_forces.moves_more() || contact.friction_moves;
+                factors.take_in(correction, may_grow)?;
                 if number >= SLOW_PASSES {
                     let progress = [correction, factors.rate(), problem.settings.tolerance];
                     let same_pairs = contact.forces.are_of_same_pairs();
@@ -404,13 +406,8 @@ impl<'m> Attempt<'_, 'm> {
             self.set,
             kept_beyond_ends(pass, problem.integration.has_rates),
         );
-        contact.find(
-            problem,
-            self.workspace,
-            (start, self.interval),
-            &v.u,
-            of_set,
-        );
+        let of_increment = (start, self.interval, pass == 0);
+        contact.find(problem, self.workspace, of_increment, &v.u, of_set);
 
         // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
         let last = EarlierPass::new(&v.equilibrium, correction, self.interval.dt);
@@ -655,6 +652,7 @@ impl<'m> Attempt<'_, 'm> {
         v: &mut Vectors,
         is_balanced: bool,
     ) -> Result<Solved, Cause> {
+        contact.take_own_friction(self.problem, self.start, self.interval);
         contact.take_left_out(self.problem, &v.u);
         let v0p = (contact.impulses).velocity(self.workspace, self.start)?;
         let mut u = sum(&self.start.u, d);

@@ -4,10 +4,11 @@
 use smallvec::SmallVec;
 
 use super::contact_system::{FEW, Guess, Response};
-use crate::contact::tolerances::SETTLED_OVERLAP;
+use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP, SOLVED_SLIP};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::System;
+use crate::linear::larger;
 
 /// Constraints with the forces (or impulses) of those that are closed.
 #[derive(Debug, Clone, Default)]
@@ -158,8 +159,28 @@ impl ContactForces {
             response.gaps_and_slips(system, self.constraints.iter(), after);
             entered = self.enter(inside, after, overlap);
         }
+        self.mark_slips(&choice);
         self.choice = choice;
         Ok(response.end(system, du)?)
+    }
+
+    /// Says which of the closed pairs slip in the solution, Dt_f and g_f being slip and gap without contact forces,
+    ///
+    /// ```text
+    /// |Dt| > 1e-10 max(|g_f|, |Dt_f|, |Dt - Dt_f|) + 1e-12 l    eq. (3.25)
+    /// ```
+    fn mark_slips(&mut self, Choice { free, after, .. }: &Choice) {
+        let constraints = &self.constraints;
+        self.closed.mark_slips(|key| {
+            let place = constraints.binary_search_by_key(&key, |constraint| constraint.key);
+            place.is_ok_and(|k| {
+                let ([gap, free], [_, slip]) = (free[k], after[k]);
+                let terms = [gap, free, slip - free].map(f64::abs);
+                let round_off = SOLVED_SLIP * terms.into_iter().fold(0.0, larger)
+                    + SOLVED_GAP * constraints[k].scale;
+                slip.abs() > round_off
+            })
+        });
     }
 
     /// Lets constraints into the problem that would overlap, with the given gaps after the correction, by
@@ -214,7 +235,7 @@ mod tests {
     ///
     /// By hand: Q = G W B^T = [7/2, 0; 7/8, 7/4], constant terms g + Gn y = -7/2 and
     /// Dt + Gt y = 11/8.
-    fn solved(mu: f64, method: LcpMethod) -> ([f64; 2], ContactState, Vec<f64>) {
+    fn solved(mu: f64, method: LcpMethod) -> (ClosedPair, Vec<f64>) {
         let map = Transformation::identity(DOFS);
         let elements: Vec<Vec<usize>> = (0..DOFS).map(|dof| vec![dof, (dof + 1) % DOFS]).collect();
         let mut stiffness = Assembled::new(&map, &elements);
@@ -230,7 +251,19 @@ mod tests {
         let solved = forces.solve([&[0.0; DOFS], &[1.0; DOFS]], None, &mut system, &mut du);
         solved.expect("solved");
         let pair = forces.closed.iter().next().expect("closed");
-        (pair.force, pair.state, du)
+        (pair.clone(), du)
+    }
+
+    #[test]
+    fn a_pair_at_its_limit_slips_only_if_it_is_pushed_beyond() {
+        // it sticks with |Pt| = 9/7
+        for method in [LcpMethod::Hybrid, LcpMethod::Lemke] {
+            for (excess, slips) in [(0.0, false), (1e-14, false), (-1e-6, true)] {
+                let (pair, _) = solved(9.0 / 7.0 + excess, method);
+                assert_eq!(pair.slips, slips, "{method:?} {excess:e}");
+            }
+            assert!(solved(0.0, method).0.slips, "nothing holds it");
+        }
     }
 
     #[test]
@@ -241,8 +274,10 @@ mod tests {
                 (2.0, ContactState::Stick, -9.0 / 7.0),
                 (0.5, ContactState::SlipPlus, -0.5),
             ] {
-                let (force, found, du) = solved(mu, method);
-                assert_eq!(found, state, "{method:?}");
+                let (pair, du) = solved(mu, method);
+                let force = pair.force;
+                assert_eq!(pair.state, state, "{method:?}");
+                assert_eq!(pair.slips, state != ContactState::Stick, "{method:?}");
                 assert!((force[0] - 1.0).abs() < 1e-13, "{method:?} {force:?}");
                 assert!((force[1] - pt).abs() < 1e-13, "{method:?} {force:?}");
                 for (dof, du) in du.iter().enumerate() {

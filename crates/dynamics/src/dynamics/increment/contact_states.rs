@@ -6,7 +6,7 @@ use super::impulses::Impulses;
 use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
 use crate::dynamics::results::State;
-use crate::dynamics::step::{Interval, StepProblem, Workspace};
+use crate::dynamics::step::{BeforeIterate, Interval, StepProblem, Workspace};
 
 /// The pairs of an increment.
 #[derive(Default)]
@@ -19,9 +19,14 @@ pub(crate) struct ContactStates {
     pub found: Vec<Constraint>,
     /// Its constraints that do not count.
     pub left_out: Vec<Constraint>,
+    /// Whether the coefficient of a pair differs from that of the pass before.
+    pub friction_moves: bool,
     /// The slave nodes whose constraints the passes find.
     choice: SlaveChoice,
 }
+
+/// Part of a coefficient of friction by which it moves.
+const MOVES: f64 = 1e-9;
 
 impl ContactStates {
     /// The pairs before the passes, some of them closed and some that touch. The passes begin with the constraints of the
@@ -35,22 +40,33 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U in an increment: those that count, and the others. Pairs that stick have
-    /// the friction at rest, others that of their slip. With `kept`, slave nodes keep their targets up to this overrun
-    /// beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U in an increment, which its passes begin with or not: those that count, and
+    /// the others. Pairs that have not slipped have the friction at rest, others that of their slip. With `kept`, slave nodes
+    /// keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
         workspace: &mut Workspace,
-        (start, interval): (&State, Interval),
+        (start, interval, begins): (&State, Interval, bool),
         u: &[f64],
         (set, kept): (ConstraintSet, Option<f64>),
     ) {
         let (last, held) = (&self.forces.constraints, (&start.contact, kept));
         let (way, choice) = ([&start.u[..], u], self.choice);
         workspace.constraints(problem, way, last, held, choice, &mut self.found);
-        let iterate = (&start.u[..], interval, &self.forces.closed);
-        (problem.frictions).give(problem.coordinates, iterate, &mut self.found);
+        let has_start_rate = begins && problem.integration.has_rates;
+        let before = BeforeIterate {
+            u0: &start.u,
+            interval,
+            closed: &self.forces.closed,
+            v0: has_start_rate.then_some(&start.v[..]),
+        };
+        (problem.frictions).give(problem.coordinates, before, &mut self.found);
+        let moves = |constraint: &Constraint| {
+            let before = (self.forces.closed).last_of(constraint.key);
+            before.is_some_and(|pair| (constraint.mu - pair.mu).abs() > MOVES * pair.mu)
+        };
+        self.friction_moves = !begins && self.found.iter().any(|c| c.mu_varies && moves(c));
         set.split(
             problem.positions(&start.u),
             &mut self.found,
@@ -75,8 +91,13 @@ impl ContactStates {
         let (near, held) = (&self.forces.constraints, (&start.contact, None));
         let (way, far) = ([&start.u[..], u], &mut self.found);
         workspace.constraints(problem, way, near, held, SlaveChoice::Far, far);
-        let iterate = (&start.u[..], interval, &self.forces.closed);
-        (problem.frictions).give(problem.coordinates, iterate, far);
+        let before = BeforeIterate {
+            u0: &start.u,
+            interval,
+            closed: &self.forces.closed,
+            v0: None,
+        };
+        (problem.frictions).give(problem.coordinates, before, far);
         let change = |constraint: &Constraint| du.map_or(0.0, |du| constraint.gap_change(du));
         let is_open = |constraint: &Constraint| constraint.gap + change(constraint) >= 0.0;
         let at = problem.configurations(&start.u, u);
@@ -89,6 +110,23 @@ impl ContactStates {
             self.choice = SlaveChoice::All;
         }
         stay_open
+    }
+
+    /// Gives the constraints the coefficients of the law at the slips and forces that their last solution has, at the end of
+    /// an increment.
+    pub fn take_own_friction(&mut self, problem: &StepProblem, start: &State, interval: Interval) {
+        let ContactForces {
+            constraints,
+            closed,
+            ..
+        } = &mut self.forces;
+        let before = BeforeIterate {
+            u0: &start.u,
+            interval,
+            closed,
+            v0: None,
+        };
+        (problem.frictions).give(problem.coordinates, before, constraints);
     }
 
     /// Takes over the constraints of the iterate, with the forces at hand.

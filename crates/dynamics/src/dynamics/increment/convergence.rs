@@ -161,8 +161,8 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether gaps and slips of the constraints are those of the contact law to the tolerance: closed
-    /// gaps zero, open ones not negative, no slip where a pair sticks, none along its friction where it
-    /// slides.
+    /// gaps zero, open ones not negative, no slip where a pair has not slipped in the last solution, none along its friction
+    /// where it slips.
     pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
         contact.iter().all(|(constraint, pair)| {
@@ -170,9 +170,9 @@ impl<'a> Scales<'a> {
             match pair {
                 None => constraint.gap >= -larger(most, overlap * constraint.scale),
                 Some(pair) => {
-                    let slips_along = match pair.state {
-                        ContactState::Stick => constraint.slip.abs(),
-                        state => -state.slip_sign() * constraint.slip,
+                    let slips_along = match pair.slips {
+                        false => constraint.slip.abs(),
+                        true => -pair.state.slip_sign() * constraint.slip,
                     };
                     constraint.gap.abs() <= most
                         && (constraint.mu == 0.0 || slips_along <= most)
@@ -185,13 +185,8 @@ impl<'a> Scales<'a> {
     /// Whether the forces of a pair obey the coefficient of friction of its own slip rate, where that
     /// depends on it.
     fn has_own_friction(&self, constraint: &Constraint, pair: &ClosedPair) -> bool {
-        let [pn, pt] = pair.force;
-        let most = constraint.mu * pn;
-        let excess = match pair.state {
-            ContactState::Stick => pt.abs() - most,
-            _ => (pt.abs() - most).abs(),
-        };
-        !constraint.mu_varies || excess <= self.tolerance * most
+        let most = self.tolerance * constraint.mu * pair.force[0];
+        !constraint.mu_varies || pair.out_of_cone(constraint.mu) <= most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may

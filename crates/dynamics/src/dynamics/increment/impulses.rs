@@ -43,15 +43,13 @@ pub(crate) struct Impulses {
     seen: Option<Vec<f64>>,
     /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
     resultant: Vec<f64>,
-    /// The pairs that stuck in the last pass, with their normal forces; increasing.
+    /// The pairs that did not slip in the last pass, with their normal forces; increasing.
     sticking: Vec<(ConstraintKey, f64)>,
 }
 
-/// The pairs that stick, with their normal forces.
+/// The pairs that do not slip, be they at their limits, with their normal forces.
 fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
-    let stuck = closed
-        .iter()
-        .filter(|pair| pair.state == ContactState::Stick);
+    let stuck = closed.iter().filter(|pair| !pair.slips);
     stuck.map(|pair| (pair.key, pair.force[0])).collect()
 }
 
@@ -188,7 +186,7 @@ impl Impulses {
         Ok(())
     }
 
-    /// Impulses P0 = dt Pn of the constraints of bodies that turn that stuck in the last pass and neither land nor open,
+    /// Impulses P0 = dt Pn of the constraints of bodies that turn that did not slip in the last pass and neither land nor open,
     /// zero of all others, eq. (11.7); none where no body turns.
     fn held(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
         let turning = &problem.unknowns.turning;
@@ -277,7 +275,7 @@ impl Impulses {
     }
 
     /// Takes over the pairs in contact after a pass. Says whether the pairs are the same as before, those that have the impulse of
-    /// their force still stick, and the impulses are theirs. After some changes it keeps its set of pairs: impulses of any
+    /// their force still do not slip, and the impulses are theirs. After some changes it keeps its set of pairs: impulses of any
     /// set take energy, and never give it.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
         self.sticking = match problem.unknowns.turning.are_driven() {

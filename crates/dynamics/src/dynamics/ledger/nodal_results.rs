@@ -16,7 +16,6 @@ use crate::dynamics::results::{
     ContactResultant, FrictionResults, Landing, NodalResults, NodeMass, NodeStatus, State,
 };
 use crate::dynamics::step::{Equilibrium, Interval, SlaveFaces, StepProblem};
-use crate::lcp::ContactState;
 use crate::linear::larger;
 use crate::model::{Bodies, ContactMass, Model};
 use crate::vectors::cross;
@@ -71,10 +70,10 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     for (constraint, pair) in solved.contact.forces.iter() {
         let gap = end_gap(problem, solved, constraint);
         of_masters.add(constraint, gap);
-        let status = match pair.map(|pair| pair.state) {
+        let status = match pair.map(|pair| pair.slips) {
             None => NodeStatus::Open,
-            Some(ContactState::Stick) => NodeStatus::Stick,
-            Some(_) => NodeStatus::Slip,
+            Some(false) => NodeStatus::Stick,
+            Some(true) => NodeStatus::Slip,
         };
         for slave in constraint.named_slaves() {
             results.gap[slave] = results.gap[slave].min(gap);
@@ -273,7 +272,7 @@ pub(crate) fn contact_resultants(
         r.normal += pn;
         r.tangential += pt;
         r.closed += 1;
-        r.sticking += usize::from(pair.state == ContactState::Stick);
+        r.sticking += usize::from(!pair.slips);
         r.cone_violation = larger(r.cone_violation, outside);
         largest_normal[contact] = larger(largest_normal[contact], pn);
         coefficients[contact].add(constraint.mu, pn);

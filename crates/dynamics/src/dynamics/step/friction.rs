@@ -4,12 +4,63 @@
 use super::loads::{Interval, TimePoint};
 use super::slave_faces::SlaveFaces;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, position};
-use crate::lcp::ContactState;
 use crate::linear::larger;
 use crate::model::{FormerFriction, Friction, Model, Step};
 
 /// Part of a slip that passes leave of it.
 const SOLVED_SLIP: f64 = 1e-9;
+
+/// Slip rate at the start of an increment, as a part of the largest speed at the pair, up to which the pair is at rest.
+const RESTING: f64 = 1e-9;
+
+/// What the coefficients of an iterate depend on besides its constraints.
+#[derive(Clone, Copy)]
+pub(crate) struct BeforeIterate<'a> {
+    /// Displacements U0 of the start.
+    pub u0: &'a [f64],
+    /// The increment.
+    pub interval: Interval,
+    /// The pairs closed in the solution before.
+    pub closed: &'a ClosedPairs,
+    /// Velocity V0 of the start, if there are velocities and the iterate is the one that the passes begin with.
+    pub v0: Option<&'a [f64]>,
+}
+
+impl BeforeIterate<'_> {
+    /// Slip rate that the coefficient of a constraint is taken at; none at rest.
+    ///
+    /// ```text
+    /// |Dt|/dt,   of the iterate that passes begin with |Bt V0|    eq. (3.10)
+    /// ```
+    fn slip_rate(&self, constraint: &Constraint) -> Option<f64> {
+        match (self.closed.last_of(constraint.key), self.v0) {
+            (Some(pair), _) if !pair.slips => None,
+            (_, None) => Some(constraint.slip / self.interval.dt),
+            (_, Some(v0)) => {
+                let fastest = constraint.dofs.iter().map(|&dof| v0[dof].abs());
+                let rate = constraint.tangential_motion(v0);
+                (rate.abs() > RESTING * fastest.fold(0.0, larger)).then_some(rate)
+            }
+        }
+    }
+
+    /// Normal force of every constraint in the solution before. The first constraint of a slave node that has left all its
+    /// targets has the forces that it had there.
+    fn normal_forces(&self, constraints: &[Constraint]) -> Vec<f64> {
+        let mut forces: Vec<f64> = (constraints.iter())
+            .map(|constraint| self.closed.force(constraint.key)[0])
+            .collect();
+        let mut first = 0;
+        for own in constraints.chunk_by(|a, b| a.key.slave() == b.key.slave()) {
+            if !own.iter().any(|c| self.closed.closes(c.key)) {
+                let before = self.closed.of_slave(own[0].key.slave());
+                forces[first] = before.iter().map(|pair| pair.force[0]).sum();
+            }
+            first += own.len();
+        }
+        forces
+    }
+}
 
 /// Friction of the contacts in a step.
 pub(crate) struct Frictions<'m> {
@@ -80,29 +131,29 @@ impl<'m> Frictions<'m> {
         }
     }
 
-    /// Gives the constraints of an iterate their coefficients: at rest where a pair sticks, else at the slip rate
-    /// |Dt|/dt of the increment; both under the pressure that the forces at hand exert on the slave node,
+    /// Gives the constraints of an iterate their coefficients: at rest where a pair has not slipped in the solution before,
+    /// else at the slip rate of the increment; both under the pressure that the forces at hand exert on the slave node,
     ///
     /// ```text
     /// p = |N|/A,  N = sum Bn^T Pn    eq. (3.13)
     /// ```
     ///
-    /// A being its area against N in the configuration of the start, which the displacements `u0` lead to.
-    pub fn give(
-        &self,
-        x: &[[f64; 2]],
-        (u0, interval, closed): (&[f64], Interval, &ClosedPairs),
-        constraints: &mut [Constraint],
-    ) {
-        let forces = constraints.iter().map(|c| (c, closed.force(c.key)[0]));
-        let normal = self.normal_forces(x.len(), forces);
+    /// A being its area against N in the configuration of the start.
+    pub fn give(&self, x: &[[f64; 2]], before: BeforeIterate, constraints: &mut [Constraint]) {
+        let BeforeIterate { u0, interval, .. } = before;
+        let normal = match self.faces {
+            Some(_) => {
+                let forces = before.normal_forces(constraints);
+                self.normal_forces(x.len(), constraints.iter().zip(forces))
+            }
+            None => Vec::new(),
+        };
         for constraint in constraints {
             let friction = &self.of_contacts[constraint.key.contact()];
             constraint.mu_varies = !friction.is_constant();
             let pressure = self.pressure(constraint, (x, u0), &normal);
-            let slides =
-                constraint.mu_varies && closed.state(constraint.key) != ContactState::Stick;
-            let rate = slides.then(|| constraint.slip / interval.dt);
+            let rate = (constraint.mu_varies).then(|| before.slip_rate(constraint));
+            let rate = rate.flatten();
             constraint.mu = friction.at(rate, pressure, (interval.end, self.model));
         }
     }
@@ -126,7 +177,7 @@ impl<'m> Frictions<'m> {
             let noise = constraint.slip_round_off((x, u0)) + SOLVED_SLIP * slip;
             let [slower, faster] =
                 [(slip - noise).max(0.0), slip + noise].map(|slip| at(Some(slip / interval.dt)));
-            match pair.state == ContactState::Stick || slip <= noise {
+            match !pair.slips || slip <= noise {
                 true => [0.0, at(None).max(faster)],
                 false => [slower.min(faster), slower.max(faster)],
             }
@@ -186,7 +237,84 @@ impl<'m> Frictions<'m> {
 mod tests {
     use super::*;
     use crate::contact::{Configurations, RowForm, testing};
+    use crate::lcp::ContactState;
     use crate::model::FrictionLaw;
+
+    /// An increment of the given length.
+    fn interval(dt: f64) -> Interval {
+        let point = |total: f64| TimePoint {
+            step: total,
+            total,
+            period: dt,
+        };
+        Interval {
+            start: point(0.0),
+            end: point(dt),
+            dt,
+        }
+    }
+
+    #[test]
+    fn a_pair_has_the_slip_rate_of_the_start_or_of_the_iterate_unless_it_did_not_slip() {
+        let constraint = testing::at_face([0.0, 0.1]);
+        let v0 = [-3.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let rate = |closed: Option<bool>, v0: Option<&[f64]>| {
+            let pair = closed.map(|slips| {
+                let mut pair = testing::closed_pair(0, 0);
+                (pair.state, pair.slips) = (ContactState::SlipPlus, slips);
+                pair
+            });
+            let before = BeforeIterate {
+                u0: &[0.0; 6],
+                interval: interval(0.5),
+                closed: &pair.into_iter().collect(),
+                v0,
+            };
+            before.slip_rate(&constraint)
+        };
+        let near = |found: Option<f64>, expected: f64| {
+            assert!(found.is_some_and(|found| (found - expected).abs() < 1e-14));
+        };
+        for closed in [None, Some(true)] {
+            near(rate(closed, None), 0.2);
+            near(rate(closed, Some(&v0)), 3.0);
+            assert_eq!(rate(closed, Some(&[0.0; 6])), None, "at rest");
+            let along = [1.0, 1e3, 1.0, 1e3, 1.0, 1e3];
+            assert_eq!(rate(closed, Some(&along)), None, "moves with its segment");
+        }
+        assert_eq!(rate(Some(false), None), None);
+        assert_eq!(rate(Some(false), Some(&v0)), None);
+    }
+
+    #[test]
+    fn a_node_that_has_left_its_segment_keeps_its_normal_force() {
+        let forces = |closed: &[(usize, usize, f64)], at: &[(usize, usize)]| {
+            let pair = |&(slave, segment, pn): &(usize, usize, f64)| {
+                let mut pair = testing::closed_pair(slave, segment);
+                pair.force = [pn, 0.0];
+                pair
+            };
+            let constraint = |&(slave, segment): &(usize, usize)| {
+                let mut constraint = testing::at_face([0.0; 2]);
+                constraint.key = testing::key(slave, segment);
+                constraint
+            };
+            let before = BeforeIterate {
+                u0: &[0.0; 6],
+                interval: interval(1.0),
+                closed: &closed.iter().map(pair).collect(),
+                v0: None,
+            };
+            let constraints: Vec<Constraint> = at.iter().map(constraint).collect();
+            before.normal_forces(&constraints)
+        };
+        let closed = [(0, 3, 2.0), (1, 3, 5.0), (1, 4, 7.0)];
+        assert_eq!(forces(&closed, &[(0, 3), (1, 3), (1, 4)]), [2.0, 5.0, 7.0]);
+        assert_eq!(forces(&closed, &[(0, 3), (0, 4), (1, 4)]), [2.0, 0.0, 7.0]);
+        // node 0 has come to segments 4 and 5, node 1 has left both of its segments, node 2 was open
+        let moved = [(0, 4), (0, 5), (1, 5), (2, 3)];
+        assert_eq!(forces(&closed, &moved), [2.0, 0.0, 12.0, 0.0]);
+    }
 
     #[test]
     fn the_bounds_are_those_of_the_law_whatever_coefficient_a_pair_had() {
@@ -195,17 +323,7 @@ mod tests {
             sliding: 0.2,
             decay: 3.0,
         });
-        let (model, dt) = (Model::default(), 0.5);
-        let point = |total: f64| TimePoint {
-            step: total,
-            total,
-            period: dt,
-        };
-        let interval = Interval {
-            start: point(0.0),
-            end: point(dt),
-            dt,
-        };
+        let (model, interval) = (Model::default(), interval(0.5));
         let frictions = Frictions {
             model: &model,
             of_contacts: vec![FrictionOfContact {

@@ -23,6 +23,7 @@ mod unknowns;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
+pub(crate) use friction::BeforeIterate;
 pub(crate) use held_motions::HeldMotions;
 pub(crate) use hinges::Hinges;
 pub(crate) use loads::{ForceChange, Interval, StepPlace, TimePoint};
