@@ -691,7 +691,7 @@ const CONTACT: [DatasetEntry<ContactResultant>; 27] = [
     ("release_loss", "energy",
      "energy that nodes without mass lost after its releases since the start", Real(|c| c.release_loss)),
     ("closed", "1", "pairs with Pn > 0", Count(|c| c.closed)),
-    ("sticking", "1", "closed pairs that do not slip", Count(|c| c.sticking)),
+    ("sticking", "1", "closed pairs that do not slip; a pair whose force is at its limit sticks unless it has moved", Count(|c| c.sticking)),
     ("impulse", "force*time", "impulse on the slave surface in the increment", Vector(|c| c.impulse.vector)),
     ("normal_impulse", "force*time",
      "sum of dt Pn + Phi and of return impulses in the increment", Real(|c| c.impulse.normal)),

@@ -18,6 +18,7 @@ mod fast;
 mod finite;
 mod friction;
 mod friction_laws;
+mod friction_limit;
 mod halving;
 mod hinges;
 mod homogeneous;

@@ -113,6 +113,11 @@ def less_of_the_law(file: h5py.File) -> None:
     file[f"model/contacts/{CONTACT}/friction_coefficients"][...] *= 0.9
 
 
+def more_of_the_law(file: h5py.File) -> None:
+    """A law of more friction than nodes have that slip."""
+    file[f"model/contacts/{CONTACT}/friction_coefficients"][...] *= 1.1
+
+
 SPOILED: dict[str, tuple[Spoil, str]] = {
     "a displacement": (add("VTKHDF/PointData/U", 1e-6), "stresses"),
     "a displacement of a set": (add("VTKHDF/PointData/U", 1e-6), "accounts"),
@@ -146,6 +151,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     "a coordinate": (add("model/coordinates", 1e-6), "stresses"),
     "friction": (less_friction, "cone"),
     "the law of friction": (less_of_the_law, "cone"),
+    "more friction by the law": (more_of_the_law, "cone"),
     "cone": (add(f"history/contact/{CONTACT}/cone_violation", 1e-6), "cone"),
     "impulse cone": (add(f"history/contact/{CONTACT}/impulse_cone_violation", 1e-6), "cone"),
     "a normal force": (add(f"history/contact/{CONTACT}/normal", -2.0), "cone"),

@@ -15,7 +15,6 @@ use crate::dynamics::results::{Cause, PassReport, Worst};
 use crate::dynamics::step::{
     Equilibrium, Hinges, Parts, PerBody, ROUND_OFF, StepProblem, Workspace, check_finite,
 };
-use crate::lcp::ContactState;
 use crate::linear::larger;
 
 /// Part of the tolerance to which an iterate must be in balance to be the solution, unless its corrections
@@ -479,6 +478,7 @@ impl<'a> Iterate<'a> {
 mod tests {
     use super::*;
     use crate::contact::{Rows, testing};
+    use crate::lcp::ContactState;
     use crate::model::{Friction, FrictionLaw, Mesh, Model};
     use crate::prepare::redistribution_tests::block;
 
