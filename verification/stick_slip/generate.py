@@ -1,6 +1,7 @@
 """Writes blocks on springs on a belt: `generate.py [-o FOLDER]`."""
 
 import sys
+from math import atan, pi, sqrt
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -16,6 +17,10 @@ AT_REST, SLIDING = 0.4, 0.2
 TIME = 4.0
 SIDES = 1.0, 0.5
 APART = 1.5
+FACE_SPEED, FACE_SPRING, FACE_SLIDING = 0.1, 50.0, 0.25
+"""Speed of the belt, spring and friction of slip of the block with a face of many nodes."""
+PERIODS = 7
+FORMULATIONS = {"nodes": "NODE TO SURFACE", "surface": "SURFACE TO SURFACE"}
 
 
 def blocks(number: int, decay: float, increments: int) -> str:
@@ -64,9 +69,65 @@ def blocks(number: int, decay: float, increments: int) -> str:
     return "".join(cards)
 
 
-def write(folder: Path, decay: float = 200.0, increments: int = 4000) -> None:
-    """Writes the decks into `folder`: `decay` of the friction, and how many increments there are."""
+def face_period() -> float:
+    """Period of a block whose friction falls at once from mu_s to mu_k.
+
+    It sticks over the way 2 a, a = (mu_s - mu_k) N/k, and slips for (pi + 2 atan(V/(w a)))/w, w = sqrt(k/m).
+    """
+    w = sqrt(FACE_SPRING / MASS)
+    a = (AT_REST - FACE_SLIDING) * NORMAL / FACE_SPRING
+    return 2.0 * a / FACE_SPEED + (pi + 2.0 * atan(FACE_SPEED / (w * a))) / w
+
+
+def face(nodes: int, formulation: str, increments: int) -> str:
+    """One rigid block with a face of many nodes, and so many increments in a period."""
+    width, height = SIDES
+    places = [(i * width / (nodes - 1), j * height) for i in range(nodes) for j in range(2)]
+    corners = [(2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2) for i in range(nodes - 1)]
+    dt = face_period() / increments
+    return "".join(
+        (
+            card("HEADING"),
+            f"A rigid block with {nodes} nodes on its face, {formulation}\n",
+            card("NODE", *((k + 1, *place) for k, place in enumerate(places))),
+            card("ELEMENT, TYPE=CPE4, ELSET=EB0", *((k + 1, *four) for k, four in enumerate(corners))),
+            card("NODE, NSET=RB0", (101, width / 2, height / 2)),
+            card("NODE, NSET=NBELT", (102, 0.0, -1.0)),
+            card("RIGID BODY, ELSET=EB0, REF NODE=101"),
+            card("SURFACE, NAME=B0", ("EB0", "S1")),
+            elastic(1e5, 0.3, MASS / (width * height), "EB0"),
+            card("ELEMENT, TYPE=SPRING1, ELSET=EGROUND", (101, 101)),
+            card("SPRING, ELSET=EGROUND", (1,), (FACE_SPRING,)),
+            card("SURFACE, NAME=BELT, TYPE=SEGMENTS", ("START", -20.0, 0.0), *(("LINE", 2.0 * k - 18.0, 0.0) for k in range(20))),
+            card("RIGID BODY, ANALYTICAL SURFACE=BELT, REF NODE=102"),
+            card("SURFACE INTERACTION, NAME=DRY"),
+            card("FRICTION", (AT_REST, 0.0), (FACE_SLIDING, 1e-5)),
+            card(f"CONTACT PAIR, INTERACTION=DRY, TYPE={FORMULATIONS[formulation]}", ("B0", "BELT")),
+            card("BOUNDARY", ("NBELT", 2, 2), ("RB0", 6, 6)),
+            card("INITIAL CONDITIONS, TYPE=VELOCITY", ("RB0", 1, FACE_SPEED)),
+            step(
+                dt,
+                PERIODS * increments,
+                card("BOUNDARY, TYPE=VELOCITY", ("NBELT", 1, 1, FACE_SPEED)),
+                card("CLOAD", ("RB0", 2, -NORMAL)),
+                card("OUTPUT, FIELD, NUMBER INTERVAL=20"),
+            ),
+        )
+    )
+
+
+def write(
+    folder: Path,
+    decay: float = 200.0,
+    increments: int = 4000,
+    nodes: int = 6,
+    formulation: str = "nodes",
+    per_period: int = 400,
+) -> None:
+    """Writes the decks into `folder`: `decay` of the friction, and how many increments there are; `nodes` on the face of the
+    third block, its `formulation` of contact, and its increments in a period."""
     folder.mkdir(parents=True, exist_ok=True)
+    (folder / "face.inp").write_text(face(int(nodes), formulation, int(per_period)))
     (folder / "one.inp").write_text(blocks(1, decay, int(increments)))
     (folder / "two.inp").write_text(blocks(2, decay, int(increments)))
 

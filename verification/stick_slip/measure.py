@@ -89,11 +89,22 @@ def places(results: Result, number: int) -> Array:
     return np.array([results.history[f"rigid/EB{k}/U"][:, 0] for k in range(number)]).T
 
 
+def face_period(results: Result) -> float:
+    """Mean period, between the times at which the block turns back, over that of the closed form."""
+    time, v = results.history.time, results.history["rigid/EB0/V"][:, 0]
+    k = np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0))
+    turns = time[k] + (time[k + 1] - time[k]) * v[k] / (v[k] - v[k + 1])
+    return float(np.diff(turns).mean() / made.face_period())
+
+
 def measure(study: runner.Study) -> None:
     """Checks, tabulates and draws what the runs give."""
     finest: dict[tuple[int, float], tuple[Array, Array]] = {}
     for case in study.runs:
         study.check_run(case.name, 1.0)
+        if case.deck == "face.inp":
+            study.check("period / closed form", case.name, face_period(study.results[case.name]))
+            continue
         number = 1 if case.deck == "one.inp" else 2
         decay = float(case.parameters["decay"])
         results = study.results[case.name]
