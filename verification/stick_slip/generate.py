@@ -72,7 +72,8 @@ def blocks(number: int, decay: float, increments: int) -> str:
 def face_period() -> float:
     """Period of a block whose friction falls at once from mu_s to mu_k.
 
-    It sticks over the way 2 a, a = (mu_s - mu_k) N/k, and slips for (pi + 2 atan(V/(w a)))/w, w = sqrt(k/m).
+    It sticks over the way 2 a, a = (mu_s - mu_k) N/k, and slips for (pi + 2 atan(V/(w a)))/w with
+    w = sqrt(k/m).
     """
     w = sqrt(FACE_SPRING / MASS)
     a = (AT_REST - FACE_SLIDING) * NORMAL / FACE_SPRING
@@ -83,14 +84,16 @@ def face(nodes: int, formulation: str, increments: int) -> str:
     """One rigid block with a face of many nodes, and so many increments in a period."""
     width, height = SIDES
     places = [(i * width / (nodes - 1), j * height) for i in range(nodes) for j in range(2)]
-    corners = [(2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2) for i in range(nodes - 1)]
+    elements = [(i + 1, 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2) for i in range(nodes - 1)]
+    belt = [("LINE", 2.0 * k - 18.0, 0.0) for k in range(20)]
+    contact = f"CONTACT PAIR, INTERACTION=DRY, TYPE={FORMULATIONS[formulation]}"
     dt = face_period() / increments
     return "".join(
         (
             card("HEADING"),
             f"A rigid block with {nodes} nodes on its face, {formulation}\n",
             card("NODE", *((k + 1, *place) for k, place in enumerate(places))),
-            card("ELEMENT, TYPE=CPE4, ELSET=EB0", *((k + 1, *four) for k, four in enumerate(corners))),
+            card("ELEMENT, TYPE=CPE4, ELSET=EB0", *elements),
             card("NODE, NSET=RB0", (101, width / 2, height / 2)),
             card("NODE, NSET=NBELT", (102, 0.0, -1.0)),
             card("RIGID BODY, ELSET=EB0, REF NODE=101"),
@@ -98,11 +101,11 @@ def face(nodes: int, formulation: str, increments: int) -> str:
             elastic(1e5, 0.3, MASS / (width * height), "EB0"),
             card("ELEMENT, TYPE=SPRING1, ELSET=EGROUND", (101, 101)),
             card("SPRING, ELSET=EGROUND", (1,), (FACE_SPRING,)),
-            card("SURFACE, NAME=BELT, TYPE=SEGMENTS", ("START", -20.0, 0.0), *(("LINE", 2.0 * k - 18.0, 0.0) for k in range(20))),
+            card("SURFACE, NAME=BELT, TYPE=SEGMENTS", ("START", -20.0, 0.0), *belt),
             card("RIGID BODY, ANALYTICAL SURFACE=BELT, REF NODE=102"),
             card("SURFACE INTERACTION, NAME=DRY"),
             card("FRICTION", (AT_REST, 0.0), (FACE_SLIDING, 1e-5)),
-            card(f"CONTACT PAIR, INTERACTION=DRY, TYPE={FORMULATIONS[formulation]}", ("B0", "BELT")),
+            card(contact, ("B0", "BELT")),
             card("BOUNDARY", ("NBELT", 2, 2), ("RB0", 6, 6)),
             card("INITIAL CONDITIONS, TYPE=VELOCITY", ("RB0", 1, FACE_SPEED)),
             step(
@@ -124,8 +127,11 @@ def write(
     formulation: str = "nodes",
     per_period: int = 400,
 ) -> None:
-    """Writes the decks into `folder`: `decay` of the friction, and how many increments there are; `nodes` on the face of the
-    third block, its `formulation` of contact, and its increments in a period."""
+    """Writes the decks into `folder`: `decay` of the friction, and how many increments there are.
+
+    Of the block with a face of many nodes: their number, formulation of contact, increments in a
+    period.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "face.inp").write_text(face(int(nodes), formulation, int(per_period)))
     (folder / "one.inp").write_text(blocks(1, decay, int(increments)))

@@ -90,7 +90,7 @@ def places(results: Result, number: int) -> Array:
 
 
 def face_period(results: Result) -> float:
-    """Mean period, between the times at which the block turns back, over that of the closed form."""
+    """Mean period between the times of turning back over that of the closed form."""
     time, v = results.history.time, results.history["rigid/EB0/V"][:, 0]
     k = np.flatnonzero((v[:-1] > 0.0) & (v[1:] <= 0.0))
     turns = time[k] + (time[k + 1] - time[k]) * v[k] / (v[k] - v[k + 1])
