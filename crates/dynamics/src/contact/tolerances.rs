@@ -89,8 +89,8 @@ pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// of it.
 pub(crate) const SOLVED_GAP: f64 = 1e-12;
 /// Slip of a pair at its limit that is round-off: what the solution of a complementarity problem leaves of the gap and the
-/// slip without contact forces, eq. (3.24).
-pub(crate) const SOLVED_SLIP: f64 = 1e-10;
+/// slip without contact forces, eq. (3.25).
+pub(crate) const LIMIT_SLIP: f64 = 1e-10;
 /// Gap, slip or motion that is none: round-off of what is itself round-off of a length. What a motion has died
 /// away to would underflow otherwise.
 pub(crate) const NOTHING: f64 = f64::EPSILON * f64::EPSILON;

@@ -4,7 +4,7 @@
 use smallvec::SmallVec;
 
 use super::contact_system::{FEW, Guess, Response};
-use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP, SOLVED_SLIP};
+use crate::contact::tolerances::{LIMIT_SLIP, SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::System;
@@ -176,7 +176,7 @@ impl ContactForces {
             place.is_ok_and(|k| {
                 let ([gap, free], [_, slip]) = (free[k], after[k]);
                 let terms = [gap, free, slip - free].map(f64::abs);
-                let round_off = SOLVED_SLIP * terms.into_iter().fold(0.0, larger)
+                let round_off = LIMIT_SLIP * terms.into_iter().fold(0.0, larger)
                     + SOLVED_GAP * constraints[k].scale;
                 slip.abs() > round_off
             })

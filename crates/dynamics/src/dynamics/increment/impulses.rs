@@ -47,7 +47,7 @@ pub(crate) struct Impulses {
     sticking: Vec<(ConstraintKey, f64)>,
 }
 
-/// The pairs that do not slip, be they at their limits, with their normal forces.
+/// The pairs that do not slip, with their normal forces. The friction of some may be at its limit.
 fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
     let stuck = closed.iter().filter(|pair| !pair.slips);
     stuck.map(|pair| (pair.key, pair.force[0])).collect()
