@@ -96,7 +96,8 @@ pub(super) fn run(
         memory_need: need.total(),
     };
     let notes = override_steps(args, &mut model.model.steps);
-    let mut writer = ResultWriter::create(&model.model, claim, &record, args.verbosity())?;
+    let parts = (&model.model, &model.surfaces[..]);
+    let mut writer = ResultWriter::create(parts, claim, &record, args.verbosity())?;
     writer.heed(interrupt);
     writer.keep_checkpoints(Checkpoints {
         program: VERSION.into(),

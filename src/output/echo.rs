@@ -8,6 +8,7 @@ use super::frames::{DEFAULT_FRAMES, are_dense};
 use super::model_group::contact_names;
 use super::run_record::{RunRecord, utc_now};
 use super::status::monitored;
+use crate::contact::ContactSurfaces;
 use crate::diagnostics::Sources;
 use crate::diagnostics::shown;
 use crate::dynamics::rigid_inertia;
@@ -60,8 +61,9 @@ impl ModelEcho {
         if model.contacts.is_empty() {
             lines.push(label("contact", "none"));
         }
-        for (contact, gaps) in model.contacts.iter().zip(&prepared.gaps) {
-            lines.extend(contact_lines(model, contact, gaps));
+        let surfaces = model.contacts.iter().zip(&prepared.surfaces);
+        for ((contact, surfaces), gaps) in surfaces.zip(&prepared.gaps) {
+            lines.extend(contact_lines(model, contact, surfaces, gaps));
         }
         lines.extend(mass_lines(prepared));
         lines.extend(monitor_lines(model));
@@ -253,7 +255,12 @@ fn impact(settings: &Settings) -> String {
     }
 }
 
-fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<String> {
+fn contact_lines(
+    model: &Model,
+    contact: &Contact,
+    surfaces: &ContactSurfaces,
+    gaps: &[InitialGap],
+) -> Vec<String> {
     let (slave, master) = (
         &model.surfaces[contact.slave],
         &model.surfaces[contact.master],
@@ -271,12 +278,19 @@ fn contact_lines(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Vec<S
         true => format!("{} ({nodes}, {edges}) with itself", slave.name),
         false => format!("{} ({nodes}) -> {} ({edges})", slave.name, master.name),
     };
-    let pieces = [
+    let mut pieces = vec![
         sides,
         formulation(contact),
         contact.interaction.friction.to_string(),
         smallest_gap(gaps),
     ];
+    if let (bent @ 1.., angle) = surfaces.bent(&model.mesh.coordinates) {
+        let angle = general(angle.to_degrees(), 2);
+        let faces = counted(bent, "face");
+        pieces.push(format!(
+            "{faces} curved, by up to {angle} degrees at a node"
+        ));
+    }
     wrap("contact", &pieces)
 }
 

@@ -8,16 +8,17 @@ use hdf5::Group;
 
 use super::column::{Meaning, constant, group};
 use super::model_group::contact_names;
+use crate::contact::{Bulge, ContactSurfaces};
 use crate::model::{
     Disc, ElementType, FrictionLaw, Heat, Material, Model, Procedure, Scheme, Segment, Step,
     Surface, SurfaceKind, Variation,
 };
 
 /// Writes the datasets and groups into `/model`.
-pub(super) fn write(at: &Group, model: &Model) -> hdf5::Result<()> {
+pub(super) fn write(at: &Group, model: &Model, surfaces: &[ContactSurfaces]) -> hdf5::Result<()> {
     write_elements(at, model)?;
     write_materials(&group(at, "materials")?, model)?;
-    write_contacts(&group(at, "contacts")?, model)?;
+    write_contacts(&group(at, "contacts")?, model, surfaces)?;
     write_steps(&group(at, "steps")?, &model.steps)?;
     indices(at, "supported_nodes", supported(model), SUPPORTED)?;
     indices(at, "constrained_nodes", constrained(model), CONSTRAINED)?;
@@ -92,13 +93,32 @@ fn write_segments(
     constant(at, name, &[segments.len(), 2], &nodes, meaning)
 }
 
+/// Bulges of master segments and slave faces.
+fn write_bulges(at: &Group, surfaces: &ContactSurfaces) -> hdf5::Result<()> {
+    let write = |name, bulges: &[Bulge], meaning| {
+        let coefficients: Vec<[f64; 4]> = bulges.iter().map(Bulge::coefficients).collect();
+        constant(
+            at,
+            name,
+            &[bulges.len(), 4],
+            coefficients.as_flattened(),
+            meaning,
+        )
+    };
+    write("bulges", &surfaces.bulges, BULGES)?;
+    write("face_bulges", &surfaces.face_bulges, FACE_BULGES)
+}
+
 /// Slave nodes, master segments and friction of every contact, under the names of `/history/contact`.
-fn write_contacts(at: &Group, model: &Model) -> hdf5::Result<()> {
+fn write_contacts(at: &Group, model: &Model, surfaces: &[ContactSurfaces]) -> hdf5::Result<()> {
     for ((index, contact), name) in (model.contacts.iter().enumerate()).zip(contact_names(model)) {
         let at = group(at, &name)?;
         indices(&at, "slaves", model.slave_nodes(contact), SLAVES)?;
         write_segments(&at, "segments", model, contact.master, SEGMENTS)?;
         write_segments(&at, "slave_faces", model, contact.slave, SLAVE_FACES)?;
+        if let Some(surfaces) = surfaces.get(index).filter(|surfaces| surfaces.bends()) {
+            write_bulges(&at, surfaces)?;
+        }
         constant(
             &at,
             "friction",
@@ -352,6 +372,14 @@ const SEGMENTS: Meaning = (
 const SLAVE_FACES: Meaning = (
     "1",
     "node indices of the slave faces, their body on the left of the way from the first to the second; none of a surface of nodes",
+);
+const BULGES: Meaning = (
+    "length",
+    "c0 to c3 of the bulge of every master segment: how far its curved face is out of the body from the chord, a cubic of the place on it, 0 at its first node and 1 at its second",
+);
+const FACE_BULGES: Meaning = (
+    "length",
+    "the same of every slave face; of a surface of nodes, of the exterior faces at them",
 );
 const DISC_RADIUS: Meaning = ("length", "radius of the slave, a disc about its node");
 const DISC_ARM: Meaning = ("1", "index of the node that takes the turning of the disc");

@@ -17,6 +17,7 @@ use super::local;
 use super::run_record::{RecordWriter, RunRecord, run_id};
 use super::space::Space;
 use crate::archive::Archive;
+use crate::contact::ContactSurfaces;
 use crate::deck::open_regular;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
@@ -53,7 +54,7 @@ impl<'m> ResultFile<'m> {
     pub fn create(
         draft: &Path,
         path: &Path,
-        model: &'m Model,
+        (model, surfaces): (&'m Model, &[ContactSurfaces]),
         record: &RunRecord,
     ) -> io::Result<Self> {
         let builder = || {
@@ -64,7 +65,7 @@ impl<'m> ResultFile<'m> {
         let file = builder().map_err(io_error).map_err(at(path))?;
         let parts = || {
             super::model_group::write(&file, model)?;
-            super::model_data::write(&file.group("model")?, model)?;
+            super::model_data::write(&file.group("model")?, model, surfaces)?;
             let local = local::elements(model);
             let fields = fields::create(&file, model, &local)?;
             let history = History::create(&file, model, &local)?;

@@ -23,6 +23,7 @@ use super::run_record::RunRecord;
 use super::status::{StatusFile, Written};
 use super::strain::warning_lines;
 use crate::archive::{Archive, ArchiveError};
+use crate::contact::ContactSurfaces;
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
 use crate::model::{Model, RestartOutput};
 
@@ -72,9 +73,9 @@ pub struct Checkpoints {
 }
 
 impl<'a> ResultWriter<'a> {
-    /// Begins the files of a job and prints to the standard output.
+    /// Begins the files of a job and prints to the standard output; the surfaces are those of the model's contacts.
     pub fn create(
-        model: &'a Model,
+        (model, surfaces): (&'a Model, &[ContactSurfaces]),
         claim: Claim,
         record: &RunRecord,
         verbosity: Verbosity,
@@ -82,7 +83,12 @@ impl<'a> ResultWriter<'a> {
         let started = Instant::now();
         check_names(model)?;
         let log = Log::new(claim.log()?, &claim.files().log);
-        let result = ResultFile::create(&claim.draft()?, &claim.files().result, model, record)?;
+        let result = ResultFile::create(
+            &claim.draft()?,
+            &claim.files().result,
+            (model, surfaces),
+            record,
+        )?;
         Ok(ResultWriter {
             model,
             result,

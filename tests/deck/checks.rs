@@ -266,9 +266,21 @@ fn pin_in_a_hole(clearance: f64, contact: &str) -> (Option<PreparedModel>, Diagn
 }
 
 #[test]
-fn curved_surfaces_that_mesh_into_each_other_start_with_an_initialization() {
+fn curved_faces_with_a_clearance_smaller_than_their_sagitta_start_apart() {
+    let (model, d) = pin_in_a_hole(0.01, GENERAL);
+    let model = model.expect("no errors");
+    assert!(!d.has_errors() && model.adjusted.iter().all(|moved| moved.count == 0));
+    let gaps = model.gaps.iter().flatten();
+    let least = gaps.fold(f64::INFINITY, |least, gap| least.min(gap.gap));
+    assert!((least - 0.01).abs() < 1e-5, "{least}");
+}
+
+#[test]
+fn chords_that_mesh_into_each_other_start_with_an_initialization() {
+    let straight =
+        format!("{GENERAL}*SURFACE PROPERTY ASSIGNMENT, PROPERTY=GEOMETRIC CORRECTION\n, NONE\n");
     for clearance in [0.0, 0.01] {
-        let (model, d) = pin_in_a_hole(clearance, GENERAL);
+        let (model, d) = pin_in_a_hole(clearance, &straight);
         let error = d.iter().find(|item| item.severity == Severity::Error);
         assert!(model.is_none() && error.is_some_and(|e| e.code == Code::InitialPenetration));
         let help = error
@@ -276,7 +288,7 @@ fn curved_surfaces_that_mesh_into_each_other_start_with_an_initialization() {
             .unwrap_or_default();
         assert!(help.contains("*CONTACT INITIALIZATION DATA"), "{help}");
         let fit = format!(
-            "*CONTACT INITIALIZATION DATA, NAME=FIT\n{GENERAL}\
+            "*CONTACT INITIALIZATION DATA, NAME=FIT\n{straight}\
              *CONTACT INITIALIZATION ASSIGNMENT\n, , FIT\n"
         );
         let (model, d) = pin_in_a_hole(clearance, &fit);

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, Job
 from decks import CANTILEVERS, parse, shortened
+from stickslip.bulges import straight
 from stickslip.errors import Fault
 from stickslip.penetration.intrusion import Overlap, compare, in_obstacle, still_gone
 from stickslip.penetration.outlines import Outline, outlines, side
@@ -183,7 +184,7 @@ def placed(
         first += len(polygon)
     nodes = np.arange(first, first + len(chain))
     ends = nodes[1:] if not closed else np.roll(nodes, -1)
-    profile = Profile(nodes[: len(ends)], ends)
+    profile = Profile(nodes[: len(ends)], ends, straight(len(ends)))
     return np.array([point for shape in (*polygons, chain) for point in shape]), bodies, profile
 
 

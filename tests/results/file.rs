@@ -619,7 +619,8 @@ fn names_with_a_slash_are_refused_before_any_file() {
     let verbosity = stickslip::output::Verbosity::Quiet;
     let claim =
         stickslip::output::Claim::take(&files, stickslip::output::Earlier::Stays).expect("claim");
-    let Err(error) = stickslip::output::ResultWriter::create(&model, claim, &record, verbosity)
+    let Err(error) =
+        stickslip::output::ResultWriter::create((&model, &[]), claim, &record, verbosity)
     else {
         panic!("accepted");
     };

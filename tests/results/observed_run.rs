@@ -35,7 +35,8 @@ fn solve(model: &Model, folder: &Path) -> JobFiles {
     let files = JobFiles::new("blocks.inp".as_ref(), folder);
     let record = RunRecord::default();
     let claim = Claim::take(&files, Earlier::Replaced).expect("claim");
-    let mut writer = ResultWriter::create(model, claim, &record, Verbosity::Quiet).expect("writer");
+    let writer = ResultWriter::create((model, &[]), claim, &record, Verbosity::Quiet);
+    let mut writer = writer.expect("writer");
     let summary = run(model, &mut writer).expect("run");
     writer.finish(&summary).expect("finish");
     files

@@ -308,5 +308,5 @@ pub fn write_run(folder: &Path) -> JobFiles {
 /// A writer without screen.
 pub fn writer<'a>(model: &'a Model, files: &JobFiles) -> ResultWriter<'a> {
     let claim = Claim::take(files, Earlier::Replaced).expect("claim");
-    ResultWriter::create(model, claim, &record(), Verbosity::Quiet).expect("writer")
+    ResultWriter::create((model, &[]), claim, &record(), Verbosity::Quiet).expect("writer")
 }

@@ -22,9 +22,19 @@ def ring(name: str, kind: str, radii: tuple[float, float], around: int, through:
 
 
 def write(
-    folder: Path, n: int, ratio: float = 1.0, waves: float = 0.0, kind: str = "CPS4", swap: int = 0
+    folder: Path,
+    n: int,
+    ratio: float = 1.0,
+    waves: float = 0.0,
+    kind: str = "CPS4",
+    swap: int = 0,
+    curved: int = 0,
+    means: int = 0,
 ) -> None:
-    """`n` elements around a quarter of the outer ring, `ratio` times as many around the inner one; p1 = `waves` p0."""
+    """`n` elements around a quarter of the outer ring, `ratio` times as many around the inner one; p1 = `waves` p0.
+
+    `curved`: faces that bend between their nodes, none of which has to be moved; `means`: from surface to surface.
+    """
     inside = round(ratio * n)
     outer = ring("OUTER", kind, (MIDDLE, OUTER), n, max(n // 4, 1))
     inner = ring("INNER", kind, (INNER, MIDDLE), inside, max(inside // 4, 1), outer)
@@ -36,6 +46,8 @@ def write(
         element = outer.first_element + k + n * (outer.ny - 1)
         loads.append((element, "P3", LOAD * (1 + waves * mean)))
     pair = ("RIM", "BORE") if swap else ("BORE", "RIM")
+    formulation = ", TYPE=SURFACE TO SURFACE" if means else ""
+    formulation += "" if curved else ", GEOMETRIC CORRECTION=NONE, ADJUST=0.01"
     cards = [
         card("HEADING", ("two rings, one in the other",)),
         outer.cards(),
@@ -46,7 +58,7 @@ def write(
         *(ring.nset("ON_X", "right") + ring.nset("ON_Y", "left") for ring in (outer, inner)),
         elastic(YOUNG, POISSON, 1.0, "OUTER", "INNER"),
         dry(0.0),
-        card("CONTACT PAIR, INTERACTION=DRY, ADJUST=0.01", pair),
+        card("CONTACT PAIR, INTERACTION=DRY" + formulation, pair),
         card("BOUNDARY", ("ON_X", 2, 2), ("ON_Y", 1, 1)),
         static(card("DLOAD", *loads), dt=0.5, direct=True),
     ]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.bulges import Bulges, straight
 from stickslip.result import Array, Integers, Result
 
 BEYOND = 1.0
@@ -109,6 +110,10 @@ class Contact:
     """Friction in each step; none in a file of an older program."""
     heat: float = 0.0
     """Part of what friction dissipates that heats the nodes."""
+    bulges: Bulges = straight(0)
+    """Of the segments."""
+    face_bulges: Bulges = straight(0)
+    """Of the slave faces."""
 
     @property
     def is_constant(self) -> bool:
@@ -141,8 +146,11 @@ def contacts(result: Result) -> list[Contact]:
         heat = float(result.read(f"{at}/{name}/heat")) if f"{at}/{name}/heat" in result.file else 0.0
         laws = _laws(result, f"{at}/{name}")
         has_means = kind != EXACT
+        bulges, face_bulges = straight(len(segments)), straight(len(faces))
+        if f"{at}/{name}/bulges" in result.file:
+            bulges, face_bulges = (Bulges(result.read(f"{at}/{name}/{part}")) for part in ("bulges", "face_bulges"))
         found.append(
-            Contact(name, slaves, segments, friction, acts, body, faces, has_means, disc, laws, heat)
+            Contact(name, slaves, segments, friction, acts, body, faces, has_means, disc, laws, heat, bulges, face_bulges)
         )
     return found
 
@@ -195,7 +203,7 @@ class Places:
 
     nodes: Integers
     gap: Array
-    """Distance from the line of the segment, positive outside, in lengths."""
+    """Distance from the line of the segment, or from its curved face, positive outside, in lengths."""
     distance: Array
     """Distance from the line where the node belongs to it, else from the segment, in lengths."""
     reach: Array
@@ -227,6 +235,7 @@ def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[
         arm = x[some][:, None] - a
         gap = (arm[..., 0] * tangent[:, 1] - arm[..., 1] * tangent[:, 0]) / length
         xi = np.einsum("nsi,si->ns", arm, tangent) / length
+        gap -= contact.bulges.height(slice(None), xi) / length
         off = np.maximum(np.maximum(-xi, xi - 1.0), 0.0)
         moved = (far + way[some][:, None]) / length
         reach = np.hypot(gap, off)
@@ -249,6 +258,8 @@ class Touch:
     contact: Contact
     node: int
     segment: tuple[int, int]
+    number: int
+    """Of the segment among those of the contact."""
 
 
 def touching(
@@ -275,7 +286,7 @@ def touching(
             reached[near.nodes] = np.minimum(reached[near.nodes], beyond)
             for row, segment in zip(*np.nonzero(near.distance <= limit)):
                 one, two = contact.segments[segment]
-                touches.append(Touch(contact, int(near.nodes[row]), (int(one), int(two))))
+                touches.append(Touch(contact, int(near.nodes[row]), (int(one), int(two)), int(segment)))
                 for end in (one, two):
                     nearest[end] = min(nearest[end], near.distance[row, segment])
     return touches, nearest, reached, corners
@@ -308,12 +319,15 @@ def corner_error(
     gaps, over, length = [], [], 0.0
     ends_of: set[int] = set()
     for ends, sign in ((before, 1.0), (after, -1.0)):
-        a, b = contact.segments[int(np.flatnonzero(ends == corner)[0])]
+        segment = int(np.flatnonzero(ends == corner)[0])
+        a, b = contact.segments[segment]
         ends_of |= {int(a), int(b)}
         along = x[b] - x[a]
-        length = max(length, float(np.linalg.norm(along)))
-        tangent = along / np.linalg.norm(along)
-        gaps.append(float(arm[0] * tangent[1] - arm[1] * tangent[0]))
+        own = float(np.linalg.norm(along))
+        length = max(length, own)
+        tangent = along / own
+        xi = float((x[node] - x[a]) @ tangent) / own
+        gaps.append(float(arm[0] * tangent[1] - arm[1] * tangent[0] - contact.bulges.height(segment, xi)))
         over.append(max(-sign * float(arm @ tangent), 0.0))
     if min(over) > 0.0 or max(over) > way[node] + way[corner] + CORNER * length:
         return np.inf, ends_of
@@ -334,28 +348,40 @@ class Split:
 
 
 def split(x0: Array, x1: Array, force: Array, touch: Touch, halfway: bool) -> Split:
-    """Pn, Pt and Dt of the node; `halfway`: rows of the energy-momentum form, eqs (7.2) and (7.3)."""
+    """Pn, Pt and Dt of the node; `halfway`: rows of the energy-momentum form, eqs (7.2) and (7.3). On a curved face Pn is the
+    normal force s Pn, and the rows are those of (3.30)."""
     a, b = touch.segment
     e0, e1 = x0[b] - x0[a], x1[b] - x1[a]
     r0, r1 = x0[touch.node] - x0[a], x1[touch.node] - x1[a]
     l0, l1 = np.linalg.norm(e0), np.linalg.norm(e1)
     xi0, xi1 = r0 @ e0 / l0**2, r1 @ e1 / l1**2
+    bulges, number = touch.contact.bulges, touch.number
     if halfway:
         mean, length = 0.5 * (e0 + e1), 0.5 * (l0 + l1)
         alpha = 0.5 * (1.0 / l0 + 1.0 / l1)
         gamma = 0.5 * length * (1.0 / l0**2 + 1.0 / l1**2)
         slip = length * (xi1 - xi0)
+        beta = bulges.secant(number, xi0, xi1) / length
+        away = (r1[0] * e1[1] - r1[1] * e1[0]) / l1 - (r0[0] * e0[1] - r0[1] * e0[0]) / l0
     else:
         mean, alpha, gamma = e1, 1.0 / l1, 1.0 / l1
         tangent = e1 / l1
         d = [x1[node] - x0[node] for node in (touch.node, a, b)]
-        slip = tangent @ (d[0] - (1.0 - xi1) * d[1] - xi1 * d[2])
+        w = d[0] - (1.0 - xi1) * d[1] - xi1 * d[2]
+        beta = bulges.slope(number, xi1) / l1
+        across = np.array([tangent[1], -tangent[0]])
+        away = across @ w
+        # at the height of the face over the chord, eq. (3.4)
+        slip = tangent @ w + bulges.height(number, xi1) / l1 * (across @ (d[2] - d[1]))
     normal = np.array([mean[1], -mean[0]])
     square = mean @ mean
     slid = not -1e-9 <= xi0 <= 1.0 + 1e-9
+    # forces of the rows of the chord, Pn + beta Pt/s and Pt/s - beta Pn
+    pn, pt = force @ normal / (square * alpha), force @ mean / (square * gamma)
+    s = np.hypot(1.0, beta)
     return Split(
-        float(force @ normal / (square * alpha)),
-        float(force @ mean / (square * gamma)),
-        float(slip / l1),
+        float((pn - beta * pt) / s),
+        float((pt + beta * pn) / s),
+        float((slip + beta * away) / s / l1),
         slid,
     )

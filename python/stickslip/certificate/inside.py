@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from stickslip.bulges import Bulges
 from stickslip.certificate.check import Checks
 from stickslip.certificate.contacts import Contact
 from stickslip.certificate.fits import REASON, Fits
@@ -122,11 +123,13 @@ def _in_obstacles(
 
 def _crossed(x: Array, contact: Contact, vertex: Integers) -> float:
     """How far faces of the slave surface cross master segments, eq. (10.6)."""
-    masters = Profile(contact.segments[:, 0], contact.segments[:, 1])
-    own = contact.faces[np.isin(contact.faces, contact.slaves).all(axis=1)]
+    masters = Profile(contact.segments[:, 0], contact.segments[:, 1], contact.bulges)
+    is_own = np.isin(contact.faces, contact.slaves).all(axis=1)
+    own, bulges = contact.faces[is_own], contact.face_bulges.of(np.flatnonzero(is_own))
     worst = 0.0
     for first in range(0, len(own), EDGES):
-        nodes, after = own[first : first + EDGES].T
-        depth = crossings(x, Profile(nodes, after), masters, vertex)
+        some = slice(first, first + EDGES)
+        nodes, after = own[some].T
+        depth = crossings(x, Profile(nodes, after, Bulges(bulges.coefficients[some])), masters, vertex)
         worst = max(worst, float(depth.max(initial=0.0)))
     return worst

@@ -213,6 +213,7 @@ class ContactLaw:
         for mean, (normal, tangential), one in zip(closed, forces, is_told, strict=True):
             if not one:
                 continue
+            normal *= mean.stretch
             at = f"mean at node {self.result.node_labels[mean.node]}, t = {frame.time:g}"
             slip = (mean.slip, (SLIP + noise) * self._edge) if told and not mean.moved else None
             self._cone(frame, increment, means.contact, mean.node, (normal, tangential), slip, MEANS, at)

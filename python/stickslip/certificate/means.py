@@ -29,7 +29,9 @@ COVER = 1e-6
 ROUND_OFF = 1e-9
 """Part of forces that is none."""
 
-GAUSS = 1.0 / np.sqrt(12.0)
+TWO = ((-np.sqrt(1.0 / 12.0), 0.5), (np.sqrt(1.0 / 12.0), 0.5))
+THREE = ((-np.sqrt(3.0 / 20.0), 5.0 / 18.0), (0.0, 8.0 / 18.0), (np.sqrt(3.0 / 20.0), 5.0 / 18.0))
+"""Gauss points of a cell: places from its middle, in its lengths, and weights."""
 
 Vertex = tuple[tuple[int, float], ...]
 """Nodes with their parts in the place of the end of a face, eq. (3.21)."""
@@ -53,6 +55,12 @@ class Point:
     """What the unit normal force is on the end of the segment."""
     turn: float = 0.0
     """Of end rows, the turn of the segment."""
+    stretch: float = 1.0
+    """Normal force of a unit of Pn, eq. (3.31)."""
+    chord_gap: float = 0.0
+    """Gap between the chords of both faces."""
+    lean: Array = field(default_factory=lambda: np.zeros(2))
+    """Of end rows, what a unit normal force adds to that on the end of the segment for each unit of height."""
 
 
 @dataclass
@@ -62,6 +70,8 @@ class Mean:
     node: int
     gap: float = 0.0
     slip: float = 0.0
+    stretch: float = 1.0
+    """Normal force of a unit of Pn, eq. (3.31)."""
     moved: bool = False
     """Whether points have changed their segment, or the covered part has."""
     points: list[tuple[float, Point]] = field(default_factory=list)
@@ -84,6 +94,8 @@ class Means:
         self.contact = contact
         self.faces, self.segments = faces, contact.segments
         self.x, self.middles, self.rings = x, middles, rings
+        self.bulges = contact.bulges.of_points(self.segments, middles)
+        self.face_bulges = contact.face_bulges.of_points(faces, middles)
         self.starting = {int(a): i for i, (a, _) in enumerate(self.segments)}
         self.ending = {int(b): i for i, (_, b) in enumerate(self.segments)}
         tangents = self._tangents(self.segments, x)
@@ -155,7 +167,8 @@ class Means:
                     mean.points = [(weight / covered, q) for weight, q in mean.points]
                     mean.gap = sum(weight * q.gap for weight, q in mean.points)
                     # at the height of a point when the mean is closed, eq. (3.4)
-                    mean.slip = sum(weight * (q.slip + (q.gap - mean.gap) * q.turn) for weight, q in mean.points)
+                    mean.slip = sum(weight * (q.slip + (q.chord_gap - mean.gap) * q.turn) for weight, q in mean.points)
+                    mean.stretch = sum(weight * q.stretch for weight, q in mean.points)
                     mean.moved = any(q.before != q.segment for _, q in mean.points)
                     mean.moved |= abs(covered - whole) > 1e-9 * whole
                     yield mean
@@ -177,10 +190,15 @@ class Means:
                 j, i = (self._over(face, cells[k], middle, k) for k in (1, 0))
                 if high - low <= 1e-13 or j is None:
                     continue
-                for sign in (-1.0, 1.0):
-                    eta = middle + sign * (high - low) * GAUSS
-                    weight = self._weight(face, eta, (high - low) / 2.0)
+                for place, share in self._gauss(face, {i, j} - {None}):
+                    eta = middle + place * (high - low)
+                    weight = self._weight(face, eta, (high - low) * share)
                     yield self._point(face, eta, weight, i, j, halfway)
+
+    def _gauss(self, face: int, segments: set[int]) -> tuple[tuple[float, float], ...]:
+        """Points of a cell, which integrate the gap of curved faces over it too."""
+        cubics = [self.face_bulges.coefficients[face], *(self.bulges.coefficients[i] for i in segments)]
+        return THREE if any(c[3] or (self.rings and c.any()) for c in cubics) else TWO
 
     def _faced(self, face: int) -> list[int]:
         """Segments that a face is turned to at the start, within reach, and not behind."""
@@ -228,7 +246,7 @@ class Means:
         return min(over, key=lambda i: abs(_cross(at - a[i], t[i])), default=None)
 
     def _point(self, face: int, eta: float, weight: float, i: int | None, j: int, halfway: bool) -> Point:
-        """A point with its gap and slip, and what forces are there, eqs (3.4), (7.2), (7.3) and (7.8)."""
+        """A point with its gap and slip, and what forces are there, eqs (3.4), (3.30), (3.32), (7.2), (7.3) and (7.8)."""
         s, r, e, length, t = [], [], [], [], []
         for x, a, b, tangents in self.at:
             p, q = (self._place(node, x) for node in self.faces[face])
@@ -237,43 +255,62 @@ class Means:
             e.append(b[j] - a[j])
             length.append(float(np.linalg.norm(e[-1])))
             t.append(tangents[j])
-        gaps = [_cross(r[k], t[k]) for k in (0, 1)]
+        of_chord = [_cross(r[k], t[k]) for k in (0, 1)]
         xi = [float(r[k] @ t[k]) / length[k] for k in (0, 1)]
+        rise = float(self.face_bulges.height(face, eta))
+        gaps = [of_chord[k] - float(self.bulges.height(j, xi[k])) - rise for k in (0, 1)]
         if not halfway:
             x0, x1 = self.at[0], self.at[1]
             d = s[1] - s[0] - (1.0 - xi[1]) * (x1[1][j] - x0[1][j]) - xi[1] * (x1[2][j] - x0[2][j])
-            normal = _turned(t[1])
-            turn = float(normal @ (e[1] - e[0])) / length[1]
-            return Point(face, eta, weight, j, i, gaps[1], float(t[1] @ d), (normal, t[1]), -xi[1] * normal, turn)
+            normal, bend = _turned(t[1]), self.bulges.slope(j, xi[1]) / length[1]
+            stretch = float(np.hypot(1.0, bend))
+            turn = float(normal @ (e[1] - e[0])) / length[1] / stretch
+            slip = float(t[1] @ d + bend * (normal @ d)) / stretch
+            bent = normal - bend * t[1]
+            rows = (bent, (t[1] + bend * normal) / stretch)
+            lean = -bend * normal / length[1]
+            return Point(
+                face, eta, weight, j, i, gaps[1], slip, rows, -xi[1] * bent, turn, stretch, of_chord[1], lean
+            )
         mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
         long, square = (length[0] + length[1]) / 2.0, (length[0] * length[1]) ** 2
         slip = long * (xi[1] - xi[0])
         alpha = (1.0 / length[0] + 1.0 / length[1]) / 2.0
-        beta = -(gaps[0] * length[0] + gaps[1] * length[1]) / 4.0 / (length[0] * length[1] * long)
+        beta = -(of_chord[0] * length[0] + of_chord[1] * length[1]) / 4.0 / (length[0] * length[1] * long)
         gamma = long * (1.0 / length[0] ** 2 + 1.0 / length[1] ** 2) / 2.0
         delta = -long * float(r[0] @ e[0] + r[1] @ e[1]) / 2.0 / square
         normal, tangential = alpha * _turned(mean), gamma * mean
         on_end = alpha * np.array([-arm[1], arm[0]]) + 2.0 * beta * mean
+        along, along_end = tangential, gamma * arm + 2.0 * delta * mean
+        bend = self.bulges.secant(j, xi[0], xi[1]) / long
+        stretch = float(np.hypot(1.0, bend))
+        tangential = (along + bend * normal) / stretch
+        slip_of_chord, slip = slip, (slip + bend * (of_chord[1] - of_chord[0])) / stretch
+        normal, on_end = normal - bend * along, on_end - bend * along_end
         if i != j:
             before, most = max(gaps[0], 0.0), TILT
             if i is not None:
                 _, a, _, tangents = self.at[0]
-                before = _cross(s[0] - a[i], tangents[i])
+                from_a = s[0] - a[i]
+                xi_before = float(from_a @ tangents[i]) / float(np.linalg.norm(self.at[0][2][i] - a[i]))
+                before = _cross(from_a, tangents[i]) - float(self.bulges.height(i, xi_before)) - rise
                 most = max(TILT, 2.0 * abs(_cross(tangents[i], tangents[j])))
-            rise = gaps[0] - before
-            if abs(rise) <= most * abs(slip):
-                kappa = rise / slip if rise else 0.0
+            step = gaps[0] - before
+            if abs(step) <= most * abs(slip_of_chord):
+                kappa = step / slip_of_chord if step else 0.0
             else:
-                kappa = most**2 * slip / rise
-            normal = normal + kappa * tangential
-            on_end = on_end + kappa * (gamma * arm + 2.0 * delta * mean)
-        return Point(face, eta, weight, j, i, gaps[1], slip, (normal, tangential), on_end)
+                kappa = most**2 * slip_of_chord / step
+            normal = normal + kappa * along
+            on_end = on_end + kappa * along_end
+        rows = (normal, tangential)
+        return Point(face, eta, weight, j, i, gaps[1], slip, rows, on_end, 0.0, stretch, of_chord[1])
 
     def master_parts(self, mean: Mean) -> dict[int, float]:
         """The parts |Bn_jm| of the normal force of a mean that its master nodes take, eq. (9.16)."""
         rows: dict[int, Array] = {}
         for weight, q in mean.points:
-            for end, row in zip(self.segments[q.segment], (-q.rows[0] - q.on_end, q.on_end)):
+            on_end = q.on_end + (q.chord_gap - mean.gap) * q.lean
+            for end, row in zip(self.segments[q.segment], (-q.rows[0] - on_end, on_end)):
                 for node, share in self.vertex(int(end)):
                     rows[node] = rows.get(node, np.zeros(2)) + weight * share * row
         return {node: float(np.linalg.norm(row)) for node, row in rows.items()}

@@ -24,10 +24,12 @@ from pathlib import Path
 import numpy as np
 
 from stickslip import command
+from stickslip.bulges import Bulges
 from stickslip.penetration.outlines import (
     LIMIT,
     Integers,
     Outline,
+    between_chord_and_curve,
     closed_hollow,
     distances,
     outlines,
@@ -84,16 +86,17 @@ def intrusions(position: Array, host: Outline, guests: Integers, number: int) ->
     start, end = position[host.nodes], position[host.after]
     own = guests is host.nodes
     point = position[guests]
-    box = _box(start)
-    near = own | ((point >= box[0]) & (point <= box[1])).all(axis=1)
+    box, bulge = _box(start), np.abs(host.bulges.coefficients).sum(axis=1).max(initial=0.0)
+    near = own | ((point >= box[0] - bulge) & (point <= box[1] + bulge)).all(axis=1)
     nodes, point = guests[near], point[near]
     counted = (host.nodes != nodes[:, None]) & (host.after != nodes[:, None])
     turns = winding(point, start, end, counted)
     if own:
         turns -= ray_starts_inside(point, position[host.before], end)
+    turns += (counted * between_chord_and_curve(point, start, end, host.bulges)).sum(axis=1)
     covered = turns > 0
     nodes, point, counted = nodes[covered], point[covered], counted[covered]
-    distance = np.where(counted, distances(point, start, end), np.inf)
+    distance = np.where(counted, distances(point, start, end, host.bulges), np.inf)
     edge = distance.argmin(axis=1) if len(nodes) else np.empty(0, np.int64)
     distance = distance[np.arange(len(nodes)), edge]
     if own:
@@ -109,10 +112,19 @@ def intrusions(position: Array, host: Outline, guests: Integers, number: int) ->
 def in_obstacle(position: Array, body: Outline, obstacle: Profile, gone: bool) -> list[Intrusion]:
     """A body's nodes inside the obstacle behind a rigid surface; `gone`: it has gone through."""
     inside = sunk(position, body, obstacle) | gone
+    if obstacle.bulges.coefficients.any():
+        places = position[body.nodes], position[obstacle.nodes], position[obstacle.after]
+        curved = between_chord_and_curve(*places, obstacle.bulges).sum(axis=1)
+        inside = (inside | (curved > 0)) & (curved >= 0)
     ways = (position[ends] - position[body.nodes] for ends in (body.after, body.before))
     edges = [np.linalg.norm(way, axis=1) for way in ways]
     nodes, size = body.nodes[inside], np.maximum(*edges)[inside]
     distance, segment, left = nearest(position, nodes, obstacle)
+    if obstacle.bulges.coefficients.any():
+        curved = distances(position[nodes], position[obstacle.nodes], position[obstacle.after], obstacle.bulges)
+        of_nearest = curved[np.arange(len(nodes)), segment]
+        left |= of_nearest != distance
+        distance = of_nearest
     found = np.flatnonzero(left)
     ends = np.stack([obstacle.nodes[segment], obstacle.after[segment]], axis=1)
     return [
@@ -171,7 +183,7 @@ def crossings(
     """Depths of the edges that cross by more than LIMIT; within one outline each pair counts once.
 
     The depth is the distance of the nearest of the four ends from the other edge, in its lengths. Edges whose ends
-    are one vertex, a number for each node, do not cross.
+    are one vertex, a number for each node, do not cross. The sides of curved edges are those of their curves.
     """
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
@@ -188,11 +200,12 @@ def crossings(
         keep = np.all([end[rows] != other[columns] for end in ends for other in others], axis=0)
         rows, columns = rows[keep], columns[keep]
     a, b, c, d = a[rows], b[rows], c[columns], d[columns]
-    depth = np.minimum(_heights(a, b, c, d), _heights(c, d, a, b))
+    of_one, of_two = one.bulges.of(rows), two.bulges.of(columns)
+    depth = np.minimum(_heights(a, b, c, d, of_one), _heights(c, d, a, b, of_two))
     return depth[depth > LIMIT]
 
 
-def _heights(a: Array, b: Array, c: Array, d: Array) -> Array:
+def _heights(a: Array, b: Array, c: Array, d: Array, bulges: Bulges) -> Array:
     """Distance of the nearer of c and d from the line a, b, in lengths of a, b.
 
     It is zero where both are on the same side.
@@ -200,6 +213,13 @@ def _heights(a: Array, b: Array, c: Array, d: Array) -> Array:
     along = b - a
     square = np.einsum("ei,ei->e", along, along)
     one, two = (along[:, 0] * (p - a)[:, 1] - along[:, 1] * (p - a)[:, 0] for p in (c, d))
+    if bulges.coefficients.any():
+        # the left is inside
+        places = (np.einsum("ei,ei->e", p - a, along) / square for p in (c, d))
+        one, two = (
+            area + np.sqrt(square) * bulges.height(slice(None), np.clip(xi, 0.0, 1.0))
+            for area, xi in zip((one, two), places)
+        )
     return np.where(np.sign(one) != np.sign(two), np.minimum(abs(one), abs(two)) / square, 0.0)
 
 

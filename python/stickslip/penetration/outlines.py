@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.bulges import Bulges, Curves, curves, of_edges
 from stickslip.errors import Fault
 from stickslip.result import Array, Result
 
@@ -23,13 +24,15 @@ class Outline:
     after: Integers
     before: Integers
     """Next and last node along the outline."""
+    bulges: Bulges
+    """Of the edges."""
 
     @classmethod
-    def of(cls, edges: Integers) -> "Outline":
+    def of(cls, edges: Integers, found: Curves | None = None) -> "Outline":
         """Takes [edges, 2] node indices in any order."""
         nodes = np.unique(edges)
         one, two = edges[np.argsort(edges[:, 0])], edges[np.argsort(edges[:, 1])]
-        return cls(nodes, one[:, 1], two[:, 0])
+        return cls(nodes, one[:, 1], two[:, 0], of_edges(nodes, one[:, 1], found or {}))
 
 
 def outlines(results: Result) -> list[Outline]:
@@ -45,8 +48,8 @@ def outlines(results: Result) -> list[Outline]:
             f"{results.path}: elements of a body touch in corners only, at node"
             f" {', '.join(map(str, pinched[:5]))}: its outline has no inside there"
         )
-    body = results.body[results.boundary[:, 0]]
-    return [Outline.of(results.boundary[body == number]) for number in np.unique(body)]
+    body, found = results.body[results.boundary[:, 0]], curves(results)
+    return [Outline.of(results.boundary[body == number], found) for number in np.unique(body)]
 
 
 def side(start: Array, end: Array, point: Array) -> Integers:
@@ -105,13 +108,38 @@ def ray_starts_inside(point: Array, before: Array, after: Array) -> NDArray[np.b
     return np.where(convex, left_of_one & right_of_two, left_of_one | right_of_two)
 
 
-def distances(point: Array, start: Array, end: Array) -> Array:
-    """Distances of points from edges [points, edges]."""
+def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = None) -> Array:
+    """Distances of points from edges [points, edges]; from curved edges across their chords."""
     along = end - start
     offset = point[:, None] - start
     length = np.einsum("ei,ei->e", along, along)
     at = np.clip(np.einsum("pei,ei->pe", offset, along) / np.where(length > 0, length, 1), 0, 1)
-    return np.linalg.norm(offset - at[..., None] * along, axis=2)
+    found = np.linalg.norm(offset - at[..., None] * along, axis=2)
+    if bulges is None or not bulges.coefficients.any():
+        return found
+    gap, height, over = _across(point, start, end, bulges)
+    return np.where(over & bulges.coefficients.any(axis=1), np.abs(gap - height), found)
+
+
+def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulges) -> Integers:
+    """What curved edges wind around points more often than their chords do [points, edges]: 1 for a point between a
+    chord and the curve outside of it, -1 for one outside of a curve that is inside of its chord."""
+    if not bulges.coefficients.any():
+        return np.zeros((len(point), len(start)), np.int64)
+    gap, height, over = _across(point, start, end, bulges)
+    out, within = (0.0 <= gap) & (gap < height), (height <= gap) & (gap < 0.0)
+    return np.where(over & out, 1, np.where(over & within, -1, 0))
+
+
+def _across(point: Array, start: Array, end: Array, bulges: Bulges) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Distances of points out of the body from chords, those of the curves there, and whether the points are over the
+    edges [points, edges]."""
+    along = end - start
+    length = np.linalg.norm(along, axis=1)
+    offset = point[:, None] - start
+    gap = (offset[..., 0] * along[:, 1] - offset[..., 1] * along[:, 0]) / length
+    xi = np.einsum("pei,ei->pe", offset, along) / length**2
+    return gap, bulges.height(slice(None), xi), (xi >= 0.0) & (xi <= 1.0)
 
 
 def closed_hollow(point: Array, before: Array, after: Array) -> Array:

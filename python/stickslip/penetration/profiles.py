@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.bulges import Bulges, curves, of_edges
 from stickslip.penetration.outlines import LIMIT, Integers, Outline, distances, side, winding
 from stickslip.result import Array, Result
 
@@ -25,6 +26,8 @@ class Profile:
     nodes: Integers
     after: Integers
     """First and second nodes of the segments, in the order of the chain."""
+    bulges: Bulges
+    """Of the segments."""
 
     @property
     def closed(self) -> bool:
@@ -50,7 +53,7 @@ class Profile:
 
 def profiles(results: Result) -> list[Profile]:
     """The chains of all rigid surfaces."""
-    following = {int(a): int(b) for a, b in results.rigid}
+    following, found = {int(a): int(b) for a, b in results.rigid}, curves(results)
     reached = set(following.values())
     starts = [node for node in following if node not in reached]
     chains = []
@@ -60,7 +63,8 @@ def profiles(results: Result) -> list[Profile]:
         while node in following:
             chain.append((node, following.pop(node)))
             node = chain[-1][1]
-        chains.append(Profile(*np.array(chain).T))
+        nodes, after = np.array(chain).T
+        chains.append(Profile(nodes, after, of_edges(nodes, after, found)))
     return chains
 
 

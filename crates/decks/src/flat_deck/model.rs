@@ -6,10 +6,10 @@ use crate::deck::Text;
 use crate::diagnostics::Span;
 use crate::materials::Law;
 use crate::model::{
-    ALL_EXTERIOR, Adjust, Amplitude, Connector, ConnectorDirection, ConnectorLaw, Contact, Curve,
-    Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Heat, Interaction,
+    ALL_EXTERIOR, Adjust, Amplitude, Circle, Connector, ConnectorDirection, ConnectorLaw, Contact,
+    Curve, Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Heat, Interaction,
     Material, Mesh, Model, Reach, RigidBody, RigidPart, RigidProfile, Section, Set, Signal,
-    SurfaceKind, Tie, TieReach, TimeBase, Wear,
+    Smoothing, SurfaceKind, Tie, TieReach, TimeBase, Wear,
 };
 use std::collections::BTreeSet;
 
@@ -48,6 +48,7 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
             _ => None,
         };
         initialization(reach, general.is_interference_fit, lines);
+        general_smoothing(general, model, lines);
     }
     for body in &model.rigid_bodies {
         if body.is_coupling {
@@ -250,11 +251,52 @@ pub(super) fn pair_row(contact: &Contact, model: &Model, lines: &mut DeckWriter)
     }
 }
 
+/// Writes the shape of the faces of general contact.
+fn general_smoothing(general: &Contact, model: &Model, lines: &mut DeckWriter) {
+    let rows = match &general.smoothing {
+        Smoothing::Straight => vec![vec![String::new(), "NONE".to_owned()]],
+        Smoothing::Curved(circles) => {
+            let row = |circle: &Circle| {
+                let surface = name(&model.surfaces[circle.surface].name);
+                let mut row = vec![surface, "CIRCUMFERENTIAL".to_owned()];
+                row.extend(circle.centre.map(number));
+                row
+            };
+            circles.iter().map(row).collect()
+        }
+    };
+    if !rows.is_empty() {
+        let property = set("PROPERTY", "GEOMETRIC CORRECTION");
+        lines.card("SURFACE PROPERTY ASSIGNMENT", [property]);
+    }
+    rows.into_iter().for_each(|row| lines.row(row));
+}
+
+/// Writes the circles of a pair and what its card says of them.
+fn smoothing(contact: &Contact, model: &Model, lines: &mut DeckWriter) -> Option<String> {
+    let circles = match &contact.smoothing {
+        Smoothing::Straight => return Some(set("GEOMETRIC CORRECTION", "NONE")),
+        Smoothing::Curved(circles) if circles.is_empty() => return None,
+        Smoothing::Curved(circles) => circles,
+    };
+    let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i].name);
+    let own = format!("{slave}-{master}-SMOOTHING");
+    lines.card("SURFACE SMOOTHING", [named("NAME", &own)]);
+    for circle in circles {
+        let surface = name(&model.surfaces[circle.surface].name);
+        let [x, y] = circle.centre.map(number);
+        lines.row([surface, String::new(), "CIRCUMFERENTIAL".to_owned(), x, y]);
+    }
+    Some(named("GEOMETRIC CORRECTION", &own))
+}
+
 fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &mut DeckWriter) {
+    let correction = smoothing(contact, model, lines);
     let mut parameters = vec![
         set("INTERACTION", interactions.name(&contact.interaction)),
         set("TYPE", contact.formulation.name()),
     ];
+    parameters.extend(correction);
     parameters.extend(contact.adjust.and_then(|adjust| match adjust {
         Adjust::Within(reach) => Some(set("ADJUST", number(reach.above))),
         Adjust::Nodes(set) => Some(named("ADJUST", &model.sets.nodes[set].name)),

@@ -6,6 +6,7 @@ use super::mesh_index::MeshIndex;
 use super::names::Named;
 use super::outline::{CardBlock, Outline};
 use super::sets::Sets;
+use super::smoothing;
 use super::surfaces::{Found, Surfaces};
 use crate::deck::{Card, Line, Name, Text};
 use crate::diagnostics::{Code, Span};
@@ -25,18 +26,21 @@ pub(crate) fn read(
     cx: &mut Context,
 ) -> Vec<Contact> {
     let interactions = interactions(outline, cx);
+    let smoothings = smoothing::read(outline, surfaces, cx);
     let mut contacts = Vec::new();
     for card in outline.model_cards("CONTACT PAIR") {
         let name = card.required("INTERACTION", cx.d);
         let interaction = name.and_then(|name| interactions.find(name, cx).cloned());
         let adjust = adjust(card, sets, cx);
         let formulation = formulation(card);
+        let smoothing = smoothing::of_pair(card, &smoothings, cx).unwrap_or_default();
         for row in card.rows.iter() {
             let contact = contact(row, interaction.clone(), surfaces, cx);
             report_adjusted_self_contact(contact.as_ref(), card, cx);
             contacts.extend(contact.map(|contact| Contact {
                 adjust,
                 formulation,
+                smoothing: smoothing.clone(),
                 lying_faces: (!card.has("TYPE") && !contact.is_self_contact()).then_some(0),
                 ..contact
             }));
@@ -526,6 +530,7 @@ fn general(
     let span = inclusions(block, cx);
     let assigned = assignment(block, interactions, cx);
     let initialization = initialization(outline, block, cx);
+    let smoothing = smoothing::of_general(block, surfaces, cx);
     let formulations = block.parts_of("CONTACT FORMULATION");
     cx.only_once(&formulations);
     let span = span?;
@@ -552,6 +557,7 @@ fn general(
             .first()
             .map_or_else(ContactFormulation::default, |card| formulation(card)),
         lying_faces: formulations.is_empty().then_some(0),
+        smoothing: smoothing.ok()?,
         adjust,
         left_out: Vec::new(),
         is_interference_fit,

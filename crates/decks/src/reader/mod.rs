@@ -30,6 +30,7 @@ mod rigid_bodies;
 mod rigid_motion;
 mod sections;
 mod sets;
+mod smoothing;
 mod steps;
 mod surfaces;
 mod ties;

@@ -1,11 +1,13 @@
 //! Active constraints of a subincrement in event-driven integration. Section 6 of docs/theory.md,
 //! Impacts as events, items 1 and 4.
 
+use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;
 use super::constraint::Constraint;
-use super::geometry::{Positions, Projection};
+use super::geometry::Positions;
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
+use super::projection::Projection;
 use super::search::{ListedSlave, Search};
 use super::tolerances::{CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTION_BEYOND_ENDS};
 
@@ -165,11 +167,14 @@ impl ActiveConstraints {
             };
             return touches || self.has_joined(slave);
         }
-        let [s, a, b, c] = source.nodes;
-        let place = |nodes| start.place(nodes).raised(source.allowed[0]);
-        let is_held = |nodes| self.holds(slave, &place(nodes));
-        is_held([s, a, b])
-            || (source.target.corner.is_some() && (is_held([s, b, c]) || self.touches_end(b, s)))
+        let ([s, a, b, c], [first, second]) = (source.nodes, &source.bulges);
+        let is_held = |nodes, bulge: &Bulge| {
+            let place = bulge.below(start.place(nodes)).raised(source.allowed[0]);
+            self.holds(slave, &place)
+        };
+        is_held([s, a, b], first)
+            || (source.target.corner.is_some()
+                && (is_held([s, b, c], second) || self.touches_end(b, s)))
     }
 
     /// Whether a slave node touches a segment that ends at another node.
@@ -198,10 +203,16 @@ fn touched_normal(
     if slave == a || slave == b {
         return None;
     }
-    let p = start.place(pair.nodes).raised(listed.allowed()[0]);
+    let bulge = &listed.surfaces.bulges[pair.key.segment];
+    let p = bulge
+        .below(start.place(pair.nodes))
+        .raised(listed.allowed()[0]);
     let is_inside = || {
         let at = |node: usize| start.of(node);
-        p.gap >= -CLOSED_GAP * p.length || listed.surfaces.interior.takes_in([a, b], slave, at)
+        let is_outside_chord = || p.gap + bulge.at(p.xi) >= 0.0;
+        p.gap >= -CLOSED_GAP * p.length
+            || is_outside_chord()
+            || listed.surfaces.interior.takes_in([a, b], slave, at)
     };
     ((touches(&p) && is_inside()) || before.closes(pair.key)).then_some(p.normal)
 }

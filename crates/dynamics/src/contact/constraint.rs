@@ -10,6 +10,7 @@ use std::array::from_fn;
 
 use smallvec::SmallVec;
 
+use super::bulge::Lift;
 use super::geometry::position;
 use super::keys::{ConstraintKey, NodeAtSegment};
 use super::lists::PerDof;
@@ -54,6 +55,16 @@ impl<const N: usize> RowPair<N> {
     }
 }
 
+/// row.d
+pub(super) fn product(row: &[f64; 6], d: &[f64; 6]) -> f64 {
+    row.iter().zip(d).map(|(b, d)| b * d).sum()
+}
+
+/// p row + q other
+pub(super) fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
+    std::array::from_fn(|k| p * row[k] + q * other[k])
+}
+
 /// A constraint g >= 0 with Coulomb friction, linearised at the current iterate.
 ///
 /// ```text
@@ -86,6 +97,8 @@ pub struct Constraint {
     pub mu: f64,
     /// Whether the coefficient depends on slip rate or pressure.
     pub mu_varies: bool,
+    /// Length s of its normal row, over that of a straight face: the normal force is s Pn, eq. (3.31).
+    pub stretch: f64,
     /// What the overlap that a fit allows becomes less by in the increment (length), eq. (3.15).
     pub shrinkage: f64,
     /// Length that gaps are relative to: that of the segment.
@@ -119,15 +132,29 @@ impl Constraint {
             slip: product(&force.tangential),
             mu: 0.0,
             mu_varies: false,
+            stretch: 1.0,
             shrinkage: allowed[0] - allowed[1],
             scale,
             source,
         }
     }
 
-    /// Overlap that a fit allows at the start of the increment (length).
-    pub fn allowed_at_start(&self) -> f64 {
-        self.source.allowed[0]
+    /// Coefficient of friction of its Pn, eq. (3.31): |Pt| <= mu s Pn.
+    pub fn friction(&self) -> f64 {
+        self.mu * self.stretch
+    }
+
+    /// Normal and tangential force s Pn and Pt of its multipliers.
+    pub fn normal_and_tangential(&self, [pn, pt]: [f64; 2]) -> [f64; 2] {
+        [self.stretch * pn, pt]
+    }
+
+    /// What the gap of its node to the chord of its segment counts more by at the start of the increment.
+    pub fn lift_at_start(&self) -> Lift {
+        Lift {
+            allowed: self.source.allowed[0],
+            bulge: self.source.bulges[0],
+        }
     }
 
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.

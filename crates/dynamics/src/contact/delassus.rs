@@ -50,7 +50,10 @@ pub fn frictional_lcp(
     FrictionalLcp {
         gap: vector(0, &mut constant_terms.iter().map(|term| term[0])),
         slip: vector(1, &mut constant_terms.iter().map(|term| term[1])),
-        mu: vector(2, &mut constraints.iter().map(|constraint| constraint.mu)),
+        mu: vector(
+            2,
+            &mut constraints.iter().map(|constraint| constraint.friction()),
+        ),
         q: delassus(constraints, compliance, scope, space),
     }
 }

@@ -7,11 +7,13 @@
 use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use smallvec::SmallVec;
 
+use super::bulge::Bulge;
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
-use super::geometry::{ContactSurfaces, MasterArc, Positions, Projection, SurfaceArc};
+use super::geometry::{ContactSurfaces, MasterArc, Positions, SurfaceArc};
 use super::keys::ConstraintKey;
 use super::lists::Recycled;
 use super::node_to_segment::{SegmentRows, rows_between};
+use super::projection::Projection;
 use super::search::{Candidate, ListedSlave};
 use super::stiffness::changes_between;
 use super::targets::{ContactTarget, Feature, PairTarget, Round, position_round_off, rise};
@@ -49,6 +51,7 @@ pub(super) fn find_targets(
             },
             target: ContactTarget::face(segment),
             nodes: [centre, feature.nodes[0], feature.nodes[1], disc.arm],
+            bulges: [Bulge::FLAT; 2],
             from: None,
             allowed,
             points: Recycled::default(),
@@ -333,7 +336,8 @@ fn at_segment(places: &NodePositions, radius: f64, height: f64) -> DiscRows {
         projection,
         force,
         derivative,
-    } = rows_between(places.of_segment(), height, places.form);
+        ..
+    } = rows_between(places.of_segment(), (height, &Bulge::FLAT), places.form);
     let all = |[sx, sy, ax, ay, bx, by]: [f64; 6]| {
         DiscRow::from_column_slice(&[sx, sy, 0.0, 0.0, ax, ay, bx, by])
     };

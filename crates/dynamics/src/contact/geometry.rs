@@ -1,6 +1,3 @@
-//! Projection of a node on a segment: gap, projection point and local frame. Section 3 of
-//! docs/theory.md.
-//!
 //! Contact surfaces: slave nodes and oriented master segments, with their neighbours and sharp
 //! corners. Section 10 of docs/theory.md.
 //!
@@ -15,52 +12,19 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::bulge::Bulge;
+use super::curves::{Chain, FaceShapes};
 use super::lists::{Recycled, entries};
+use super::projection::{Projection, project};
 use super::tolerances::{
     CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE,
 };
+use crate::linear::larger;
 use crate::model::{
     CircleArc, Contact, ContactFormulation, Disc, Element, ElementsAtNodes, Mesh, Model,
-    RigidProfile, SurfaceKind,
+    RigidProfile, Smoothing, SurfaceKind,
 };
 use crate::vectors::{cross, difference, dot, length};
-
-/// A point in the local frame of a segment from a to b, which has its body on the left.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Projection {
-    /// Coordinate of the projection on the segment: 0 at a, 1 at b.
-    pub xi: f64,
-    /// Gap: distance along the normal, positive outside the body (length).
-    pub gap: f64,
-    /// Length of the segment.
-    pub length: f64,
-    /// Unit vector from a to b.
-    pub tangent: [f64; 2],
-    /// Unit normal out of the body.
-    pub normal: [f64; 2],
-}
-
-/// Projects the point `s` on the segment from `a` to `b`.
-///
-/// ```text
-/// e_t = (x_b - x_a)/l,  e_n = (e_t,y, -e_t,x),  l = |x_b - x_a|    eq. (3.2)
-/// xi = r.e_t/l,  g = r.e_n,  r = x_s - x_a                         eq. (3.3)
-/// ```
-#[inline]
-pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
-    let e = difference(a, b);
-    let length = length(e);
-    let tangent = [e[0] / length, e[1] / length];
-    let normal = [tangent[1], -tangent[0]];
-    let r = difference(a, s);
-    Projection {
-        xi: dot(r, tangent) / length,
-        gap: dot(r, normal),
-        length,
-        tangent,
-        normal,
-    }
-}
 
 /// Positions of all nodes in a configuration: reference coordinates plus displacements.
 #[derive(Debug, Clone, Copy)]
@@ -92,16 +56,6 @@ impl<'a> Positions<'a> {
     pub fn place(&self, nodes: [usize; 3]) -> Projection {
         let [s, a, b] = nodes.map(|node| self.of(node));
         project(s, a, b)
-    }
-}
-
-impl Projection {
-    /// The same with a gap that is larger by an overlap that is allowed (length).
-    pub fn raised(self, allowed: f64) -> Self {
-        Projection {
-            gap: self.gap + allowed,
-            ..self
-        }
     }
 }
 
@@ -151,6 +105,12 @@ pub struct ContactSurfaces {
     /// configuration: an angle below 120 degrees. Folded legs of any other corner are a closed
     /// concave corner.
     pub sharp_corners: Vec<bool>,
+    /// How far the face of every segment is outside of its chord, for nodes.
+    pub bulges: Vec<Bulge>,
+    /// The same of every face of the slave surface.
+    pub face_bulges: Vec<Bulge>,
+    /// The same of the faces before and after every slave node on its own surface.
+    pub own_bulges: Vec<[Bulge; 2]>,
     /// Interior of the bodies; behind a segment without an element everything is inside.
     pub interior: Arc<Interior>,
     /// Faces at the slave nodes, where contact is from surface to surface.
@@ -263,6 +223,8 @@ pub struct SlaveSegments {
     pub ranks: Option<Vec<usize>>,
     /// Ends of every slave face, and after them those of every master segment.
     pub vertices: Vec<[Vertex; 2]>,
+    /// Bulges of the same, for points.
+    pub bulges: Vec<Bulge>,
     /// Whether the faces are those of bodies of revolution.
     pub are_rings: bool,
 }
@@ -301,6 +263,16 @@ impl SlaveSegments {
     /// Ends of a master segment.
     pub fn segment(&self, segment: usize) -> [Vertex; 2] {
         self.vertices[self.ends.len() + segment]
+    }
+
+    /// Bulge of a slave face.
+    pub fn face_bulge(&self, face: usize) -> &Bulge {
+        &self.bulges[face]
+    }
+
+    /// Bulge of a master segment.
+    pub fn segment_bulge(&self, segment: usize) -> &Bulge {
+        &self.bulges[self.ends.len() + segment]
     }
 
     /// That of a slave face among the edges.
@@ -408,6 +380,9 @@ impl ContactSurfaces {
             next: segments.iter().map(|&[_, b]| at(&starting, b)).collect(),
             previous: segments.iter().map(|&[a, _]| at(&ending, a)).collect(),
             sharp_corners: vec![false; segments.len()],
+            bulges: vec![Bulge::FLAT; segments.len()],
+            face_bulges: vec![Bulge::FLAT; own.len()],
+            own_bulges: vec![[Bulge::FLAT; 2]; slaves.len()],
             slaves,
             segments,
             interior: Arc::default(),
@@ -436,6 +411,71 @@ impl ContactSurfaces {
         self.arcs
             .get(at)
             .filter(|arc| arc.segments.contains(&segment))
+    }
+
+    /// The master segments with their neighbours.
+    pub(super) fn chain(&self) -> Chain<'_> {
+        Chain {
+            segments: &self.segments,
+            next: &self.next,
+            previous: &self.previous,
+        }
+    }
+
+    /// With the shapes of curved faces at the reference coordinates `x`: of a rigid surface its arcs, else what follows from
+    /// the turns of slave faces and segments.
+    pub fn with_bulges(mut self, x: &[[f64; 2]], shapes: &FaceShapes, is_rigid: bool) -> Self {
+        self.bulges = match is_rigid {
+            true => self.bulges_of_arcs(x),
+            false => self.chain().bulges(x, shapes),
+        };
+        let faces = self.slave_faces.clone();
+        let own = ContactSurfaces::with_joined(Vec::new(), &[], faces, &self.joined);
+        self.face_bulges = own.chain().bulges(x, shapes);
+        let numbered = || self.slave_faces.iter().zip(&self.face_bulges);
+        let before: HashMap<usize, Bulge> =
+            numbered().map(|(&[_, b], &bulge)| (b, bulge)).collect();
+        let after: HashMap<usize, Bulge> = numbered().map(|(&[a, _], &bulge)| (a, bulge)).collect();
+        let at = |of: &HashMap<usize, Bulge>, node: usize| {
+            let found = self.joined.of(node).find_map(|node| of.get(&node).copied());
+            found.unwrap_or(Bulge::FLAT)
+        };
+        let own = self
+            .slaves
+            .iter()
+            .map(|&node| [at(&before, node), at(&after, node)]);
+        self.own_bulges = own.collect();
+        self
+    }
+
+    /// Whether a master segment or slave face bends.
+    pub fn bends(&self) -> bool {
+        let mut all = self.bulges.iter().chain(&self.face_bulges);
+        all.any(|bulge| !bulge.is_flat())
+    }
+
+    /// Number of master segments and slave faces that bend, and the largest angle between a face and its chord at an end, at the
+    /// reference coordinates `x`.
+    pub fn bent(&self, x: &[[f64; 2]]) -> (usize, f64) {
+        let segments = self.segments.iter().zip(&self.bulges);
+        let all = segments.chain(self.slave_faces.iter().zip(&self.face_bulges));
+        let bent = all.filter(|(_, bulge)| !bulge.is_flat());
+        bent.fold((0, 0.0), |(count, most), (&[a, b], bulge)| {
+            let size = length(difference(x[a], x[b]));
+            let angles = [0.0, 1.0].map(|end| (bulge.slope(end) / size).atan().abs());
+            (count + 1, larger(most, larger(angles[0], angles[1])))
+        })
+    }
+
+    /// Bulges of the segments of a rigid surface: those of its arcs.
+    fn bulges_of_arcs(&self, x: &[[f64; 2]]) -> Vec<Bulge> {
+        let of_arc = |i: usize| {
+            let arc = self.arc_of(i)?;
+            Some(Bulge::of_arc(self.length(x, i), arc.arc.radius))
+        };
+        (0..self.segments.len())
+            .map(|i| of_arc(i).unwrap_or(Bulge::FLAT))
+            .collect()
     }
 
     /// With the interior of the bodies behind the segments.
@@ -482,7 +522,15 @@ impl ContactSurfaces {
         };
         let edges = self.slave_faces.iter().chain(&self.segments);
         let vertices = edges.map(|ends| ends.map(vertex)).collect();
+        let edges = self.slave_faces.iter().chain(&self.segments);
+        let bulges = self.face_bulges.iter().chain(&self.bulges);
+        let bulges = (edges.zip(bulges)).map(|(ends, bulge)| {
+            let half = ends.map(|end| middles.contains_key(&end));
+            bulge.of_points(half)
+        });
+        let bulges = bulges.collect();
         self.slave_segments = Some(SlaveSegments {
+            bulges,
             ends,
             at_nodes: at_nodes.into_iter().map(of_sides).collect(),
             runs: self.runs(x),
@@ -555,7 +603,9 @@ impl ContactSurfaces {
         let chains = |faces: &[[usize; 2]]| {
             ContactSurfaces::with_joined(Vec::new(), &[], faces.to_vec(), &self.joined)
         };
-        let [slave, master] = [&self.slave_faces, &self.segments].map(|faces| chains(faces));
+        let [mut slave, mut master] =
+            [&self.slave_faces, &self.segments].map(|faces| chains(faces));
+        (slave.bulges, master.bulges) = (self.face_bulges.clone(), self.bulges.clone());
         let mut both = vec![(&slave, &master, false)];
         if !is_self_contact {
             both.push((&master, &slave, true));
@@ -570,8 +620,9 @@ impl ContactSurfaces {
             let allowed = |node: &usize| CORNER_DEPTH * shortest[node].min(least);
             let allowed = nodes.iter().map(allowed).collect();
             let segments = against.segments.clone();
-            let surfaces =
+            let mut surfaces =
                 ContactSurfaces::with_joined(nodes, &own.segments, segments, &self.joined);
+            surfaces.bulges = against.bulges.clone();
             Corners {
                 surfaces: surfaces
                     .with_sharp_corners(x)
@@ -737,14 +788,29 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
             let arcs = profile.arcs.iter();
             surfaces.arcs = arcs.map(|arc| SurfaceArc::new(profile, arc, x)).collect();
         }
-        if contact.formulation == ContactFormulation::SurfaceToSurface {
-            let both = [slave, master].into_iter();
-            let middles = both.flat_map(|surface| surface.middles(&model.mesh));
-            return surfaces.from_surface_to_surface(&model.mesh, middles.collect());
+        if let SurfaceKind::Nodes(_) = slave.kind {
+            surfaces = surfaces.with_exterior_faces(&model.mesh);
         }
-        match slave.kind {
-            SurfaceKind::Nodes(_) => surfaces.with_exterior_faces(&model.mesh),
-            _ => surfaces,
+        let both = [slave, master].into_iter();
+        let middles = both.flat_map(|surface| surface.middles(&model.mesh));
+        let mut shapes = FaceShapes {
+            middles: middles.collect(),
+            ..FaceShapes::default()
+        };
+        if let Smoothing::Curved(circles) = &contact.smoothing {
+            for circle in circles {
+                let segments = model.surfaces[circle.surface].segments(&model.mesh);
+                let centres = segments.into_iter().map(|ends| (ends, circle.centre));
+                shapes.centres.extend(centres);
+            }
+            let is_rigid = matches!(master.kind, SurfaceKind::Rigid(_));
+            surfaces = surfaces.with_bulges(x, &shapes, is_rigid);
+        }
+        match contact.formulation {
+            ContactFormulation::SurfaceToSurface => {
+                surfaces.from_surface_to_surface(&model.mesh, shapes.middles)
+            }
+            ContactFormulation::NodeToSegment => surfaces,
         }
     };
     model.contacts.iter().map(of_contact).collect()

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::constraint::{Configurations, Constraint};
-use super::geometry::project;
+use super::projection::project;
 use super::targets::PairTarget;
 use super::{disc, node_to_corner, node_to_segment, surface_to_surface};
 
@@ -54,8 +54,10 @@ impl Constraint {
             (source.nodes[1], source.nodes[2], round.arc) =
                 (from.nodes[0], from.nodes[1], from.arc);
         }
-        if let Some([a, b]) = source.from.take() {
+        if let Some(from) = source.from.take() {
+            let [a, b] = from.ends;
             (source.nodes[1], source.nodes[2], source.nodes[3]) = (a, b, b);
+            source.bulges = [from.bulge; 2];
         }
         Constraint {
             mu: self.mu,

@@ -2,10 +2,13 @@
 //! their complementarity problem, crossing and tunnelling.
 
 mod active_constraints;
+mod bend;
+mod bulge;
 mod closed_pairs;
 mod compliance;
 mod constraint;
 mod crossing;
+mod curves;
 mod delassus;
 mod disc;
 mod geometry;
@@ -15,6 +18,7 @@ mod lists;
 mod node_to_corner;
 mod node_to_segment;
 mod pairing;
+mod projection;
 #[cfg(test)]
 mod seam_tests;
 mod search;
@@ -29,6 +33,7 @@ mod tunnelling;
 mod tunnelling_tests;
 
 pub use active_constraints::{ActiveConstraints, ConstraintSet};
+pub use bulge::{Bulge, Lift};
 pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use compliance::{Compliance, ConstraintGroup};
 pub use constraint::{Configurations, Constraint, RowForm, Rows, SurfaceParts};
@@ -36,12 +41,13 @@ pub use crossing::{Crossing, CrossingSense, QuadraticMotion, crossings, line_cro
 pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
 pub use geometry::{
-    Along, ContactSurfaces, Interior, MasterArc, Positions, Projection, SurfaceArc,
-    contact_surfaces, project, shortest_faces,
+    Along, ContactSurfaces, Interior, MasterArc, Positions, SurfaceArc, contact_surfaces,
+    shortest_faces,
 };
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use lists::PerDof;
 pub use pairing::{SlaveChoice, find_means, find_targets};
+pub use projection::{Projection, project};
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub use targets::{ContactTarget, Corner, PairTarget, SlaveNode, common_normal};
 pub use tunnelling::{crossed_edges, find_penetration, sunk_nodes};

@@ -2,7 +2,7 @@
 //! Section 10 of docs/theory.md, Corner against corner.
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
-use super::node_to_segment::segment_rows;
+use super::node_to_segment::{SegmentRows, segment_rows};
 use super::targets::Corner;
 use super::targets::PairTarget;
 
@@ -21,32 +21,51 @@ use super::targets::PairTarget;
 pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations) -> Constraint {
     let [s, a, b, c] = source.nodes;
     // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
-    let (before, behind) = [[s, a, b], [s, b, c]]
-        .map(|nodes| segment_rows(nodes, source.allowed, at))
-        .into();
-    let (p, q) = (before.projection, behind.projection);
-    let [x, y] = [0, 1].map(|i| corner.blend(p.normal[i], q.normal[i]));
-    let m = x.hypot(y);
-    let blend = |row: [f64; 6], next: [f64; 6]| -> [f64; 8] {
+    let [first, second] = source.bulges;
+    let before = segment_rows([s, a, b], (first, source.allowed), at);
+    let behind = segment_rows([s, b, c], (second, source.allowed), at);
+    let [m, along] = lengths_of_rows(corner, [&before, &behind]);
+    let blend = |row: [f64; 6], next: [f64; 6], m: f64| -> [f64; 8] {
         let (row, next) = (at_first_nodes(row), at_last_nodes(next));
         std::array::from_fn(|k| corner.blend(row[k], next[k]) / m)
     };
     let both = |p: RowPair<6>, q: RowPair<6>| RowPair {
-        normal: blend(p.normal, q.normal),
-        tangential: blend(p.tangential, q.tangential),
+        normal: blend(p.normal, q.normal, m),
+        tangential: blend(p.tangential, q.tangential, along),
     };
     let rows = [
         both(before.force, behind.force),
         both(before.derivative, behind.derivative),
     ];
-    let gap = corner.blend(p.gap, q.gap) / m;
+    let gap = corner.blend(before.gap, behind.gap) / m;
     let allowed = source.allowed.map(|allowed| allowed / m);
-    let mut constraint = Constraint::of_nodes(source, rows, (gap, p.length, allowed), at);
+    let scale = before.projection.length;
+    let mut constraint = Constraint::of_nodes(source, rows, (gap, scale, allowed), at);
     if at.form == RowForm::DiscreteGradient && constraint.start_gap < 0.0 {
         constraint.gap -= constraint.start_gap;
         constraint.start_gap = 0.0;
     }
     constraint
+}
+
+/// Lengths m of the blended normal and tangential rows at s, which are one of straight faces.
+pub(super) fn lengths_of_rows(corner: Corner, sides: [&SegmentRows; 2]) -> [f64; 2] {
+    let length = |of: fn(&SegmentRows) -> [f64; 2]| {
+        let [p, q] = sides.map(of);
+        let [x, y] = [0, 1].map(|i| corner.blend(p[i], q[i]));
+        x.hypot(y)
+    };
+    let of_normals = length(|rows| match &rows.bend {
+        None => rows.projection.normal,
+        Some(_) => [rows.force.normal[0], rows.force.normal[1]],
+    });
+    match sides.iter().all(|rows| rows.bend.is_none()) {
+        true => [of_normals; 2],
+        false => [
+            of_normals,
+            length(|rows| [rows.force.tangential[0], rows.force.tangential[1]]),
+        ],
+    }
 }
 
 /// A row at s, a, b as one at s, a, b, c.

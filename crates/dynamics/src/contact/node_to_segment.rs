@@ -1,17 +1,35 @@
 //! Constraint of a slave node at a segment: projection, gap, force rows of the end configuration
 //! (section 3 of docs/theory.md) or as discrete gradients (section 7), and derivative rows.
 
-use super::constraint::{Configurations, Constraint, RowForm, RowPair};
-use super::geometry::{Projection, project};
-use super::targets::PairTarget;
-use super::targets::{position_round_off, rise};
+use super::bend::{Bend, OfChord};
+use super::bulge::Bulge;
+use super::constraint::{Configurations, Constraint, RowForm, RowPair, product, sum_of};
+use super::projection::{Projection, project};
+use super::targets::{PairTarget, position_round_off, rise};
 use crate::vectors::{cross, difference, dot};
 
 /// A node on a segment, with its force rows and derivative rows.
 pub(super) struct SegmentRows {
+    /// Projection on the chord.
     pub projection: Projection,
+    /// Gap to the face (length).
+    pub gap: f64,
     pub force: RowPair<6>,
     pub derivative: RowPair<6>,
+    /// How the face bends, if it does.
+    pub bend: Option<Bend>,
+}
+
+impl SegmentRows {
+    /// Force rows and derivative rows of the chord.
+    pub fn chord(&self) -> [RowPair<6>; 2] {
+        (self.bend.as_ref()).map_or([self.force, self.derivative], |bend| bend.chord)
+    }
+
+    /// Length of the normal row, over that of a straight face: what the friction bound is larger by, eq. (3.31).
+    pub fn stretch(&self) -> f64 {
+        self.bend.as_ref().map_or(1.0, |bend| bend.stretch)
+    }
 }
 
 /// Start and end of the increment: r = x_s - x_a, e = x_b - x_a and what follows from them.
@@ -29,24 +47,24 @@ struct Arms {
 /// The constraint of the slave node s at the segment from a to b; nodes s, a, b.
 pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
     let [s, a, b, _] = source.nodes;
-    let SegmentRows {
-        projection,
-        mut force,
-        derivative,
-    } = segment_rows([s, a, b], source.allowed, at);
+    let mut rows = segment_rows([s, a, b], (source.bulges[0], source.allowed), at);
     let kappa = tilt(&source, at);
     if kappa != 0.0 {
-        force.normal = sum_of(1.0, &force.normal, kappa, &force.tangential);
+        let [chord, _] = rows.chord();
+        rows.force.normal = sum_of(1.0, &rows.force.normal, kappa, &chord.tangential);
     }
-    let gap = (projection.gap, projection.length, source.allowed);
-    Constraint::of_nodes(source, [force, derivative], gap, at)
+    let gap = (rows.gap, rows.projection.length, source.allowed);
+    Constraint {
+        stretch: rows.stretch(),
+        ..Constraint::of_nodes(source, [rows.force, rows.derivative], gap, at)
+    }
 }
 
 /// Gap of the constraint, and the length that it is relative to.
 pub(super) fn gap_and_scale(source: &PairTarget, at: &Configurations) -> (f64, f64) {
     let [s, a, b, _] = source.nodes;
     let [s, a, b] = at.iterate([s, a, b]);
-    let projection = project(s, a, b);
+    let projection = source.bulges[0].below(project(s, a, b));
     (projection.gap + source.allowed[1], projection.length)
 }
 
@@ -59,17 +77,15 @@ pub(super) fn gap_and_scale(source: &PairTarget, at: &Configurations) -> (f64, f
 /// Then Bn d = g1 - h0, so that contact puts no energy in.
 pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
     let from = source.from.filter(|_| at.form == RowForm::DiscreteGradient);
-    let Some([i, j]) = from else { return 0.0 };
+    let Some(from) = from else { return 0.0 };
     let [s, a, b, _] = source.nodes;
-    let [start, end] =
-        [at.start([s, a, b]), at.iterate([s, a, b])].map(|[s, a, b]| project(s, a, b));
+    let [start, end] = [at.start([s, a, b]), at.iterate([s, a, b])]
+        .map(|[s, a, b]| source.bulges[0].below(project(s, a, b)));
+    let [i, j] = from.ends;
     let [s, i, j] = at.start([s, i, j]);
     let allowed = source.allowed[0];
-    let start = Projection {
-        gap: start.gap + allowed,
-        ..start
-    };
-    let rise = rise(&start, project(s, i, j).gap + allowed, s);
+    let before = from.bulge.below(project(s, i, j)).raised(allowed);
+    let rise = rise(&start.raised(allowed), before.gap, s);
     let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
     // a node that has not moved has no direction to be tilted in
     match rise != 0.0 && slip.abs() > position_round_off(s) {
@@ -78,22 +94,37 @@ pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
     }
 }
 
-/// Projection and rows of the node s on the segment from a to b, which may overlap.
+/// Projection and rows of the node s on the segment from a to b, whose face has a bulge, and which it may overlap.
 pub(super) fn segment_rows(
     nodes: [usize; 3],
-    [_, allowed]: [f64; 2],
+    (bulge, [_, allowed]): (Bulge, [f64; 2]),
     at: &Configurations,
 ) -> SegmentRows {
-    rows_between([at.start(nodes), at.iterate(nodes)], -allowed, at.form)
+    let places = [at.start(nodes), at.iterate(nodes)];
+    if bulge.is_flat() {
+        return rows_between(places, (-allowed, &bulge), at.form);
+    }
+    let [s, a, b] = places[1];
+    let projection = project(s, a, b);
+    let height = bulge.at(projection.xi) - allowed;
+    let mut rows = rows_between(places, (height, &bulge), at.form);
+    if let (RowForm::End, Some(bend)) = (at.form, &rows.bend) {
+        // the couple of friction changes with the height that the node has where the gap is closed
+        let turned = product(&couple(&projection), &displacements(&places)) / bend.stretch;
+        let tangential = &mut rows.derivative.tangential;
+        *tangential = sum_of(1.0, tangential, turned, &bend.of_height);
+    }
+    rows
 }
 
 /// Projection and rows between the positions of s, a and b at start and end; s is at a `height` over the segment when the
 /// constraint is closed, which end rows take and discrete gradients do not need.
 pub(super) fn rows_between(
-    [start, end]: [[[f64; 2]; 3]; 2],
-    height: f64,
+    places: [[[f64; 2]; 3]; 2],
+    (height, bulge): (f64, &Bulge),
     form: RowForm,
 ) -> SegmentRows {
+    let [start, end] = places;
     let [s, a, b] = end;
     let projection = project(s, a, b);
     let (force, derivative) = match form {
@@ -106,10 +137,57 @@ pub(super) fn rows_between(
             )
         }
     };
-    SegmentRows {
+    let mut rows = SegmentRows {
         projection,
+        gap: projection.gap,
         force,
         derivative,
+        bend: None,
+    };
+    if !bulge.is_flat() {
+        let [s, a, b] = start;
+        let before = project(s, a, b);
+        let d = displacements(&places);
+        let of_chord = of_chord(&rows, (form, &d));
+        let bend = Bend::new(bulge, [&before, &projection], of_chord, form);
+        rows.gap -= bulge.at(projection.xi);
+        [rows.force, rows.derivative] = bend.rows(&d);
+        rows.bend = Some(bend);
+    }
+    rows
+}
+
+/// Displacements of s, a and b since the start.
+fn displacements([start, end]: &[[[f64; 2]; 3]; 2]) -> [f64; 6] {
+    std::array::from_fn(|k| end[k / 2][k % 2] - start[k / 2][k % 2])
+}
+
+/// Derivatives of xi, l and Bn d, d being the displacements of s, a and b since the start,
+///
+/// ```text
+/// dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²,  dl = e_t.de
+/// ```
+///
+/// Discrete gradients are differences of gaps. End rows turn with the segment: dBn d = Bn - (e_t.w)/l D - (e_n.d_e) dxi.
+fn of_chord(rows: &SegmentRows, (form, d): (RowForm, &[f64; 6])) -> OfChord {
+    let ([force, derivative], p) = (rows.chord(), &rows.projection);
+    let (l, [t, n]) = (p.length, [p.tangent, p.normal]);
+    let of_arm = t.map(|t| t / l);
+    let of_edge = [0, 1].map(|i| (p.gap / l * n[i] - p.xi * t[i]) / l);
+    let of_xi = nodal(of_arm, of_edge);
+    OfChord {
+        rows: [force, derivative],
+        xi: of_xi,
+        length: nodal([0.0; 2], t),
+        normal_motion: match form {
+            RowForm::DiscreteGradient => derivative.normal,
+            RowForm::End => {
+                let stretch = [d[4] - d[2], d[5] - d[3]];
+                let w = [0, 1].map(|i| d[i] - (1.0 - p.xi) * d[2 + i] - p.xi * d[4 + i]);
+                let turned = sum_of(1.0, &force.normal, -dot(t, w), &couple(p));
+                sum_of(1.0, &turned, -dot(n, stretch), &of_xi)
+            }
+        },
     }
 }
 
@@ -215,11 +293,6 @@ fn gradients(r: [f64; 2], e: [f64; 2]) -> [[f64; 6]; 3] {
     [pi1, pi2, pi3]
 }
 
-/// p row + q other
-pub(super) fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
-    std::array::from_fn(|k| p * row[k] + q * other[k])
-}
-
 /// From parts with respect to (r, e) to the nodes: s: r-part, a: -(r-part) - (e-part), b: e-part.
 fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
     [r[0], r[1], -r[0] - e[0], -r[1] - e[1], e[0], e[1]]
@@ -228,6 +301,7 @@ fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::super::constraint::Rows;
+    use super::super::targets::Segment;
     use super::*;
     use crate::contact::geometry::position;
     use crate::contact::testing;
@@ -267,9 +341,16 @@ mod tests {
 
     #[test]
     fn derivative_rows_are_the_derivatives_of_gap_and_slip() {
-        for form in [RowForm::End, RowForm::DiscreteGradient] {
+        let bulges = [Bulge::FLAT, Bulge::steep(2.5)];
+        let forms = [RowForm::End, RowForm::DiscreteGradient];
+        for (form, bulge) in forms.map(|form| bulges.map(|bulge| (form, bulge))).concat() {
+            let source = PairTarget {
+                bulges: [bulge; 2],
+                ..testing::face()
+            };
+            let between = |form, u0: &[f64], u: &[f64]| of(source.clone(), form, u0, u);
             let constraint = between(form, &U0, &U1);
-            assert_eq!(constraint.gap, projected(&U1).gap);
+            assert_eq!(constraint.gap, bulge.below(projected(&U1)).gap);
             assert_eq!(constraint.dofs[..], [0, 1, 2, 3, 4, 5]);
             let rows = constraint.derivative_rows();
             for k in 0..6 {
@@ -283,6 +364,41 @@ mod tests {
                 let slip = (p.slip - q.slip) / 2e-6;
                 assert!((rows.normal[k] - gap).abs() < 1e-9, "{form:?} {k}");
                 assert!((rows.tangential[k] - slip).abs() < 1e-9, "{form:?} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_of_curved_faces_are_exact_differences_normal_to_each_other() {
+        let bulge = Bulge::steep(2.5);
+        let source = PairTarget {
+            bulges: [bulge; 2],
+            ..testing::face()
+        };
+        for form in [RowForm::End, RowForm::DiscreteGradient] {
+            let constraint = of(source.clone(), form, &U0, &U1);
+            let Rows { normal, tangential } = &constraint.force_rows;
+            // the force on the node: of the length s and of one
+            let [n, t] = [normal, tangential].map(|row| [row[0], row[1]]);
+            if form == RowForm::End {
+                assert!(dot(n, t).abs() < 1e-15 && (dot(t, t) - 1.0).abs() < 1e-15);
+                assert!((dot(n, n).sqrt() - constraint.stretch).abs() < 1e-15);
+                assert!(constraint.stretch > 1.0);
+                continue;
+            }
+            let start = bulge.below(projected(&U0)).gap;
+            assert!((constraint.start_gap - start).abs() < 1e-14);
+            for row in [normal, tangential] {
+                let moment: f64 = (0..3)
+                    .map(|n| {
+                        let [p, q] = [&U0, &U1].map(|u| position(&X, u, n));
+                        cross(
+                            [0, 1].map(|i| (p[i] + q[i]) / 2.0),
+                            [row[2 * n], row[2 * n + 1]],
+                        )
+                    })
+                    .sum();
+                assert!(moment.abs() < 1e-15, "{moment}");
             }
         }
     }
@@ -303,7 +419,10 @@ mod tests {
             let x = [[0.0, height], [0.0; 2], [-1.0, 0.0], [1.0, 0.0]];
             let u = [-slip, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
             let source = PairTarget {
-                from: Some([3, 1]),
+                from: Some(Segment {
+                    ends: [3, 1],
+                    bulge: Bulge::FLAT,
+                }),
                 ..testing::face()
             };
             let form = RowForm::DiscreteGradient;

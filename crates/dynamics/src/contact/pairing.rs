@@ -11,7 +11,7 @@ use super::keys::NodeAtSegment;
 use super::lists::Recycled;
 use super::search::{ListedSlave, Search};
 use super::surface_to_surface::find_points;
-use super::targets::{ContactTarget, ContactTargets, PairTarget, SlaveNode};
+use super::targets::{ContactTarget, ContactTargets, PairTarget, Segment, SlaveNode};
 use super::tolerances::KEPT_BEYOND_ENDS;
 
 /// The slave nodes whose pairs are found.
@@ -157,11 +157,17 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
         nodes: [s, a, b],
     } = listed.at(target.segment);
     let c = target.corner.map_or(b, |v| surfaces.segments[v.next][1]);
+    let bulge = |i: usize| surfaces.bulges[i];
+    let next = target.corner.map_or(target.segment, |v| v.next);
     PairTarget {
         key,
         target,
         nodes: [s, a, b, c],
-        from: target.from.map(|i| surfaces.segments[i]),
+        bulges: [target.segment, next].map(bulge),
+        from: target.from.map(|i| Segment {
+            ends: surfaces.segments[i],
+            bulge: bulge(i),
+        }),
         allowed: listed.allowed(),
         points: Recycled::default(),
         is_of_master: listed.is_of_master(),

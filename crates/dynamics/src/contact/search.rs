@@ -5,6 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use smallvec::SmallVec;
 
+use super::bulge::Lift;
 use super::geometry::{ContactSurfaces, Corners, Edge, Positions, position};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
@@ -260,6 +261,14 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
     /// Overlap that a fit allows it at the start of the increment and at its end (length).
     pub fn allowed(&self) -> [f64; 2] {
         self.territory.allowed(self.number)
+    }
+
+    /// What its gap to the chord of the segment of a pair counts more by at the start of the increment.
+    pub fn lift(&self, pair: &NodeAtSegment) -> Lift {
+        Lift {
+            allowed: self.allowed()[0],
+            bulge: self.surfaces.bulges[pair.key.segment],
+        }
     }
 
     /// Whether it is a corner of the contact's master.

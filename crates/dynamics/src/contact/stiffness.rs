@@ -22,11 +22,14 @@
 //! dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²
 //! ```
 
-use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, SMatrix, Vector4};
+use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, SMatrix, Vector4, Vector6};
 
+use super::bend::Bend;
+use super::constraint::product;
 use super::constraint::{Configurations, Constraint, RowForm};
-use super::geometry::project;
-use super::node_to_segment::tilt;
+use super::node_to_corner::lengths_of_rows;
+use super::node_to_segment::{SegmentRows, couple, segment_rows, tilt};
+use super::projection::project;
 
 /// Places of the dofs of s, a and b, or s, b and c, among those of the constraint.
 const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
@@ -35,39 +38,47 @@ impl Constraint {
     /// Change of the contact force of a node, over the dofs of the constraint (force/length). The weight of a corner and
     /// the length of its normal are those of the iterate.
     pub(super) fn change_of_node(&self, [pn, pt]: [f64; 2], at: &Configurations) -> DMatrix<f64> {
-        let ([s, a, b, c], allowed) = (self.source.nodes, self.source.allowed[1]);
+        let ([s, a, b, c], allowed) = (self.source.nodes, self.source.allowed);
+        let [first, second] = self.source.bulges;
         let mut k = DMatrix::zeros(self.dofs.len(), self.dofs.len());
         match self.source.target.corner {
             None => {
                 // the force of a tilted row is Bn^T Pn + Bt^T (Pt + kappa Pn), eq. (7.6)
-                let kappa = tilt(&self.source, at);
-                let of_segment = changes([s, a, b], allowed, [pn, pt + kappa * pn], at);
-                add_block(&mut k, &of_segment, 0);
+                let (nodes, kappa) = ([s, a, b], tilt(&self.source, at));
+                let bent = (!first.is_flat()).then(|| segment_rows(nodes, (first, allowed), at));
+                let force = ([pn, pt], kappa * pn);
+                add_block(
+                    &mut k,
+                    &changes((nodes, allowed[1]), bent.as_ref(), force, at),
+                    0,
+                );
                 if kappa != 0.0 {
-                    // dkappa = -kappa/s Gt
+                    // kappa = (g0 - h0)/s: dkappa = -kappa/s Gt, both of the chord
                     let column = |row: &[f64]| DVector::from_column_slice(row);
-                    let slip = column(&self.derivative_rows().tangential);
-                    let force = column(&self.force_rows.tangential);
-                    k -= force * slip.transpose() * (pn * kappa / self.slip);
+                    let (row, change, slip) = match bent {
+                        None => {
+                            let row = column(&self.force_rows.tangential);
+                            (row, column(&self.derivative_rows().tangential), self.slip)
+                        }
+                        Some(bent) => {
+                            let [force, derivative] = bent.chord().map(|rows| rows.tangential);
+                            let slip = product(&force, &displacements(nodes, at));
+                            (column(&force), column(&derivative), slip)
+                        }
+                    };
+                    k -= row * change.transpose() * (pn * kappa / slip);
                 }
             }
             Some(corner) => {
-                let normals = [[s, a, b], [s, b, c]].map(|nodes| {
-                    let [s, a, b] = at.iterate(nodes);
-                    project(s, a, b).normal
-                });
-                let [x, y] = [0, 1].map(|i| corner.blend(normals[0][i], normals[1][i]));
-                let blended = |weight: f64| [pn, pt].map(|p| weight * p / x.hypot(y));
-                add_block(
-                    &mut k,
-                    &changes([s, a, b], allowed, blended(corner.blend(1.0, 0.0)), at),
-                    0,
-                );
-                add_block(
-                    &mut k,
-                    &changes([s, b, c], allowed, blended(corner.blend(0.0, 1.0)), at),
-                    1,
-                );
+                let before = segment_rows([s, a, b], (first, allowed), at);
+                let behind = segment_rows([s, b, c], (second, allowed), at);
+                let [m, along] = lengths_of_rows(corner, [&before, &behind]);
+                let of = |nodes: [usize; 3], rows: &SegmentRows, weight: f64| {
+                    let force = [weight * pn / m, weight * pt / along];
+                    changes((nodes, allowed[1]), Some(rows), (force, 0.0), at)
+                };
+                add_block(&mut k, &of([s, a, b], &before, corner.blend(1.0, 0.0)), 0);
+                add_block(&mut k, &of([s, b, c], &behind, corner.blend(0.0, 1.0)), 1);
             }
         }
         k
@@ -97,11 +108,47 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, segment: usize) {
     }
 }
 
-/// d(Bn^T Pn + Bt^T Pt) of a node s on the segment from a to b, which may overlap, with respect to the end, over s, a
-/// and b.
-fn changes(nodes: [usize; 3], allowed: f64, force: [f64; 2], at: &Configurations) -> Matrix6<f64> {
+/// d(Bn^T Pn + Bt^T (Pt + kappa Pn)) at constant kappa Pn, the `leaning` force, of a node s on the segment from a to b, which may
+/// overlap and has the given rows if its face bends, with respect to the end, over s, a and b.
+fn changes(
+    (nodes, allowed): ([usize; 3], f64),
+    rows: Option<&SegmentRows>,
+    (force, leaning): ([f64; 2], f64),
+    at: &Configurations,
+) -> Matrix6<f64> {
     let places = [at.start(nodes), at.iterate(nodes)];
-    changes_between(places, -allowed, force, at.form)
+    let Some((rows, bend)) = rows.and_then(|rows| Some((rows, rows.bend.as_ref()?))) else {
+        return changes_between(places, -allowed, [force[0], force[1] + leaning], at.form);
+    };
+    let height = rows.projection.gap - rows.gap - allowed;
+    let mut k = changes_of_face(places, (height, bend), (force, leaning), at.form);
+    if at.form == RowForm::End {
+        // the couple of friction has the height b(xi) - a
+        let [_, along] = bend.at_chord(force);
+        let couple = Vector6::from(couple(&rows.projection)) * along;
+        k += couple * Vector6::from(bend.of_height).transpose();
+    }
+    k
+}
+
+/// The same of a face that bends, at a constant height over the chord.
+pub(super) fn changes_of_face(
+    places: [[[f64; 2]; 3]; 2],
+    (height, bend): (f64, &Bend),
+    (force, leaning): ([f64; 2], f64),
+    form: RowForm,
+) -> Matrix6<f64> {
+    let [pn, pt] = bend.at_chord(force);
+    let [row, change] = bend.change(force).map(Vector6::from);
+    changes_between(places, height, [pn, pt + leaning], form) + row * change.transpose()
+}
+
+/// Displacements of the nodes since the start.
+fn displacements(nodes: [usize; 3], at: &Configurations) -> [f64; 6] {
+    std::array::from_fn(|k| {
+        let dof = 2 * nodes[k / 2] + k % 2;
+        at.u[dof] - at.u0[dof]
+    })
 }
 
 /// The same between the positions of s, a and b at start and end, of a force at a constant height.
@@ -213,7 +260,8 @@ fn products() -> [Matrix4<f64>; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::targets::{ContactTarget, Corner, PairTarget};
+    use crate::contact::bulge::Bulge;
+    use crate::contact::targets::{ContactTarget, Corner, PairTarget, Segment};
     use crate::contact::testing;
 
     /// A node at a roof, and the foot of the segment before it.
@@ -224,8 +272,18 @@ mod tests {
     const FORMS: [RowForm; 2] = [RowForm::End, RowForm::DiscreteGradient];
 
     fn target(target: ContactTarget, nodes: [usize; 4], from: Option<[usize; 2]>) -> PairTarget {
+        bent(target, nodes, from, Bulge::FLAT)
+    }
+
+    fn bent(
+        target: ContactTarget,
+        nodes: [usize; 4],
+        from: Option<[usize; 2]>,
+        bulge: Bulge,
+    ) -> PairTarget {
         PairTarget {
-            from,
+            bulges: [bulge; 2],
+            from: from.map(|ends| Segment { ends, bulge }),
             ..testing::pair(target, nodes)
         }
     }
@@ -266,12 +324,17 @@ mod tests {
     fn the_change_of_the_force_is_its_derivative() {
         let face = ContactTarget::face(0);
         for form in FORMS {
-            for from in [None, Some([4, 1])] {
-                let source = target(face, [0, 1, 2, 2], from);
+            let froms = [None, Some([4, 1])];
+            let cases = froms.map(|from| [Bulge::FLAT, Bulge::steep(2.0)].map(|b| (from, b)));
+            for (from, bulge) in cases.concat() {
+                let source = bent(face, [0, 1, 2, 2], from, bulge);
                 let at = between(form, &U1);
                 let found = Constraint::new(source.clone(), &at).change(FORCE, &at);
                 let error = (&found - quotients(&source, form)).amax();
-                assert!(error < 1e-8 * found.amax(), "{form:?} {from:?}: {error}");
+                assert!(
+                    error < 1e-8 * found.amax(),
+                    "{form:?} {from:?} {bulge:?}: {error}"
+                );
             }
         }
         let at = between(FORMS[1], &U1);

@@ -9,15 +9,16 @@ use std::array::from_fn;
 use nalgebra::{DMatrix, DVector, Matrix6, SMatrix, Vector6};
 use smallvec::SmallVec;
 
-use super::constraint::{Configurations, Constraint, RowForm, RowPair, Rows};
-use super::geometry::{
-    ContactSurfaces, Edge, Positions, Projection, SlaveSegments, between, project,
-};
+use super::bulge::Bulge;
+use super::constraint::sum_of;
+use super::constraint::{Configurations, Constraint, RowForm, Rows};
+use super::geometry::{ContactSurfaces, Edge, Positions, SlaveSegments, between};
 use super::keys::ConstraintKey;
 use super::lists::{PerDof, Recycled};
-use super::node_to_segment::{SegmentRows, couple, rows_between, sum_of};
+use super::node_to_segment::{SegmentRows, couple, rows_between};
+use super::projection::{Projection, project};
 use super::search::{Cells, Faced, FacedRun, Territory};
-use super::stiffness::changes_between;
+use super::stiffness::{changes_between, changes_of_face};
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint};
 use super::tolerances::{
     CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, NEARER_DEPTH, POINT_TILT, SIDE_BY_SIDE,
@@ -79,6 +80,7 @@ pub(super) fn find_points(
                     },
                     target: ContactTarget::face(segment),
                     nodes: [node, a, b, b],
+                    bulges: [Bulge::FLAT; 2],
                     from: None,
                     allowed: territory.allowed(number),
                     points: mean.points,
@@ -87,6 +89,25 @@ pub(super) fn find_points(
                 });
             }
         }
+    }
+}
+
+/// Gauss points of a cell of length h: their places +-h/sqrt(k) or 0 from its middle, as sign and k, and their shares of h. Two where
+/// gap times hat function, in rings times radius, is a cubic at most; three where it has the degree four or five.
+fn gauss_points<'b>(
+    mut bulges: impl Iterator<Item = &'b Bulge>,
+    are_rings: bool,
+) -> &'static [(f64, f64, f64)] {
+    const TWO: [(f64, f64, f64); 2] = [(-1.0, 12.0, 0.5), (1.0, 12.0, 0.5)];
+    const THREE: [(f64, f64, f64); 3] = [
+        (-1.0, 20.0 / 3.0, 5.0 / 18.0),
+        (0.0, 1.0, 8.0 / 18.0),
+        (1.0, 20.0 / 3.0, 5.0 / 18.0),
+    ];
+    let needs_three = |bulge: &Bulge| !bulge.is_flat() && (bulge.is_cubic() || are_rings);
+    match bulges.any(needs_three) {
+        true => &THREE,
+        false => &TWO,
     }
 }
 
@@ -234,10 +255,13 @@ impl<'a> Finder<'a> {
                 RowForm::End => Some(j),
                 RowForm::DiscreteGradient => self.over(face, start, middle, self.start),
             };
-            // two Gauss points, each with half of the cell
-            for side in [-1.0, 1.0] {
-                let eta = middle + side * part / 12_f64.sqrt();
-                let weight = (self.slave).reference_weight(face, self.positions, eta, part / 2.0);
+            let of_segments = [Some(j), i].into_iter().flatten();
+            let bulges = of_segments.map(|i| self.slave.segment_bulge(i));
+            let bulges = bulges.chain([self.slave.face_bulge(face)]);
+            for &(side, square, share) in gauss_points(bulges, self.slave.are_rings) {
+                let eta = middle + side * part / f64::sqrt(square);
+                let share = part * share;
+                let weight = (self.slave).reference_weight(face, self.positions, eta, share);
                 points.push(self.point(face, eta, weight, (i, j)));
             }
         }
@@ -255,12 +279,14 @@ impl<'a> Finder<'a> {
         let [a, b] = self.slave.segment(j);
         let origin = match i {
             Some(i) if i == j => Origin::Same,
-            Some(i) => Origin::Other(self.slave.segment(i)),
+            Some(i) => Origin::Other(self.slave.segment(i), *self.slave.segment_bulge(i)),
             None => Origin::Outside,
         };
         let point = SurfacePoint {
             vertices: [x1, x2, a, b],
             eta,
+            rise: self.slave.face_bulge(face).at(eta),
+            bulge: *self.slave.segment_bulge(j),
             weight,
             origin,
         };
@@ -306,8 +332,22 @@ impl<'a> Finder<'a> {
         // gaps at the ends of the part of the face that is over the segment: beyond it a face of a bent thin body may be in front
         // of the line of a segment on the other side
         let part = |xi: f64| (xi.clamp(0.0, 1.0) - p.xi) / (q.xi - p.xi);
-        let gap = |eta: f64| p.gap + eta * (q.gap - p.gap);
-        if gap(part(p.xi)).max(gap(part(q.xi))) >= -CLOSED_GAP * p.length {
+        let bulges = [
+            self.slave.face_bulge(face),
+            self.slave.segment_bulge(segment),
+        ];
+        let is_curved = bulges.iter().any(|bulge| !bulge.is_flat());
+        let gap = |eta: f64| {
+            let of_chords = p.gap + eta * (q.gap - p.gap);
+            match is_curved {
+                true => of_chords - bulges[0].at(eta) - bulges[1].at(p.xi + eta * (q.xi - p.xi)),
+                false => of_chords,
+            }
+        };
+        let [first, last] = [part(p.xi), part(q.xi)];
+        let is_open = |eta: f64| gap(eta) >= -CLOSED_GAP * p.length;
+        // between the ends of a part a gap of curved faces may be larger than at both
+        if is_open(first) || is_open(last) || (is_curved && is_open(f64::midpoint(first, last))) {
             return true;
         }
         // the middle of the part of the face that is over the segment
@@ -317,7 +357,8 @@ impl<'a> Finder<'a> {
         let x = between(x1, x2, eta);
         let at = |segment: usize| {
             let [a, b] = self.slave.edge_of_segment(self.start, segment).ends;
-            project(x, a, b)
+            let over = self.slave.segment_bulge(segment).below(project(x, a, b));
+            over.raised(-bulges[0].at(eta))
         };
         let place = at(segment);
         let depth = -place.gap;
@@ -441,12 +482,15 @@ impl SurfacePoint {
 
     /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b.
     fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
-        let [p, q] = [start, end].map(|[s, a, b]| project(s, a, b));
+        let over = |bulge: &Bulge, [s, a, b]: [[f64; 2]; 3]| {
+            bulge.below(project(s, a, b)).raised(-self.rise)
+        };
+        let [p, q] = [start, end].map(|places| over(&self.bulge, places));
         let (before, turn) = match self.origin {
             Origin::Same => return Tilt::default(),
-            Origin::Other(segment) => {
+            Origin::Other(segment, bulge) => {
                 let [a, b] = segment.map(|vertex| vertex.place(&at_start));
-                let from = project(start[0], a, b);
+                let from = over(&bulge, [start[0], a, b]);
                 (from.gap, cross(from.tangent, p.tangent).abs())
             }
             // it may slide along its face over the end of the master
@@ -459,10 +503,15 @@ impl SurfacePoint {
         Tilt::new(p.gap - before, slip(&p, &q), POINT_TILT.max(2.0 * turn))
     }
 
-    /// Gap of the point in the iterate.
-    fn gap(&self, at: &Configurations) -> f64 {
+    /// Gap of the point in the iterate, between the faces and between their chords:
+    ///
+    /// ```text
+    /// G_q = g_q - b_m(xi_q) - b_s(eta_q)    eq. (3.32)
+    /// ```
+    fn gaps(&self, at: &Configurations) -> [f64; 2] {
         let [s, a, b] = self.places(|node| at.iterate([node])[0]);
-        project(s, a, b).gap
+        let p = project(s, a, b);
+        [self.bulge.below(p).raised(-self.rise).gap, p.gap]
     }
 
     /// (e_n.d_e)/l: the turn of its segment in the increment.
@@ -475,14 +524,15 @@ impl SurfacePoint {
     /// is given: when it closes the point is lower by that.
     fn rows(&self, gap: f64, at: &Configurations) -> (SegmentRows, Tilt) {
         let places = self.configurations(at);
-        let mut rows = rows_between(places, self.gap(at) - gap, at.form);
+        let [_, of_chord] = self.gaps(at);
+        let mut rows = rows_between(places, (of_chord - gap, &self.bulge), at.form);
         let tilt = match at.form {
             RowForm::End => Tilt::default(),
             RowForm::DiscreteGradient => self.tilt(places, |node| at.start([node])[0]),
         };
         if tilt.kappa != 0.0 {
-            let RowPair { normal, tangential } = rows.force;
-            rows.force.normal = sum_of(1.0, &normal, tilt.kappa, &tangential);
+            let [chord, _] = rows.chord();
+            rows.force.normal = sum_of(1.0, &rows.force.normal, tilt.kappa, &chord.tangential);
         }
         (rows, tilt)
     }
@@ -541,8 +591,8 @@ pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
         source.points.retain(|q| q.origin != Origin::Outside);
     }
     for point in source.points.iter_mut() {
-        if let Origin::Other([a, b]) = point.origin {
-            (point.vertices[2], point.vertices[3]) = (a, b);
+        if let Origin::Other([a, b], bulge) = point.origin {
+            (point.vertices[2], point.vertices[3], point.bulge) = (a, b, bulge);
         }
         point.origin = Origin::Same;
     }
@@ -590,15 +640,18 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
     let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
     let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
     let [allowed_before, allowed] = source.allowed;
-    let mean: f64 = (source.points.iter().map(|q| q.weight * q.gap(at))).sum();
+    let mean: f64 = (source.points.iter().map(|q| q.weight * q.gaps(at)[0])).sum();
     let (mut gap, mut scale, mut turn) = (mean + allowed, 0.0, 0.0);
+    let mut stretch = 0.0;
     for point in source.points.iter() {
         let (mut rows, _) = point.rows(gap, at);
         scale += point.weight * rows.projection.length;
+        stretch += point.weight * rows.stretch();
         if at.form == RowForm::End {
-            let turned = point.turn(&rows.projection, at);
-            let SegmentRows { derivative, .. } = &mut rows;
-            derivative.tangential = sum_of(1.0, &derivative.tangential, turned, &derivative.normal);
+            let turned = point.turn(&rows.projection, at) / rows.stretch();
+            let [_, chord] = rows.chord();
+            let tangential = &mut rows.derivative.tangential;
+            *tangential = sum_of(1.0, tangential, turned, &chord.normal);
             turn += point.weight * turned;
         }
         let of_point = [
@@ -650,6 +703,11 @@ pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint 
         slip,
         mu: 0.0,
         mu_varies: false,
+        // of straight faces one, whatever round-off the weights have
+        stretch: match source.points.iter().all(|q| q.bulge.is_flat()) {
+            true => 1.0,
+            false => stretch,
+        },
         shrinkage: allowed_before - allowed,
         scale,
         dofs,
@@ -674,19 +732,24 @@ pub(super) fn change(
         let (rows, Tilt { kappa, slope }) = point.rows(constraint.gap, at);
         let height = rows.projection.gap - constraint.gap;
         let [pn, pt] = [pn, pt].map(|p| point.weight * p);
-        let mut own: Matrix6<f64> = changes_between(places, height, [pn, pt + kappa * pn], at.form);
+        let mut own: Matrix6<f64> = match &rows.bend {
+            None => changes_between(places, height, [pn, pt + kappa * pn], at.form),
+            Some(bend) => changes_of_face(places, (height, bend), ([pn, pt], kappa * pn), at.form),
+        };
+        let [of_force, of_derivative] = rows.chord();
+        let [_, along] = (rows.bend.as_ref()).map_or([pn, pt], |bend| bend.at_chord([pn, pt]));
         let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
         let mut lean = Vector6::zeros();
         if at.form == RowForm::End {
             // the couple has a height, which changes with the gap of its point and with the gap of the constraint
-            lean = column(couple(&rows.projection)) * pt;
-            own += lean * column(rows.derivative.normal).transpose();
+            lean = column(couple(&rows.projection)) * along;
+            own += lean * column(of_derivative.normal).transpose();
         }
         if slope != 0.0 {
             // dkappa = (dkappa/ds) Gt
             let (force, change) = (
-                column(rows.force.tangential),
-                column(rows.derivative.tangential),
+                column(of_force.tangential),
+                column(of_derivative.tangential),
             );
             own += force * change.transpose() * (pn * slope);
         }
@@ -734,6 +797,15 @@ mod tests {
 
     /// The constraint of node 1 with points over both segments; one has come from the other segment.
     fn source() -> PairTarget {
+        source_of([Bulge::FLAT; 2])
+    }
+
+    /// The same between faces that bend, those of the slave by a constant rise.
+    fn sources() -> [PairTarget; 2] {
+        [Bulge::FLAT, Bulge::steep(1.2)].map(|bulge| source_of([bulge; 2]))
+    }
+
+    fn source_of([bulge, own]: [Bulge; 2]) -> PairTarget {
         let vertex = |node: usize| Vertex {
             node,
             corners: None,
@@ -741,6 +813,8 @@ mod tests {
         let point = |ends: [usize; 2], eta, weight, [a, b]: [usize; 2], origin| SurfacePoint {
             vertices: [ends[0], ends[1], a, b].map(vertex),
             eta,
+            rise: own.at(eta),
+            bulge: bulge.of_points([false; 2]),
             weight,
             origin,
         };
@@ -748,7 +822,13 @@ mod tests {
             points: [
                 point([0, 1], 0.3, 0.1, [4, 5], Origin::Same),
                 point([0, 1], 0.9, 0.4, [4, 5], Origin::Same),
-                point([1, 2], 0.15, 0.3, [3, 4], Origin::Other([4, 5].map(vertex))),
+                point(
+                    [1, 2],
+                    0.15,
+                    0.3,
+                    [3, 4],
+                    Origin::Other([4, 5].map(vertex), bulge.of_points([false; 2])),
+                ),
                 point([1, 2], 0.6, 0.2, [3, 4], Origin::Same),
             ]
             .into_iter()
@@ -765,16 +845,21 @@ mod tests {
     /// The weighted mean of the gaps of the points at some displacements, each over its segment of the start or of the
     /// end.
     fn gap(u: &[f64], is_start: bool) -> f64 {
+        gap_of(&source(), u, is_start)
+    }
+
+    fn gap_of(source: &PairTarget, u: &[f64], is_start: bool) -> f64 {
         let at = |node: usize| [X[node][0] + u[2 * node], X[node][1] + u[2 * node + 1]];
-        let source = source();
         let gaps = source.points.iter().map(|q| {
-            let [x1, x2, a, b] = match q.origin {
-                Origin::Other([a, b]) if is_start => [q.vertices[0], q.vertices[1], a, b],
-                _ => q.vertices,
+            let ([x1, x2, a, b], bulge) = match q.origin {
+                Origin::Other([a, b], bulge) if is_start => {
+                    ([q.vertices[0], q.vertices[1], a, b], bulge)
+                }
+                _ => (q.vertices, q.bulge),
             };
             let [x1, x2, a, b] = [x1, x2, a, b].map(|vertex| vertex.place(at));
-            let gap = project(between(x1, x2, q.eta), a, b).gap;
-            q.weight * gap
+            let p = project(between(x1, x2, q.eta), a, b);
+            q.weight * (p.gap - bulge.at(p.xi) - q.rise)
         });
         gaps.sum()
     }
@@ -846,9 +931,18 @@ mod tests {
     #[test]
     fn rows_are_discrete_gradients_of_the_mean_gap() {
         let at = between_displacements(RowForm::DiscreteGradient, &U0, &U1);
-        let constraint = constraint(source(), &at);
-        assert!((constraint.gap - gap(&U1, false)).abs() < 1e-15);
-        assert!((constraint.start_gap - gap(&U0, true)).abs() < 1e-13);
+        for source in sources() {
+            let constraint = constraint(source.clone(), &at);
+            let overlap = gap_of(&source, &U0, true).min(0.0);
+            let [gap, start_gap] = [constraint.gap + overlap, constraint.start_gap + overlap];
+            assert!((gap - gap_of(&source, &U1, false)).abs() < 1e-14);
+            assert!((start_gap - gap_of(&source, &U0, true)).abs() < 1e-13);
+            check_momenta(&constraint);
+        }
+    }
+
+    /// Whether its unit forces have neither resultant nor moment half-way.
+    fn check_momenta(constraint: &Constraint) {
         let Rows { normal, tangential } = &constraint.force_rows;
         for row in [normal, tangential] {
             let (mut force, mut moment) = ([0.0; 2], 0.0);
@@ -925,8 +1019,12 @@ mod tests {
 
     #[test]
     fn derivative_rows_are_the_derivatives_of_the_mean_gap() {
-        for form in [RowForm::End, RowForm::DiscreteGradient] {
-            let of = |u: &[f64]| constraint(source(), &between_displacements(form, &U0, u));
+        let forms = [RowForm::End, RowForm::DiscreteGradient];
+        for (form, source) in forms
+            .map(|form| sources().map(|source| (form, source)))
+            .concat()
+        {
+            let of = |u: &[f64]| constraint(source.clone(), &between_displacements(form, &U0, u));
             let found = of(&U1);
             let rows = found.derivative_rows();
             for (k, &dof) in found.dofs.iter().enumerate() {
@@ -951,16 +1049,20 @@ mod tests {
     #[test]
     fn the_change_of_the_force_is_its_derivative() {
         let force = [1.3, -0.4];
-        for form in [RowForm::End, RowForm::DiscreteGradient] {
+        let forms = [RowForm::End, RowForm::DiscreteGradient];
+        for (form, source) in forms
+            .map(|form| sources().map(|source| (form, source)))
+            .concat()
+        {
             let nodal = |u: &[f64]| {
                 let mut forces = [0.0; 12];
-                constraint(source(), &between_displacements(form, &U0, u))
+                constraint(source.clone(), &between_displacements(form, &U0, u))
                     .add_force(force, &mut forces);
                 forces
             };
             let at = between_displacements(form, &U0, &U1);
-            let of_all = constraint(source(), &at);
-            let found = change(&of_all, &source().points, force, &at);
+            let of_all = constraint(source.clone(), &at);
+            let found = change(&of_all, &source.points, force, &at);
             let quotient = |row: usize, column: usize| {
                 let [mut plus, mut minus] = [U1; 2];
                 (plus[column], minus[column]) = (plus[column] + 1e-6, minus[column] - 1e-6);

@@ -9,10 +9,12 @@
 
 use smallvec::{SmallVec, smallvec};
 
+use super::bulge::Bulge;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Projection, Vertex, project};
+use super::geometry::{Along, ContactSurfaces, MasterArc, Positions, Vertex};
 use super::keys::ConstraintKey;
 use super::lists::{Recycled, entries};
+use super::projection::{Projection, project};
 use super::search::Candidate;
 use super::tolerances::{
     CLOSED_GAP, CONE_MISS, CORNER_TIP, CORNER_ZONE, FACING_SINE, FOLDED_CORNER_SINE, GENTLE_SINE,
@@ -67,6 +69,10 @@ pub struct SurfacePoint {
     pub vertices: [Vertex; 4],
     /// Place on the slave face, 0 at its first end and 1 at its second.
     pub eta: f64,
+    /// How far the slave face is outside of its chord there (length).
+    pub rise: f64,
+    /// Bulge of the master segment.
+    pub bulge: Bulge,
     /// Part of its gap in that of the constraint, w N/c of eq. (3.18).
     pub weight: f64,
     /// Where it was at the start of the increment.
@@ -87,8 +93,8 @@ impl SurfacePoint {
 pub enum Origin {
     /// The same.
     Same,
-    /// Another one, with these ends.
-    Other([Vertex; 2]),
+    /// Another one, with these ends and this bulge.
+    Other([Vertex; 2], Bulge),
     /// None: it has come in over the end of the master surface.
     Outside,
 }
@@ -124,6 +130,15 @@ impl Feature {
     }
 }
 
+/// A segment with the shape of its face.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Segment {
+    /// Its ends a and b.
+    pub ends: [usize; 2],
+    /// How far the face is outside of the chord.
+    pub bulge: Bulge,
+}
+
 /// Which slave node meets which segment, or which corner, or what the points of its faces meet.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairTarget {
@@ -134,8 +149,10 @@ pub struct PairTarget {
     /// Nodes: slave s, segment ends a and b, and c, the end of the next segment behind a corner;
     /// without corner it is b again.
     pub nodes: [usize; 4],
-    /// Ends of the segment that held the node at the start, where it has slid on from there.
-    pub from: Option<[usize; 2]>,
+    /// Bulges of the faces from a to b and from b to c; of points, each has its own.
+    pub bulges: [Bulge; 2],
+    /// The segment that held the node at the start, where it has slid on from there.
+    pub from: Option<Segment>,
     /// Overlap that a fit allows the node at the start of the increment and at its end (length), eq. (3.15).
     pub allowed: [f64; 2],
     /// Points whose gaps are averaged, from surface to surface; none of a node that meets a segment or corner.
@@ -376,10 +393,14 @@ impl SlaveNode<'_> {
                 return None;
             }
             let gap = |j: usize| self.project(j).gap;
-            let is_over = |j: &usize| (0.0..=1.0).contains(&self.xi(*j));
             let is_gentle = |j: &usize| self.leads_gently(i, *j) && self.tilts_gently(i, *j);
-            let over = run.iter().copied().filter(is_over).filter(is_gentle);
-            let j = over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))?;
+            let over = |beyond: f64| {
+                let is_over = |j: &usize| (-beyond..=1.0 + beyond).contains(&self.xi(*j));
+                let over = run.iter().copied().filter(is_over).filter(is_gentle);
+                over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))
+            };
+            // at a vertex a node may be over neither of its segments by round-off
+            let j = over(0.0).or_else(|| over(SLID))?;
             Some(ContactTarget {
                 from: Some(i),
                 ..ContactTarget::face(j)
@@ -538,7 +559,10 @@ impl SlaveNode<'_> {
         let corner = Corner {
             next: j,
             weight: match turn > STRAIGHT_SINE && !in_hollow {
-                true => common_normal([p.normal, q.normal], own?)?,
+                true => common_normal(
+                    self.corner_tangents(self.now, i, j).map(|[x, y]| [y, -x]),
+                    own?,
+                )?,
                 false => self.vertex_weight(turn, [(i, &p), (j, &q)])?,
             },
         };
@@ -560,8 +584,11 @@ impl SlaveNode<'_> {
     fn own_normals(&self) -> Option<[[f64; 2]; 2]> {
         let [before, after] = self.surfaces.adjacent[self.slave]?;
         let at = |n: usize| self.now.of(n);
-        let own = [[before, self.node()], [self.node(), after]];
-        Some(own.map(|[a, b]| project(at(a), at(a), at(b)).normal))
+        let [face, next] = self.surfaces.own_bulges[self.slave];
+        let node = at(self.node());
+        let before = face.tangent(&project(node, at(before), node), 1.0);
+        let after = next.tangent(&project(node, node, at(after)), 0.0);
+        Some([before, after].map(|[x, y]| [y, -x]))
     }
 
     /// Weight w of the second segment at a vertex: of a face, of a gentle hollow, or of a gentle corner that meets a node in a
@@ -619,7 +646,7 @@ impl SlaveNode<'_> {
         let [a, b] = self.surfaces.segments[segment];
         let motions = [self.node(), a, b]
             .map(|node| QuadraticMotion::straight(self.start.of(node), self.now.of(node)));
-        let motions = raised(motions, self.allowed);
+        let motions = raised(motions, (&self.surfaces.bulges[segment], self.allowed));
         let is_entering = |c: &Crossing| c.direction == CrossingSense::Entering;
         crossings(&motions, 1.0).iter().any(is_entering)
     }
@@ -670,7 +697,11 @@ impl SlaveNode<'_> {
             && (-CORNER_ZONE..=1.0 + CORNER_ZONE).contains(&p.xi);
         let (surfaces, start) = (self.surfaces, |node: usize| self.start.of(node));
         let node = self.node();
-        is_shallow && (surfaces.interior).takes_in(surfaces.segments[segment], node, start)
+        let is_outside_chord =
+            || p.gap - self.allowed[0] + surfaces.bulges[segment].at(p.xi) >= 0.0;
+        is_shallow
+            && (is_outside_chord()
+                || (surfaces.interior).takes_in(surfaces.segments[segment], node, start))
     }
 
     /// Whether the node belongs to the body behind the segment: it is on the far side of a thin
@@ -735,10 +766,7 @@ impl SlaveNode<'_> {
     }
 
     fn corner_sine_at(&self, at: Positions, i: usize, j: usize) -> f64 {
-        let [e, f] = [i, j].map(|i| {
-            let [a, b] = self.surfaces.segments[i].map(|n| at.of(n));
-            project(a, a, b).tangent
-        });
+        let [e, f] = self.corner_tangents(at, i, j);
         let [sin, cos] = [cross(e, f), dot(e, f)];
         if cos >= 0.0 {
             sin
@@ -751,8 +779,19 @@ impl SlaveNode<'_> {
         }
     }
 
+    /// Unit tangents of the faces of a segment and of the next where they meet.
+    fn corner_tangents(&self, at: Positions, i: usize, j: usize) -> [[f64; 2]; 2] {
+        [(i, 1.0), (j, 0.0)].map(|(i, end)| {
+            let [a, b] = self.surfaces.segments[i].map(|n| at.of(n));
+            self.surfaces.bulges[i].tangent(&project(a, a, b), end)
+        })
+    }
+
     /// Whether there is a concave corner between two segments that is not of gentle turn.
     pub(crate) fn is_concave(&self, i: usize, j: usize) -> bool {
+        if [i, j].iter().any(|&i| !self.surfaces.bulges[i].is_flat()) {
+            return self.corner_sine(i, j) < -GENTLE_SINE;
+        }
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now.of(n));
             difference(a, b)
@@ -802,10 +841,7 @@ impl SlaveNode<'_> {
     fn project_at(&self, (at, allowed): (Positions, f64), segment: usize) -> Projection {
         let [a, b] = self.surfaces.segments[segment];
         let p = project(at.of(self.node()), at.of(a), at.of(b));
-        Projection {
-            gap: p.gap + allowed,
-            ..p
-        }
+        self.surfaces.bulges[segment].below(p).raised(allowed)
     }
 
     #[inline]
@@ -815,16 +851,18 @@ impl SlaveNode<'_> {
 }
 
 /// Motions of a node and of the ends of a segment, the node being raised along the normal by the overlap that a fit
-/// allows it at both ends of the path (length).
+/// allows it at both ends of the path, and lowered by the bulge of the face (length): where it crosses the segment so, it crosses
+/// the face.
 pub(super) fn raised(
     [mut s, a, b]: [QuadraticMotion; 3],
-    allowed: [f64; 2],
+    (bulge, allowed): (&Bulge, [f64; 2]),
 ) -> [QuadraticMotion; 3] {
-    if allowed != [0.0; 2] {
+    if allowed != [0.0; 2] || !bulge.is_flat() {
         let raised = |part: f64, by: f64| {
             let [x, a, b] = [&s, &a, &b].map(|motion| motion.at(part));
-            let normal = project(x, a, b).normal;
-            [0, 1].map(|i| x[i] + by * normal[i])
+            let p = project(x, a, b);
+            let by = by - bulge.at(p.xi);
+            [0, 1].map(|i| x[i] + by * p.normal[i])
         };
         s = QuadraticMotion::straight(raised(0.0, allowed[0]), raised(1.0, allowed[1]));
     }

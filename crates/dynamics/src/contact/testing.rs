@@ -1,5 +1,6 @@
 //! Contact constraints for tests.
 
+use super::bulge::Bulge;
 use super::closed_pairs::{ClosedPair, ClosedPairs};
 use super::constraint::{Configurations, Constraint, RowForm, Rows};
 use super::keys::{ConstraintKey, SlaveKey};
@@ -20,6 +21,7 @@ pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
         key: key(0, target.segment),
         target,
         nodes,
+        bulges: [Bulge::FLAT; 2],
         from: None,
         allowed: [0.0; 2],
         points: Recycled::default(),
@@ -60,6 +62,7 @@ pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
         slip: 0.0,
         mu: 0.5,
         mu_varies: false,
+        stretch: 1.0,
         shrinkage: 0.0,
         scale: 1.0,
         source,

@@ -10,6 +10,16 @@
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
 /// Cosine of 30 degrees: the turn of a surface in the reference configuration beyond which it has a corner.
 pub(crate) const CORNER_COSINE: f64 = 0.866;
+/// Sine of the turn of a surface in the reference configuration up to which it is straight there; and four times the rise of the
+/// node between the corners of a side, in lengths of the side.
+pub(crate) const LEAST_TURN: f64 = 1e-4;
+/// Turn at an end of a segment, in turns at its other end, beyond which it is no part of the curve there: a chord of a fine
+/// flank that meets a coarse fillet.
+pub(crate) const UNLIKE_TURNS: f64 = 4.0;
+/// Part of the slope of a curved face by which that at its other end may differ and is the same but for round-off.
+pub(crate) const EQUAL_SLOPES: f64 = 1e-9;
+/// Length of a segment, in lengths of a neighbour, beyond which it is straight: a side that ends in a fillet.
+pub(crate) const LONGEST_BENT: f64 = 3.0;
 /// Sine of the turn at a corner below which its two segments count as one straight face: the turn
 /// of a smooth, finely meshed surface.
 pub(crate) const STRAIGHT_SINE: f64 = 1e-3;

@@ -4,11 +4,13 @@
 //! Edges of slave surfaces that cross segments, as they may at corners though no slave node is inside.
 //! Section 10 of docs/theory.md, Penetration check.
 
+use super::bulge::Bulge;
 use super::closed_pairs::{ClosedPair, ClosedPairs};
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{Along, ContactSurfaces, Projection, between, position, project};
+use super::geometry::{Along, ContactSurfaces, between, position};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
+use super::projection::{Projection, project};
 use super::search::{ListedSlave, Search};
 use super::targets::raised;
 use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END};
@@ -105,7 +107,7 @@ impl NodePath<'_> {
         let [a, b] = self.contact.segments[segment].map(of_end);
         raised(
             [QuadraticMotion::straight(self.ends[0], self.ends[1]), a, b],
-            self.allowed,
+            (&self.contact.bulges[segment], self.allowed),
         )
     }
 
@@ -174,7 +176,8 @@ impl NodePath<'_> {
     /// Whether the node is clearly in front of a segment at the end, where no fit lets it overlap.
     fn ends_in_front(&self, i: usize) -> bool {
         let [a, b] = self.contact.segments[i].map(|node| position(self.x, self.u[1], node));
-        self.allowed == [0.0; 2] && cross(difference(a, self.ends[1]), difference(a, b)) > 0.0
+        let is_plain = self.allowed == [0.0; 2] && self.contact.bulges[i].is_flat();
+        is_plain && cross(difference(a, self.ends[1]), difference(a, b)) > 0.0
     }
 
     /// Whether the node belongs to the body behind a segment at the end.
@@ -325,27 +328,33 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let (mut most, mut found) = (0.0, Vec::new());
     for surfaces in search.surfaces_of_nodes() {
         let is_slave: HashSet<usize> = surfaces.slaves.iter().copied().collect();
-        let faces = surfaces.slave_faces.iter();
-        let faces: Vec<[usize; 2]> = faces
-            .filter(|face| face.iter().all(|node| is_slave.contains(node)))
-            .copied()
+        let faces = surfaces.slave_faces.iter().copied();
+        let faces: Vec<([usize; 2], Bulge)> = (faces.zip(surfaces.face_bulges.iter().copied()))
+            .filter(|(face, _)| face.iter().all(|node| is_slave.contains(node)))
             .collect();
-        let circle = |edge: &[usize; 2]| {
+        let circle = |edge: [usize; 2]| {
             let [a, b] = edge.map(at);
             Circle {
                 centre: between(a, b, 0.5),
                 radius: length(difference(a, b)) / 2.0,
             }
         };
-        let [own, others] = [&faces, &surfaces.segments]
-            .map(|edges| CircleTree::new(edges.iter().map(circle).collect::<Vec<_>>()));
+        let own = CircleTree::new(
+            faces
+                .iter()
+                .map(|(face, _)| circle(*face))
+                .collect::<Vec<_>>(),
+        );
+        let others = surfaces.segments.iter().map(|segment| circle(*segment));
+        let others = CircleTree::new(others.collect::<Vec<_>>());
         found.clear();
         own.overlaps(&others, &mut found);
         for &[face, segment] in &found {
-            let (face, segment) = (faces[face as usize], segment as usize);
+            let ((face, bulge), segment) = (faces[face as usize], segment as usize);
             if !face.iter().any(|&node| surfaces.is_end(node, segment)) {
-                let segment = surfaces.segments[segment].map(at);
-                let depth = crossed_by(face.map(at), segment);
+                let own = (face.map(at), bulge);
+                let other = (surfaces.segments[segment].map(at), surfaces.bulges[segment]);
+                let depth = crossed_by(own, other);
                 most = larger(most, depth.unwrap_or(0.0));
             }
         }
@@ -376,8 +385,12 @@ fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 
     let beside = |i: usize| {
         let [a, b] = surfaces.segments[i].map(at);
         let p = project(s, a, b);
-        let apart = length(difference(between(a, b, p.xi.clamp(0.0, 1.0)), s));
-        (i, p, apart)
+        let xi = p.xi.clamp(0.0, 1.0);
+        let rise = surfaces.bulges[i].at(xi);
+        let [x, y] = between(a, b, xi);
+        let [nx, ny] = p.normal;
+        let apart = length(difference([x + rise * nx, y + rise * ny], s));
+        (i, p.raised(-rise), apart)
     };
     let others = (listed.candidates().map(|candidate| candidate.segment))
         .filter(|&i| !surfaces.is_end(node, i));
@@ -387,7 +400,9 @@ fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 
     };
     let segment = surfaces.segments[i];
     if surfaces.interior.has_body(segment) {
-        let is_inside = surfaces.interior.takes_in(segment, node, at);
+        // between the chord and the face there is no element
+        let is_outside_chord = p.gap + surfaces.bulges[i].at(p.xi.clamp(0.0, 1.0)) >= 0.0;
+        let is_inside = is_outside_chord || surfaces.interior.takes_in(segment, node, at);
         return if is_inside { apart / p.length } else { 0.0 };
     }
     // beyond the end of a rigid surface nothing is inside
@@ -402,13 +417,18 @@ fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 
     }
 }
 
-/// How far one edge and one segment cross, eq. (10.6); none if they do not.
-fn crossed_by(edge: [[f64; 2]; 2], segment: [[f64; 2]; 2]) -> Option<f64> {
-    let depth = |[p, q]: [[f64; 2]; 2], [a, b]: [[f64; 2]; 2]| {
-        let [p, q] = [project(p, a, b), project(q, a, b)];
+/// How far one edge and one segment cross, each with its bulge, eq. (10.6); none if they do not.
+fn crossed_by(edge: ([[f64; 2]; 2], Bulge), segment: ([[f64; 2]; 2], Bulge)) -> Option<f64> {
+    let depth = |ends: [[f64; 2]; 2], ([a, b], bulge): ([[f64; 2]; 2], Bulge)| {
+        let [p, q] = ends.map(|end| {
+            let p = project(end, a, b);
+            // beyond its ends the line counts
+            let rise = bulge.at(p.xi.clamp(0.0, 1.0));
+            p.raised(-rise)
+        });
         (p.gap * q.gap < 0.0).then(|| p.gap.abs().min(q.gap.abs()) / p.length)
     };
-    Some(depth(edge, segment)?.min(depth(segment, edge)?))
+    Some(depth(edge.0, segment)?.min(depth(segment.0, edge)?))
 }
 
 #[cfg(test)]
@@ -419,7 +439,7 @@ mod tests {
     #[test]
     fn edges_cross_by_the_nearest_end() {
         let segment = [[0.0, 0.0], [4.0, 0.0]];
-        let by = |p, q| crossed_by([p, q], segment);
+        let by = |p, q| crossed_by(([p, q], Bulge::FLAT), (segment, Bulge::FLAT));
         assert_eq!(by([1.0, 2.0], [1.0, -0.4]), Some(0.1));
         assert_eq!(by([1.0, -0.4], [1.0, 2.0]), Some(0.1));
         assert_eq!(by([1.0, 2.0], [1.0, 0.4]), None, "above");

@@ -11,8 +11,8 @@ use super::step::{HeldMotions, Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
 use crate::contact::{
     ActiveConstraints, ClosedPairs, Constraint, ConstraintKey, ConstraintSet, Crossing,
-    CrossingSense, ListedSlave, NodeAtSegment, Projection, QuadraticMotion, crossings,
-    line_crossings,
+    CrossingSense, Lift, ListedSlave, NodeAtSegment, Projection, QuadraticMotion, crossings,
+    line_crossings, project,
 };
 
 /// Part of a nominal increment within which impacts are taken together; no subincrement is
@@ -49,8 +49,8 @@ pub(crate) struct Subincrements<'a, 'm> {
 #[derive(Debug, Clone, Copy)]
 struct Intrusion {
     pair: NodeAtSegment,
-    /// Overlap that the node may have with the segment (length); none of a mean.
-    allowed: Option<f64>,
+    /// What the gap of the node to the chord of the segment counts more by; none of a mean.
+    lift: Option<Lift>,
     /// Time since the start of the subincrement, by the motion between its ends.
     time: f64,
 }
@@ -58,10 +58,10 @@ struct Intrusion {
 impl Intrusion {
     /// Its gap at the end of a trial and the length that this is relative to; no number where the mean is over nothing.
     fn gap(&self, problem: &StepProblem, trial: &EventTrial) -> [f64; 2] {
-        match self.allowed {
-            Some(allowed) => {
-                let place = problem.positions(&trial.u).place(self.pair.nodes);
-                [place.gap + allowed, place.length]
+        match self.lift {
+            Some(lift) => {
+                let place = lift.of(problem.positions(&trial.u).place(self.pair.nodes));
+                [place.gap, place.length]
             }
             None => trial.mean(self.pair.key),
         }
@@ -99,20 +99,35 @@ impl FreeMotion<'_> {
         beyond.hypot(start.gap) <= way(a).max(way(b)) + round_off
     }
 
-    /// Motions of a node that may overlap with a segment by some length, and of the ends of the segment.
+    /// Motions of a node that counts as higher over a segment, and of the ends of the segment. What a bulge lowers it by is that of
+    /// its places at the start, in the middle and at the end.
     fn motions(
         &self,
         problem: &StepProblem,
         u0: &[f64],
         nodes: [usize; 3],
-        allowed: f64,
+        lift: Lift,
     ) -> [QuadraticMotion; 3] {
         let Path { v, a, .. } = self.path;
         let [mut s, a, b] = nodes.map(|node| motion(problem, u0, v, a, node));
-        if allowed != 0.0 {
-            let normal = problem.positions(u0).place(nodes).normal;
-            s.position = [0, 1].map(|i| s.position[i] + allowed * normal[i]);
+        if lift.is_none() {
+            return [s, a, b];
         }
+        let raised = |time: f64| {
+            let [x, a, b] = [&s, &a, &b].map(|motion| motion.at(time));
+            let p = project(x, a, b);
+            p.normal.map(|n| n * lift.at(p.xi))
+        };
+        let from = raised(0.0);
+        if !lift.bulge.is_flat() && self.duration > 0.0 {
+            let t = self.duration;
+            let [middle, end] = [t / 2.0, t].map(raised);
+            for i in 0..2 {
+                s.velocity[i] += (4.0 * middle[i] - 3.0 * from[i] - end[i]) / t;
+                s.acceleration[i] += 4.0 * (from[i] - 2.0 * middle[i] + end[i]) / (t * t);
+            }
+        }
+        s.position = [0, 1].map(|i| s.position[i] + from[i]);
         [s, a, b]
     }
 
@@ -121,9 +136,9 @@ impl FreeMotion<'_> {
         &self,
         problem: &StepProblem,
         u0: &[f64],
-        (pair, allowed): (NodeAtSegment, f64),
+        (pair, lift): (NodeAtSegment, Lift),
     ) -> Option<f64> {
-        let motions = self.motions(problem, u0, pair.nodes, allowed);
+        let motions = self.motions(problem, u0, pair.nodes, lift);
         self.first_to_stay(&crossings(&motions, self.duration))
     }
 
@@ -133,8 +148,8 @@ impl FreeMotion<'_> {
         if constraint.is_weighted() {
             return constraint.closing_time([&self.path.v, &self.path.a], self.duration);
         }
-        let allowed = constraint.allowed_at_start();
-        let motions = self.motions(problem, u0, constraint.pair().nodes, allowed);
+        let lift = constraint.lift_at_start();
+        let motions = self.motions(problem, u0, constraint.pair().nodes, lift);
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
 
@@ -283,7 +298,7 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     fn join_at_start(&self, active: &mut ActiveConstraints, entry: Intrusion) {
-        if entry.allowed.is_none() {
+        if entry.lift.is_none() {
             active.join_mean_at_start(entry.pair.key);
             return;
         }
@@ -319,11 +334,11 @@ impl<'m> Subincrements<'_, 'm> {
         let (counting, left_out): (Vec<_>, Vec<_>) = constraints.iter().partition(counts);
         let of_nodes = counting.iter().filter(|c| !c.is_weighted());
         let has_constraint = |slave: usize| of_nodes.clone().any(|c| c.keeps_out(slave));
-        let place = |u: &[f64], (pair, allowed): (NodeAtSegment, f64)| {
-            problem.positions(u).place(pair.nodes).raised(allowed)
+        let place = |u: &[f64], (pair, lift): (NodeAtSegment, Lift)| {
+            lift.of(problem.positions(u).place(pair.nodes))
         };
         // between its ends the motion is an estimate: what is in front at the end has not gone in
-        let ends_behind = |at: (NodeAtSegment, f64)| {
+        let ends_behind = |at: (NodeAtSegment, Lift)| {
             solved.is_none_or(|solved| place(&solved.end.u, at).gap < 0.0)
         };
         let is_kept = |pair: &NodeAtSegment, place: &Projection| {
@@ -339,7 +354,7 @@ impl<'m> Subincrements<'_, 'm> {
             if c.gap < -least * c.scale {
                 let entry = |time| Intrusion {
                     pair: c.pair(),
-                    allowed: (!c.is_weighted()).then_some(c.allowed_at_start()),
+                    lift: (!c.is_weighted()).then_some(c.lift_at_start()),
                     time,
                 };
                 entries.extend(motion.overlap(problem, u0, c).map(entry));
@@ -349,25 +364,21 @@ impl<'m> Subincrements<'_, 'm> {
         let find = || {
             search.cover_path(u0, &motion.displacement(u0));
             for listed in search.slaves().filter(ListedSlave::meets_segments) {
-                let allowed = listed.allowed()[0];
                 for candidate in listed.candidates() {
                     let pair = listed.at(candidate.segment);
+                    let lift = listed.lift(&pair);
                     let [s, a, b] = pair.nodes;
-                    let place = place(u0, (pair, allowed));
+                    let place = place(u0, (pair, lift));
                     let may_enter = motion.may_meet(&place, pair.nodes)
                         && s != a
                         && s != b
                         && problem.unknowns.moves(&pair.nodes)
-                        && ends_behind((pair, allowed))
+                        && ends_behind((pair, lift))
                         && !is_kept(&pair, &place);
                     if may_enter {
-                        let time = motion.entry(problem, u0, (pair, allowed));
-                        let allowed = Some(allowed);
-                        entries.extend(time.map(|time| Intrusion {
-                            pair,
-                            allowed,
-                            time,
-                        }));
+                        let time = motion.entry(problem, u0, (pair, lift));
+                        let lift = Some(lift);
+                        entries.extend(time.map(|time| Intrusion { pair, lift, time }));
                     }
                 }
             }
@@ -398,12 +409,15 @@ impl<'m> Subincrements<'_, 'm> {
             end: 0.0,
             ..*motion
         };
-        let time = through.entry(problem, u0, (pair, 0.0)).unwrap_or(0.0);
-        Some(Intrusion {
-            pair,
-            allowed: Some(0.0),
-            time,
-        })
+        let mut slaves = self.workspace.search.slaves();
+        let listed = slaves.find(|listed| listed.key == pair.key.slave())?;
+        let lift = Lift {
+            allowed: 0.0,
+            ..listed.lift(&pair)
+        };
+        let time = through.entry(problem, u0, (pair, lift)).unwrap_or(0.0);
+        let lift = Some(lift);
+        Some(Intrusion { pair, lift, time })
     }
 
     fn attempt(

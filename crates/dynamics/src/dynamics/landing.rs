@@ -64,6 +64,8 @@ struct LandedPair {
     key: ConstraintKey,
     /// Pt/Pn.
     ratio: f64,
+    /// Length s of its normal row in the increment, eq. (3.31): where all of a force is taken back, nothing is left.
+    stretch: f64,
     /// Rows Gn and Gt of the end, summed over the nodes of the contact's slave surface.
     rows: [[f64; 2]; 2],
 }
@@ -82,7 +84,7 @@ impl LandedPair {
             key: self.key,
             energy,
             friction,
-            normal,
+            normal: self.stretch * normal,
             tangential,
             vector: [0, 1].map(|i| normal * n[i] + tangential * t[i]),
         })
@@ -124,6 +126,7 @@ fn landing(
     let landed = LandedPair {
         key: pair.key,
         ratio,
+        stretch: constraint.stretch,
         rows: [normal, tangential].map(|row| {
             let own = row[..at_end.slave_dofs].chunks(2);
             let sum = own.fold([0.0; 2], |sum, b| [sum[0] + b[0], sum[1] + b[1]]);
@@ -357,12 +360,13 @@ fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
         for (_, [x, y]) in constraint.forces_on_slave_surface(*force) {
             vector = [vector[0] + factor * x, vector[1] + factor * y];
         }
+        let [normal, tangential] = constraint.normal_and_tangential(*force);
         PairReturn {
             key: constraint.key,
             energy: energy * force[0] / whole,
             friction: 0.0,
-            normal: factor * force[0],
-            tangential: factor * force[1],
+            normal: factor * normal,
+            tangential: factor * tangential,
             vector,
         }
     };

@@ -129,9 +129,10 @@ fn move_nodes(model: &mut Model, moved: &[InitialGap], clearance: f64) {
         let xi = gap.xi.clamp(0.0, 1.0);
         let foot = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
         let normal = project(a, a, b).normal;
-        model.mesh.coordinates[gap.slave] = match clearance {
+        let above = clearance + gap.rise;
+        model.mesh.coordinates[gap.slave] = match above {
             0.0 => foot,
-            _ => [0, 1].map(|i| foot[i] + clearance * normal[i]),
+            _ => [0, 1].map(|i| foot[i] + above * normal[i]),
         };
     }
 }
@@ -240,6 +241,7 @@ mod tests {
             segment,
             xi: 0.5,
             gap,
+            rise: 0.0,
             length,
             edge: 1.0,
         };

@@ -20,10 +20,24 @@ pub struct InitialGap {
     pub xi: f64,
     /// Gap (length), negative when the node is inside the body.
     pub gap: f64,
+    /// How far the face is outside of its chord there (length).
+    pub rise: f64,
     /// Length of the segment.
     pub length: f64,
     /// The smaller of the lengths of the segment and of the faces of the slave node: what a depth is measured by.
     pub edge: f64,
+}
+
+impl InitialGap {
+    /// Whether the node is inside the body, or between a chord of its surface and the curved face.
+    pub(super) fn is_inside(&self, contact: &ContactSurfaces, x: &[[f64; 2]]) -> bool {
+        let in_element = || {
+            contact
+                .interior
+                .contains(self.segment, self.slave, |node| x[node])
+        };
+        self.gap < 0.0 && (self.gap + self.rise >= 0.0 || in_element())
+    }
 }
 
 /// Gaps of the slave nodes of a contact at the positions `x`; nodes that face no segment are left
@@ -130,6 +144,7 @@ impl<'m> Start<'m> {
             segment: self.contact.segments[segment],
             xi: p.xi,
             gap: p.gap,
+            rise: self.contact.bulges[segment].at(p.xi),
             length: p.length,
             edge: (self.shortest.get(&slave)).map_or(p.length, |own| own.min(p.length)),
         })
@@ -137,7 +152,8 @@ impl<'m> Start<'m> {
 
     fn project(&self, slave: usize, segment: usize) -> Projection {
         let [a, b] = self.contact.segments[segment];
-        project(self.x[slave], self.x[a], self.x[b])
+        let on_chord = project(self.x[slave], self.x[a], self.x[b]);
+        self.contact.bulges[segment].below(on_chord)
     }
 
     /// Distance from segment `i`, if the node projects into it.
@@ -173,7 +189,8 @@ impl<'m> Start<'m> {
                 || (p.gap >= -self.deepest * p.length && interior.takes_in([a, b], slave, at))
         };
         let is_own_body = self.bodies[a] == self.bodies[slave];
-        let is_back = || is_own_body && p.gap < 0.0 && !interior.contains([a, b], slave, at);
+        let is_behind = || p.gap + self.contact.bulges[i].at(p.xi) < 0.0;
+        let is_back = || is_own_body && is_behind() && !interior.contains([a, b], slave, at);
         let is_meant = ![a, b].contains(&slave) && may_face() && !is_back();
         (is_meant && (p.gap > COORDINATE_ROUND_OFF * p.length || self.is_opposite(slave, &p)))
             .then_some(p)

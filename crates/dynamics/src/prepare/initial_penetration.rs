@@ -173,10 +173,9 @@ fn behind_the_body<'g>(
     surfaces: &ContactSurfaces,
     gaps: &'g [InitialGap],
 ) -> Option<&'g InitialGap> {
-    let at = |node: usize| model.mesh.coordinates[node];
     gaps.iter().find(|gap| {
         let is_deep = -gap.gap > PENETRATION_FAULT * gap.edge;
-        is_deep && !surfaces.interior.contains(gap.segment, gap.slave, at)
+        is_deep && !gap.is_inside(surfaces, &model.mesh.coordinates)
     })
 }
 
@@ -245,7 +244,14 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
     );
     let code = Code::InitialPenetration;
     if -deepest.gap > PENETRATION_FAULT * deepest.edge {
-        Diagnostic::error(code, contact.span, message).help(remedy(model, contact))
+        let is_outside_chord = deepest.gap + deepest.rise >= 0.0;
+        let straight =
+            "the face is curved; without GEOMETRIC CORRECTION= on *CONTACT PAIR it is straight";
+        let help = match is_outside_chord && is_pair(model, contact) {
+            true => format!("{straight}; else {}", remedy(model, contact)),
+            false => remedy(model, contact),
+        };
+        Diagnostic::error(code, contact.span, message).help(help)
     } else {
         Diagnostic::warning(code, contact.span, message).help("the first increment pushes them out")
     }

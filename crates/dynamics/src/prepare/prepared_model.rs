@@ -49,11 +49,7 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
 
 /// Overlaps of all slave nodes of a contact (length): how deep they lie in a body that their own surface faces.
 fn overlaps(contact: &ContactSurfaces, gaps: &[InitialGap], x: &[[f64; 2]]) -> Vec<f64> {
-    let inside = gaps.iter().filter(|gap| {
-        let is_inside =
-            |gap: &InitialGap| (contact.interior).contains(gap.segment, gap.slave, |node| x[node]);
-        gap.gap < 0.0 && is_inside(gap)
-    });
+    let inside = gaps.iter().filter(|gap| gap.is_inside(contact, x));
     let depths: HashMap<usize, f64> = inside.map(|gap| (gap.slave, -gap.gap)).collect();
     let slaves = contact.slaves.iter();
     slaves
@@ -67,11 +63,10 @@ impl PreparedModel {
         let bodies = model.mesh.bodies();
         let mut surfaces = contact_surfaces(&model, &bodies);
         let adjusted = adjust(&mut model, &surfaces);
-        let x = &model.mesh.coordinates;
         if !adjusted.is_empty() {
-            let moved = surfaces.into_iter();
-            surfaces = moved.map(|contact| contact.with_sharp_corners(x)).collect();
+            surfaces = contact_surfaces(&model, &bodies);
         }
+        let x = &model.mesh.coordinates;
         let redistribution = match model.redistributes_mass() {
             true => Redistribution::new(&model, &surfaces),
             false => Redistribution::default(),

@@ -78,6 +78,8 @@ pub struct Contact {
     /// Faces that lie on other bodies at the start, by whose number general contact has chosen what is kept out; none
     /// where the deck says it.
     pub lying_faces: Option<usize>,
+    /// The shape of its faces.
+    pub smoothing: Smoothing,
     /// Slave nodes that are moved onto the master surface before the start.
     pub adjust: Option<Adjust>,
     /// Slave nodes that take no part (indices, increasing).
@@ -86,6 +88,30 @@ pub struct Contact {
     pub is_interference_fit: bool,
     /// Place in the deck, for messages.
     pub span: Span,
+}
+
+/// The shape of the faces of a contact between their nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Smoothing {
+    /// Straight, as meshed.
+    Straight,
+    /// Curved as the reference configuration turns, parts of it as circles about given centres.
+    Curved(Vec<Circle>),
+}
+
+impl Default for Smoothing {
+    fn default() -> Self {
+        Smoothing::Curved(Vec::new())
+    }
+}
+
+/// Faces that lie on a circle in the reference configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Circle {
+    /// Index of their surface.
+    pub surface: usize,
+    /// Centre of the circle (length).
+    pub centre: [f64; 2],
 }
 
 /// Which slave nodes are moved onto the master surface before the start, free of strain.
@@ -130,6 +156,7 @@ impl Contact {
             interaction,
             formulation: ContactFormulation::default(),
             lying_faces: None,
+            smoothing: Smoothing::default(),
             adjust: None,
             left_out: Vec::new(),
             is_interference_fit: false,

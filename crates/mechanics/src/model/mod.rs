@@ -24,8 +24,9 @@ use crate::materials::{Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
-    ALL_EXTERIOR, Adjust, CircleArc, Contact, ContactFormulation, Disc, Equation, Heat, Hinge,
-    Interaction, Reach, RigidBody, RigidPart, RigidProfile, Surface, SurfaceKind, Wear,
+    ALL_EXTERIOR, Adjust, Circle, CircleArc, Contact, ContactFormulation, Disc, Equation, Heat,
+    Hinge, Interaction, Reach, RigidBody, RigidPart, RigidProfile, Smoothing, Surface, SurfaceKind,
+    Wear,
 };
 pub use element_type::{ElementType, Formulation, Shape, Topology};
 pub use friction::{Friction, FrictionCurve, FrictionLaw};

@@ -184,8 +184,8 @@ impl<'a> Scales<'a> {
     /// Whether the forces of a pair obey the coefficient of friction of its own slip rate, where that
     /// depends on it.
     fn has_own_friction(&self, constraint: &Constraint, pair: &ClosedPair) -> bool {
-        let most = self.tolerance * constraint.mu * pair.force[0];
-        !constraint.mu_varies || pair.out_of_cone(constraint.mu) <= most
+        let most = self.tolerance * constraint.friction() * pair.force[0];
+        !constraint.mu_varies || pair.out_of_cone(constraint.friction()) <= most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may

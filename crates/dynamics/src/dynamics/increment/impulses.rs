@@ -520,7 +520,9 @@ fn change(
     let jump = match state {
         ContactState::Open => 0.0,
         ContactState::Stick => approach[0].abs() + slide[0].abs(),
-        ContactState::SlipPlus | ContactState::SlipMinus => (1.0 + before.mu) * approach[0].abs(),
+        ContactState::SlipPlus | ContactState::SlipMinus => {
+            (1.0 + before.friction()) * approach[0].abs()
+        }
     };
     let [of_before, of_now] = [before, now].map(|c| {
         let Rows { normal, tangential } = &c.force_rows;

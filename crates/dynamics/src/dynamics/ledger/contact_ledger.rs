@@ -91,10 +91,11 @@ impl ContactLedger {
         }
         for (constraint, pair) in solved.contact.forces.acting() {
             let contact = pair.key.contact();
-            let [pn, pt] = pair.force;
             let result = &mut resultants[contact];
-            let on_side = |force| forces_on_side(problem.model, bodies, constraint, force);
-            result.impulse.add([dt * pn, dt * pt], on_side);
+            let impulse = pair.force.map(|p| dt * p);
+            let on_side = forces_on_side(problem.model, bodies, constraint, impulse);
+            let both = constraint.normal_and_tangential(impulse);
+            result.impulse.add(both, on_side);
             if !result.bodies.is_empty() {
                 let forces = constraint.nodal_forces(pair.force);
                 add_to_bodies(problem, bodies, u, forces, &mut result.bodies);
@@ -102,8 +103,8 @@ impl ContactLedger {
         }
         for (constraint, pair) in solved.contact.impulses.acting() {
             let impulse = &mut resultants[pair.key.contact()].impulse;
-            let [phi, psi] = pair.force;
-            let on_side = |force| forces_on_side(problem.model, bodies, constraint, force);
+            let on_side = forces_on_side(problem.model, bodies, constraint, pair.force);
+            let [phi, psi] = constraint.normal_and_tangential(pair.force);
             impulse.add([phi, psi], on_side);
             impulse.impact_normal += phi;
             impulse.impact_tangential += psi;
@@ -237,7 +238,7 @@ fn total_impulses<'s>(solved: &'s Solved, dt: f64) -> Totals<'s> {
     let mut totals = Totals::new();
     let mut add = |constraint: &'s Constraint, impulse: [f64; 2]| {
         let (_, sum) = (totals.entry(constraint.key)).or_insert((constraint, [0.0; 3]));
-        add_impulse(sum, impulse);
+        add_impulse(sum, constraint.normal_and_tangential(impulse));
     };
     for (constraint, pair) in solved.contact.forces.acting() {
         add(constraint, pair.force.map(|p| dt * p));
@@ -264,12 +265,12 @@ fn add_impulse([normal, tangential, size]: &mut [f64; 3], impulse: [f64; 2]) {
 
 impl ContactImpulse {
     /// Adds the normal and tangential impulse of a constraint, whose impulses at the nodes of the side are given.
-    fn add<N: IntoIterator<Item = (usize, [f64; 2])>>(
+    fn add(
         &mut self,
         [normal, tangential]: [f64; 2],
-        on_side: impl Fn([f64; 2]) -> N,
+        on_side: impl IntoIterator<Item = (usize, [f64; 2])>,
     ) {
-        for (_, [x, y]) in on_side([normal, tangential]) {
+        for (_, [x, y]) in on_side {
             self.vector[0] += x;
             self.vector[1] += y;
         }

@@ -527,7 +527,7 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
     }
     let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
         let p = problem.positions(&start.u).place(constraint.pair().nodes);
-        let gap = p.gap + constraint.allowed_at_start();
+        let gap = constraint.lift_at_start().of(p).gap;
         let was_beyond = match constraint.is_weighted() {
             true => constraint.start_gap < -CLOSED_GAP * constraint.scale,
             false => !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length,

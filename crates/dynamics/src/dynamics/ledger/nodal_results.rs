@@ -262,7 +262,7 @@ pub(crate) fn contact_resultants(
     for ((constraint, pair), outside) in acting.zip(outside) {
         let contact = constraint.key.contact();
         let r = &mut resultants[contact];
-        let [pn, pt] = pair.force;
+        let [pn, pt] = constraint.normal_and_tangential(pair.force);
         for (node, [fx, fy]) in forces_on_side(problem.model, bodies, constraint, pair.force) {
             let x = problem.position(&solved.equilibrium.u_theta, node);
             r.force[0] += fx;

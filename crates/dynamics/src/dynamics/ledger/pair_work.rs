@@ -38,7 +38,7 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
             normal: pn * (constraint.normal_motion(&solved.d) - constraint.shrinkage),
             fit: pn * constraint.shrinkage,
             friction: -(pt * slip),
-            sliding: pn * slip.abs(),
+            sliding: constraint.stretch * pn * slip.abs(),
             surfaces: constraint.surface_parts(),
         }
     };
@@ -176,10 +176,11 @@ impl EndForces {
         released
     }
 
-    /// Sums of the forces of every slave node.
+    /// Sums of the normal and tangential forces of every slave node.
     fn of_slaves(&self) -> BTreeMap<SlaveKey, [f64; 2]> {
         let mut sums: BTreeMap<SlaveKey, [f64; 2]> = BTreeMap::new();
-        for (constraint, [pn, pt]) in &self.pairs {
+        for (constraint, force) in &self.pairs {
+            let [pn, pt] = constraint.normal_and_tangential(*force);
             let sum = sums.entry(constraint.key.slave()).or_default();
             *sum = [sum[0] + pn, sum[1] + pt];
         }
@@ -238,7 +239,7 @@ impl EndForces {
                 };
                 // one that opens slides as far as its friction works
                 let sliding = match is_end || constraint.mu == 0.0 {
-                    true => mean * pn * slip.abs(),
+                    true => mean * constraint.stretch * pn * slip.abs(),
                     false => friction / constraint.mu,
                 };
                 works.push(PairWork {

@@ -193,10 +193,11 @@ impl<'m> Frictions<'m> {
         pairs: impl Iterator<Item = (&'c Constraint, &'c ClosedPair)> + Clone,
     ) -> Vec<f64> {
         let bounds = self.bounds(x, increment, pairs.clone());
-        let of_pair = |((_, pair), [least, most]): ((_, &ClosedPair), [f64; 2])| {
-            let [pn, pt] = pair.force;
-            larger(pt.abs() - most * pn, least * pn - pt.abs())
-        };
+        let of_pair =
+            |((constraint, pair), [least, most]): ((&Constraint, &ClosedPair), [f64; 2])| {
+                let [pn, pt] = constraint.normal_and_tangential(pair.force);
+                larger(pt.abs() - most * pn, least * pn - pt.abs())
+            };
         pairs.zip(bounds).map(of_pair).collect()
     }
 

@@ -1,0 +1,122 @@
+//! Rows of contact with a curved face, made from those of its chord. Section 3 of docs/theory.md, Curved faces.
+
+use super::bulge::Bulge;
+use super::constraint::{RowForm, RowPair, product, sum_of};
+use super::projection::Projection;
+
+/// What is known of the chord: its rows, and derivatives with respect to the positions of s, a and b.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OfChord {
+    /// Force rows and derivative rows.
+    pub rows: [RowPair<6>; 2],
+    /// Derivative of xi (1/length).
+    pub xi: [f64; 6],
+    /// Derivative of l.
+    pub length: [f64; 6],
+    /// Derivative of Bn d.
+    pub normal_motion: [f64; 6],
+}
+
+/// How the rows of a curved face differ from those of its chord: Bn and Bt of the chord, L = (l0 + l1)/2,
+///
+/// ```text
+/// beta = D/L,  s = sqrt(1 + beta²)
+/// Bn' = Bn - beta Bt,  Bt' = (Bt + beta Bn)/s    eq. (3.30)
+/// ```
+///
+/// Then Bn' d = G1 - G0. End rows have beta = b'(xi)/l.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bend {
+    /// beta
+    slope: f64,
+    /// s
+    pub stretch: f64,
+    /// Force rows and derivative rows of the chord.
+    pub chord: [RowPair<6>; 2],
+    /// Derivative of beta (1/length).
+    of_slope: [f64; 6],
+    /// Derivative of Bn d, of the chord.
+    of_normal_motion: [f64; 6],
+    /// Derivative of the height b(xi) (dimensionless).
+    pub of_height: [f64; 6],
+}
+
+impl Bend {
+    /// That of a face between the projections `p` of the start and of the iterate.
+    pub fn new(bulge: &Bulge, p: [&Projection; 2], of_chord: OfChord, form: RowForm) -> Self {
+        let [start, now] = p;
+        let OfChord {
+            rows: chord,
+            xi: of_xi,
+            length: of_length,
+            normal_motion: of_normal_motion,
+        } = of_chord;
+        let ([secant, change], length, part) = match form {
+            RowForm::End => (
+                [bulge.slope(now.xi), bulge.second_derivative(now.xi)],
+                now.length,
+                1.0,
+            ),
+            RowForm::DiscreteGradient => (
+                bulge.secant(start.xi, now.xi),
+                (start.length + now.length) / 2.0,
+                0.5,
+            ),
+        };
+        let slope = secant / length;
+        Bend {
+            slope,
+            stretch: slope.hypot(1.0),
+            chord,
+            of_slope: sum_of(change / length, &of_xi, -slope * part / length, &of_length),
+            of_normal_motion,
+            of_height: of_xi.map(|row| bulge.slope(now.xi) * row),
+        }
+    }
+
+    /// Force rows and derivative rows of the face, `d` being the displacement of s, a and b since the start. The slip has the
+    /// derivative
+    ///
+    /// ```text
+    /// Gt' = (Gt + beta d(Bn d))/s + (Bn' d)/s³ dbeta
+    /// ```
+    pub fn rows(&self, d: &[f64; 6]) -> [RowPair<6>; 2] {
+        let [force, derivative] = self.chord;
+        let (beta, s) = (self.slope, self.stretch);
+        let bent = RowPair {
+            normal: sum_of(1.0, &force.normal, -beta, &force.tangential),
+            tangential: sum_of(1.0 / s, &force.tangential, beta / s, &force.normal),
+        };
+        let along = sum_of(
+            1.0 / s,
+            &derivative.tangential,
+            beta / s,
+            &self.of_normal_motion,
+        );
+        let turned = product(&bent.normal, d) / s.powi(3);
+        let of_bent = RowPair {
+            normal: sum_of(1.0, &derivative.normal, -1.0, &self.of_height),
+            tangential: sum_of(1.0, &along, turned, &self.of_slope),
+        };
+        [bent, of_bent]
+    }
+
+    /// The force at the chord that is the same force as one at the face: Pn + beta Pt/s and Pt/s - beta Pn.
+    pub fn at_chord(&self, [pn, pt]: [f64; 2]) -> [f64; 2] {
+        let (beta, s) = (self.slope, self.stretch);
+        [pn + beta * pt / s, pt / s - beta * pn]
+    }
+
+    /// What the change of beta adds to the change of the force: (Pt/s³ Bn' - Pn Bt) dbeta, as its two factors.
+    pub fn change(&self, [pn, pt]: [f64; 2]) -> [[f64; 6]; 2] {
+        let [force, _] = self.chord;
+        let turned = pt / self.stretch.powi(3);
+        let row = sum_of(
+            turned,
+            &force.normal,
+            -turned * self.slope - pn,
+            &force.tangential,
+        );
+        [row, self.of_slope]
+    }
+}

@@ -1,0 +1,265 @@
+//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. Section 3 of docs/theory.md,
+//! Curved faces.
+
+use super::projection::Projection;
+use super::tolerances::EQUAL_SLOPES;
+use crate::vectors::length;
+
+/// Distance of a curved face out of the body from the chord of a segment, constant in a run (length):
+///
+/// ```text
+/// b(xi) = c0 + c1 xi + c2 xi² + c3 xi³    eq. (3.26)
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Bulge {
+    /// c0 to c3.
+    coefficients: [f64; 4],
+    /// Whether it goes on as a straight line beyond the ends of the segment: for nodes, which come over an end before they
+    /// change their segment. Points of faces change it at the bisector, and what is integrated over them has to be one cubic.
+    goes_straight_on: bool,
+}
+
+impl Bulge {
+    /// That of a straight face.
+    pub const FLAT: Bulge = Bulge {
+        coefficients: [0.0; 4],
+        goes_straight_on: false,
+    };
+
+    /// With the slopes `start` and `end` of the true face against the chord at the ends of a segment, outwards from its start and
+    /// from its end:
+    ///
+    /// ```text
+    /// b = l (tau_a xi (1 - xi)² + tau_b xi² (1 - xi)),  tau = t - t³/5 + 3 t⁵/35
+    /// ```
+    ///
+    /// With tau = t the cubic had the slopes, and 8/15 of the greatest distance from an arc on the mean. With these tau the area
+    /// between chord and arc is right, tau = 3 ((1 + t²) atan t - t)/(2 t²) to the seventh order, the greatest distance a fifth, and the slopes are right to the third order.
+    pub(super) fn of_slopes(length: f64, slopes: [f64; 2]) -> Self {
+        let [start, end] = slopes.map(|t| {
+            let square = t * t;
+            t * (1.0 - square / 5.0 + 3.0 * square * square / 35.0)
+        });
+        // on a circle the cubic is a parabola, for which two Gauss points do
+        let end = match (start - end).abs() <= EQUAL_SLOPES * start.abs() {
+            true => start,
+            false => end,
+        };
+        let c = [0.0, start, end - 2.0 * start, start - end];
+        Bulge {
+            coefficients: c.map(|c| length * c),
+            goes_straight_on: true,
+        }
+    }
+
+    /// A cubic that is steep, for tests.
+    #[cfg(test)]
+    pub(super) fn steep(length: f64) -> Self {
+        Bulge::of_slopes(length, [0.3, 0.15])
+    }
+
+    /// The parabola of half a side whose node between is `rise` outside of the line between its corners (length), over the chord
+    /// to this node.
+    pub(super) fn of_side(rise: f64) -> Self {
+        Bulge {
+            coefficients: [0.0, rise, -rise, 0.0],
+            goes_straight_on: true,
+        }
+    }
+
+    /// That of a chord of an arc of the given radius, negative where the body is outside: t = tan(phi/2), sin(phi/2) = l/(2 R).
+    pub(super) fn of_arc(length: f64, radius: f64) -> Self {
+        let sine = length / (2.0 * radius);
+        let cosine = (1.0 - sine * sine).max(0.0).sqrt();
+        match cosine > 0.0 {
+            true => Bulge::of_slopes(length, [sine / cosine; 2]),
+            false => Bulge::FLAT,
+        }
+    }
+
+    /// The same for points of faces: one cubic beyond the ends of the segment too, and where the start or the end of the segment
+    /// is a node between the corners of a side, over the line to the vertex x_v of eq. (3.21) that takes its place.
+    pub(super) fn of_points(self, is_between: [bool; 2]) -> Self {
+        let [_, rise, ..] = self.coefficients;
+        let coefficients = match is_between {
+            [false, true] => [0.0, 2.0 / 3.0, -1.0, 0.0].map(|c| rise * c),
+            [true, false] => [-1.0 / 3.0, 4.0 / 3.0, -1.0, 0.0].map(|c| rise * c),
+            _ => self.coefficients,
+        };
+        Bulge {
+            coefficients,
+            goes_straight_on: false,
+        }
+    }
+
+    /// Whether the face is straight.
+    #[inline]
+    pub fn is_flat(&self) -> bool {
+        self.coefficients == [0.0; 4]
+    }
+
+    /// Its coefficients c0 to c3 (length).
+    pub fn coefficients(&self) -> [f64; 4] {
+        self.coefficients
+    }
+
+    /// Whether its third derivative is not zero.
+    pub(super) fn is_cubic(&self) -> bool {
+        self.coefficients[3] != 0.0
+    }
+
+    /// The place from which it goes straight on, if xi is beyond an end.
+    #[inline]
+    fn end_before(&self, xi: f64) -> f64 {
+        match self.goes_straight_on {
+            true => xi.clamp(0.0, 1.0),
+            false => xi,
+        }
+    }
+
+    /// b(xi) (length).
+    #[inline]
+    pub fn at(&self, xi: f64) -> f64 {
+        let [c0, c1, c2, c3] = self.coefficients;
+        let end = self.end_before(xi);
+        let within = c0 + end * (c1 + end * (c2 + end * c3));
+        match xi == end {
+            true => within,
+            false => within + self.slope(end) * (xi - end),
+        }
+    }
+
+    /// b'(xi) (length).
+    pub fn slope(&self, xi: f64) -> f64 {
+        let [_, c1, c2, c3] = self.coefficients;
+        let end = self.end_before(xi);
+        c1 + end * (2.0 * c2 + end * 3.0 * c3)
+    }
+
+    /// b''(xi) (length).
+    pub(super) fn second_derivative(&self, xi: f64) -> f64 {
+        let [_, _, c2, c3] = self.coefficients;
+        match xi == self.end_before(xi) {
+            true => 2.0 * c2 + 6.0 * c3 * xi,
+            false => 0.0,
+        }
+    }
+
+    /// D = (b(y) - b(x))/(y - x) without cancellation, and its derivative with respect to y (both length):
+    ///
+    /// ```text
+    /// D = c1 + c2 (x + y) + c3 (x² + x y + y²),  dD/dy = c2 + c3 (x + 2 y)    eq. (3.29)
+    /// ```
+    pub(super) fn secant(&self, x: f64, y: f64) -> [f64; 2] {
+        let [_, c1, c2, c3] = self.coefficients;
+        let [p, q] = [x, y].map(|xi| self.end_before(xi));
+        let within = c1 + c2 * (p + q) + c3 * (p * p + p * q + q * q);
+        if [p, q] == [x, y] {
+            return [within, c2 + c3 * (p + 2.0 * q)];
+        }
+        if p == q {
+            return [self.slope(p), 0.0];
+        }
+        // straight parts before and after
+        let sum = within * (q - p) + self.slope(q) * (y - q) - self.slope(p) * (x - p);
+        let secant = sum / (y - x);
+        [secant, (self.slope(y) - secant) / (y - x)]
+    }
+
+    /// A projection on the chord with the gap to the curved face, G = g - b(xi), eq. (3.27).
+    #[inline]
+    pub fn below(&self, p: Projection) -> Projection {
+        match self.is_flat() {
+            true => p,
+            false => Projection {
+                gap: p.gap - self.at(p.xi),
+                ..p
+            },
+        }
+    }
+
+    /// Unit tangent of the face at an end of the segment (0 or 1), p being a projection on its chord.
+    pub(super) fn tangent(&self, p: &Projection, end: f64) -> [f64; 2] {
+        if self.is_flat() {
+            return p.tangent;
+        }
+        // the chord is shorter or longer than that of the reference configuration, but what bulges out of it is not
+        let slope = self.slope(end) / p.length;
+        let t = [0, 1].map(|i| p.tangent[i] + slope * p.normal[i]);
+        let length = length(t);
+        t.map(|t| t / length)
+    }
+}
+
+/// What a gap to the chord of a segment counts more by: the overlap that a fit allows, less the bulge of the face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lift {
+    /// The overlap (length).
+    pub allowed: f64,
+    /// The bulge.
+    pub bulge: Bulge,
+}
+
+impl Lift {
+    /// Whether gaps are those to the chord.
+    pub fn is_none(&self) -> bool {
+        self.allowed == 0.0 && self.bulge.is_flat()
+    }
+
+    /// What it adds to the gap at a place xi of the segment (length).
+    pub fn at(&self, xi: f64) -> f64 {
+        match self.bulge.is_flat() {
+            true => self.allowed,
+            false => self.allowed - self.bulge.at(xi),
+        }
+    }
+
+    /// A projection on the chord with the gap that counts.
+    pub fn of(&self, p: Projection) -> Projection {
+        p.raised(self.at(p.xi))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn secants_are_those_of_the_cubic_and_of_its_straight_ends() {
+        let bulge = Bulge::steep(1.0);
+        for (from, to) in [
+            (0.2, 0.7),
+            (-0.3, 0.4),
+            (0.9, 1.4),
+            (-0.2, 1.3),
+            (1.2, 1.5),
+            (0.3, 0.3),
+        ] {
+            let [secant, change] = bulge.secant(from, to);
+            let expected = match from == to {
+                true => bulge.slope(from),
+                false => (bulge.at(to) - bulge.at(from)) / (to - from),
+            };
+            assert!((secant - expected).abs() < 1e-14, "{from} {to}");
+            let quotient =
+                (bulge.secant(from, to + 1e-6)[0] - bulge.secant(from, to - 1e-6)[0]) / 2e-6;
+            assert!(
+                (change - quotient).abs() < 1e-8,
+                "{from} {to} {change} {quotient}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_area_between_chord_and_arc_is_right() {
+        let radius = 2.0;
+        for angle in [1e-3, 0.1, 0.4, -0.3_f64] {
+            let length = 2.0 * radius * (angle.abs() / 2.0).sin();
+            let bulge = Bulge::of_arc(length, radius.copysign(angle));
+            let [c0, c1, c2, c3] = bulge.coefficients();
+            let area = length * (c0 + c1 / 2.0 + c2 / 3.0 + c3 / 4.0);
+            let arc = radius * radius / 2.0 * (angle - angle.sin());
+            assert!((area / arc - 1.0).abs() < 3e-6, "{angle} {area} {arc}");
+        }
+    }
+}

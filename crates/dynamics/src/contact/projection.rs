@@ -1,0 +1,50 @@
+//! Projection of a point on a segment: gap, projection point and local frame. Section 3 of docs/theory.md.
+
+use crate::vectors::{difference, dot, length};
+
+/// A point in the local frame of a segment from a to b, which has its body on the left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projection {
+    /// Coordinate of the projection on the segment: 0 at a, 1 at b.
+    pub xi: f64,
+    /// Gap: distance along the normal, positive outside the body (length).
+    pub gap: f64,
+    /// Length of the segment.
+    pub length: f64,
+    /// Unit vector from a to b.
+    pub tangent: [f64; 2],
+    /// Unit normal out of the body.
+    pub normal: [f64; 2],
+}
+
+/// Projects the point `s` on the segment from `a` to `b`.
+///
+/// ```text
+/// e_t = (x_b - x_a)/l,  e_n = (e_t,y, -e_t,x),  l = |x_b - x_a|    eq. (3.2)
+/// xi = r.e_t/l,  g = r.e_n,  r = x_s - x_a                         eq. (3.3)
+/// ```
+#[inline]
+pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
+    let e = difference(a, b);
+    let length = length(e);
+    let tangent = [e[0] / length, e[1] / length];
+    let normal = [tangent[1], -tangent[0]];
+    let r = difference(a, s);
+    Projection {
+        xi: dot(r, tangent) / length,
+        gap: dot(r, normal),
+        length,
+        tangent,
+        normal,
+    }
+}
+
+impl Projection {
+    /// The same with a gap that is larger by an overlap that is allowed (length).
+    pub fn raised(self, allowed: f64) -> Self {
+        Projection {
+            gap: self.gap + allowed,
+            ..self
+        }
+    }
+}
