@@ -440,6 +440,7 @@ fn ties() {
         ("NAME=BOND", 2),
         ("ADJUST=NO, POSITION TOLERANCE=100.", 2),
         ("TIED NSET=NEAREST", 1),
+        ("TYPE=NODE TO SURFACE", 2),
     ] {
         let tie = format!("*NSET, NSET=NEAREST\n11\n*TIE, {options}\nSBOT, STOP\n{gap}");
         let deck = SHARED.replacen(gap, &tie, 1).replace(", 1.1", ", 1.05");

@@ -13,3 +13,4 @@ mod picture;
 mod reading;
 mod reference;
 mod syntax;
+mod ties;

@@ -341,7 +341,11 @@ fn initialization(reach: Option<Reach>, is_fit: bool, lines: &mut DeckWriter) {
 
 /// Writes a tie, whose nodes are where they shall be.
 fn write_tie(tie: &Tie, model: &Model, lines: &mut DeckWriter) {
-    let mut parameters = vec![named("NAME", &tie.name), set("ADJUST", "NO")];
+    let mut parameters = vec![
+        named("NAME", &tie.name),
+        set("TYPE", tie.formulation.name()),
+        set("ADJUST", "NO"),
+    ];
     parameters.extend(match tie.reach {
         TieReach::Near => None,
         TieReach::Within(tolerance) => Some(set("POSITION TOLERANCE", number(tolerance))),

@@ -232,18 +232,24 @@ fn of_ties<'a>(
     for (tie, &span) in of.ties.all.iter().zip(&of.ties.spans) {
         let owner = Owner::Tie(tie, span);
         let mut held = Vec::new();
-        for equation in tie
-            .nodes
-            .iter()
-            .flat_map(|tied| [0, 1].map(|i| tied.equation(i)))
-        {
-            let Equation { dof, terms } = equation;
+        // a support, the master itself or an earlier tie decides where the other nodes of its sides go
+        let mut follow = [BTreeSet::new(), BTreeSet::new()];
+        for (tied, direction) in tie.nodes.iter().flat_map(|tied| [(tied, 0), (tied, 1)]) {
+            let Equation { dof, terms } = tied.equation(direction);
             match tied_and_prescribed(dof, &terms, steps) {
                 PrescribedDof::Not => {
-                    claim(dof, SolvedEquation { terms, owner }, solved, targets, cx);
+                    follow[direction].insert(tied.node);
                 }
                 PrescribedDof::Alike => {}
                 PrescribedDof::Otherwise => held.push(dof),
+            }
+        }
+        for (direction, follow) in follow.iter().enumerate() {
+            for Equation { dof, terms } in tie.equations(direction, |node| !follow.contains(&node))
+            {
+                if follow.contains(&(dof / 2)) {
+                    claim(dof, SolvedEquation { terms, owner }, solved, targets, cx);
+                }
             }
         }
         if let Some(&dof) = held.first() {

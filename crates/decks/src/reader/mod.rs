@@ -21,6 +21,7 @@ mod loads;
 mod materials;
 mod mesh_index;
 mod names;
+mod nearest;
 mod nodes_elements;
 mod outline;
 mod output;
@@ -33,6 +34,7 @@ mod sets;
 mod smoothing;
 mod steps;
 mod surfaces;
+mod tied_sides;
 mod ties;
 
 pub(crate) use loads::carried_loads;

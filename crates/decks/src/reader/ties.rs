@@ -1,18 +1,21 @@
 //! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place
-//! beside them, and follow these at all times. Section 3 of docs/theory.md, Ties.
+//! beside them, and follow these or the master below their faces at all times. Section 3 of docs/theory.md, Ties.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
 use super::names::Names;
+use super::nearest::NearestLines;
 use super::outline::Outline;
 use super::sets::Sets;
 use super::surfaces::{Found, Surfaces};
+use super::tied_sides;
 use crate::deck::{Card, Line, Name};
 use crate::diagnostics::{Code, Span, shown};
 use crate::model::{
-    Contact, Element, NEAR, Segment, Surface, SurfaceKind, Tie, TieReach, TiedNode, nearest_of,
+    Contact, ContactFormulation, Element, NEAR, Segment, Surface, SurfaceKind, Tie, TieReach,
+    TiedNode, TiedSide, nearest_of,
 };
-use crate::vectors::{Circle, CircleTree, distance};
+use crate::vectors::distance;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Most nodes that a message names.
@@ -36,6 +39,7 @@ struct TieRow {
     reach: TieReach,
     /// Members of the set that the reach names, increasing.
     members: Vec<usize>,
+    formulation: ContactFormulation,
     adjusts: bool,
     span: Span,
 }
@@ -85,7 +89,9 @@ pub(super) fn read(
             slave: row.slave,
             master: row.master,
             reach: row.reach,
+            formulation: row.formulation,
             nodes: own.iter().map(tied).collect(),
+            sides: sides(row, &faced, &surfaces.all, mesh_index),
         });
     }
     ties
@@ -125,6 +131,7 @@ fn rows_of(
             master,
             reach,
             members: members.clone(),
+            formulation: formulation(card, &surfaces.all[slave], cx),
             adjusts,
             span: row.span(),
         });
@@ -151,6 +158,22 @@ fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     let rule = "the tolerance must not be negative";
     let tolerance = field.real_that(|x| x >= 0.0, rule, Code::BadValue, cx.d)?;
     Some(TieReach::Within(tolerance))
+}
+
+/// What of a slave surface follows the master: nodes each by itself, or the points of its faces unless it is made of nodes.
+fn formulation(card: &Card, slave: &Surface, cx: &mut Context) -> ContactFormulation {
+    let typed = card.choice("TYPE");
+    match slave.kind {
+        SurfaceKind::Nodes(_) if typed == Some("SURFACE TO SURFACE") => {
+            let message = "TYPE=SURFACE TO SURFACE is taken as NODE TO SURFACE";
+            cx.d.warning_once(Code::IgnoredParameter, card.span_of("TYPE"), message)
+                .help("the slave surface must be made of element faces");
+            ContactFormulation::NodeToSegment
+        }
+        SurfaceKind::Nodes(_) => ContactFormulation::NodeToSegment,
+        _ if typed == Some("NODE TO SURFACE") => ContactFormulation::NodeToSegment,
+        _ => ContactFormulation::SurfaceToSurface,
+    }
 }
 
 /// `slave, master`
@@ -217,6 +240,24 @@ impl Faced {
     }
 }
 
+/// The sides of a slave surface that follow as wholes: those between nodes that are tied, by this tie or an earlier one, or
+/// belong to the master.
+fn sides(
+    row: &TieRow,
+    faced: &Faced,
+    surfaces: &[Surface],
+    mesh_index: &MeshIndex,
+) -> Vec<TiedSide> {
+    if row.formulation == ContactFormulation::NodeToSegment {
+        return Vec::new();
+    }
+    let mesh = &mesh_index.mesh;
+    let both = [row.slave, row.master].map(|surface| &surfaces[surface]);
+    let near = faced.near.iter().map(|(node, _)| *node);
+    let tied: HashSet<usize> = near.chain(both[1].nodes(mesh)).collect();
+    tied_sides::read(both, mesh, |node| tied.contains(&node))
+}
+
 /// The segment nearest to a node.
 struct NearestSegment {
     segment: Segment,
@@ -238,39 +279,19 @@ impl NearestSegment {
 struct Nearest<'a> {
     segments: &'a [Segment],
     x: &'a [[f64; 2]],
-    tree: CircleTree,
+    lines: NearestLines,
 }
 
 impl<'a> Nearest<'a> {
     fn new(segments: &'a [Segment], x: &'a [[f64; 2]]) -> Self {
-        let circle = |segment: &Segment| {
-            let [a, b] = segment.map(|node| x[node]);
-            Circle {
-                centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
-                radius: distance(a, b) / 2.0,
-            }
-        };
-        let tree = CircleTree::new(segments.iter().map(circle));
-        Nearest { segments, x, tree }
+        let places = segments.iter().map(|segment| segment.map(|node| x[node]));
+        let lines = NearestLines::new(places.collect());
+        Nearest { segments, x, lines }
     }
 
     /// The segment nearest to a node, of several the first.
     fn of(&self, node: usize) -> Option<NearestSegment> {
-        let mut best: Option<(f64, usize)> = None;
-        let measured = |k: usize| nearest_of(self.x[node], self.segments[k].map(|n| self.x[n]));
-        self.tree.visit_near(
-            self.x[node],
-            |_, _| true,
-            |k| {
-                let found = (measured(k).1, k);
-                if best.is_none_or(|best| found < best) {
-                    best = Some(found);
-                }
-                best.map_or(f64::INFINITY, |best| best.0)
-            },
-        );
-        let (_, k) = best?;
-        let off = measured(k).1;
+        let (k, off) = self.lines.of(self.x[node])?;
         let [a, b] = self.segments[k].map(|n| self.x[n]);
         Some(NearestSegment {
             segment: self.segments[k],

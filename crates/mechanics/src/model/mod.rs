@@ -44,8 +44,8 @@ pub use step::{
     Support, SupportMotion, Traction, Variation,
 };
 pub use thickness::Thickness;
-pub use tie::{NEAR, nearest_of};
-pub use tie::{Tie, TieReach, TiedNode};
+pub use tie::{Follows, Tie, TieReach, TiedLine, TiedNode, TiedSide};
+pub use tie::{NEAR, beside, nearest_of};
 
 /// A whole problem: the content of a deck, checked, with all names resolved to indices.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,9 +1,11 @@
-//! Ties: nodes of a slave surface that follow the segments of a master surface at all times. Section 3 of
-//! docs/theory.md, Ties.
+//! Ties: nodes of a slave surface that follow the segments of a master surface at all times, each by itself or in the
+//! mean over its faces. Section 3 of docs/theory.md, Ties.
 
-use super::contact::Equation;
-use super::side::Segment;
+use super::contact::{ContactFormulation, Equation};
+use super::side::{Segment, SideNodes};
 use crate::vectors::{cross, difference, distance, dot};
+use smallvec::SmallVec;
+use std::collections::BTreeMap;
 
 /// A slave surface that is tied to a master surface (a row of `*TIE`).
 #[derive(Debug, Clone, PartialEq)]
@@ -16,8 +18,34 @@ pub struct Tie {
     pub master: usize,
     /// Which slave nodes are tied.
     pub reach: TieReach,
+    /// What of the slave surface follows: nodes, or the points of its faces in the mean.
+    pub formulation: ContactFormulation,
     /// The tied nodes, in the order of the slave surface.
     pub nodes: Vec<TiedNode>,
+    /// Sides of the slave surface that follow in the mean; none from node to surface.
+    pub sides: Vec<TiedSide>,
+}
+
+/// What a vertex follows by u = sum (alpha_l I + beta_l J) u_l: alpha_l and beta_l of the nodes l, J turning by a right
+/// angle to the left.
+pub type Follows = BTreeMap<usize, [f64; 2]>;
+
+/// A side of a slave surface that follows the master in the mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TiedSide {
+    /// Its nodes from corner to corner. One between the corners stands for the vertex x_v of eq. (3.21).
+    pub nodes: SideNodes,
+    /// The straight lines from each to the next.
+    pub lines: SmallVec<[TiedLine; 2]>,
+}
+
+/// A straight line of the slave surface. The integrals are those of its ends j, with the dual functions psi_j.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TiedLine {
+    /// D_j = sum w_q N_j, lengths, or areas over 2 pi in bodies of revolution.
+    pub weights: [f64; 2],
+    /// sum w_q psi_j (alpha_l I + beta_l J) of what the points q follow.
+    pub follows: [Follows; 2],
 }
 
 /// Which nodes of a slave surface are tied.
@@ -37,6 +65,9 @@ pub const NEAR: f64 = 0.05;
 /// Coordinates of a tied node beside its segment, in lengths of it, that count as 0 or 1.
 const ROUND_OFF: f64 = 1e-9;
 
+/// Coefficient of a mean that counts as zero.
+const NO_PART: f64 = 1e-14;
+
 /// A node that follows a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TiedNode {
@@ -53,9 +84,7 @@ pub struct TiedNode {
 impl TiedNode {
     /// A node as it lies beside a segment at these places.
     pub fn new(node: usize, segment: Segment, x: &[[f64; 2]]) -> Self {
-        let [a, b] = segment.map(|node| x[node]);
-        let (e, r) = (difference(a, b), difference(a, x[node]));
-        let square = dot(e, e);
+        let [xi, eta] = beside(x[node], segment.map(|node| x[node]));
         let snapped = |value: f64, to: f64| match (value - to).abs() < ROUND_OFF {
             true => to,
             false => value,
@@ -63,8 +92,8 @@ impl TiedNode {
         TiedNode {
             node,
             segment,
-            xi: snapped(snapped(dot(r, e) / square, 0.0), 1.0),
-            eta: snapped(cross(e, r) / square, 0.0),
+            xi: snapped(snapped(xi, 0.0), 1.0),
+            eta: snapped(eta, 0.0),
         }
     }
 
@@ -80,8 +109,7 @@ impl TiedNode {
             xi,
             eta,
         } = *self;
-        // row of J: (J u)_x = -u_y, (J u)_y = u_x
-        let (other, sign) = [(1, -1.0), (0, 1.0)][direction];
+        let (other, sign) = row_of_j(direction);
         let terms = [
             (2 * a + direction, 1.0 - xi),
             (2 * b + direction, xi),
@@ -93,6 +121,103 @@ impl TiedNode {
             terms: terms.into_iter().filter(|(_, c)| *c != 0.0).collect(),
         }
     }
+}
+
+/// Row of J: direction and sign of (J u)_x = -u_y, (J u)_y = u_x.
+fn row_of_j(direction: usize) -> (usize, f64) {
+    [(1, -1.0), (0, 1.0)][direction]
+}
+
+/// A slave vertex in one direction: D_j u_j = sum of terms.
+#[derive(Default)]
+struct Mean {
+    weight: f64,
+    terms: BTreeMap<usize, f64>,
+}
+
+impl Mean {
+    fn add(&mut self, dof: usize, c: f64) {
+        *self.terms.entry(dof).or_insert(0.0) += c;
+    }
+
+    /// Adds what an end of a line follows.
+    fn follow(&mut self, follows: &Follows, direction: usize) {
+        let (other, sign) = row_of_j(direction);
+        for (node, [alpha, beta]) in follows {
+            self.add(2 * node + direction, *alpha);
+            self.add(2 * node + other, sign * beta);
+        }
+    }
+}
+
+impl Tie {
+    /// What the displacements of the tied nodes in a direction follow, in the order of the nodes. A node that is part of
+    /// a tied side follows in the mean,
+    ///
+    /// ```text
+    /// u_j = (1/D_j) sum_q w_q psi_j(q) u_q,   D_j = sum_q w_q N_j      eq. (3.27)
+    /// ```
+    ///
+    /// over the points of its sides; all others as [`TiedNode::equation`] says. Nodes that are kept have a displacement of
+    /// their own. In the lines of a kept node i the function of the other end is 1, in place of psi_j,
+    ///
+    /// ```text
+    /// D_j u_j + D_i u_i = sum_q w_q u_q
+    /// ```
+    ///
+    /// so that the functions still sum up to 1 and a uniform traction goes through the tie.
+    pub fn equations(&self, direction: usize, is_kept: impl Fn(usize) -> bool) -> Vec<Equation> {
+        let mut means: BTreeMap<usize, Mean> = BTreeMap::new();
+        let mut corners: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
+        for TiedSide { nodes, lines } in &self.sides {
+            if let &[a, middle, b] = nodes.as_slice() {
+                // a vertex x_v is no unknown of its own
+                if is_kept(middle) {
+                    continue;
+                }
+                corners.insert(middle, [a, b]);
+            }
+            for (ends, line) in nodes.windows(2).zip(lines) {
+                for (own, other) in [(0, 1), (1, 0)] {
+                    if is_kept(ends[own]) {
+                        continue;
+                    }
+                    let mean = means.entry(ends[own]).or_default();
+                    mean.weight += line.weights[own];
+                    mean.follow(&line.follows[own], direction);
+                    if is_kept(ends[other]) {
+                        mean.follow(&line.follows[other], direction);
+                        mean.add(2 * ends[other] + direction, -line.weights[other]);
+                    }
+                }
+            }
+        }
+        let equation = |tied: &TiedNode| {
+            let Some(Mean { weight, mut terms }) = means.remove(&tied.node) else {
+                return tied.equation(direction);
+            };
+            let corners = corners.get(&tied.node);
+            // u_m = 3/4 u_v + (u_a + u_b)/8
+            let part = if corners.is_some() { 0.75 } else { 1.0 };
+            terms.values_mut().for_each(|c| *c *= part / weight);
+            for corner in corners.into_iter().flatten() {
+                *terms.entry(2 * corner + direction).or_insert(0.0) += 0.125;
+            }
+            terms.retain(|_, c| c.abs() >= NO_PART);
+            Equation {
+                dof: 2 * tied.node + direction,
+                terms: terms.into_iter().collect(),
+            }
+        };
+        self.nodes.iter().map(equation).collect()
+    }
+}
+
+/// Coordinates of a point along and across a segment from a to b, positive to the left, in lengths of it.
+pub fn beside(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
+    let (e, r) = (difference(a, b), difference(a, point));
+    let square = dot(e, e);
+    [dot(r, e) / square, cross(e, r) / square]
 }
 
 /// The part of a segment nearest to a point: coordinate along it, clamped to the segment, and distance.

@@ -4,6 +4,8 @@
 //!
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
+use std::collections::HashSet;
+
 use smallvec::SmallVec;
 
 use crate::contact::tolerances::SOLVED_GAP;
@@ -173,15 +175,19 @@ pub(crate) fn tie_forces(model: &Model, force: impl Fn(usize) -> f64) -> Vec<f64
         return Vec::new();
     }
     let mut all = vec![0.0; model.dof_count()];
-    for tied in model.ties.iter().flat_map(|tie| &tie.nodes) {
-        for dof in [2 * tied.node, 2 * tied.node + 1] {
+    for tie in &model.ties {
+        let nodes = tie.nodes.iter().map(|tied| tied.node);
+        let slaves: HashSet<usize> = nodes.clone().collect();
+        for dof in nodes.flat_map(|node| [2 * node, 2 * node + 1]) {
+            let equation = model.equations.binary_search_by_key(&dof, |e| e.dof);
             // a support takes the place of an equation
-            if model
-                .equations
-                .binary_search_by_key(&dof, |e| e.dof)
-                .is_ok()
-            {
-                all[dof] = force(dof);
+            let Ok(equation) = equation else { continue };
+            all[dof] += force(dof);
+            // and its node may stand in those of its neighbours
+            for &(to, c) in &model.equations[equation].terms {
+                if slaves.contains(&(to / 2)) {
+                    all[to] -= c * force(dof);
+                }
             }
         }
     }

@@ -1,0 +1,195 @@
+//! `*TIE, TYPE=SURFACE TO SURFACE`: what the points of the sides of a slave surface follow. Section 3 of docs/theory.md,
+//! Ties from surface to surface.
+
+use super::nearest::NearestLines;
+use crate::model::{Follows, Mesh, SideNodes, Surface, SurfaceKind, TiedLine, TiedSide, beside};
+use crate::vectors::{difference, distance, dot};
+use smallvec::SmallVec;
+
+/// Gauss points of a cell, -1 <= r <= 1, of weight 1: exact for the products of two linear functions and the radius.
+const GAUSS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
+
+/// Distance of two ends of cells, in lengths of the line, below which they are one.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Cosine of the largest angle between a slave line and the line of the master that it follows: 45 degrees.
+const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// A vertex of the straight lines that a surface is made of: a node, or what takes the place of the node between the
+/// corners of a side, eq. (3.21).
+#[derive(Clone)]
+struct Vertex {
+    place: [f64; 2],
+    /// Its nodes and their parts in the position.
+    nodes: SmallVec<[(usize, f64); 3]>,
+}
+
+impl Vertex {
+    fn new(nodes: &[(usize, f64)], x: &[[f64; 2]]) -> Self {
+        let of_axis = |i: usize| nodes.iter().map(|&(node, part)| part * x[node][i]).sum();
+        Vertex {
+            place: [0, 1].map(of_axis),
+            nodes: nodes.into(),
+        }
+    }
+}
+
+/// The vertices of a side from corner to corner.
+fn vertices_of(nodes: &[usize], x: &[[f64; 2]]) -> SmallVec<[Vertex; 3]> {
+    let corner = |node: usize| Vertex::new(&[(node, 1.0)], x);
+    match *nodes {
+        // x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
+        [a, middle, b] => {
+            let parts = [(middle, 4.0 / 3.0), (a, -1.0 / 6.0), (b, -1.0 / 6.0)];
+            SmallVec::from([corner(a), Vertex::new(&parts, x), corner(b)])
+        }
+        _ => nodes.iter().map(|&node| corner(node)).collect(),
+    }
+}
+
+/// The lines of a master surface.
+struct Master {
+    lines: Vec<[Vertex; 2]>,
+    nearest: NearestLines,
+}
+
+impl Master {
+    fn new(surface: &Surface, mesh: &Mesh) -> Self {
+        let of_sides = |sides: Vec<SideNodes>| {
+            let lines = sides.iter().flat_map(|nodes| {
+                let vertices = vertices_of(nodes, &mesh.coordinates);
+                let pairs = vertices.windows(2);
+                pairs
+                    .map(|pair| [pair[0].clone(), pair[1].clone()])
+                    .collect::<SmallVec<[_; 2]>>()
+            });
+            lines.collect::<Vec<[Vertex; 2]>>()
+        };
+        let lines = of_sides(match &surface.kind {
+            SurfaceKind::Faces(faces) => faces.iter().map(|face| face.nodes(mesh)).collect(),
+            SurfaceKind::Rigid(profile) => {
+                let segments = profile.segments.iter();
+                segments
+                    .map(|segment| SideNodes::from_slice(segment))
+                    .collect()
+            }
+            SurfaceKind::Nodes(_) => Vec::new(),
+        });
+        let places = lines.iter().map(places).collect();
+        Master {
+            lines,
+            nearest: NearestLines::new(places),
+        }
+    }
+
+    /// Ends of the cells of a slave line, 0 and 1 with the projections of the vertices of the master in between.
+    fn cuts(&self, [p, q]: [[f64; 2]; 2]) -> Vec<f64> {
+        let e = difference(p, q);
+        let middle = [0, 1].map(|i| p[i] + e[i] / 2.0);
+        let ends = [p, q].into_iter().filter_map(|end| self.nearest.of(end));
+        // no point of the line has its nearest line farther away
+        let most = ends.fold(0.0, |most: f64, (_, off)| most.max(off));
+        let near = self.nearest.around(middle, most + distance(p, q));
+        let vertices = near.iter().flat_map(|&k| &self.lines[k]);
+        let projected = vertices.map(|vertex| dot(difference(p, vertex.place), e) / dot(e, e));
+        let within = projected.filter(|eta| (ROUND_OFF..=1.0 - ROUND_OFF).contains(eta));
+        let mut cuts: Vec<f64> = within.chain([0.0, 1.0]).collect();
+        cuts.sort_unstable_by(f64::total_cmp);
+        cuts.dedup_by(|next, last| *next - *last < ROUND_OFF);
+        cuts
+    }
+}
+
+fn places(line: &[Vertex; 2]) -> [[f64; 2]; 2] {
+    [line[0].place, line[1].place]
+}
+
+/// The sides of a slave surface whose nodes are all tied, or of the master as well, and face the master.
+pub(super) fn read(
+    [slave, master]: [&Surface; 2],
+    mesh: &Mesh,
+    is_tied: impl Fn(usize) -> bool,
+) -> Vec<TiedSide> {
+    let SurfaceKind::Faces(faces) = &slave.kind else {
+        return Vec::new();
+    };
+    let master = Master::new(master, mesh);
+    let tied = |nodes: SideNodes| {
+        if !nodes.iter().all(|&node| is_tied(node)) {
+            return None;
+        }
+        let vertices = vertices_of(&nodes, &mesh.coordinates);
+        let lines = vertices.windows(2).map(|ends| {
+            let ends = [ends[0].place, ends[1].place];
+            tied_line(ends, &master, mesh.is_axisymmetric())
+        });
+        let lines = lines.collect::<Option<SmallVec<[TiedLine; 2]>>>()?;
+        Some(TiedSide { nodes, lines })
+    };
+    let sides = faces.iter().map(|face| face.nodes(mesh));
+    sides.filter_map(tied).collect()
+}
+
+/// Integrals over a slave line with dual functions psi_j, sum_q w_q psi_j N_k = delta_jk D_j, of sums over the same points:
+///
+/// ```text
+/// psi = D M^-1 N,   M_jk = sum_q w_q N_j N_k,   D_j = sum_q w_q N_j      eq. (3.26)
+/// ```
+///
+/// `None` for a line that does not face the master, or has no area.
+fn tied_line([p, q]: [[f64; 2]; 2], master: &Master, is_ring: bool) -> Option<TiedLine> {
+    let e = difference(p, q);
+    let (mut m, mut d) = ([[0.0; 2]; 2], [0.0; 2]);
+    let mut raw = [Follows::new(), Follows::new()];
+    for cell in master.cuts([p, q]).windows(2) {
+        let (middle, half) = ((cell[0] + cell[1]) / 2.0, (cell[1] - cell[0]) / 2.0);
+        let at = |eta: f64| [0, 1].map(|i| (1.0 - eta) * p[i] + eta * q[i]);
+        let (k, _) = master.nearest.of(at(middle))?;
+        let line = &master.lines[k];
+        let along = difference(line[0].place, line[1].place);
+        if dot(e, along).abs() < FACING_COSINE * (dot(e, e) * dot(along, along)).sqrt() {
+            return None;
+        }
+        for eta in GAUSS.map(|r| middle + half * r) {
+            let n = [1.0 - eta, eta];
+            let point = at(eta);
+            let radius = if is_ring { point[0] } else { 1.0 };
+            let w = half * distance(p, q) * radius;
+            let [xi, off] = beside(point, places(line));
+            for j in 0..2 {
+                d[j] += w * n[j];
+                for k in 0..2 {
+                    m[j][k] += w * n[j] * n[k];
+                }
+                let of_ends = [[1.0 - xi, -off], [xi, off]];
+                for (vertex, of_end) in line.iter().zip(of_ends) {
+                    for &(node, part) in &vertex.nodes {
+                        let sum = raw[j].entry(node).or_default();
+                        *sum = [0, 1].map(|i| sum[i] + w * n[j] * part * of_end[i]);
+                    }
+                }
+            }
+        }
+    }
+    let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+    let is_usable = determinant.is_finite() && determinant > 0.0 && d.iter().all(|d| *d > 0.0);
+    if !is_usable {
+        return None;
+    }
+    let inverse = [[m[1][1], -m[0][1]], [-m[1][0], m[0][0]]];
+    let follows = [0, 1].map(|j| {
+        let mut sums = Follows::new();
+        for (of_k, inverse) in raw.iter().zip(inverse[j]) {
+            let factor = d[j] * inverse / determinant;
+            for (&node, of_node) in of_k {
+                let sum = sums.entry(node).or_default();
+                *sum = [0, 1].map(|i| sum[i] + factor * of_node[i]);
+            }
+        }
+        sums
+    });
+    Some(TiedLine {
+        weights: d,
+        follows,
+    })
+}
