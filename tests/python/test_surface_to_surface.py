@@ -54,9 +54,11 @@ def patch(
     friction: float,
     contact_kind: str = SURFACES,
     slope: float = 0.0,
+    tie: str = "",
 ) -> float:
     """Largest deviation of the stresses of two blocks from those of a homogeneous displacement gradient in a frame turned by
-    some degrees, beside the largest stress; the surface between them has a slope. All nodes but those between the blocks are moved as the gradient says."""
+    some degrees, beside the largest stress; the surface between them has a slope. All nodes but those between the blocks are moved as the gradient says.
+    With `tie`, parameters of *TIE, the blocks are tied in place of being in contact."""
     c, s = cos(degrees * pi / 180.0), sin(degrees * pi / 180.0)
     turn = np.array([[c, -s], [s, c]])
     deck = Deck.titled("patch")
@@ -77,7 +79,10 @@ def patch(
         first = len(deck.find("NODE")) and sum(len(card.rows) for card in deck.find("NODE"))
         numbers[name] = [(first + n + 1, turn @ gradient @ turn.T @ mesh.points[n]) for n in sorted(held)]
         add_body(deck, name, kind, mesh, **{side: "S" + name})
-    contact(deck, "SB", "SA", friction, contact_kind)
+    if tie:
+        deck.extend(f"*TIE, NAME=BOND, {tie}\nSB, SA\n")
+    else:
+        contact(deck, "SB", "SA", friction, contact_kind)
     rows = [(n, i + 1, i + 1, float(u[i])) for both in numbers.values() for n, u in both for i in (0, 1)]
     deck.extend("*STEP, NLGEOM\n*STATIC, DIRECT\n0.5, 1.\n*STICKSLIP, TOLERANCE=1.E-13\n")
     deck.add("BOUNDARY", *rows)

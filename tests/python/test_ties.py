@@ -47,14 +47,17 @@ def run(tmp_path: Path, *cards: str) -> tuple[h5py.Group, str]:
 
 @pytest.mark.parametrize("contact", ["", GENERAL], ids=["tie", "general contact"])
 @pytest.mark.parametrize("gap", [0.0, 0.1])
-def test_a_turning_pair_keeps_energy_and_momenta(tmp_path: Path, gap: float, contact: str) -> None:
+@pytest.mark.parametrize("kind", ["SURFACE TO SURFACE", "NODE TO SURFACE"])
+def test_a_turning_pair_keeps_energy_and_momenta(
+    tmp_path: Path, kind: str, gap: float, contact: str
+) -> None:
     """Two blocks of other meshes turn once; general contact does not act between them as well."""
     history, _ = run(
         tmp_path,
         block("A", 1, (0.0, 0.0), (2.0, 1.0), (4, 2)),
         block("B", 101, (0.2, 1.0 + gap), (1.5, 1.0), (5, 3)),
         MATERIAL,
-        "*TIE, NAME=BOND, ADJUST=NO, POSITION TOLERANCE=0.2\nB_BOT, A_TOP",
+        f"*TIE, NAME=BOND, TYPE={kind}, ADJUST=NO, POSITION TOLERANCE=0.2\nB_BOT, A_TOP",
         contact,
         "*NSET, NSET=ALL\nNA, NB\n*INITIAL CONDITIONS, TYPE=ROTATING VELOCITY\nALL, 3., 0.2, -0.1, 0.",
         "1., 1., 0., 1., 1., 1.\n*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.02, 2.\n*END STEP",
