@@ -87,6 +87,27 @@ def test_free_ends_stretch_alike(tmp_path: Path, kinds: tuple[str, str], counts:
     assert np.abs(stress - stress.mean(axis=0)).max() < 1e-11 * np.abs(stress).max()
 
 
+@pytest.mark.parametrize("kinds", [("CPE4",) * 3, ("CPE8", "CPE4", "CPE8"), ("CPE4", "CPE8", "CPE8")])
+def test_three_blocks_meet_at_a_point(tmp_path: Path, kinds: tuple[str, str, str]) -> None:
+    """A block on two blocks that are tied to each other: the node over their seam belongs to the first of its two ties."""
+    deck = Deck.titled("seam")
+    deck.extend(f"*MATERIAL, NAME=M\n{ELASTIC}\n*DENSITY\n1.\n")
+    places: tuple[Place, ...] = (
+        lambda x, y: (0.5 * x, y - 1.0),
+        lambda x, y: (0.5 + 0.5 * x, y - 1.0),
+        lambda x, y: (x, y),
+    )
+    sides = ("TOP", "BOTTOM", "LEFT", "RIGHT")
+    for name, kind, place, count in zip("ACB", kinds, places, [(5, 3), (4, 4), (8, 3)]):
+        add_body(deck, name, kind, grid(kind, *count, place), **{side: side + name for side in sides})
+    for pair in ("LEFTC, RIGHTA", "BOTTOMB, TOPA", "BOTTOMB, TOPC"):
+        deck.extend(f"*TIE, ADJUST=NO\n{pair}\n")
+    deck.extend("*STEP, NLGEOM\n*STATIC, DIRECT\n1., 1.\n*STICKSLIP, TOLERANCE=1.E-13\n")
+    deck.extend("*BOUNDARY\nNBOTTOMA, 2\nNBOTTOMC, 2\n1, 1\n*DSLOAD\nTOPB, P, 50.\n*END STEP\n")
+    _, stress = last_stress(deck, tmp_path)
+    assert np.abs(stress - stress.mean(axis=0)).max() < 1e-11 * np.abs(stress).max()
+
+
 INNER, MIDDLE, OUTER, PRESSURE = 1.0, 1.5, 2.0, 1e-4
 
 
@@ -112,6 +133,9 @@ def radial_stress(tmp_path: Path, counts: tuple[int, int], kind: str) -> tuple[f
     deck.extend(ends + "*STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\nONX, 2\nONY, 1\n")
     deck.extend(f"*DSLOAD\nBOTTOMA, P, {PRESSURE}\n*END STEP\n")
     result, stress = last_stress(deck, tmp_path)
+    # supports and tie balance on the slave, with the part of the tie that its supports bear
+    held = result.frames[-1]["RF"][result.node_set("NB")].sum(axis=0)
+    assert np.abs(held + result.history.ties.BOND.force[-1]).max() < 1e-12 * np.abs(held).max()
     square = INNER**2 / (OUTER**2 - INNER**2)
     at_tie = PRESSURE * square * (OUTER**2 / MIDDLE**2 - 1.0)
     first, means, scatter = 0, [], 0.0

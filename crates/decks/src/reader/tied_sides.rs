@@ -55,17 +55,7 @@ struct Master {
 
 impl Master {
     fn new(surface: &Surface, mesh: &Mesh) -> Self {
-        let of_sides = |sides: Vec<SideNodes>| {
-            let lines = sides.iter().flat_map(|nodes| {
-                let vertices = vertices_of(nodes, &mesh.coordinates);
-                let pairs = vertices.windows(2);
-                pairs
-                    .map(|pair| [pair[0].clone(), pair[1].clone()])
-                    .collect::<SmallVec<[_; 2]>>()
-            });
-            lines.collect::<Vec<[Vertex; 2]>>()
-        };
-        let lines = of_sides(match &surface.kind {
+        let sides: Vec<SideNodes> = match &surface.kind {
             SurfaceKind::Faces(faces) => faces.iter().map(|face| face.nodes(mesh)).collect(),
             SurfaceKind::Rigid(profile) => {
                 let segments = profile.segments.iter();
@@ -74,7 +64,13 @@ impl Master {
                     .collect()
             }
             SurfaceKind::Nodes(_) => Vec::new(),
-        });
+        };
+        let mut lines = Vec::new();
+        for nodes in sides {
+            let vertices = vertices_of(&nodes, &mesh.coordinates);
+            let pairs = vertices.windows(2);
+            lines.extend(pairs.map(|pair| [pair[0].clone(), pair[1].clone()]));
+        }
         let places = lines.iter().map(places).collect();
         Master {
             lines,
@@ -130,17 +126,10 @@ pub(super) fn read(
     sides.filter_map(tied).collect()
 }
 
-/// Integrals over a slave line with dual functions psi_j, sum_q w_q psi_j N_k = delta_jk D_j, of sums over the same points:
-///
-/// ```text
-/// psi = D M^-1 N,   M_jk = sum_q w_q N_j N_k,   D_j = sum_q w_q N_j      eq. (3.26)
-/// ```
-///
-/// `None` for a line that does not face the master, or has no area.
+/// What the ends of a slave line follow; `None` for a line that does not face the master, or has no area.
 fn tied_line([p, q]: [[f64; 2]; 2], master: &Master, is_ring: bool) -> Option<TiedLine> {
     let e = difference(p, q);
-    let (mut m, mut d) = ([[0.0; 2]; 2], [0.0; 2]);
-    let mut raw = [Follows::new(), Follows::new()];
+    let mut sums = Sums::default();
     for cell in master.cuts([p, q]).windows(2) {
         let (middle, half) = ((cell[0] + cell[1]) / 2.0, (cell[1] - cell[0]) / 2.0);
         let at = |eta: f64| [0, 1].map(|i| (1.0 - eta) * p[i] + eta * q[i]);
@@ -151,45 +140,72 @@ fn tied_line([p, q]: [[f64; 2]; 2], master: &Master, is_ring: bool) -> Option<Ti
             return None;
         }
         for eta in GAUSS.map(|r| middle + half * r) {
-            let n = [1.0 - eta, eta];
             let point = at(eta);
             let radius = if is_ring { point[0] } else { 1.0 };
-            let w = half * distance(p, q) * radius;
-            let [xi, off] = beside(point, places(line));
-            for j in 0..2 {
-                d[j] += w * n[j];
-                for k in 0..2 {
-                    m[j][k] += w * n[j] * n[k];
-                }
-                let of_ends = [[1.0 - xi, -off], [xi, off]];
-                for (vertex, of_end) in line.iter().zip(of_ends) {
-                    for &(node, part) in &vertex.nodes {
-                        let sum = raw[j].entry(node).or_default();
-                        *sum = [0, 1].map(|i| sum[i] + w * n[j] * part * of_end[i]);
-                    }
+            let weight = half * distance(p, q) * radius;
+            sums.add(weight, [1.0 - eta, eta], line, beside(point, places(line)));
+        }
+    }
+    sums.dual()
+}
+
+/// Sums over the points q of a slave line.
+#[derive(Default)]
+struct Sums {
+    /// M_jk = sum_q w_q N_j N_k
+    m: [[f64; 2]; 2],
+    /// D_j = sum_q w_q N_j
+    d: [f64; 2],
+    /// sum_q w_q N_j (alpha_l I + beta_l J)
+    hats: [Follows; 2],
+}
+
+impl Sums {
+    /// Adds a point that lies at xi and eta beside a line of the master.
+    fn add(&mut self, weight: f64, n: [f64; 2], line: &[Vertex; 2], [xi, eta]: [f64; 2]) {
+        // ((1 - xi) I - eta J) u_a + (xi I + eta J) u_b    eq. (3.11)
+        let of_ends = [[1.0 - xi, -eta], [xi, eta]];
+        for j in 0..2 {
+            let w = weight * n[j];
+            self.d[j] += w;
+            self.m[j] = [0, 1].map(|k| self.m[j][k] + w * n[k]);
+            for (vertex, of_end) in line.iter().zip(of_ends) {
+                for &(node, part) in &vertex.nodes {
+                    add_to(&mut self.hats[j], node, w * part, of_end);
                 }
             }
         }
     }
-    let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-    let is_usable = determinant.is_finite() && determinant > 0.0 && d.iter().all(|d| *d > 0.0);
-    if !is_usable {
-        return None;
-    }
-    let inverse = [[m[1][1], -m[0][1]], [-m[1][0], m[0][0]]];
-    let follows = [0, 1].map(|j| {
-        let mut sums = Follows::new();
-        for (of_k, inverse) in raw.iter().zip(inverse[j]) {
-            let factor = d[j] * inverse / determinant;
-            for (&node, of_node) in of_k {
-                let sum = sums.entry(node).or_default();
-                *sum = [0, 1].map(|i| sum[i] + factor * of_node[i]);
-            }
+
+    /// With the dual functions in place of the hats, sum_q w_q psi_j N_k = delta_jk D_j:
+    ///
+    /// ```text
+    /// psi = D M^-1 N      eq. (3.33)
+    /// ```
+    fn dual(self) -> Option<TiedLine> {
+        let Sums { m, d, hats } = self;
+        let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+        if !(determinant.is_finite() && determinant > 0.0 && d.iter().all(|d| *d > 0.0)) {
+            return None;
         }
-        sums
-    });
-    Some(TiedLine {
-        weights: d,
-        follows,
-    })
+        let adjugate = [[m[1][1], -m[0][1]], [-m[1][0], m[0][0]]];
+        let follows = [0, 1].map(|j| {
+            let mut sums = Follows::new();
+            for (hat, of_hat) in hats.iter().zip(adjugate[j]) {
+                for (&node, &of_node) in hat {
+                    add_to(&mut sums, node, d[j] * of_hat / determinant, of_node);
+                }
+            }
+            sums
+        });
+        Some(TiedLine {
+            weights: d,
+            follows,
+        })
+    }
+}
+
+fn add_to(sums: &mut Follows, node: usize, factor: f64, of_node: [f64; 2]) {
+    let sum = sums.entry(node).or_default();
+    *sum = [0, 1].map(|i| sum[i] + factor * of_node[i]);
 }

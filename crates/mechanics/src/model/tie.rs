@@ -155,7 +155,7 @@ impl Tie {
     /// a tied side follows in the mean,
     ///
     /// ```text
-    /// u_j = (1/D_j) sum_q w_q psi_j(q) u_q,   D_j = sum_q w_q N_j      eq. (3.27)
+    /// u_j = (1/D_j) sum_q w_q psi_j(q) u_q,   D_j = sum_q w_q N_j      eq. (3.34)
     /// ```
     ///
     /// over the points of its sides; all others as [`TiedNode::equation`] says. Nodes that are kept have a displacement of
