@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from bench_dense import arch, lattice, long_block, wall
+from bench_dense import arch, lattice, long_block, thrown, wall
 from repository import ROOT
 from stickslip.decks import Grid, card, dry, elastic, step
 from stickslip.deck import Deck
@@ -90,6 +90,7 @@ def dense_decks(scheme: str) -> list[Bench]:
     ]
     decks += [("lattice_100", partial(lattice, 10, 10, 10))]
     decks += [("lattice_1000", partial(lattice, 25, 40, 5))]
+    decks += [(f"thrown_{n * n}", partial(thrown, n, n)) for n in (10, 20)]
     decks += [(f"arch_{n}", partial(arch, n)) for n in (5, 11, 21)]
     decks += [(f"long_block_{n}", partial(long_block, n)) for n in (250, 500, 1000, 2000, 4000)]
     blocks = [two_blocks(size, scheme, 2) for size in (32, 256, 512)]

@@ -37,9 +37,10 @@ def cards(
     run: tuple[float, int],
     friction: float = 0.6,
     shaking: float = 0.0,
+    speeds: Sequence[float] = (),
 ) -> str:
     """A deck of elastic bodies that gravity presses on held ones. `shaking`: the largest acceleration of the ground
-    to and fro, which is a load in its frame."""
+    to and fro, which is a load in its frame. `speeds`: with which the bodies fall at the start."""
     last = moving[-1].next_element - 1
     names = [part.name for part in held]
     loads = card("DLOAD", ("MOVING", "GRAV", 10.0, 0.0, -1.0))
@@ -48,6 +49,8 @@ def cards(
         omega = 2.0 * pi / PERIOD
         sine = card("AMPLITUDE, NAME=SHAKING, DEFINITION=PERIODIC", (1, omega, 0.0, 0.0), (0.0, 1.0))
         loads += card("DLOAD, AMPLITUDE=SHAKING", ("MOVING", "GRAV", shaking, 1.0, 0.0))
+    falling = [(part.name, 2, -speed) for part, speed in zip(moving, speeds)]
+    thrown = card("INITIAL CONDITIONS, TYPE=VELOCITY", *falling) if falling else ""
     dt, increments = run
     return "".join(
         [
@@ -59,6 +62,7 @@ def cards(
             contact,
             card("BOUNDARY", *((name, 1, 2) for name in names)),
             sine,
+            thrown,
             step(dt, increments, loads),
         ]
     )
@@ -122,6 +126,26 @@ def lattice(columns: int, rows: int, increments: int) -> str:
             labels = discs[-1].next_node, discs[-1].next_element
     run = 1e-3, increments
     return cards("lattice of discs", [floor, near, far], discs, GENERAL, run, friction=0.3)
+
+
+def thrown(columns: int, rows: int, increments: int = 10) -> str:
+    """Octagons side by side that fall on a floor, the upper rows faster, by ten times the gaps between them in an increment: flat
+    sides all over the lattice close at once."""
+    radius, gap, speed = 0.1, 4e-5, 10.0
+    apothem = radius * cos(pi / 8)
+    pitch = 2 * apothem + gap
+    floor = Grid("FLOOR", columns + 1, 1, at(-pitch, -0.1, pitch, 0.1))
+    labels = floor.next_node, floor.next_element
+    discs: list[GridMesh] = []
+    speeds = []
+    for row in range(rows):
+        for column in range(columns):
+            centre = pitch * column, gap + apothem + row * pitch
+            discs.append(disc(f"D{row}_{column}", centre, radius, pi / 8, 2, 1, *labels))
+            labels = discs[-1].next_node, discs[-1].next_element
+            speeds.append(speed * (row + 1) / rows)
+    run = 10 * gap / speed, increments
+    return cards("lattice of octagons", [floor], discs, GENERAL, run, friction=0.25, speeds=speeds)
 
 
 def arch(stones: int) -> str:

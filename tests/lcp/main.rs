@@ -6,6 +6,7 @@ mod blocks;
 mod dependent;
 mod frictional;
 mod general;
+mod joints;
 mod means;
 #[allow(dead_code)] // shared with the benches
 mod problems;

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bench_dense import wall
+from bench_dense import thrown, wall
 from conftest import Job
 from decks import oblique_impact, spinning_bar
 from stickslip.deck import Deck
@@ -57,3 +57,13 @@ def test_nodes_on_corners_of_bricks_below_get_no_energy(job: Job) -> None:
         assert results.file["run"].attrs["cutbacks"] == 0
         work = results.history.energy["normal_contact_work"]
         assert work[-1] < 0.0 and np.diff(work).max() < TOLERANCE * results.history.energy.largest
+
+
+def test_a_thrown_lattice_takes_few_passes_and_no_pivots(job: Job) -> None:
+    # flat sides all over the lattice close in one increment, and each has one set of conditions
+    with Result(job(Deck.parse(thrown(4, 4)))) as results:
+        assert results.file["run"].attrs["cutbacks"] == 0
+        solver = results.history.solver
+        assert solver["passes"].sum() < 70
+        assert solver["active_set_iterations"].sum() < 300
+        assert solver["lemke_calls"].sum() == 0

@@ -25,7 +25,10 @@ FRICTION = ROOT / "tests/decks/friction.inp"
 REVOLUTION = ROOT / "tests/decks/revolution.inp"
 PLASTIC = ROOT / "tests/decks/plastic.inp"
 FITS = [ROOT / f"tests/decks/{name}.inp" for name in ("fits", "general_fit", "bolt")]
-ALL_CARDS = [EVERY_CARD, HYPERELASTIC, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES, FRICTION, REVOLUTION, PLASTIC, *FITS]
+CIRCLES = [ROOT / f"tests/decks/circles_{name}.inp" for name in ("of_a_pair", "in_general")]
+ALL_CARDS = [
+    EVERY_CARD, HYPERELASTIC, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES, FRICTION, REVOLUTION, PLASTIC, *FITS, *CIRCLES
+]
 """Decks that use every keyword, and every number with a dimension."""
 EXAMPLES = sorted((ROOT / "input").glob("*/*.inp"))
 POWERS_OF_TWO = [Units(length=2.0**7), Units(mass=2.0**-11), Units(time=2.0**5)]

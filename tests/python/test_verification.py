@@ -31,10 +31,6 @@ def certificates(studies: dict[str, Study]) -> dict[tuple[str, str], set[str]]:
         return dict(zip(found, pool.map(broken, [result.path for result in found.values()], chunksize=1)))
 
 
-UNSETTLED = {"blocks_both_offset_0": {"cone", "slip"}}
-"""Runs of which checks do not hold though nothing is wrong. Here a corner carries a force that the nodal forces do not tell
-from those of the means beside it (docs/certificate.md)."""
-
 LOOSE = {"balance", "law", "equilibrium"}
 """Checks that need not hold where a deck asks for less than the bounds of the certificate."""
 
@@ -48,7 +44,7 @@ def test_the_certificates_of_the_quick_runs_hold(
     wrong = {}
     for run, result in studies[name].results.items():
         asked = [float(tolerance) for tolerance in TOLERANCE.findall(result.deck)]
-        allowed = LOOSE if max(asked, default=0.0) > 1e-10 else UNSETTLED.get(run, set())
+        allowed = LOOSE if max(asked, default=0.0) > 1e-10 else set()
         wrong[run] = certificates[name, run] - allowed
     assert {run: names for run, names in wrong.items() if names} == {}
 

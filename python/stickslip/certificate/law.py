@@ -163,7 +163,7 @@ class ContactLaw:
                 label = self.result.node_labels[node]
                 at = f"mean at node {label}, t = {frame.time:g}"
                 on_master = of_master.get(node, AtMaster())
-                is_corner = node in means.corners or on_master.is_corner
+                is_corner = node in means.held or on_master.is_corner
                 nearest = min(mean.gap, on_master.gap)
                 if not is_corner and gaps[node] <= NEAR * self._edge and (told or not on_master.whole):
                     beyond = gaps[node] - nearest
@@ -222,7 +222,8 @@ class ContactLaw:
             room = friction * normal - abs(tangential)
             if room > 1e-6 * self.force_scale:
                 self.checks["slip"].add(abs(mean.slip) / self._edge, SLIP + noise, at)
-            elif abs(mean.slip) / self._edge > SLIP + noise:
+            # where the corner of the node carries alone its mean has no force but round-off
+            elif friction * normal > 1e-6 * self.force_scale and abs(mean.slip) / self._edge > SLIP + noise:
                 self.checks["slip"].add(float(mean.slip * tangential > 0.0), 0.0, at)
 
     def _discs(
@@ -404,6 +405,6 @@ def _at_masters(found: list[tuple[Means, list[Mean]]]) -> dict[int, AtMaster]:
                 own.whole += part
                 own.least = min(own.least, mean.gap)
                 own.moved |= mean.moved
-        for node in means.master_corners:
+        for node in means.held_of_master:
             at.setdefault(node, AtMaster()).is_corner = True
     return at

@@ -5,11 +5,27 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stickslip.bulges import Bulges
 from stickslip.certificate.contacts import Contact
 from stickslip.result import Array, Integers
 
 CORNER = 0.866
 """Cosine of the turn from which on a surface has a corner."""
+
+VERTEX = 0.94
+"""Cosine of the turn from which on a convex vertex is held by itself too."""
+
+CORNER_DEPTH = 3e-5
+"""Overlap that such a vertex may have, in lengths of the shortest face at it and of the other surface."""
+
+CLOSED = 1e-9
+"""Gap of a vertex that is closed, in lengths of the segment."""
+
+BEYOND = 0.5
+"""Lengths of a face beyond its end up to which a closed vertex may be on its line."""
+
+SLIVER = 1e-2
+"""Part of the largest mean of a node below which a mean beyond a convex vertex is left out."""
 
 FACING = np.sqrt(0.5)
 """Cosine of the angle up to which a face takes part against a segment."""
@@ -35,6 +51,9 @@ THREE = ((-np.sqrt(3.0 / 20.0), 5.0 / 18.0), (0.0, 8.0 / 18.0), (np.sqrt(3.0 / 2
 
 Vertex = tuple[tuple[int, float], ...]
 """Nodes with their parts in the place of the end of a face, eq. (3.21)."""
+
+Column = dict[int, Array]
+"""What a unit force does to nodes."""
 
 
 @dataclass
@@ -87,6 +106,28 @@ def _cross(a: Array, b: Array) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
+def _along_axes(node: int) -> list[Column]:
+    """What unit forces along both axes do to a node."""
+    return [{node: axis} for axis in np.eye(2)]
+
+
+def _halfway(r: list[Array], e: list[Array]) -> list[tuple[Array, Array]]:
+    """What a unit normal and a unit tangential force do to a point and to the end of a segment e, r being the way from the start of
+    the segment to the point, at the start and the end of an increment, eqs (7.2) and (7.3)."""
+    length = [float(np.linalg.norm(one)) for one in e]
+    gaps = [_cross(r[k], e[k]) / length[k] for k in (0, 1)]
+    mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
+    long, square = (length[0] + length[1]) / 2.0, (length[0] * length[1]) ** 2
+    alpha = (1.0 / length[0] + 1.0 / length[1]) / 2.0
+    beta = -(gaps[0] * length[0] + gaps[1] * length[1]) / 4.0 / (length[0] * length[1] * long)
+    gamma = long * (1.0 / length[0] ** 2 + 1.0 / length[1] ** 2) / 2.0
+    delta = -long * float(r[0] @ e[0] + r[1] @ e[1]) / 2.0 / square
+    return [
+        (alpha * _turned(mean), alpha * np.array([-arm[1], arm[0]]) + 2.0 * beta * mean),
+        (gamma * mean, gamma * arm + 2.0 * delta * mean),
+    ]
+
+
 class Means:
     """The means of a contact between two surfaces."""
 
@@ -125,6 +166,67 @@ class Means:
             for i, (_, b) in enumerate(self.segments)
             if (j := self.starting.get(int(b))) is None or tangents[i] @ tangents[j] < CORNER
         ] + [int(a) for a, _ in self.segments if int(a) not in self.ending]
+        sides = (self.faces, contact.face_bulges), (self.segments, contact.bulges)
+        self.vertices = [(self._vertices(side[0], other[0], x), other) for side, other in (sides, sides[::-1])]
+        """Convex vertices of the slave and of the master with the overlap that each may have, and what they meet."""
+        (slave, _), (master, _) = self.vertices
+        self.held = self.corners | slave.keys()
+        self.held_of_master = set(self.master_corners) | master.keys()
+        """Nodes that are held by themselves too, or have several means."""
+
+    def _vertices(self, faces: Integers, against: Integers, x: Array) -> dict[int, float]:
+        """Ends of faces, and their convex vertices that turn by more than 20 degrees, with the overlap of each."""
+        e = x[faces[:, 1]] - x[faces[:, 0]]
+        tangents = e / np.linalg.norm(e, axis=1)[:, None]
+        starting = {int(a): k for k, (a, _) in enumerate(faces)}
+        ending = {int(b) for _, b in faces}
+        found = [int(a) for a, _ in faces if int(a) not in ending]
+        for k, (_, b) in enumerate(faces):
+            e, f = tangents[k], tangents[starting.get(int(b), k)]
+            if int(b) not in starting or (e @ f < VERTEX and _cross(e, f) > 0.0):
+                found.append(int(b))
+        own, other = (np.linalg.norm(x[pairs[:, 1]] - x[pairs[:, 0]], axis=1) for pairs in (faces, against))
+        return {
+            node: CORNER_DEPTH * float(min(own[(faces == node).any(axis=1)].min(), other.min())) for node in found
+        }
+
+    def _closed_vertices(self) -> Iterator[list[Column]]:
+        """What forces of vertices that are closed in the end do to the slave: those along two directions of each. Vertices meet
+        the lines between the nodes themselves."""
+        x, noise = self.at[1][0], 16 * np.finfo(float).eps * np.abs(self.at[1][0]).max()
+        for (vertices, (faces, bulges)), is_slave in zip(self.vertices, (True, False), strict=True):
+            a = x[faces[:, 0]]
+            e = x[faces[:, 1]] - a
+            length = np.linalg.norm(e, axis=1)
+            for node, depth in vertices.items():
+                r = x[node] - a
+                gap = (r[:, 0] * e[:, 1] - r[:, 1] * e[:, 0]) / length
+                eta = (r * e).sum(axis=1) / length**2
+                gap -= bulges.height(slice(None), eta)
+                closed = (gap + depth <= CLOSED * length + noise) & (gap >= -0.05 * length)
+                closed &= ~(faces == node).any(axis=1)
+                meets = closed & (eta >= -1e-3) & (eta <= 1.0 + 1e-3)
+                if not meets.any():
+                    meets = closed & (eta >= -BEYOND) & (eta <= 1.0 + BEYOND)
+                if is_slave and meets.any():
+                    yield _along_axes(node)
+                elif not is_slave:
+                    yield from (self._under_face(node, int(k)) for k in np.flatnonzero(meets))
+
+    def _under_face(self, node: int, face: int) -> list[Column]:
+        """What a normal and a tangential force of a vertex of the master do to the ends of a slave face."""
+        r, e = [], []
+        for x, *_ in self.at:
+            p, q = x[self.faces[face]]
+            r.append(x[node] - p)
+            e.append(q - p)
+        if self.halfway:
+            rows = _halfway(r, e)
+        else:
+            eta = float(r[1] @ e[1] / (e[1] @ e[1]))
+            rows = [(along, -eta * along) for along in (_turned(e[1]), e[1])]
+        a, b = (int(end) for end in self.faces[face])
+        return [{a: -own - on_end, b: on_end} for own, on_end in rows]
 
     def vertex(self, node: int) -> Vertex:
         """The nodes that the place of an end of a face is made of."""
@@ -147,8 +249,10 @@ class Means:
     def means(self, x0: Array, x1: Array, nodes: Integers, halfway: bool) -> Iterator[Mean]:
         """The means of some slave nodes between two positions; `halfway`: rows of the energy-momentum form."""
         self.at = [(x, *self._ends(self.segments, x), self._tangents(self.segments, x)) for x in (x0, x1)]
+        self.halfway = halfway
         points: dict[int, list[Point]] = {}
         for node in nodes:
+            of_node: list[tuple[float, float, Mean]] = []
             for side in self.sides[int(node)]:
                 found: dict[int, Mean] = {}
                 whole = 0.0
@@ -162,16 +266,44 @@ class Means:
                         mean.points.append((q.weight * hat, q))
                 for mean in found.values():
                     covered = sum(weight for weight, _ in mean.points)
-                    if covered <= COVER * whole:
-                        continue
-                    mean.points = [(weight / covered, q) for weight, q in mean.points]
-                    mean.gap = sum(weight * q.gap for weight, q in mean.points)
-                    # at the height of a point when the mean is closed, eq. (3.4)
-                    mean.slip = sum(weight * (q.slip + (q.chord_gap - mean.gap) * q.turn) for weight, q in mean.points)
-                    mean.stretch = sum(weight * q.stretch for weight, q in mean.points)
-                    mean.moved = any(q.before != q.segment for _, q in mean.points)
-                    mean.moved |= abs(covered - whole) > 1e-9 * whole
-                    yield mean
+                    if covered > COVER * whole:
+                        of_node.append((covered, whole, mean))
+            for covered, whole, mean in self._without_slivers(of_node):
+                mean.points = [(weight / covered, q) for weight, q in mean.points]
+                mean.gap = sum(weight * q.gap for weight, q in mean.points)
+                # at the height of a point when the mean is closed, eq. (3.4)
+                mean.slip = sum(weight * (q.slip + (q.chord_gap - mean.gap) * q.turn) for weight, q in mean.points)
+                mean.stretch = sum(weight * q.stretch for weight, q in mean.points)
+                mean.moved = any(q.before != q.segment for _, q in mean.points)
+                mean.moved |= abs(covered - whole) > 1e-9 * whole
+                yield mean
+
+    def _without_slivers(self, means: list[tuple[float, float, Mean]]) -> list[tuple[float, float, Mean]]:
+        """The means of a node, with their covers, but for those beyond a convex vertex that cover little of what the largest does."""
+        largest = max((covered for covered, _, _ in means), default=0.0)
+        if all(covered >= SLIVER * largest for covered, _, _ in means):
+            return means
+        most = next(mean for covered, _, mean in means if covered == largest)
+        x, a, b, t = self.at[0]
+        # the segment where the hat function of the node is largest
+        nearest = max(most.points, key=lambda point: point[0] / point[1].weight)[1].segment
+
+        def gap(place: Array) -> float:
+            return _cross(place - a[nearest], t[nearest])
+
+        def is_beyond(q: Point) -> bool:
+            if q.segment == nearest:
+                ends = [gap(self._place(node, x)) for node in self.faces[q.face]]
+                near, far = ends if q.eta < 0.5 else ends[::-1]
+                return far >= near
+            length = float(np.linalg.norm(b[q.segment] - a[q.segment]))
+            return max(gap(a[q.segment]), gap(b[q.segment])) <= 1e-3 * length
+
+        return [
+            (covered, whole, mean)
+            for covered, whole, mean in means
+            if covered >= SLIVER * largest or not all(is_beyond(q) for _, q in mean.points)
+        ]
 
     def _weight(self, face: int, eta: float, part: float) -> float:
         a, b = (self._place(node, self.x) for node in self.faces[face])
@@ -272,20 +404,12 @@ class Means:
             return Point(
                 face, eta, weight, j, i, gaps[1], slip, rows, -xi[1] * bent, turn, stretch, of_chord[1], lean
             )
-        mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
-        long, square = (length[0] + length[1]) / 2.0, (length[0] * length[1]) ** 2
-        slip = long * (xi[1] - xi[0])
-        alpha = (1.0 / length[0] + 1.0 / length[1]) / 2.0
-        beta = -(of_chord[0] * length[0] + of_chord[1] * length[1]) / 4.0 / (length[0] * length[1] * long)
-        gamma = long * (1.0 / length[0] ** 2 + 1.0 / length[1] ** 2) / 2.0
-        delta = -long * float(r[0] @ e[0] + r[1] @ e[1]) / 2.0 / square
-        normal, tangential = alpha * _turned(mean), gamma * mean
-        on_end = alpha * np.array([-arm[1], arm[0]]) + 2.0 * beta * mean
-        along, along_end = tangential, gamma * arm + 2.0 * delta * mean
+        long = (length[0] + length[1]) / 2.0
+        slip_of_chord = long * (xi[1] - xi[0])
+        (normal, on_end), (along, along_end) = _halfway(r, e)
         bend = self.bulges.secant(j, xi[0], xi[1]) / long
         stretch = float(np.hypot(1.0, bend))
-        tangential = (along + bend * normal) / stretch
-        slip_of_chord, slip = slip, (slip + bend * (of_chord[1] - of_chord[0])) / stretch
+        tangential, slip = (along + bend * normal) / stretch, (slip_of_chord + bend * (of_chord[1] - of_chord[0])) / stretch
         normal, on_end = normal - bend * along, on_end - bend * along_end
         if i != j:
             before, most = max(gaps[0], 0.0), TILT
@@ -319,8 +443,8 @@ class Means:
         """Normal and tangential forces [J, 2] of means whose nodal forces on the slave are given, whether each is told
         [J], and what of the forces they leave.
 
-        Where the means alone do not explain the nodal forces, corners have forces of their own, of any direction: at those
-        of the slave, and under those of the master. Forces are not told that these would change.
+        Closed vertices have forces of their own, of any direction: at those of the slave, and under those of the master.
+        Where they and the means do not explain the nodal forces, all corners have. Forces are not told that these would change.
         """
         rows: dict[tuple[int, int], dict[int, float]] = {}
         own: set[int] = set()
@@ -333,7 +457,33 @@ class Means:
                             for d in (0, 1):
                                 column = rows.setdefault((node, d), {})
                                 column[2 * k + c] = column.get(2 * k + c, 0.0) + weight * part * share * row[d]
-        free: list[dict[int, float]] = [{n: 1.0} for n in self.corners & own]
+        nodes = sorted(own)
+        place = {node: k for k, node in enumerate(nodes)}
+        right = force[nodes].ravel()
+
+        def fit(free: list[Column]) -> tuple[Array, Array, float]:
+            """Forces of the means beside those of some corners."""
+            count = 2 * len(means)
+            matrix = np.zeros((2 * len(nodes), count + len(free)))
+            for (node, d), columns in rows.items():
+                for column, value in columns.items():
+                    matrix[2 * place[node] + d, column] = value
+            for k, forces in enumerate(free, count):
+                for node, row in forces.items():
+                    matrix[2 * place[node] : 2 * place[node] + 2, k] += row
+            found, left = _fit(matrix, right)
+            # what corners may add to the forces of means
+            _, values, vectors = np.linalg.svd(matrix)
+            rank = int((values > ROUND_OFF * values.max(initial=0.0)).sum())
+            open_to = np.abs(vectors[rank:, :count]).max(axis=0, initial=0.0).reshape(-1, 2).max(axis=1)
+            is_told = open_to <= ROUND_OFF if free else np.ones(len(means), np.bool_)
+            return found[:count].reshape(-1, 2), is_told, left
+
+        closed = [column for columns in self._closed_vertices() for column in columns if column.keys() <= own]
+        found, is_told, left = fit(closed)
+        if left <= ROUND_OFF * np.abs(right).max(initial=0.0):
+            return found, is_told, left
+        free = [column for node in sorted(self.corners & own) for column in _along_axes(node)]
         x = self.at[1][0]
         for corner in self.master_corners:
             for face in {q.face for mean in means for _, q in mean.points}:
@@ -341,29 +491,8 @@ class Means:
                 e = q - p
                 eta = float((x[corner] - p) @ e / (e @ e))
                 if 0.0 <= eta <= 1.0 and abs(_cross(x[corner] - p, e)) <= 0.05 * float(e @ e):
-                    ends = zip(self.faces[face], (1.0 - eta, eta))
-                    free.append({n: part * share for end, part in ends for n, share in self.vertex(int(end))})
-        nodes = sorted(own)
-        place = {node: k for k, node in enumerate(nodes)}
-        matrix = np.zeros((2 * len(nodes), 2 * (len(means) + len(free))))
-        for (node, d), columns in rows.items():
-            for column, value in columns.items():
-                matrix[2 * place[node] + d, column] = value
-        for k, shares in enumerate(free):
-            for node, part in shares.items():
-                for d in (0, 1):
-                    matrix[2 * place[node] + d, 2 * (len(means) + k) + d] = part
-        right = force[nodes].ravel()
-        count = 2 * len(means)
-        found, left = _fit(matrix[:, :count], right)
-        if left <= ROUND_OFF * np.abs(right).max(initial=0.0):
-            return found.reshape(-1, 2), np.ones(len(means), np.bool_), left
-        found, left = _fit(matrix, right)
-        # what corners may add to the forces of means
-        _, values, vectors = np.linalg.svd(matrix)
-        rank = int((values > ROUND_OFF * values.max()).sum())
-        open_to = np.abs(vectors[rank:, :count]).max(axis=0, initial=0.0).reshape(-1, 2).max(axis=1)
-        return found[:count].reshape(-1, 2), open_to <= ROUND_OFF, left
+                    free += self._under_face(corner, face)
+        return fit(free + closed)
 
 
 def _fit(matrix: Array, right: Array) -> tuple[Array, float]:

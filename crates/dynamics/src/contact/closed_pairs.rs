@@ -143,6 +143,11 @@ impl ClosedPairs {
         self.find(key).map_or([0.0; 2], |pair| pair.force)
     }
 
+    /// State of a constraint.
+    pub fn own_state(&self, key: ConstraintKey) -> ContactState {
+        self.find(key).map_or(ContactState::Open, |pair| pair.state)
+    }
+
     /// State of a constraint; a node that has come to another segment keeps the one it had.
     pub fn state(&self, key: ConstraintKey) -> ContactState {
         (self.last_of(key)).map_or(ContactState::Open, |pair| pair.state)
@@ -151,6 +156,17 @@ impl ClosedPairs {
     /// The pair of a constraint; of a node that has come to another segment, its pair there.
     pub fn last_of(&self, key: ConstraintKey) -> Option<&ClosedPair> {
         self.find(key).or(self.of_slave(key.slave).first())
+    }
+
+    /// States from which the problem of constraints with increasing keys starts. An open pair whose slave node still has a
+    /// closed pair among them is open: only a node that has come to another segment hands its state on.
+    pub fn states_among(&self, keys: &[ConstraintKey]) -> impl Iterator<Item = ContactState> {
+        let is_left = |pair: &ClosedPair| keys.binary_search(&pair.key).is_err();
+        keys.iter().map(move |&key| match self.find(key) {
+            Some(pair) => pair.state,
+            None if self.of_slave(key.slave).iter().all(is_left) => self.state(key),
+            None => ContactState::Open,
+        })
     }
 
     /// The pairs of a slave node.
@@ -205,5 +221,19 @@ mod tests {
         assert!(slips(ContactState::SlipMinus, 0.5, true));
         assert!(!slips(ContactState::SlipMinus, 0.5, false));
         assert!(slips(ContactState::SlipMinus, 0.0, false));
+    }
+
+    use crate::contact::testing::{closed_pair, key};
+
+    #[test]
+    fn a_node_hands_its_state_on_only_to_a_segment_that_it_has_come_to() {
+        let before: ClosedPairs = [closed_pair(0, 0), closed_pair(1, 0)].into_iter().collect();
+        // node 0 still has its closed pair, node 1 has left it
+        let keys = [key(0, 0), key(0, 1), key(1, 1), key(2, 0)];
+        let states: Vec<ContactState> = before.states_among(&keys).collect();
+        let [open, stick] = [ContactState::Open, ContactState::Stick];
+        assert_eq!(states, [stick, open, stick, open]);
+        assert_eq!(before.own_state(key(1, 1)), open);
+        assert_eq!(before.state(key(1, 1)), stick);
     }
 }

@@ -306,7 +306,7 @@ mod tests {
         // chords of half a degree, one chord of a fillet that turns by 17 degrees at both ends, a straight side
         let mut angles: Vec<f64> = (0..10).map(|i| 0.5 * f64::from(i)).collect();
         angles.extend([21.5, 38.5, 38.5]);
-        let lengths = [[0.1; 10].as_slice(), &[0.5, 2.0, 2.0]].concat();
+        let lengths = [[0.1; 10].as_slice(), &[0.25, 2.0, 2.0]].concat();
         let mut x = vec![[0.0, 0.0]];
         for (angle, length) in angles.iter().zip(&lengths) {
             let ([px, py], (sin, cos)) = (x[x.len() - 1], angle.to_radians().sin_cos());

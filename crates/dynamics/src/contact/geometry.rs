@@ -17,7 +17,7 @@ use super::curves::{Chain, FaceShapes};
 use super::lists::{Recycled, entries};
 use super::projection::{Projection, project};
 use super::tolerances::{
-    CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE,
+    CORNER_COSINE, CORNER_DEPTH, INSIDE_ROUND_OFF, NEARER_HALF, SHARP_TURN_COSINE, VERTEX_COSINE,
 };
 use crate::linear::larger;
 use crate::model::{
@@ -636,7 +636,8 @@ impl ContactSurfaces {
             .collect()
     }
 
-    /// Ends of the surface of the segments, and its nodes where it has a convex corner; increasing.
+    /// Ends of the surface of the segments, and its nodes where it has a convex vertex that turns by more than 20 degrees;
+    /// increasing.
     fn corner_nodes(&self, x: &[[f64; 2]]) -> Vec<usize> {
         let mut nodes = Vec::new();
         for (i, &[a, b]) in self.segments.iter().enumerate() {
@@ -647,8 +648,10 @@ impl ContactSurfaces {
                 let [a, b] = self.segments[i].map(|node| x[node]);
                 project(a, a, b).tangent
             };
-            let is_corner = self.next[i]
-                .is_none_or(|j| self.has_corner(x, i, j) && cross(tangent(i), tangent(j)) > 0.0);
+            let is_corner = self.next[i].is_none_or(|j| {
+                let (e, f) = (tangent(i), tangent(j));
+                dot(e, f) < VERTEX_COSINE && cross(e, f) > 0.0
+            });
             if is_corner {
                 nodes.push(b);
             }

@@ -12,7 +12,7 @@ use super::lists::Recycled;
 use super::search::{ListedSlave, Search};
 use super::surface_to_surface::find_points;
 use super::targets::{ContactTarget, ContactTargets, PairTarget, Segment, SlaveNode};
-use super::tolerances::KEPT_BEYOND_ENDS;
+use super::tolerances::{CLOSED_GAP, KEPT_BEYOND_ENDS};
 
 /// The slave nodes whose pairs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -101,7 +101,7 @@ pub fn find_targets(
             keep(&node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
         }
         for &target in if keeps { &own } else { &found } {
-            let pair = pair_target(&listed, target);
+            let pair = pair_target(&listed, target, (start, form));
             if node.meets_corner(&target) {
                 corners.push([pair.nodes[0], pair.nodes[2]]);
             }
@@ -150,7 +150,13 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
     targets.dedup_by_key(|target| target.segment);
 }
 
-fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
+/// The pair of a slave node and a target. From surface to surface what a corner overlaps at the start stays, as that of
+/// means does: a_j = max(-g_j0, 0), eq. (7.9).
+fn pair_target(
+    listed: &ListedSlave,
+    target: ContactTarget,
+    (start, form): (Positions, RowForm),
+) -> PairTarget {
     let surfaces = listed.surfaces;
     let NodeAtSegment {
         key,
@@ -159,6 +165,15 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
     let c = target.corner.map_or(b, |v| surfaces.segments[v.next][1]);
     let bulge = |i: usize| surfaces.bulges[i];
     let next = target.corner.map_or(target.segment, |v| v.next);
+    let mut allowed = listed.allowed();
+    if listed.is_corner() && form == RowForm::DiscreteGradient {
+        let place = bulge(target.segment)
+            .below(start.place([s, a, b]))
+            .raised(allowed[0]);
+        if place.gap < -CLOSED_GAP * place.length {
+            allowed = allowed.map(|overlap| overlap - place.gap);
+        }
+    }
     PairTarget {
         key,
         target,
@@ -168,7 +183,7 @@ fn pair_target(listed: &ListedSlave, target: ContactTarget) -> PairTarget {
             ends: surfaces.segments[i],
             bulge: bulge(i),
         }),
-        allowed: listed.allowed(),
+        allowed,
         points: Recycled::default(),
         is_of_master: listed.is_of_master(),
         round: None,

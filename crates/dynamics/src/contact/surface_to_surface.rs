@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 use super::bulge::Bulge;
 use super::constraint::sum_of;
 use super::constraint::{Configurations, Constraint, RowForm, Rows};
-use super::geometry::{ContactSurfaces, Edge, Positions, SlaveSegments, between};
+use super::geometry::{ContactSurfaces, Edge, Positions, SlaveSegments, Vertex, between};
 use super::keys::ConstraintKey;
 use super::lists::{PerDof, Recycled};
 use super::node_to_segment::{SegmentRows, couple, rows_between};
@@ -22,8 +22,9 @@ use super::stiffness::{changes_between, changes_of_face};
 use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint};
 use super::tolerances::{
     CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, NEARER_DEPTH, POINT_TILT, SIDE_BY_SIDE,
+    SLIVER, STRAIGHT_SINE,
 };
-use crate::vectors::{cross, difference, dot};
+use crate::vectors::{cross, difference, dot, length};
 
 /// The points of one side of a slave node over one run of the master.
 struct Mean {
@@ -66,8 +67,12 @@ pub(super) fn find_points(
     );
     for (number, (&node, sides)) in surfaces.slaves.iter().zip(&slave.at_nodes).enumerate() {
         let key = territory.key().plus(number);
-        for (side, faces) in sides.iter().enumerate() {
-            for mut mean in of_faces.means(slave, faces, place) {
+        let mut of_sides: SmallVec<[SmallVec<[Mean; 2]>; 2]> = (sides.iter())
+            .map(|faces| of_faces.means(slave, faces, place))
+            .collect();
+        leave_out_slivers(&mut of_sides, slave, place);
+        for (side, means) in of_sides.into_iter().enumerate() {
+            for mut mean in means {
                 mean.points
                     .iter_mut()
                     .for_each(|q| q.weight /= mean.covered);
@@ -108,6 +113,43 @@ fn gauss_points<'b>(
     match bulges.any(needs_three) {
         true => &THREE,
         false => &TWO,
+    }
+}
+
+/// Leaves out means of a slave node that cover a sliver beyond a convex vertex, compared with its largest mean: c_j < 1e-2 max c.
+///
+/// At a vertex of the master both ends of a sliver's segment are behind the line of the largest mean's segment. At a vertex
+/// of the slave the face of a sliver leads away from that segment. A sliver has the gap of the node alone, the
+/// largest mean holds what is there.
+fn leave_out_slivers(
+    of_sides: &mut [SmallVec<[Mean; 2]>],
+    slave: &SlaveSegments,
+    positions: Positions,
+) {
+    let all = || of_sides.iter().flatten();
+    let Some(largest) = all().max_by(|m, n| m.covered.total_cmp(&n.covered)) else {
+        return;
+    };
+    let least = SLIVER * largest.covered;
+    if all().all(|mean| mean.covered >= least) {
+        return;
+    }
+    let at = |vertex: Vertex| vertex.place(|node| positions.of(node));
+    let [a, b] = slave.segment(largest.nearest.0).map(at);
+    let gap = |x: [f64; 2]| project(x, a, b).gap;
+    let is_beyond = |point: &SurfacePoint| {
+        let [x1, x2, c, d] = point.vertices.map(at);
+        if [c, d] == [a, b] {
+            // from the end of the face that the node is at to the other
+            let ends = if point.eta < 0.5 { [x1, x2] } else { [x2, x1] };
+            let [near, far] = ends.map(gap);
+            return far >= near;
+        }
+        let round = STRAIGHT_SINE * length(difference(c, d));
+        [c, d].map(gap).iter().all(|gap| *gap <= round)
+    };
+    for means in of_sides {
+        means.retain(|mean| mean.covered >= least || !mean.points.iter().all(is_beyond));
     }
 }
 
@@ -926,6 +968,40 @@ mod tests {
                 before = now;
             }
         }
+    }
+
+    /// Runs of the master that the upper end of a slave face has means over. The face has the length 1 and is `over` the
+    /// vertex of a master that runs up to it and turns there by 40 degrees.
+    fn runs_over_a_vertex(over: f64, turn: f64) -> usize {
+        let (sin, cos) = turn.to_radians().sin_cos();
+        // bodies on the left: the master's face looks to the right
+        let coordinates = vec![
+            [0.0, -1.0],
+            [0.0, 0.0],
+            [-sin, cos],
+            [1e-3, over],
+            [1e-3, over - 1.0],
+        ];
+        let surfaces = ContactSurfaces::new(vec![3, 4], &[[3, 4]], vec![[0, 1], [1, 2]]);
+        let mesh = Mesh {
+            coordinates,
+            ..Mesh::default()
+        };
+        let surfaces = [surfaces.from_surface_to_surface(&mesh, HashMap::new())];
+        let mut search = Search::new(&surfaces, &mesh.coordinates);
+        let u = vec![0.0; 2 * mesh.coordinates.len()];
+        search.start(&u, 1.0);
+        search.cover(&u);
+        let mut pairs = Vec::new();
+        find_means(&search, [&u; 2], RowForm::DiscreteGradient, &mut pairs);
+        pairs.iter().filter(|pair| pair.nodes[0] == 3).count()
+    }
+
+    #[test]
+    fn slivers_beyond_a_convex_vertex_are_left_out() {
+        assert_eq!(runs_over_a_vertex(1e-3, 40.0), 1);
+        assert_eq!(runs_over_a_vertex(0.1, 40.0), 2);
+        assert_eq!(runs_over_a_vertex(1e-3, -40.0), 2, "a concave one");
     }
 
     #[test]

@@ -13,7 +13,9 @@ use super::keys::SlaveKey;
 use super::projection::{Projection, project};
 use super::search::{ListedSlave, Search};
 use super::targets::raised;
-use super::tolerances::{CORNER_CLIP_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END};
+use super::tolerances::{
+    CORNER_CLIP_DEPTH, CORNER_DEPTH, CORNER_PATH_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END,
+};
 use crate::linear::{larger, largest};
 use crate::vectors::{Circle, CircleTree, cross, difference, length};
 use std::collections::HashSet;
@@ -43,7 +45,11 @@ pub fn find_penetration(
             key: listed.key,
             closed,
             unsolved,
-            allowed: listed.allowed(),
+            // between its ends the path of a corner may cut a face deeper than its row lets it be
+            allowed: match listed.is_corner() {
+                true => (listed.allowed()).map(|depth| depth / CORNER_DEPTH * CORNER_PATH_DEPTH),
+                false => listed.allowed(),
+            },
             is_corner: listed.is_corner(),
             depth: match listed.surfaces.slave_segments {
                 Some(_) => NODE_DEPTH,

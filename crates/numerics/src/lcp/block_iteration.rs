@@ -6,7 +6,7 @@
 
 use super::anderson::{Acceleration, IterationStep};
 use super::dense::{add_sizes, max_abs};
-use super::hybrid::{LcpMethod, solve_similar};
+use super::hybrid::{Known, LcpMethod, solve_similar};
 use super::kept::KeptFactors;
 use super::problems::{ContactState, Counters, FrictionalLcp, LcpError};
 use super::residual::{ROUNDING, TOLERANCE, law_residual};
@@ -173,7 +173,8 @@ impl BlockIteration {
                 block.contacts.iter().map(|&k| self.states[k]).collect();
             block.set_motion(at);
             let LcpBlock { problem, kept, .. } = &mut *block;
-            let solved = solve_similar(problem, Some(&states), self.method, kept)?;
+            let solved =
+                solve_similar(problem, Some(Known::of_states(&states)), self.method, kept)?;
             self.counters += solved.counters;
             for (k, &contact) in block.contacts.iter().enumerate() {
                 let [forces, motion] = answer.each_mut();

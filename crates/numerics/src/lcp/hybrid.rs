@@ -6,6 +6,7 @@ use bumpalo::Bump;
 
 use super::basis::perturbation;
 use super::dense::{List, axpy, copy, filled, list, max_abs};
+use super::joints::Joints;
 use super::kept::KeptFactors;
 use super::lemke::{LemkeSettings, lemke_forces};
 use super::problems::{
@@ -34,28 +35,47 @@ pub enum LcpMethod {
     Lemke,
 }
 
+/// What is known of a problem before its solution.
+#[derive(Clone, Copy)]
+pub struct Known<'k> {
+    /// States of a similar problem, from which the search begins.
+    pub states: &'k [ContactState],
+    /// The number of the joint of every contact: contacts between the same bodies, which change their states together. An
+    /// empty list leaves every contact by itself. It is asked for only where single contacts come to no end.
+    pub joints: &'k dyn Fn() -> Vec<usize>,
+}
+
+impl<'k> Known<'k> {
+    /// States alone.
+    pub fn of_states(states: &'k [ContactState]) -> Self {
+        let joints = &Vec::new;
+        Known { states, joints }
+    }
+}
+
 /// Solves a frictional problem, from the states of a similar one when `warm` is given.
 pub fn solve_frictional(
     problem: &FrictionalLcp,
     warm: Option<&[ContactState]>,
     method: LcpMethod,
 ) -> Result<FrictionalSolution, LcpError> {
-    solve_similar(problem, warm, method, &mut KeptFactors::default())
+    let known = warm.map(Known::of_states);
+    solve_similar(problem, known, method, &mut KeptFactors::default())
 }
 
 /// Solves a frictional problem of a row of similar ones, between which factors are kept.
 pub fn solve_similar(
     problem: &FrictionalLcp,
-    warm: Option<&[ContactState]>,
+    known: Option<Known>,
     method: LcpMethod,
     kept: &mut KeptFactors,
 ) -> Result<FrictionalSolution, LcpError> {
     problem.check()?;
-    if let Some(states) = warm {
+    if let Some(Known { states, .. }) = known {
         expect_size("warm states", problem.len(), states.len())?;
     }
     let mut arena = std::mem::take(&mut kept.arena);
-    let solved = solve_in(problem, warm, method, (kept, &arena));
+    let solved = solve_in(problem, known, method, (kept, &arena));
     if arena.allocated_bytes() <= KEPT_BYTES {
         arena.reset();
         kept.arena = arena;
@@ -66,7 +86,7 @@ pub fn solve_similar(
 /// Solves a frictional problem with its lists in an arena.
 fn solve_in(
     problem: &FrictionalLcp,
-    warm: Option<&[ContactState]>,
+    known: Option<Known>,
     method: LcpMethod,
     (kept, arena): (&mut KeptFactors, &Bump),
 ) -> Result<FrictionalSolution, LcpError> {
@@ -80,26 +100,32 @@ fn solve_in(
     }
     let scaled = Scaled::new(problem, arena)?;
     if method == LcpMethod::Hybrid
-        && let Some(solution) = iterate(problem, &scaled, warm, (kept, &mut counters))
+        && let Some(solution) = iterate(problem, &scaled, known, (kept, &mut counters))
     {
         return Ok(solution);
     }
     lemke(problem, &scaled, &mut counters)
 }
 
-/// The active set from the warm states, again with factors of its own where it fails with kept ones, whose round-off
-/// moves contacts that are nearly one; then from the states after ever more Gauss-Seidel sweeps, which break its cycles.
+/// The active set from the warm states, contact by contact; where that does not end soon, from the same states with joints, and
+/// again with factors of its own where it fails with kept ones, whose round-off moves contacts that are nearly one; then
+/// from the states after ever more Gauss-Seidel sweeps, which break its cycles.
 fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
-    warm: Option<&[ContactState]>,
+    known: Option<Known>,
     (kept, counters): (&mut KeptFactors, &mut Counters),
 ) -> Option<FrictionalSolution> {
-    let mut states = warm.map_or_else(|| first_states(scaled), |warm| known(scaled, warm));
+    let mut states = match known {
+        Some(Known { states, .. }) => closed_alike(scaled, states),
+        None => first_states(scaled),
+    };
+    let joints = known.map_or_else(Joints::none, |known| Joints::of(known.joints));
     let mut rounds = SWEEPS.into_iter();
     let mut has_kept = kept.has_factors();
+    let mut changes = Changes::Alone(&joints);
     loop {
-        let mut p = match active_set(scaled, states.clone(), kept, counters) {
+        let mut p = match active_set(scaled, states.clone(), changes, (kept, counters)) {
             Outcome::Converged(states, p) => {
                 let forces = scaled.forces(&admissible(scaled, &states, &p));
                 let (found, how) = ((&*states, forces), (Method::ActiveSet, *counters));
@@ -111,6 +137,12 @@ fn iterate(
             }
             Outcome::Failed(p) => p,
         };
+        if let Changes::Alone(_) = changes
+            && joints.are_some(scaled.contacts)
+        {
+            changes = Changes::Together(&joints);
+            continue;
+        }
         if std::mem::take(&mut has_kept) {
             kept.forget();
             continue;
@@ -121,7 +153,7 @@ fn iterate(
 }
 
 /// Warm states, in which frictionless contacts have one closed state only.
-fn known<'a>(scaled: &Scaled<'a>, warm: &[ContactState]) -> List<'a, ContactState> {
+fn closed_alike<'a>(scaled: &Scaled<'a>, warm: &[ContactState]) -> List<'a, ContactState> {
     let state = |(state, tangent): (&ContactState, &Option<usize>)| match tangent {
         None if state.is_closed() => ContactState::SlipPlus,
         _ => *state,
@@ -180,7 +212,10 @@ fn follow(
     };
     let found = found?;
     let (kept, unread) = (&mut KeptFactors::default(), &mut Counters::default());
-    let corrected = match active_set(scaled, copy(scaled.arena, &found.states), kept, unread) {
+    let states = copy(scaled.arena, &found.states);
+    let no_joints = Joints::none();
+    let alone = Changes::Alone(&no_joints);
+    let corrected = match active_set(scaled, states, alone, (kept, unread)) {
         Outcome::Converged(states, p) => Some((states, p)),
         Outcome::Failed(_) => None,
     };
@@ -270,6 +305,14 @@ fn finish(
 /// Solves allowed in one call.
 const ACTIVE_SET_ITERATIONS: usize = 25;
 
+/// The answer of a joint's problem.
+fn solve_joint(problem: &FrictionalLcp, states: &[ContactState]) -> Option<FrictionalSolution> {
+    solve_frictional(problem, Some(states), LcpMethod::Hybrid).ok()
+}
+
+/// Iterations of single contacts before joints are tried: most problems end there, and at less cost.
+const ALONE: usize = 5;
+
 /// A condition violated by less than this, relative to the largest force, does not change a state:
 /// round-off would otherwise change degenerate contacts for ever.
 const ACTIVE_SET_TOLERANCE: f64 = 1e-12;
@@ -282,13 +325,22 @@ pub(crate) enum Outcome<'a> {
     Failed(List<'a, f64>),
 }
 
-/// Solves for the forces of the states and changes the states that forces and motion contradict,
-/// until none changes. Repeated states mean failure.
+/// Which contacts change their states together.
+#[derive(Clone, Copy)]
+pub(crate) enum Changes<'j, 'k> {
+    /// None; where joints could, the iteration ends early.
+    Alone(&'j Joints<'k>),
+    /// Those of a joint.
+    Together(&'j Joints<'k>),
+}
+
+/// Solves for the forces of the states and changes the states that forces and motion contradict until none changes.
+/// Repeated states mean failure.
 pub(crate) fn active_set<'a>(
     scaled: &Scaled<'a>,
     mut states: List<'a, ContactState>,
-    kept: &mut KeptFactors,
-    counters: &mut Counters,
+    changes: Changes,
+    (kept, counters): (&mut KeptFactors, &mut Counters),
 ) -> Outcome<'a> {
     let mut visited: List<List<ContactState>> = List::new_in(scaled.arena);
     let mut last = filled(scaled.arena, 0.0, scaled.size());
@@ -297,9 +349,21 @@ pub(crate) fn active_set<'a>(
         let Some((p, v)) = reduced::forces(scaled, &states, kept) else {
             break;
         };
-        let next = next_states(scaled, &states, &p, &v);
+        let mut next = next_states(scaled, &states, &p, &v);
         if next == states {
             return Outcome::Converged(states, p);
+        }
+        match changes {
+            Changes::Alone(joints)
+                if visited.len() == ALONE && joints.are_some(scaled.contacts) =>
+            {
+                last = p;
+                break;
+            }
+            Changes::Alone(_) => {}
+            Changes::Together(joints) => {
+                joints.change(scaled, &states, &mut next, ([&p, &v], solve_joint));
+            }
         }
         last = p;
         visited.push(std::mem::replace(&mut states, next));

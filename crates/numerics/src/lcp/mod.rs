@@ -18,6 +18,7 @@ mod block_iteration;
 mod dense;
 mod exchange;
 mod hybrid;
+mod joints;
 mod kept;
 mod lemke;
 mod problems;
@@ -28,7 +29,7 @@ mod scaled;
 pub use anderson::{Acceleration, IterationStep};
 pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
-pub use hybrid::{LcpMethod, solve_frictional, solve_similar};
+pub use hybrid::{Known, LcpMethod, solve_frictional, solve_similar};
 pub use kept::KeptFactors;
 pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problems::{

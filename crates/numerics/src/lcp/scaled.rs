@@ -118,6 +118,36 @@ impl<'a> Scaled<'a> {
         v
     }
 
+    /// The problem of some contacts alone in these units, the forces p of all others held. v = Q p + b is the motion
+    /// under all forces, and v_c - Q_cc P_c the motion without those of these contacts.
+    pub fn alone(&self, contacts: &[usize], [p, v]: [&[f64]; 2]) -> FrictionalLcp {
+        let n = contacts.len();
+        let normal = contacts.iter().map(|&i| Some(i));
+        let tangential = contacts.iter().map(|&i| self.tangents[i]);
+        // position in p of every row; without friction there is no tangential one
+        let places: Vec<Option<usize>> = normal.chain(tangential).collect();
+        let mut q = DMatrix::identity(2 * n, 2 * n);
+        let motion = places.iter().map(|place| place.map_or(0.0, |k| v[k]));
+        let mut motion: Vec<f64> = motion.collect();
+        for (j, place) in places.iter().enumerate() {
+            let Some(k) = *place else { continue };
+            let column = self.column(k);
+            for (i, place) in places.iter().enumerate() {
+                let entry = place.map_or(0.0, |row| column[row]);
+                q[(i, j)] = entry;
+                motion[i] -= entry * p[k];
+            }
+        }
+        let (gap, slip) = motion.split_at(n);
+        let mu: Vec<f64> = contacts.iter().map(|&i| self.mu[i]).collect();
+        FrictionalLcp {
+            q,
+            gap: gap.to_vec().into(),
+            slip: slip.to_vec().into(),
+            mu: mu.into(),
+        }
+    }
+
     /// (Pn, Pt) of all contacts in the units of the problem.
     pub fn forces(&self, p: &[f64]) -> [List<'a, f64>; 2] {
         let pn = p.iter().zip(&self.units).map(|(p, unit)| p * unit);

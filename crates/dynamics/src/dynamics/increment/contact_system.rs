@@ -9,6 +9,8 @@
 
 use std::collections::BTreeMap;
 
+use smallvec::SmallVec;
+
 use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintGroup};
 use crate::dynamics::results::{Cause, FailedLcp};
@@ -41,8 +43,8 @@ impl Guess {
         forces.clear();
         forces.extend(constraints.iter().map(|c| before.force(c.key)));
         self.states.clear();
-        self.states
-            .extend(constraints.iter().map(|c| before.state(c.key)));
+        let keys: SmallVec<[_; FEW]> = constraints.iter().map(|c| c.key).collect();
+        self.states.extend(before.states_among(&keys));
         self.weight = weight;
     }
 
@@ -128,7 +130,7 @@ impl System<'_> {
         if let (Some(forces), Some(weight)) = (&guess.forces, guess.weight) {
             add_proximal_term(&mut problem, forces, weight);
         }
-        match self.solve_lcp(&problem, &guess.states) {
+        match self.solve_lcp(&problem, constraints, &guess.states) {
             Ok(solution) => {
                 self.take_back(problem);
                 let forces = solution.pn.iter().zip(&solution.pt);
@@ -178,8 +180,8 @@ const LEAST: usize = 100;
 pub(super) const FEW: usize = 128;
 
 /// Constraints of a block in the mean at least: the solves of an iteration, which cost the same for any blocks, gain
-/// nothing over all of Q when blocks are smaller.
-const LEAST_BLOCK: usize = 5;
+/// nothing over all of Q when blocks are smaller. Two flush faces have up to four of corners, which seldom carry a force.
+const LEAST_BLOCK: usize = 8;
 
 /// Part of the entries of Q within the blocks at most, or blocks gain nothing.
 const WITHIN: f64 = 0.25;

@@ -263,7 +263,8 @@ impl Impulses {
     fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
         let key = constraint.key;
         match (self.forces.constraints).binary_search_by_key(&key, |struck| struck.key) {
-            Ok(_) => self.forces.closed.state(key),
+            // what the other pairs of its node do tells nothing of it
+            Ok(_) => self.forces.closed.own_state(key),
             Err(_) if approach(constraint, v0, dt) < 0.0 => ContactState::Stick,
             Err(_) => ContactState::Open,
         }

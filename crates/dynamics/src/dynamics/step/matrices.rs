@@ -24,7 +24,7 @@ use crate::contact::{
 };
 use crate::elements::{Motion, TangentPart};
 use crate::lcp::{
-    BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors,
+    BlockIteration, ContactState, Counters, FrictionalLcp, FrictionalSolution, KeptFactors, Known,
     LcpError, LcpMethod, solve_similar,
 };
 use crate::linear::{
@@ -703,15 +703,37 @@ impl<'a> System<'a> {
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
-    /// Solves a complementarity problem, starting from the states `warm`.
+    /// Solves the complementarity problem of some constraints, starting from the states `warm`. Constraints between the same
+    /// bodies are a joint.
     pub fn solve_lcp(
         &mut self,
         problem: &FrictionalLcp,
+        constraints: &[&Constraint],
         warm: &[ContactState],
     ) -> Result<FrictionalSolution, LcpError> {
         let Self { matrix, meter } = self;
-        let kept = matrix.kept.entry(ConstraintGroup::All).or_default();
-        let solve = || solve_similar(problem, Some(warm), matrix.method, kept);
+        let FactoredMatrix {
+            compliance,
+            kept,
+            method,
+            ..
+        } = &mut **matrix;
+        let joints = || {
+            let mut numbers = BTreeMap::new();
+            let number = |constraint: &&Constraint| {
+                let next = numbers.len();
+                *numbers
+                    .entry(compliance.scope_of(constraint))
+                    .or_insert(next)
+            };
+            constraints.iter().map(number).collect()
+        };
+        let known = Known {
+            states: warm,
+            joints: &joints,
+        };
+        let kept = kept.entry(ConstraintGroup::All).or_default();
+        let solve = || solve_similar(problem, Some(known), *method, kept);
         let solution = meter.time(|t| &mut t.lcp, solve)?;
         self.meter.count_lcp(warm.len(), solution.counters);
         Ok(solution)
