@@ -382,5 +382,7 @@ def known(oracle: str, choice: Mapping[str, str]) -> str:
 ELSEWHERE = {
     "RESTART": "the form `restarted`",
     "NO ANALYSIS": "nothing is solved",
+    "SURFACE SMOOTHING": "its faces are flat: tests/decks/circles_of_a_pair.inp",
+    "SURFACE PROPERTY ASSIGNMENT": "its faces are flat: tests/decks/circles_in_general.inp",
 }
 """Keywords that no level has, with the reason."""

@@ -48,8 +48,8 @@ MUTATIONS = [
     Mutation(
         "a weight of a mean is left out",
         "crates/dynamics/src/contact/surface_to_surface.rs",
-        "map(|q| q.weight * q.gap(at))",
-        "map(|q| q.gap(at))",
+        "map(|q| q.weight * q.gaps(at)[0])",
+        "map(|q| q.gaps(at)[0])",
     ),
     Mutation(
         "a coupling turns the other way",

@@ -30,6 +30,9 @@ DISC_GAP = 1e-9
 TOUCH = 1e-8
 """Nodes nearer to a segment than this part of its length are on it."""
 
+FIELD = 2e-8
+"""Error of `GAP` of open nodes in lengths: the field is that of the last pass, whose correction the tolerance of the increment bounds."""
+
 SLIP = 1e-8
 """Slip of a node that sticks, in lengths of the segment."""
 
@@ -254,7 +257,7 @@ class ContactLaw:
         """GAP is the distance from the line of some segment."""
         asked = opened[np.isfinite(gaps[opened])]
         off = np.full(len(x), np.inf)
-        bound = 1e-8 + noise
+        bound = FIELD + noise
         for contact in contacts:
             for near in places(x, way, np.intersect1d(contact.slaves, asked), contact):
                 error = np.abs(near.gap - gaps[near.nodes][:, None] / near.length).min(axis=1)
