@@ -246,7 +246,7 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
     if -deepest.gap > PENETRATION_FAULT * deepest.edge {
         let is_outside_chord = deepest.gap + deepest.rise >= 0.0;
         let straight =
-            "the face is curved; without GEOMETRIC CORRECTION= on *CONTACT PAIR it is straight";
+            "the face is curved; GEOMETRIC CORRECTION=NONE on *CONTACT PAIR makes it straight";
         let help = match is_outside_chord && is_pair(model, contact) {
             true => format!("{straight}; else {}", remedy(model, contact)),
             false => remedy(model, contact),
