@@ -37,6 +37,15 @@ def test_scene_of_other_elements(family: str, material: str, tmp_path: Path) -> 
     assert max(found.depth, found.crossing) < LIMIT
 
 
+def test_corners_that_slide_past_vertices_stay_outside_from_surface_to_surface(tmp_path: Path) -> None:
+    """In this scene a corner comes past a convex vertex, behind the line of whose next segment it was."""
+    found = Trial("falling", "neo-hooke", None, 60.0, tmp_path, 130, contact="SURFACE TO SURFACE").run(54)
+    assert not found.ended
+    assert found.cutbacks == 0
+    assert found.gain < GAIN
+    assert found.depth < 0.1
+
+
 @pytest.mark.parametrize("kind", random_scenes.KINDS)
 def test_scenes_are_bodies_in_their_places(kind: str) -> None:
     decks = set()

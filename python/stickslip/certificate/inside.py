@@ -3,7 +3,7 @@
 import numpy as np
 
 from stickslip.bulges import Bulges
-from stickslip.certificate.check import Checks
+from stickslip.certificate.check import Check, Checks
 from stickslip.certificate.contacts import Contact
 from stickslip.certificate.fits import REASON, Fits
 from stickslip.errors import Fault
@@ -22,8 +22,15 @@ from stickslip.result import Array, Integers, Result
 DEPTH = 1e-9
 """Depth of a slave node, in lengths of the edge, that is round-off."""
 
-MEANS = 0.1
-"""The same where means over faces are kept out: more than nodes of coarse round bodies need."""
+CORNER = 4e-5
+"""The same of a corner from surface to surface, which may overlap by 3e-5 lengths."""
+
+TURN = 0.5
+"""Depth of a slave node between means, in the turn of the faces near it and the length of the longest of them. A vertex that lies on a flat
+face is 1/6 deep, eq. (10.8); vertices near it on both sides add to that."""
+
+SHARP = np.pi / 3
+"""Turn from which on a vertex is a corner, which is kept out by itself."""
 
 EDGES = 500
 """Edges that are compared with others at a time."""
@@ -54,9 +61,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
         place = f"t = {frame.time:g}"
         gone = still_gone(before, x, bodies, obstacles, gone)
         before = x
-        depth, count = 0.0, 0
         crossed = 0.0
-        limit = MEANS if any(contact.has_means for contact in contacts) else DEPTH
         for contact in contacts:
             if not contact.acts[fits.step(frame) - 1]:
                 continue
@@ -65,15 +70,40 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             if contact.has_means:
                 crossed = max([crossed, *(one.depth for one in found)])
             found += _in_obstacles(x, bodies, obstacles, contact, gone)
-            depth = max([depth, *(one.depth for one in found)])
-            count += len(contact.slaves)
+            _compare(x, contact, found, noise, checks["penetration"], place)
             if not contact.has_means:
                 crossed = max(crossed, _crossed(x, contact, vertex))
-        checks["penetration"].add(depth, limit + noise, place)
         row = np.flatnonzero(recorded[0] == frame.time)
         if len(row) and row[-1] > 0:
             told = float(recorded[1][row[-1]])
             checks["crossing"].add(crossed - told, DEPTH + noise + 1e-6 * told, place)
+
+
+def _compare(
+    x: Array, contact: Contact, found: list[Intrusion], noise: float, check: Check, place: str
+) -> None:
+    """Compares the depths of slave nodes with what the discretisation of the contact allows."""
+    check.add(0.0, DEPTH + noise, place)
+    if not contact.has_means:
+        check.add([one.depth for one in found], DEPTH + noise, place)
+        return
+    after, before = ({} for _ in range(2))
+    for a, b in np.concatenate((contact.faces, contact.segments)).tolist():
+        after[a], before[b] = b, a
+
+    def turn(node: int) -> tuple[float, float]:
+        """How far the face turns at a node, and the longer edge there."""
+        if node not in after or node not in before:
+            return 0.0, 0.0
+        e, f = x[node] - x[before[node]], x[after[node]] - x[node]
+        angle = abs(float(np.arctan2(e[0] * f[1] - e[1] * f[0], e @ f)))
+        return angle if angle < SHARP else 0.0, float(max(np.hypot(*e), np.hypot(*f)))
+
+    for one in found:
+        near = [one.node, *(along[one.node] for along in (after, before) if one.node in along), *one.edge]
+        turns, lengths = np.array([turn(node) for node in near]).T
+        bound = CORNER + TURN * turns.max() * lengths.max() * one.depth / one.distance
+        check.add(one.depth, bound + noise, f"{place}, where faces turn by {np.degrees(turns.max()):.2g} degrees")
 
 
 def _vertices(result: Result) -> Integers:

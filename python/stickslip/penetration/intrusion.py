@@ -39,6 +39,9 @@ from stickslip.penetration.outlines import (
 from stickslip.penetration.profiles import Profile, nearest, passed, profiles, sunk
 from stickslip.result import Array, Result
 
+TIE = 1e-9
+"""Part of a distance by which others are the same."""
+
 Gone = Set[tuple[int, int]]
 """Bodies that have gone through obstacles: numbers of both."""
 
@@ -97,12 +100,15 @@ def intrusions(position: Array, host: Outline, guests: Integers, number: int) ->
     covered = turns > 0
     nodes, point, counted = nodes[covered], point[covered], counted[covered]
     distance = np.where(counted, distances(point, start, end, host.bulges), np.inf)
-    edge = distance.argmin(axis=1) if len(nodes) else np.empty(0, np.int64)
+    lengths = np.linalg.norm(end - start, axis=1)
+    # nearest to a vertex, either edge there may be the one: the longer is taken
+    is_nearest = distance <= distance.min(axis=1, initial=np.inf)[:, None] * (1.0 + TIE)
+    edge = np.where(is_nearest, lengths, 0.0).argmax(axis=1) if len(nodes) else np.empty(0, np.int64)
     distance = distance[np.arange(len(nodes)), edge]
     if own:
         closed = closed_hollow(point, position[host.before[covered]], end[covered])
         distance = np.minimum(distance, closed)
-    depth = distance / np.linalg.norm(end - start, axis=1)[edge]
+    depth = distance / lengths[edge]
     return [
         Intrusion(float(a), float(b), int(node), number, (int(host.nodes[e]), int(host.after[e])))
         for a, b, node, e in zip(depth, distance, nodes, edge)

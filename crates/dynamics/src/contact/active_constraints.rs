@@ -206,7 +206,7 @@ fn touched_normal(
     let bulge = &listed.surfaces.bulges[pair.key.segment];
     let p = bulge
         .below(start.place(pair.nodes))
-        .raised(listed.allowed()[0]);
+        .raised(listed.allowed_where(|node| before.means_have(node))[0]);
     let is_inside = || {
         let at = |node: usize| start.of(node);
         let is_outside_chord = || p.gap + bulge.at(p.xi) >= 0.0;

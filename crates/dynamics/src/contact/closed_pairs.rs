@@ -113,6 +113,12 @@ impl ClosedPairs {
         self.0.iter()
     }
 
+    /// Whether a node lies in one of the means.
+    pub(super) fn means_have(&self, node: usize) -> bool {
+        let mut points = self.0.iter().flat_map(ClosedPair::points);
+        points.any(|point| point.nodes().any(|other| other == node))
+    }
+
     /// Their keys, increasing.
     pub fn keys(&self) -> impl Iterator<Item = ConstraintKey> {
         self.0.iter().map(|pair| pair.key)

@@ -205,6 +205,8 @@ pub struct Corners {
     pub surfaces: ContactSurfaces,
     /// Overlap that each of them may have (length).
     pub allowed: Vec<f64>,
+    /// Which of them are corners of rigid bodies.
+    pub are_rigid: Vec<bool>,
     /// Whether they are corners of the contact's master.
     pub are_of_master: bool,
 }
@@ -618,7 +620,7 @@ impl ContactSurfaces {
             let lengths = (0..against.segments.len()).map(|i| against.length(x, i));
             let least = lengths.fold(f64::INFINITY, f64::min);
             let allowed = |node: &usize| CORNER_DEPTH * shortest[node].min(least);
-            let allowed = nodes.iter().map(allowed).collect();
+            let allowed: Vec<f64> = nodes.iter().map(allowed).collect();
             let segments = against.segments.clone();
             let mut surfaces =
                 ContactSurfaces::with_joined(nodes, &own.segments, segments, &self.joined);
@@ -627,6 +629,7 @@ impl ContactSurfaces {
                 surfaces: surfaces
                     .with_sharp_corners(x)
                     .with_interior(Arc::clone(&self.interior)),
+                are_rigid: vec![false; allowed.len()],
                 allowed,
                 are_of_master,
             }
@@ -774,6 +777,8 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
     let is_behind = |element: &Element| has_segments[bodies[element.nodes[0]]];
     let interior = Arc::new(Interior::new(&model.mesh, is_behind));
     let joined = Arc::new(JoinedNodes::new(model));
+    let rigid = model.rigid_bodies.iter().flat_map(|body| &body.nodes);
+    let rigid: HashSet<usize> = rigid.copied().collect();
     let of_contact = |contact: &Contact| {
         let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
         let (disc, x) = (model.disc(contact), &model.mesh.coordinates);
@@ -811,7 +816,12 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
         }
         match contact.formulation {
             ContactFormulation::SurfaceToSurface => {
-                surfaces.from_surface_to_surface(&model.mesh, shapes.middles)
+                let mut surfaces = surfaces.from_surface_to_surface(&model.mesh, shapes.middles);
+                for corners in &mut surfaces.corners {
+                    let nodes = corners.surfaces.slaves.iter();
+                    corners.are_rigid = nodes.map(|node| rigid.contains(node)).collect();
+                }
+                surfaces
             }
             ContactFormulation::NodeToSegment => surfaces,
         }

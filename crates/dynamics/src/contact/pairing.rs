@@ -101,7 +101,7 @@ pub fn find_targets(
             keep(&node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
         }
         for &target in if keeps { &own } else { &found } {
-            let pair = pair_target(&listed, target, (start, form));
+            let pair = pair_target(&listed, target, (start, form), held);
             if node.meets_corner(&target) {
                 corners.push([pair.nodes[0], pair.nodes[2]]);
             }
@@ -151,11 +151,13 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
 }
 
 /// The pair of a slave node and a target. From surface to surface what a corner overlaps at the start stays, as that of
-/// means does: a_j = max(-g_j0, 0), eq. (7.9).
+/// means does: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex was behind the line of its new
+/// segment there, and overlaps what the segment that held it was in.
 fn pair_target(
     listed: &ListedSlave,
     target: ContactTarget,
     (start, form): (Positions, RowForm),
+    held: &ClosedPairs,
 ) -> PairTarget {
     let surfaces = listed.surfaces;
     let NodeAtSegment {
@@ -167,8 +169,10 @@ fn pair_target(
     let next = target.corner.map_or(target.segment, |v| v.next);
     let mut allowed = listed.allowed();
     if listed.is_corner() && form == RowForm::DiscreteGradient {
-        let place = bulge(target.segment)
-            .below(start.place([s, a, b]))
+        allowed = listed.allowed_where(|node| held.means_have(node));
+        let held_by = target.from.unwrap_or(target.segment);
+        let place = bulge(held_by)
+            .below(start.place(listed.at(held_by).nodes))
             .raised(allowed[0]);
         if place.gap < -CLOSED_GAP * place.length {
             allowed = allowed.map(|overlap| overlap - place.gap);

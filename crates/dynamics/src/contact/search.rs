@@ -263,6 +263,17 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         self.territory.allowed(self.number)
     }
 
+    /// The same where the node lies in a mean that was closed before the increment, or does not. The corner of a rigid body that does not
+    /// may not sink in: the body rocks on it, and lands on its corners.
+    pub fn allowed_where(&self, lies: impl Fn(usize) -> bool) -> [f64; 2] {
+        let allowed = self.allowed();
+        let rocks = |corners: &&Corners| corners.are_rigid[self.number] && !lies(self.node());
+        match self.territory.corners.filter(rocks) {
+            Some(corners) => allowed.map(|depth| depth - corners.allowed[self.number]),
+            None => allowed,
+        }
+    }
+
     /// What its gap to the chord of the segment of a pair counts more by at the start of the increment.
     pub fn lift(&self, pair: &NodeAtSegment) -> Lift {
         Lift {

@@ -5,7 +5,7 @@
 //! Section 10 of docs/theory.md, Penetration check.
 
 use super::bulge::Bulge;
-use super::closed_pairs::{ClosedPair, ClosedPairs};
+use super::closed_pairs::ClosedPairs;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
 use super::geometry::{Along, ContactSurfaces, between, position};
 use super::keys::NodeAtSegment;
@@ -92,10 +92,8 @@ struct NodePath<'a> {
 impl NodePath<'_> {
     /// Whether the node was in contact before the increment, or is a corner of a face in whose means it was.
     fn was_held(&self) -> bool {
-        let is_in_mean =
-            |pair: &ClosedPair| pair.points().any(|q| q.nodes().any(|i| i == self.slave));
-        let of_means = self.closed[0].iter().filter(|_| self.is_corner);
-        !self.closed[0].of_slave(self.key).is_empty() || of_means.into_iter().any(is_in_mean)
+        let before = self.closed[0];
+        !before.of_slave(self.key).is_empty() || self.is_corner && before.means_have(self.slave)
     }
 
     /// Segments that hold the node at the end.
@@ -376,7 +374,7 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
 /// ```
 ///
 /// x_m being the nearest place of the master, L the length of the segment there; behind a rigid one that of the longer
-/// edge at the node.
+/// edge at the node. A vertex between means is as deep as eq. (10.8) says.
 pub fn sunk_nodes(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let is_of_mean = |listed: &ListedSlave| !listed.is_fitted() && !listed.meets_segments();
