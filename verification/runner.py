@@ -79,7 +79,7 @@ class Check:
             tolerance = f"{100 * limit.tolerance:.2g} %" if relative else f"{limit.tolerance:.2g}"
             return f"{self.reference:.6g}", computed, error, tolerance
         bounds = [("<=", limit.at_most), (">=", limit.at_least), ("within", limit.tolerance)]
-        return "", computed, "", next(f"{sign} {bound:.3g}" for sign, bound in bounds if bound is not None)
+        return "", computed, "", next((f"{sign} {bound:.3g}" for sign, bound in bounds if bound is not None), "")
 
 
 COMMON = (

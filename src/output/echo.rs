@@ -13,9 +13,9 @@ use crate::diagnostics::Sources;
 use crate::diagnostics::shown;
 use crate::dynamics::rigid_inertia;
 use crate::model::{
-    Connector, ConnectorLaw, Contact, ContactChanges, ContactFormulation, EdgeScales, Element,
-    ElementType, Frames, Impact, ImpactTime, Incrementation, Interference, LandingRule, Load,
-    Model, Procedure, Scheme, Settings, SolverChoice, Step, SurfaceKind,
+    Connector, ConnectorLaw, Contact, ContactChanges, EdgeScales, Element, ElementType, Frames,
+    Impact, ImpactTime, Incrementation, Interference, LandingRule, Load, Model, Procedure, Scheme,
+    Settings, SolverChoice, Step, SurfaceKind,
 };
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
@@ -297,15 +297,11 @@ fn contact_lines(
 /// What a contact keeps out, and why where the program has chosen.
 fn formulation(contact: &Contact) -> String {
     let name = contact.formulation.name().to_lowercase();
-    let only = match contact.formulation {
-        ContactFormulation::NodeToSegment => "only ",
-        ContactFormulation::SurfaceToSurface => "",
-    };
     let lying = match contact.lying_faces {
         None => return name,
         Some(0) => "no face lies".to_owned(),
-        Some(1) => format!("{only}1 face lies"),
-        Some(count) => format!("{only}{} lie", counted(count, "face")),
+        Some(1) => "1 face lies".to_owned(),
+        Some(count) => format!("{} lie", counted(count, "face")),
     };
     format!("{name} as {lying} on other bodies")
 }

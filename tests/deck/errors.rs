@@ -296,7 +296,9 @@ fn both_orders_of_pairs_are_told_where_they_cost_or_become_one() {
     assert!(says(&on_each_other(26), one));
     assert!(says(&with(nodes), two));
     assert!(says(&with("INTERACTION=DRY, TYPE=SURFACE TO SURFACE"), one));
-    assert!(!says(&on_each_other(20), one));
+    assert!(says(&on_each_other(1), one));
+    let few = on_each_other(20).replace("INTERACTION=DRY", nodes);
+    assert!(!says(&few, two));
     assert!(!says(&with(nodes).replace("TOP, FOOT\n", ""), two));
 }
 

@@ -1234,22 +1234,30 @@ fn strips(count: usize, gap: f64, contact: &str) -> String {
 }
 
 #[test]
-fn general_contact_takes_means_where_many_faces_lie_on_others() {
+fn general_contact_takes_means_where_faces_that_can_move_lie_on_others() {
     let chosen = |count: usize, gap: f64, formulation: &str| {
         let contact = format!("*CONTACT\n*CONTACT INCLUSIONS, ALL EXTERIOR\n{formulation}");
         let contact = &read(&strips(count, gap, &contact)).0.contacts[0];
         (contact.formulation, contact.lying_faces)
     };
     use ContactFormulation::{NodeToSegment, SurfaceToSurface};
-    assert_eq!(chosen(24, 0.01, ""), (NodeToSegment, Some(48)));
+    assert_eq!(chosen(1, 0.01, ""), (SurfaceToSurface, Some(2)));
     assert_eq!(chosen(25, 0.01, ""), (SurfaceToSurface, Some(50)));
     assert_eq!(chosen(25, 0.2, ""), (NodeToSegment, Some(0)));
     let card = "*CONTACT FORMULATION, TYPE=NODE TO SURFACE\n";
     assert_eq!(chosen(25, 0.01, card), (NodeToSegment, None));
+    // walls of a box lie on each other and never move; one that a rigid body holds by its reference node neither
+    let sets = "*NODE, NSET=REF\n2000, 0., 2.\n*NSET, NSET=LOWER, GENERATE\n1, 10\n\
+                *NSET, NSET=UPPER, GENERATE\n1001, 1010\n*BOUNDARY\nLOWER, 1, 2\n";
+    assert_eq!(chosen(4, 0.01, sets).1, Some(8));
+    let both = format!("{sets}UPPER, 1, 2\n");
+    assert_eq!(chosen(4, 0.01, &both), (NodeToSegment, Some(0)));
+    let rigid = format!("{sets}REF, 1, 2\n*RIGID BODY, ELSET=ABOVE, REF NODE=2000\n");
+    assert_eq!(chosen(4, 0.01, &rigid), (NodeToSegment, Some(0)));
 }
 
 #[test]
-fn pairs_in_both_orders_become_one_where_many_faces_lie_on_each_other() {
+fn pairs_in_both_orders_become_one_where_faces_lie_on_each_other() {
     let contacts = |count: usize, gap: f64, cards: &str| {
         let (model, _) = read(&strips(count, gap, cards));
         let slave = |contact: &Contact| model.surfaces[contact.slave].name.clone();
@@ -1268,7 +1276,10 @@ fn pairs_in_both_orders_become_one_where_many_faces_lie_on_each_other() {
         contacts(25, 0.01, &open),
         [(foot.clone(), SurfaceToSurface, Some(50))]
     );
-    assert_eq!(contacts(24, 0.01, &open), two(NodeToSegment));
+    assert_eq!(
+        contacts(1, 0.01, &open),
+        [(foot.clone(), SurfaceToSurface, Some(2))]
+    );
     assert_eq!(contacts(25, 0.2, &open), two(NodeToSegment));
     let nodes = pairs(", TYPE=NODE TO SURFACE");
     assert_eq!(contacts(25, 0.01, &nodes), two(NodeToSegment));

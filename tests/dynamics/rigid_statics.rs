@@ -55,7 +55,8 @@ fn on_elastic_floor(body: &str, friction: f64, young: &str) -> String {
         "*NODE\n{nodes}*ELEMENT, TYPE=CPE4, ELSET=F\n{elements}*MATERIAL, NAME=MF\n*ELASTIC\n{young}, 0.3\n\
          *DENSITY\n1.\n*SOLID SECTION, ELSET=F, MATERIAL=MF\n1.\n*SURFACE, NAME=SF\nF,\n\
          *NSET, NSET=GROUND, GENERATE\n801, 809\n*BOUNDARY\nGROUND, 1, 2\n\
-         *SURFACE INTERACTION, NAME=I\n*FRICTION\n{friction:?}\n*CONTACT PAIR, INTERACTION=I\nS{body}, SF\nSF, S{body}\n"
+         *SURFACE INTERACTION, NAME=I\n*FRICTION\n{friction:?}\n*CONTACT PAIR, INTERACTION=I, \
+         TYPE=NODE TO SURFACE\nS{body}, SF\nSF, S{body}\n"
     )
 }
 

@@ -4,6 +4,7 @@
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
 
+use super::checks::prescribed_throughout;
 use super::context::Context;
 use crate::diagnostics::Code;
 use crate::model::{
@@ -12,8 +13,8 @@ use crate::model::{
 };
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, length};
 
-/// Faces that lie on other bodies from which on general contact is from surface to surface: with fewer, conditions of
-/// nodes on both sides, which depend on each other there, cost at most twice as much.
+/// Faces that lie on each other from which on both orders of pairs take so much longer than one, 1.3 times and more, that the
+/// reader says so.
 const MANY_LYING: usize = 50;
 
 /// Distance of faces that lie on each other, in the length of the longer one.
@@ -28,21 +29,19 @@ const LYING_PART: f64 = 0.1;
 /// Length of the segments of a surface, in that of another one, below which it is the finer one.
 const FINER: f64 = 0.99;
 
-/// Gives contacts their formulation where the deck does not: from surface to surface where many faces lie on other
-/// bodies. Two pairs of the same surfaces, one in each order, become one then, as they do where both are from surface
-/// to surface.
+/// Gives contacts whose nodes are slaves on both sides their formulation where the deck does not: from surface to surface where
+/// faces lie on other bodies, since conditions of nodes depend on each other there. Two pairs of the same surfaces, one in each
+/// order, become one then, as they do where both are from surface to surface.
 pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     warn_of_two_laws(model, cx);
     choose_for_general(model);
     let both = both_orders(model);
     let of_nodes = |pair: &&BothOrders| pair.formulation == ContactFormulation::NodeToSegment;
-    let lying: usize = both.iter().filter(of_nodes).map(|pair| pair.lying).sum();
     let pairs = (model.contacts.iter_mut()).filter(|contact| !contact.is_self_contact());
     pairs.for_each(|contact| contact.lying_faces = None);
-    let is_dense = |pair: &BothOrders| lying >= MANY_LYING && pair.lying > 0;
     let (of_one, of_two): (Vec<_>, Vec<_>) =
-        (both.iter()).partition(|pair| pair.becomes_one && (!of_nodes(pair) || is_dense(pair)));
-    report_both_orders(model, (&of_one, &of_two), lying, cx);
+        (both.iter()).partition(|pair| pair.becomes_one && (!of_nodes(pair) || pair.lying > 0));
+    report_both_orders(model, (&of_one, &of_two), cx);
     let mut left_out = HashSet::new();
     for pair in of_one {
         let [kept, other] = pair.contacts;
@@ -113,7 +112,7 @@ fn warn_of_two_laws(model: &Model, cx: &mut Context) {
     }
 }
 
-/// Takes general contact from surface to surface where many faces lie on other bodies and the deck does not say.
+/// Takes general contact from surface to surface where faces lie on other bodies and the deck does not say.
 fn choose_for_general(model: &mut Model) {
     let is_open = |contact: &Contact| contact.is_self_contact() && contact.lying_faces.is_some();
     let Some(number) = model.contacts.iter().position(is_open) else {
@@ -125,10 +124,15 @@ fn choose_for_general(model: &mut Model) {
         !contact.is_interference_fit && not_from_surface_to_surface(contact, model).is_none();
     let faces = model.surfaces[contact.slave].segments(&model.mesh);
     let bodies = model.mesh.bodies();
-    let count = may_choose.then(|| lying_faces([&faces, &faces], (&model.mesh, &bodies)));
+    let place = Place {
+        mesh: &model.mesh,
+        bodies: &bodies,
+        held: &held_nodes(model),
+    };
+    let count = may_choose.then(|| lying_faces([&faces, &faces], &place));
     let contact = &mut model.contacts[number];
     contact.lying_faces = count;
-    if count >= Some(MANY_LYING) {
+    if count > Some(0) {
         contact.formulation = ContactFormulation::SurfaceToSurface;
     }
 }
@@ -150,6 +154,7 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
     let mut first = HashMap::new();
     let mut both = Vec::new();
     let bodies = LazyCell::new(|| model.mesh.bodies());
+    let held = LazyCell::new(|| held_nodes(model));
     for (number, contact) in model.contacts.iter().enumerate() {
         if contact.is_self_contact() {
             continue;
@@ -173,7 +178,12 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
             true => [number, other],
             false => [other, number],
         };
-        let lying = |faces: [&[[usize; 2]]; 2]| lying_faces(faces, (&model.mesh, &bodies));
+        let place = Place {
+            mesh: &model.mesh,
+            bodies: &bodies,
+            held: &held,
+        };
+        let lying = |faces: [&[[usize; 2]]; 2]| lying_faces(faces, &place);
         both.push(BothOrders {
             contacts,
             formulation: contact.formulation,
@@ -200,12 +210,11 @@ fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     laws[0] == laws[1] && !is_of_one_side && pair.into_iter().all(may)
 }
 
-/// Tells that pairs in both orders have become one contact. Advises against those that stay two where many of their
-/// faces lie on each other.
+/// Tells that pairs in both orders have become one contact. Advises against those that stay two where their faces lie on
+/// each other.
 fn report_both_orders(
     model: &Model,
     (of_one, of_two): (&[&BothOrders], &[&BothOrders]),
-    lying: usize,
     cx: &mut Context,
 ) {
     let second = |pair: &BothOrders| {
@@ -230,11 +239,10 @@ fn report_both_orders(
              depend on each other, which takes long",
         );
     }
-    let is_dense = |pair: &&&BothOrders| {
-        pair.formulation == ContactFormulation::SurfaceToSurface || lying >= MANY_LYING
-    };
-    if let Some(pair) = of_two.iter().filter(|pair| pair.lying > 0).find(is_dense) {
-        let lying = count(of_two);
+    let lying = count(of_two);
+    if lying >= MANY_LYING
+        && let Some(pair) = of_two.iter().find(|pair| pair.lying > 0)
+    {
         let message =
             format!("pairs stand in both orders, and {lying} of their faces lie on each other");
         cx.d.note(Code::BothOrders, second(pair), message).help(
@@ -244,9 +252,31 @@ fn report_both_orders(
     }
 }
 
-/// Number of the faces that lie on one of the others, of another body; `bodies` holds the body of every node.
-fn lying_faces([faces, others]: [&[[usize; 2]]; 2], (mesh, bodies): (&Mesh, &[usize])) -> usize {
-    let x = &mesh.coordinates;
+/// Where faces are, and what can move them.
+struct Place<'a> {
+    mesh: &'a Mesh,
+    /// Body of every node.
+    bodies: &'a [usize],
+    /// Whether a node is held in both directions in all steps, by itself or as a part of a rigid body.
+    held: &'a [bool],
+}
+
+/// Which nodes are held in both directions in all steps, by themselves or as parts of rigid bodies.
+fn held_nodes(model: &Model) -> Vec<bool> {
+    let dofs = prescribed_throughout(&model.steps);
+    let is_held = |node: usize| [0, 1].iter().all(|axis| dofs.contains(&(2 * node + axis)));
+    let mut held: Vec<bool> = (0..model.mesh.coordinates.len()).map(is_held).collect();
+    for body in &model.rigid_bodies {
+        let is_held = held[body.reference];
+        body.nodes.iter().for_each(|&node| held[node] |= is_held);
+    }
+    held
+}
+
+/// Number of the faces that lie on one of the others, of another body, where one of both can move.
+fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
+    let (x, bodies) = (&place.mesh.coordinates, place.bodies);
+    let is_held = |face: [usize; 2]| face.iter().all(|&node| place.held[node]);
     let ends = |face: [usize; 2]| face.map(|node| x[node]);
     let circle = |face: &[usize; 2]| {
         let [a, b] = ends(*face);
@@ -261,7 +291,9 @@ fn lying_faces([faces, others]: [&[[usize; 2]]; 2], (mesh, bodies): (&Mesh, &[us
     let mut lies = vec![false; faces.len()];
     for [i, j] in near.into_iter().map(|pair| pair.map(|k| k as usize)) {
         let is_of_other = bodies[faces[i][0]] != bodies[others[j][0]];
-        if is_of_other && !lies[i] && lie_on_each_other(ends(faces[i]), ends(others[j])) {
+        let can_move = !is_held(faces[i]) || !is_held(others[j]);
+        if is_of_other && can_move && !lies[i] && lie_on_each_other(ends(faces[i]), ends(others[j]))
+        {
             lies[i] = true;
         }
     }

@@ -234,7 +234,7 @@ pub(crate) fn fixed_slaves(model: &Model, cx: &mut Context) {
 }
 
 /// Dofs that are prescribed in all steps.
-fn prescribed_throughout(steps: &[Step]) -> BTreeSet<usize> {
+pub(crate) fn prescribed_throughout(steps: &[Step]) -> BTreeSet<usize> {
     let of = |step: &Step| step.supports.iter().map(|support| support.dof).collect();
     let sets = steps.iter().map(of);
     let common = sets.reduce(|common: BTreeSet<usize>, of| &common & &of);
