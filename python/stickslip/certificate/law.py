@@ -94,13 +94,12 @@ class ContactLaw:
             way = np.abs(frame["U"] - increment.start).sum(axis=1)
         contacts = [contact for contact in self.contacts if contact.acts[increment.step]]
         contacts, others = self._means(frame, increment, contacts), contacts
-        for contact in others:
-            if contact.has_means:
-                nodes = np.append(contact.slaves, contact.segments.ravel())
-                closed, active = np.setdiff1d(closed, nodes), np.setdiff1d(active, nodes)
-                status = status.copy()
-                status[nodes] = 0
-                force[nodes] = 0.0
+        nodes = _in_means(others)
+        if len(nodes):
+            closed, active = np.setdiff1d(closed, nodes), np.setdiff1d(active, nodes)
+            status = status.copy()
+            status[nodes] = 0
+            force[nodes] = 0.0
         contacts, discs = self._discs(contacts, x, status, f"t = {frame.time:g}")
         closed, active = np.setdiff1d(closed, discs), np.setdiff1d(active, discs)
         touches, nearest, reached, corners = touching(x, way, contacts, active, TOUCH)
@@ -387,6 +386,15 @@ class AtMaster:
     def gap(self) -> float:
         """Their mean gap, eq. (9.16)."""
         return self.weighted / self.whole if self.whole > 0.0 else np.inf
+
+
+def _in_means(contacts: list[Contact]) -> Integers:
+    """Nodes whose forces are those of means too: those of contacts from surface to surface, and the masters that such nodes meet by
+    themselves."""
+    of_means = [np.append(one.slaves, one.segments.ravel()) for one in contacts if one.has_means]
+    nodes = np.unique(np.concatenate(of_means)) if of_means else np.empty(0, np.int64)
+    shared = [one for one in contacts if not one.has_means and np.isin(one.slaves, nodes).any()]
+    return np.unique(np.concatenate([nodes, *(one.segments.ravel() for one in shared)]))
 
 
 def _elsewhere(contact: Contact, contacts: list[Contact], with_means: set[str]) -> set[int]:
