@@ -25,8 +25,9 @@ DEPTH = 1e-9
 CORNER = 4e-5
 """The same of a corner from surface to surface, which may overlap by 3e-5 lengths."""
 
-TURN = 0.5
-"""Depth of a slave node between means, in the turn of the faces near it and the length of the longest of them. A vertex that lies on a flat
+TURN = 0.25
+"""Depth of a slave node between means, in the turn of the faces near it, along the master of all within the length of a slave face, and
+the length of the longest of them. A vertex that lies on a flat
 face is 1/6 deep, eq. (10.8); vertices near it on both sides add to that."""
 
 SHARP = np.pi / 3
@@ -70,7 +71,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
             if contact.has_means:
                 crossed = max([crossed, *(one.depth for one in found)])
             found += _in_obstacles(x, bodies, obstacles, contact, gone)
-            _compare(x, contact, found, noise, checks["penetration"], place)
+            _compare(x, frame["GAP"], contact, found, noise, checks["penetration"], place)
             if not contact.has_means:
                 crossed = max(crossed, _crossed(x, contact, vertex))
         row = np.flatnonzero(recorded[0] == frame.time)
@@ -80,9 +81,10 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
 
 
 def _compare(
-    x: Array, contact: Contact, found: list[Intrusion], noise: float, check: Check, place: str
+    x: Array, gap: Array, contact: Contact, found: list[Intrusion], noise: float, check: Check, place: str
 ) -> None:
-    """Compares the depths of slave nodes with what the discretisation of the contact allows."""
+    """Compares the depths of slave nodes with what the discretisation of the contact allows: a mean that overlaps, eq. (7.9), has
+    the GAP of its node."""
     check.add(0.0, DEPTH + noise, place)
     if not contact.has_means:
         check.add([one.depth for one in found], DEPTH + noise, place)
@@ -99,11 +101,27 @@ def _compare(
         angle = abs(float(np.arctan2(e[0] * f[1] - e[1] * f[0], e @ f)))
         return angle if angle < SHARP else 0.0, float(max(np.hypot(*e), np.hypot(*f)))
 
+    def along(ends: tuple[int, int], reach: float) -> tuple[float, float]:
+        """How far the master turns in all within a reach of an edge, and its longest edge there."""
+        total, longest = 0.0, 0.0
+        for node, ways in ((ends[1], after), (ends[0], before)):
+            gone = 0.0
+            while gone <= reach and node in ways:
+                angle, length = turn(node)
+                total, longest = total + angle, max(longest, length)
+                gone += float(np.hypot(*(x[ways[node]] - x[node])))
+                node = ways[node]
+        return total, longest
+
     for one in found:
-        near = [one.node, *(along[one.node] for along in (after, before) if one.node in along), *one.edge]
-        turns, lengths = np.array([turn(node) for node in near]).T
-        bound = CORNER + TURN * turns.max() * lengths.max() * one.depth / one.distance
-        check.add(one.depth, bound + noise, f"{place}, where faces turn by {np.degrees(turns.max()):.2g} degrees")
+        own = [one.node, *(way[one.node] for way in (after, before) if one.node in way)]
+        turns, lengths = np.array([turn(node) for node in own]).T
+        of_master, longest = along(one.edge, float(lengths.max()))
+        angle, length = float(turns.max()) + of_master, max(float(lengths.max()), longest)
+        left = max(0.0, float(np.nan_to_num(-gap[one.node])))
+        edges = one.depth / one.distance if one.distance > 0.0 else 0.0
+        bound = CORNER + (left + TURN * angle * length) * edges
+        check.add(one.depth, bound + noise, f"{place}, where faces turn by {np.degrees(angle):.2g} degrees")
 
 
 def _vertices(result: Result) -> Integers:
