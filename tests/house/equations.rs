@@ -1,7 +1,7 @@
 //! Equations of docs/theory.md and what refers to them: numbers, citations in the source, the table
 //! of docs/architecture.md, and the items and subjects that these documents and docs/numerics.md name.
 //!
-//! `BLESS=1 cargo test --test house` brings the line numbers of the table up to date.
+//! `BLESS=1 cargo test --test house` brings the items of the table up to date.
 
 use crate::names::{Tree, missing};
 use crate::numbers::{Number, citations, equations, misnumbered, references};
@@ -118,7 +118,7 @@ fn named_items_exist() {
 }
 
 #[test]
-fn the_table_has_the_lines_of_the_main_equations() {
+fn the_table_has_the_items_of_the_main_equations() {
     let text = read(ARCHITECTURE);
     let table = updated(&text, &tree());
     let table = table.unwrap_or_else(|offences| panic!("\n{}", offences.join("\n")));
@@ -130,7 +130,7 @@ fn the_table_has_the_lines_of_the_main_equations() {
         fs::write(path, table.text).expect("the document is written");
         return;
     }
-    let hint = "BLESS=1 cargo test --test house writes these lines:";
+    let hint = "BLESS=1 cargo test --test house writes these rows:";
     let pairs = text.lines().zip(table.text.lines());
     let changed = pairs.filter(|(old, new)| old != new);
     let changed: Vec<String> = changed.map(|(_, new)| new.to_string()).collect();

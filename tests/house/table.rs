@@ -1,4 +1,4 @@
-//! The table of docs/architecture.md that leads from the main equations to lines of the source.
+//! The table of docs/architecture.md that leads from the main equations to the items of the source that evaluate them.
 
 use super::names::Tree;
 use super::numbers::{Number, citations};
@@ -6,7 +6,7 @@ use super::numbers::{Number, citations};
 /// Heading of the section that holds the table.
 pub const HEADING: &str = "## Where the equations are";
 
-/// The document with the right lines in its table.
+/// The document with the right items in its table.
 #[derive(Debug)]
 pub struct Table {
     pub text: String,
@@ -14,12 +14,12 @@ pub struct Table {
     pub subjects: Vec<String>,
 }
 
-/// A row `| (2.2) | strain | [src/a.rs:3](../src/a.rs#L3) |`.
+/// A row ``| (2.2) | strain | [`strain`](../src/a.rs) in `src/a.rs` |``: the item at which the source cites the equation.
 struct Row<'a> {
     number: Number,
     subject: &'a str,
+    item: &'a str,
     path: &'a str,
-    line: usize,
 }
 
 impl<'a> Row<'a> {
@@ -29,49 +29,75 @@ impl<'a> Row<'a> {
             return None;
         };
         let number = Number::parse(number.strip_prefix('(')?.strip_suffix(')')?)?;
-        let (place, _) = place
-            .trim_start_matches(['[', '`'])
-            .split_once(['`', ']'])?;
-        let (path, line) = place.rsplit_once(':')?;
+        let (item, rest) = place.strip_prefix("[`")?.split_once("`]")?;
+        let (_, path) = rest.split_once(") in `")?;
         Some(Row {
             number,
             subject,
-            path,
-            line: line.parse().ok()?,
+            item,
+            path: path.strip_suffix('`')?,
         })
     }
 
-    fn text(&self, path: &str, line: usize) -> String {
+    fn text(&self, (path, item): (&str, &str)) -> String {
         let Row {
             number, subject, ..
         } = self;
-        format!("| {number} | {subject} | [`{path}:{line}`](../{path}#L{line}) |")
+        format!("| {number} | {subject} | [`{item}`](../{path}) in `{path}` |")
     }
 
-    /// File and line of the citation: that of the row's file which is nearest to the row's line, or
-    /// the only one elsewhere.
-    fn place<'t>(&self, tree: &'t Tree) -> Result<(&'t str, usize), String> {
-        let cited: Vec<(&str, usize)> = tree
+    /// File and item of the citation: those of the row, the only ones of the row's file, or the only ones elsewhere.
+    fn place<'t>(&self, tree: &'t Tree) -> Result<(&'t str, &'t str), String> {
+        let mut cited: Vec<(&str, &str)> = tree
             .sources()
             .flat_map(|(path, text)| {
                 let own = citations(text).into_iter();
                 let own = own.filter(|(_, number)| *number == Ok(self.number));
-                own.map(move |(line, _)| (path, line))
+                own.filter_map(move |(line, _)| Some((path, item_at(text, line)?)))
             })
             .collect();
-        let here = cited.iter().filter(|(path, _)| *path == self.path);
-        let nearest = here.min_by_key(|(_, line)| line.abs_diff(self.line));
-        match (nearest, &cited[..]) {
-            (Some(place), _) | (None, [place]) => Ok(*place),
-            (None, others) => Err(format!(
-                "{} does not cite eq. {}; cited in {others:?}",
-                self.path, self.number
+        cited.dedup();
+        let here: Vec<_> = (cited.iter().filter(|(path, _)| *path == self.path)).collect();
+        let same = here.iter().find(|(_, item)| *item == self.item);
+        match (same, &here[..], &cited[..]) {
+            (Some(place), ..) | (None, [place], _) => Ok(**place),
+            (None, [], [place]) => Ok(*place),
+            _ => Err(format!(
+                "{} does not cite eq. {} at `{}`; cited in {cited:?}",
+                self.path, self.number, self.item
             )),
         }
     }
 }
 
-/// The document with the lines of its table as they are in the source.
+/// The item that a line of a source belongs to, counted from one: that below a line of its documentation, else the function
+/// around the line.
+fn item_at(text: &str, line: usize) -> Option<&str> {
+    let lines: Vec<&str> = text.lines().collect();
+    let (before, after) = lines.split_at(line.min(lines.len()));
+    match before.last()?.trim_start().starts_with("///") {
+        true => after.iter().find_map(|line| declared(line)),
+        false => {
+            let mut around = before.iter().rev().filter(|line| line.contains("fn "));
+            around.find_map(|line| declared(line))
+        }
+    }
+}
+
+/// Name of the item that a line declares.
+fn declared(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    if line.starts_with("//") {
+        return None;
+    }
+    let mut words = line.split(|c: char| !c.is_alphanumeric() && c != '_');
+    let kinds = ["fn", "struct", "enum", "const", "trait", "type", "static"];
+    words.find(|word| kinds.contains(word))?;
+    // a constant function is one
+    words.find(|word| !word.is_empty() && *word != "fn")
+}
+
+/// The document with the items of its table as they are in the source.
 ///
 /// # Errors
 /// Rows that cannot be read, or whose equation is not cited where they say.
@@ -86,8 +112,8 @@ pub fn updated(document: &str, tree: &Tree) -> Result<Table, Vec<String>> {
         if is_inside && line.starts_with("| (") {
             match Row::parse(line).ok_or(format!("no row: {line}")) {
                 Ok(row) => match row.place(tree) {
-                    Ok((path, at)) => {
-                        new = row.text(path, at);
+                    Ok(place) => {
+                        new = row.text(place);
                         subjects.push(row.subject.to_string());
                     }
                     Err(offence) => offences.push(offence),
@@ -112,8 +138,14 @@ mod tests {
 
     fn tree() -> Tree {
         Tree::of(&[
-            ("src/a.rs", "//\n// x, eq. (1.1)\n\n\n// y, eq. (1.1)\n"),
-            ("src/b.rs", "// z, eq. (1.2)\n// eq. (1.1)\n"),
+            (
+                "src/a.rs",
+                "/// x, eq. (1.1)\npub(crate) fn x() {\n}\nfn y() {\n    // y, eq. (1.1)\n}\n",
+            ),
+            (
+                "src/b.rs",
+                "/// z, eq. (1.2)\n#[derive(Debug)]\nstruct Z<T>(T);\n// eq. (1.1)\n",
+            ),
         ])
     }
 
@@ -122,26 +154,26 @@ mod tests {
     }
 
     #[test]
-    fn lines_follow_the_source() {
+    fn items_follow_the_source() {
         let right = |row: &str| updated(&document(row), &tree()).map(|table| table.text);
-        let row =
-            |path: &str, line| format!("| (1.1) | x | [`{path}:{line}`](../{path}#L{line}) |");
-        for (old, new) in [(2, 2), (1, 2), (9, 5), (4, 5)] {
-            assert_eq!(
-                right(&row("src/a.rs", old)),
-                Ok(document(&row("src/a.rs", new)))
-            );
+        let row = |number: &str, path: &str, item: &str| {
+            format!("| {number} | x | [`{item}`](../{path}) in `{path}` |")
+        };
+        for item in ["x", "y"] {
+            let row = row("(1.1)", "src/a.rs", item);
+            assert_eq!(right(&row), Ok(document(&row)));
         }
-        let moved = right("| (1.2) | z | [`src/gone.rs:7`](../src/gone.rs#L7) |");
-        let found = document("| (1.2) | z | [`src/b.rs:1`](../src/b.rs#L1) |");
-        assert_eq!(moved, Ok(found));
+        let found = document(&row("(1.2)", "src/b.rs", "Z"));
+        for (path, item) in [("src/gone.rs", "Z"), ("src/b.rs", "z")] {
+            assert_eq!(right(&row("(1.2)", path, item)), Ok(found.clone()));
+        }
     }
 
     #[test]
     fn rows_without_a_citation_are_found() {
         for wrong in [
-            "| (1.3) | x | [`src/a.rs:2`](../src/a.rs#L2) |",
-            "| (1.1) | x | [`src/gone.rs:2`](../src/gone.rs#L2) |",
+            "| (1.3) | x | [`x`](../src/a.rs) in `src/a.rs` |",
+            "| (1.1) | x | [`z`](../src/a.rs) in `src/a.rs` |",
             "| (1.1) | x | src/a.rs |",
         ] {
             assert_eq!(updated(&document(wrong), &tree()).unwrap_err().len(), 1);
