@@ -126,10 +126,10 @@ need_program() {
         fail "the build failed"
 }
 
-# Runs the Python file that has the name of the calling script, with the program if that has asked for it.
+# Runs Python in .venv, with the program if the script has asked for it.
 start() {
     need_venv "$ROOT/scripts/requirements.txt"
     export MPLBACKEND=Agg
     [ -z "${PROGRAM:-}" ] || export STICKSLIP="$PROGRAM"
-    exec "$VENV/bin/python" "${BASH_SOURCE[1]}.py" "$@"
+    exec "$VENV/bin/python" "$@"
 }

@@ -1,7 +1,8 @@
-"""A laboratory of combinations: small decks of every pair of levels, judged without stored answers."""
+"""The laboratory: scripts that look for faults of the program, measure it and compare it with others."""
 
 import sys
 
 from repository import ROOT
 
-sys.path.insert(0, str(ROOT / "tests"))  # where the oracle of elements is
+# where the oracle of elements is, and the bodies of decks
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests" / "python")]

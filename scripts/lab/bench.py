@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Measures whole decks: processor time per increment, instructions per pass, passes, memory.
 
 Runs have one thread. Two blocks of N x N/2 elements each write two frames, examples 100.
@@ -14,17 +13,17 @@ from math import isfinite, nan
 from pathlib import Path
 from statistics import median
 
-import bench_ccx
-import bench_reader
 import numpy as np
-from bench_decks import GROUPS, SIZES, Bench, group
-from bench_runs import PHASES, WORK, CcxRun, Measured, bandwidth, measure, run_ccx
-from measured_run import check_program
 from repository import ROOT
-from sample_decks import runner
 from stickslip.command import finish, positive_integer
 from stickslip.errors import Fault
 from stickslip.program import binary
+
+from lab import bench_ccx, bench_reader
+from lab.bench_decks import GROUPS, SIZES, Bench, group
+from lab.bench_runs import PHASES, WORK, CcxRun, Measured, bandwidth, measure, run_ccx
+from lab.measured_run import check_program
+from lab.sample_decks import runner
 
 PAGE = ROOT / "docs" / "performance.md"
 BEGIN, END = "<!-- {name}: begin -->\n", "<!-- {name}: end -->\n"

@@ -1,4 +1,4 @@
-"""The decks that scripts/bench measures: examples, two blocks, large models, many contacts."""
+"""The decks that scripts/lab/run bench measures: examples, two blocks, large models, many contacts."""
 
 import sys
 from collections.abc import Callable
@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from bench_dense import arch, lattice, long_block, thrown, wall
 from repository import ROOT
-from stickslip.decks import Grid, card, dry, elastic, step
 from stickslip.deck import Deck
+from stickslip.decks import Grid, card, dry, elastic, step
+
+from lab.bench_dense import arch, lattice, long_block, thrown, wall
 
 sys.path.insert(0, str(ROOT / "verification" / "convergence"))
 

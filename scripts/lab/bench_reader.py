@@ -1,4 +1,4 @@
-"""The group `read` of scripts/bench: reading and checking decks of a million nodes."""
+"""The group `read` of scripts/lab/run bench: reading and checking decks of a million nodes."""
 
 import math
 import subprocess
@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
 
-from bench_runs import COLLECTED, MISSING_VALGRIND
-from measured_run import Usage, wait
-from sample_decks import runner
 from stickslip.decks import Grid, card, dry, elastic, step
 from stickslip.errors import Fault
+
+from lab.bench_runs import COLLECTED, MISSING_VALGRIND
+from lab.measured_run import Usage, wait
+from lab.sample_decks import runner
 
 NODES = 1_000_000
 COUNTED = 100_000

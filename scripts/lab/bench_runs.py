@@ -9,10 +9,11 @@ from shutil import which
 from time import process_time
 
 import numpy as np
-from bench_decks import Bench
-from measured_run import Run, run, wait
 from stickslip.errors import Fault
 from stickslip.result import Result
+
+from lab.bench_decks import Bench
+from lab.measured_run import Run, run, wait
 
 COLLECTED = re.compile(r"Collected : (\d+)")
 """What callgrind writes to its standard error: the instructions."""

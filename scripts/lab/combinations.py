@@ -1,9 +1,9 @@
 """Runs small decks made of all pairs of levels and judges them without stored answers.
 
-scripts/lab/combinations                the short part, some two minutes
-scripts/lab/combinations --all          every pair; --seed for another array, several times for several
-scripts/lab/combinations --deck 17      prints a deck of an array
-scripts/lab/combinations --shrink       drops levels of failing decks and writes what is left
+scripts/lab/run combinations                the short part, some two minutes
+scripts/lab/run combinations --all          every pair; --seed for another array, several times for several
+scripts/lab/run combinations --deck 17      prints a deck of an array
+scripts/lab/run combinations --shrink       drops levels of failing decks and writes what is left
 """
 
 import argparse

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Counts increments, cutbacks, passes and factorisations on decks, of one program or of two.
 
 Of two programs every column shows OLD / NEW. A run that reaches the limit of processor time is
@@ -17,13 +16,14 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
-from measured_run import Run, check_program, run
 from numpy.typing import NDArray
-from sample_decks import Sample, examples, given, runner, verification_cases
 from stickslip.command import finish, positive, positive_integer
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
 from stickslip.result import Array, Result
+
+from lab.measured_run import Run, check_program, run
+from lab.sample_decks import Sample, examples, given, runner, verification_cases
 
 LIMIT = 60.0
 """Seconds of processor time of a run."""

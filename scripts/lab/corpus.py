@@ -14,10 +14,10 @@ import tempfile
 import time
 
 import numpy as np
+from repository import ROOT
 from stickslip.deck import Deck
 from stickslip.result import Result
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "reliability.md"
 SECONDS = 20
 MEGABYTES = 1024
@@ -154,7 +154,7 @@ def report(package, results, lenient):
     date = datetime.date.today().isoformat()
     more = sum(end[0] == "model" for end, _ in lenient)
     return "\n".join([
-        f"`scripts/corpus` on {date}: {len(ends)} decks of the package {package}, each within "
+        f"`scripts/lab/corpus` on {date}: {len(ends)} decks of the package {package}, each within "
         f"{SECONDS} s and {MEGABYTES} MB. {kinds['model']} read as models ({more} with `--lenient`), "
         f"{kinds['error']} end with a message that names file and line, {faults} otherwise; the "
         f"slowest took {slowest:.2f} s.", "", *table(errors)])

@@ -6,10 +6,10 @@ parameters and values, and docs/keywords.md for those that are not. Both are wri
 
 import json
 import re
-from pathlib import Path
 from typing import Any
 
-ROOT = Path(__file__).resolve().parents[1]
+from repository import ROOT
+
 GRAMMAR = ROOT / "docs" / "editor" / "stickslip.tmLanguage.json"
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?"

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Compares automatic increments with the best fixed ones of the same error.
 
 Every deck is run with fixed increments of several lengths, and without DIRECT at several tolerances.
@@ -16,13 +15,14 @@ from math import exp, log
 from pathlib import Path
 
 import numpy as np
-from convergence import cut_attempts
-from measured_run import check_program, run
 from repository import ROOT
 from stickslip.command import finish, positive_integer
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
 from stickslip.result import Array, Result
+
+from lab.convergence import cut_attempts
+from lab.measured_run import check_program, run
 
 TOLERANCES = (1e-3, 1e-4, 1e-5)
 """Of the truncation error of automatic increments."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Compares results of a deck with those of the same deck moved, turned, mirrored, boosted.
 
 Each deck is written flat and run for a limited processor time: as it is, twice with random numbers
@@ -20,18 +19,19 @@ from dataclasses import dataclass, field
 from math import cos, sin
 from pathlib import Path
 
-import changed_decks as changed
 import numpy as np
-from changed_decks import Unchangeable
-from expected_results import Array, Change, Deviations, Seen, deviations
-from measured_run import Run, run
 from repository import ROOT
 from rescale import Units, rescale
-from sample_decks import Sample, all_samples, given
 from stickslip.command import finish, positive, positive_integer
 from stickslip.deck import Card, Deck
 from stickslip.errors import Fault, one_line
 from stickslip.program import binary
+
+from lab import changed_decks as changed
+from lab.changed_decks import Unchangeable
+from lab.expected_results import Array, Change, Deviations, Seen, deviations
+from lab.measured_run import Run, run
+from lab.sample_decks import Sample, all_samples, given
 
 TOLERANCE = 1e-9
 """Largest deviation of what has one answer, relative to the largest value of its dimension."""
@@ -427,7 +427,7 @@ def write(verdicts: list[Verdict], settings: Settings) -> None:
     increments = sum(verdict.compared for verdict in verdicts)
     date = datetime.date.today().isoformat()
     text = (
-        f"`scripts/invariance` on {date}: {len(verdicts)} decks, {settings.limit:g} s of processor "
+        f"`scripts/lab/run invariance` on {date}: {len(verdicts)} decks, {settings.limit:g} s of processor "
         f"time each,\n{increments} increments in which every history was compared.\n\n"
     )
     page = PAGE.read_text()

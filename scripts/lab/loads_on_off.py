@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Loads that are put on and taken off: every body ends where it began.
 
 A cantilever of every element is bent by a load that grows and goes back to zero, in every procedure,
@@ -11,7 +10,6 @@ A line for each failure, then how many of the runs have failed. The exit code is
 
 import argparse
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -21,12 +19,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from oracle.checks import broken
 from stickslip.command import finish
 from stickslip.program import binary
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
-
-from oracle.checks import broken  # noqa: E402
 
 ELEMENTS = (
     *("CPE3", "CPE4", "CPS4", "CPE4H", "CPE4R", "CPE4I", "CPS4I", "CAX4", "CAX4I"),

@@ -14,22 +14,22 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import changed_decks as changed
 import h5py
 import numpy as np
-from changed_decks import Unchangeable
-from expected_results import Array, Change, Seen, deviations
-from invariance import rotation
 from numpy.typing import NDArray
 from oracle.checks import broken
 from rescale import Units, Unscalable, rescale
-from restart_equality import contents
 from stickslip.deck import Deck
 from stickslip.report.collect import Choice, collect_outline
 from stickslip.report.pack import Packed
 from stickslip.result import Result
 
+from lab import changed_decks as changed
+from lab.changed_decks import Unchangeable
+from lab.expected_results import Array, Change, Seen, deviations
+from lab.invariance import rotation
 from lab.levels import INELASTIC, INTERACTIONS, PROCEDURES, SLOW, STATIC
+from lab.restart_equality import contents
 from lab.scene import BOLT, FORCE, Scene
 
 SAME = 1e-8

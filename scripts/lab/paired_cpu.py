@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Compares the processor time of two programs on the examples, in paired runs.
 
 Every deck is run in the order OLD NEW NEW OLD, so that a machine that slowly changes its speed
@@ -13,10 +12,11 @@ from math import sqrt
 from pathlib import Path
 from statistics import median, variance
 
-from measured_run import check_program, run
-from sample_decks import Sample, examples, given
 from stickslip.command import finish, positive_integer
 from stickslip.errors import Fault
+
+from lab.measured_run import check_program, run
+from lab.sample_decks import Sample, examples, given
 
 ALLOWED = 1.03
 """Largest ratio over all decks."""

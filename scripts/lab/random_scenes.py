@@ -9,11 +9,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-import scene_shapes as shapes
 from numpy.random import Generator
-from scene_shapes import Shape
 from stickslip.decks import GridMesh, card
 from stickslip.result import Array
+
+from lab import scene_shapes as shapes
+from lab.scene_shapes import Shape
 
 POISSON, DENSITY, GRAVITY = 0.3, 1.0, 9.81
 FRICTION = (0.0, 0.1, 0.3, 0.6, 1.0)

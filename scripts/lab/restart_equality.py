@@ -3,8 +3,8 @@
 They must be the same bits as those of a run that was never stopped: all datasets and attributes
 outside /run, and the status file (docs/restart.md).
 
-    python scripts/restart_equality.py                   five stops and five kills of five decks
-    python scripts/restart_equality.py --count 1 DECK    once each, of this deck
+    scripts/lab/run restart_equality                   five stops and five kills of five decks
+    scripts/lab/run restart_equality --count 1 DECK    once each, of this deck
 """
 
 import argparse
@@ -22,7 +22,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 from repository import ROOT
-
 from stickslip.program import binary
 
 PERIODS = {

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Compares the results of two programs, bit for bit: histories, frames, status files.
 
 Runs both on decks (default: all of input/, the cases of verification/ and small decks of the tests)
@@ -17,12 +16,13 @@ from math import ceil
 from pathlib import Path
 
 import h5py
-from differences import Comparison, Difference, Files, Span, frames_until, status_difference
-from measured_run import Run, check_program, run
-from sample_decks import Sample, all_samples, given, quick_samples
 from stickslip.command import finish, positive, positive_integer
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
+
+from lab.differences import Comparison, Difference, Files, Span, frames_until, status_difference
+from lab.measured_run import Run, check_program, run
+from lab.sample_decks import Sample, all_samples, given, quick_samples
 
 LIMIT = 20.0
 QUICK_LIMIT = 4.0

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Runs random scenes (random_scenes.py) and tabulates what happened in them.
 
 Of each scene: increments, cutbacks, the largest gain of energy, the deepest node inside a body, the
@@ -6,7 +5,7 @@ deepest crossing of edges of bodies, the deepest corner of a rigid profile in a 
 and the message if the run has stopped. The gain is the largest rise of kinetic and strain energy
 above their least value before, without external work, beside the largest account of the ledger.
 SS22 does not promise that energy never rises: its gain is told, and not judged. Depths are those of
-penetration.py in the frames. Contact keeps nodes out of bodies and profiles; it does not keep the
+stickslip-penetration in the frames. Contact keeps nodes out of bodies and profiles; it does not keep the
 corners of profiles out of the edges of bodies.
 
 The exit code is 1 when a run has stopped or gained energy.
@@ -21,12 +20,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from measured_run import run
-from random_scenes import INCREMENTS, KINDS, MATERIALS
 from stickslip import Deck, command
 from stickslip.penetration import intrusion as penetration
 from stickslip.program import STOPPED, binary
 from stickslip.result import Result
+
+from lab.measured_run import run
+from lab.random_scenes import INCREMENTS, KINDS, MATERIALS
 
 GAIN = 1e-10
 """Gain of energy, relative to the largest account, that is not round-off."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Runs valid decks that are spoiled at random: numbers, fields, names, parameters and cards.
 
 Every run has a few increments and bounds of time and memory. A fault is: a panic, an end by a signal, an exit

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Kills runs, at any time and before each of many writes, lets them race, sends them signals and fills their disk.
 
 After each trial the files have to be what docs/output.md promises: a result file is there with at

@@ -9,8 +9,12 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+COMMANDS = ROOT / "python" / "packaging" / "data" / "scripts"
+"""The commands of the package, which `scripts/venv` runs."""
+
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(ROOT / "tests")]
-os.environ["PYTHONPATH"] = str(ROOT / "python")  # of the scripts that tests start
+# of the scripts that tests start
+os.environ["PYTHONPATH"] = os.pathsep.join([str(ROOT / "python"), str(ROOT / "scripts")])
 
 from stickslip import program  # noqa: E402
 from stickslip.deck import Deck  # noqa: E402

@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
 from decks import CANTILEVERS, CORNERS, shortened
 from stickslip import program
 from stickslip.deck import Card
@@ -36,7 +35,7 @@ data[...] = values"""
 
 def compare(script: str, *arguments: object) -> tuple[int, str]:
     """Runs a script that compares programs; its exit code and output."""
-    command = [sys.executable, str(ROOT / "scripts" / script), *map(str, arguments)]
+    command = [sys.executable, "-m", f"lab.{script}", *map(str, arguments)]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     return done.returncode, done.stdout + done.stderr
 
@@ -59,7 +58,7 @@ def deck(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_program_is_the_same_as_itself(deck: Path) -> None:
-    code, text = compare("same_histories.py", program.binary(), program.binary(), deck)
+    code, text = compare("same_histories", program.binary(), program.binary(), deck)
     assert code == 0, text
     assert re.search(r"^same .*/corners   40 increments, \d+ frames, \d{3} datasets$", text, re.M)
     assert "1 decks: 1 same, 0 different, 0 failed; 0 shortened" in text
@@ -78,7 +77,7 @@ def test_a_program_is_the_same_as_itself(deck: Path) -> None:
 )
 def test_one_bit_is_found(deck: Path, tmp_path: Path, name: str, row: int) -> None:
     faulty = faulty_program(tmp_path, FLIP.format(name=name, row=row))
-    code, text = compare("same_histories.py", program.binary(), faulty, deck)
+    code, text = compare("same_histories", program.binary(), faulty, deck)
     assert code == 1
     assert "1 difference; OLD / NEW:" in text
     place = rf"{row}\b" if row >= 0 else r"\d+"
@@ -90,7 +89,7 @@ def test_a_not_a_number_is_told_from_a_number_and_from_another(deck: Path, tmp_p
     name = "history/contact/LOWER_UPPER/min_gap"
     for tolerance in ([], ["--tolerance", 1.0]):
         faulty = faulty_program(tmp_path, change)
-        code, text = compare("same_histories.py", program.binary(), faulty, deck, *tolerance)
+        code, text = compare("same_histories", program.binary(), faulty, deck, *tolerance)
         assert code == 1 and re.search(rf"{name}\[7\]: \S+ / nan", text), text
 
 
@@ -100,23 +99,23 @@ data = file["history/energy/kinetic"]
 data[11] += 1e-10 * abs(data[()]).max()"""
     faulty = faulty_program(tmp_path, change)
     programs = program.binary(), faulty
-    code, text = compare("same_histories.py", *programs, deck, "--tolerance", 1e-9)
+    code, text = compare("same_histories", *programs, deck, "--tolerance", 1e-9)
     assert code == 0, text
     assert re.search(r"largest relative difference 1\.00e-10 in history/energy/kinetic", text), text
-    code, text = compare("same_histories.py", *programs, deck, "--tolerance", 1e-11)
+    code, text = compare("same_histories", *programs, deck, "--tolerance", 1e-11)
     assert code == 1 and "history/energy/kinetic[11]: " in text
     # rows up to the tenth of forty
-    code, text = compare("same_histories.py", *programs, deck, "--until", 0.25)
+    code, text = compare("same_histories", *programs, deck, "--until", 0.25)
     assert code == 0 and "10 increments" in text, text
 
 
 def test_datasets_of_one_program_are_listed(deck: Path, tmp_path: Path) -> None:
     new = faulty_program(tmp_path, "file['history/energy/heat'] = file['history/time'][()]")
-    code, text = compare("same_histories.py", program.binary(), new, deck)
+    code, text = compare("same_histories", program.binary(), new, deck)
     assert code == 1 and "only in NEW: history/energy/heat" in text
-    code, text = compare("same_histories.py", program.binary(), new, deck, "--allow-new")
+    code, text = compare("same_histories", program.binary(), new, deck, "--allow-new")
     assert code == 0 and "only in NEW: history/energy/heat" in text
-    code, text = compare("same_histories.py", new, program.binary(), deck, "--allow-new")
+    code, text = compare("same_histories", new, program.binary(), deck, "--allow-new")
     assert code == 1 and "only in OLD: history/energy/heat" in text
 
 
@@ -127,19 +126,19 @@ lines = status.read_text().splitlines()
 lines[9] = lines[9].replace("e-0", "e-1", 1)
 status.write_text("\\n".join(lines) + "\\n")"""
     faulty = faulty_program(tmp_path, change)
-    code, text = compare("same_histories.py", program.binary(), faulty, deck)
+    code, text = compare("same_histories", program.binary(), faulty, deck)
     assert code == 1 and "corners.sta, line 10: " in text
 
 
 def test_long_runs_are_compared_as_far_as_they_go(tmp_path: Path) -> None:
     deck = shortened(CANTILEVERS / "A_mu04.inp", 12_000)
     path = deck.write(tmp_path / "long.inp")
-    code, text = compare("same_histories.py", *[program.binary()] * 2, path, "--limit", 0.5)
+    code, text = compare("same_histories", *[program.binary()] * 2, path, "--limit", 0.5)
     assert code == 0, text
     found = re.search(r"SHORTENED to time (\S+) of 180 \(\d+ %\), (\d+) increments", text)
     assert found and 10 < int(found[2]) < 12_000, text
     faulty = faulty_program(tmp_path, FLIP.format(name="history/energy/strain", row=4))
-    code, text = compare("same_histories.py", program.binary(), faulty, path, "--limit", 0.5)
+    code, text = compare("same_histories", program.binary(), faulty, path, "--limit", 0.5)
     assert code == 1 and "history/energy/strain[4]: " in text
 
 
@@ -151,7 +150,7 @@ def test_a_run_that_ends_early_is_found(deck: Path, tmp_path: Path) -> None:
     same = short.write(tmp_path / "corners.inp")
     path.write_text(text)
     path.chmod(0o755)
-    code, text = compare("same_histories.py", program.binary(), path, same)
+    code, text = compare("same_histories", program.binary(), path, same)
     assert code == 1 and "NEW ends after 20 increments" in text, text
 
 
@@ -159,13 +158,13 @@ def test_a_deck_that_is_refused_is_no_agreement(deck: Path, tmp_path: Path) -> N
     wrong = shortened(CORNERS / "corners_left_mu02.inp", 40)
     wrong.cards.append(Card("NONSENSE", "*NONSENSE"))
     path = wrong.write(tmp_path / "wrong.inp")
-    code, text = compare("same_histories.py", *[program.binary()] * 2, path)
+    code, text = compare("same_histories", *[program.binary()] * 2, path)
     assert code == 1 and "OLD ends with exit code" in text
     assert "1 failed" in text
 
 
 def test_what_is_not_there_is_told_in_one_line(deck: Path, tmp_path: Path) -> None:
-    for script in ("same_histories.py", "paired_cpu.py"):
+    for script in ("same_histories", "paired_cpu"):
         code, text = compare(script, tmp_path / "none", program.binary(), deck)
         assert code == 2 and len(text.splitlines()) == 1 and "there is no program" in text
         code, text = compare(script, *[program.binary()] * 2, tmp_path / "none.inp")
@@ -177,9 +176,9 @@ def test_processor_times_of_a_program_and_of_a_slower_one(tmp_path: Path) -> Non
     slow = tmp_path / "slow"
     slow.write_text(f'#!/bin/sh\n{program.binary()} "$@" && exec {program.binary()} "$@"\n')
     slow.chmod(0o755)
-    code, text = compare("paired_cpu.py", program.binary(), slow, deck, "--repeat", 2)
+    code, text = compare("paired_cpu", program.binary(), slow, deck, "--repeat", 2)
     ratio = re.search(r"^ *(\S+) \+- (\S+) \(95 %\)  ratio of the sums; NEW is slower", text, re.M)
     assert code == 1 and ratio, text
     assert 1.5 < float(ratio[1]) < 2.6
-    code, text = compare("paired_cpu.py", slow, program.binary(), deck, "--repeat", 2)
+    code, text = compare("paired_cpu", slow, program.binary(), deck, "--repeat", 2)
     assert code == 0 and "NEW is within the 3 % allowed" in text, text

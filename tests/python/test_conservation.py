@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bench_dense import thrown, wall
 from conftest import Job
 from decks import oblique_impact, spinning_bar
+from lab.bench_dense import thrown, wall
 from stickslip.deck import Deck
 from stickslip.result import Result
 

@@ -5,10 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import convergence
 import pytest
 from conftest import ROOT
 from decks import CANTILEVERS, CORNERS, shortened
+from lab import convergence
 from stickslip import program
 from test_compared_programs import compare, faulty_program
 
@@ -55,7 +55,7 @@ def test_counts_are_those_of_the_results(deck: Path, tmp_path: Path) -> None:
         )
         factorizations = int(results.history.solver["factorizations"].sum())
     assert rows > 40 and cutbacks > 0
-    code, text = compare("convergence.py", program.binary(), deck)
+    code, text = compare("convergence", program.binary(), deck)
     assert code == 0, text
     numbers = text.splitlines()[1].split()
     assert numbers[:2] == [str(rows), str(cutbacks)]
@@ -68,7 +68,7 @@ def test_counts_are_those_of_the_results(deck: Path, tmp_path: Path) -> None:
 def test_two_programs_stand_side_by_side(deck: Path, tmp_path: Path) -> None:
     change = "file['history/solver/passes'][7] = 31"
     programs = program.binary(), faulty_program(tmp_path, change)
-    code, text = compare("convergence.py", *programs, deck, "--markdown")
+    code, text = compare("convergence", *programs, deck, "--markdown")
     assert code == 0, text
     head, _, line, total = text.splitlines()
     assert head.startswith("| deck | increments | cutbacks | passes | max |")
@@ -78,7 +78,7 @@ def test_two_programs_stand_side_by_side(deck: Path, tmp_path: Path) -> None:
 
 def test_runs_that_are_cut_short_are_counted_as_far_as_both_go(tmp_path: Path) -> None:
     path = shortened(CANTILEVERS / "A_mu04.inp", 300_000).write(tmp_path / "long.inp")
-    code, text = compare("convergence.py", *[program.binary()] * 2, path, "--limit", 0.5)
+    code, text = compare("convergence", *[program.binary()] * 2, path, "--limit", 0.5)
     assert code == 0, text
     line = text.splitlines()[1]
     found = re.search(r"^ *(\d+) / (\d+) .*\(to time \S+ of 4500: (OLD|NEW) at the limit\)$", line)
@@ -88,10 +88,10 @@ def test_runs_that_are_cut_short_are_counted_as_far_as_both_go(tmp_path: Path) -
 def test_a_deck_without_results_is_told(deck: Path, tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.inp"
     wrong.write_text("*NONSENSE\n")
-    code, text = compare("convergence.py", program.binary(), wrong, deck)
+    code, text = compare("convergence", program.binary(), wrong, deck)
     assert code == 1 and "wrong (failed: exit code 2" in text
     assert "all: 1 decks" in text
-    code, text = compare("convergence.py", deck)
+    code, text = compare("convergence", deck)
     assert code == 2 and "one program is needed, or two" in text
 
 

@@ -6,9 +6,9 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-import grammar
 import pytest
 from conftest import ROOT
+from lab import grammar
 from stickslip import program
 
 Rules = list[dict[str, Any]]
@@ -50,7 +50,7 @@ def scopes(line: str, found: Rules) -> list[tuple[str, str]]:
 
 
 def test_the_grammar_is_up_to_date() -> None:
-    assert grammar.GRAMMAR.read_text() == grammar.text(), "run scripts/grammar.py"
+    assert grammar.GRAMMAR.read_text() == grammar.text(), "run scripts/lab/run grammar"
 
 
 def test_pieces_of_lines() -> None:

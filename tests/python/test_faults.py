@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import ROOT, Job
+from conftest import COMMANDS, Job
 from decks import CANTILEVERS, shortened
 from stickslip import command, program
 from stickslip.command import FAULT
@@ -20,9 +20,9 @@ from stickslip.plot import motion as plot_motion
 from stickslip.result import Result
 
 MAINS = {
-    "plot_motion": plot_motion.run,
-    "plot_history": plot_history.run,
-    "penetration": penetration.look,
+    "stickslip-plot-motion": plot_motion.run,
+    "stickslip-plot-history": plot_history.run,
+    "stickslip-penetration": penetration.look,
 }
 
 Run = Callable[..., tuple[int, str]]
@@ -33,7 +33,7 @@ def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
     """`run(script, *arguments)` runs a script's command line: its exit code and its errors."""
 
     def call(script: str, *arguments: object) -> tuple[int, str]:
-        monkeypatch.setattr(sys, "argv", [f"{script}.py", *map(str, arguments)])
+        monkeypatch.setattr(sys, "argv", [script, *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
             command.finish(MAINS[script])
         return int(ended.value.code or 0), capsys.readouterr().err
@@ -97,11 +97,11 @@ def test_a_file_that_cannot_be_read(
     words = spoil(result)
     code, errors = run(script, result)
     assert code == FAULT
-    assert errors.startswith(f"{script}.py: error: ") and errors.count("\n") == 1
+    assert errors.startswith(f"{script}: error: ") and errors.count("\n") == 1
     assert words in errors and str(result) in errors
 
 
-@pytest.mark.parametrize("script", ["plot_motion", "penetration"])
+@pytest.mark.parametrize("script", ["stickslip-plot-motion", "stickslip-penetration"])
 def test_a_file_without_frames(script: str, result: Path, run: Run) -> None:
     with h5py.File(result, "r+") as file:
         file["VTKHDF/Steps/Values"].resize(0, axis=0)
@@ -111,7 +111,7 @@ def test_a_file_without_frames(script: str, result: Path, run: Run) -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e200])
-@pytest.mark.parametrize("script", ["plot_motion", "penetration"])
+@pytest.mark.parametrize("script", ["stickslip-plot-motion", "stickslip-penetration"])
 def test_positions_that_are_no_numbers(script: str, value: float, result: Path, run: Run) -> None:
     """A node nowhere is not a node outside of all bodies."""
     with h5py.File(result, "r+") as file:
@@ -132,9 +132,9 @@ def test_the_largest_energy_drops_no_nan(account: str, result: Path) -> None:
 def test_a_file_without_history(result: Path, run: Run) -> None:
     with h5py.File(result, "r+") as file:
         file["history/energy/kinetic"].resize(0, axis=0)
-    assert run("plot_history", result) == (
+    assert run("stickslip-plot-history", result) == (
         FAULT,
-        f"plot_history.py: error: {result} has no history yet\n",
+        f"stickslip-plot-history: error: {result} has no history yet\n",
     )
 
 
@@ -143,7 +143,7 @@ def test_a_running_job_is_looked_at(result: Path) -> None:
     with h5py.File(result, "r+") as file:
         file.flush()
         for name in MAINS:
-            words = [sys.executable, str(ROOT / "scripts" / f"{name}.py"), str(result)]
+            words = [sys.executable, str(COMMANDS / name), str(result)]
             done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True)
             assert (done.returncode, done.stderr) == (0, ""), name
 
@@ -186,7 +186,7 @@ def test_an_animation_that_cannot_be_written(
     name: str, words: str, result: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", "")
-    code, errors = run("plot_motion", result, "--animation", result.with_name(name))
+    code, errors = run("stickslip-plot-motion", result, "--animation", result.with_name(name))
     assert (code, errors.count("\n")) == (FAULT, 1)
     assert words in errors
     assert [path.name for path in result.parent.iterdir()] == [result.name]
@@ -208,7 +208,7 @@ def test_a_picture_that_cannot_be_drawn(
     with h5py.File(result, "r+") as file:
         for name in ("PointData/SLIP", "Steps/PointDataOffsets/SLIP"):
             file["VTKHDF"].pop(name, None)
-    code, errors = run("plot_motion", result, *arguments)
+    code, errors = run("stickslip-plot-motion", result, *arguments)
     assert (code, errors.count("\n")) == (FAULT, 1)
     assert words in errors
 

@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-import changed_decks as changed
 import numpy as np
 import pytest
-from changed_decks import Unchangeable
 from conftest import ROOT, Job
-from expected_results import Change, Deviations, Seen, deviations
-from invariance import FORMS, TOLERANCE, Settings, flat, judge
-from sample_decks import Sample, all_samples
+from lab import changed_decks as changed
+from lab.changed_decks import Unchangeable
+from lab.expected_results import Change, Deviations, Seen, deviations
+from lab.invariance import FORMS, TOLERANCE, Settings, flat, judge
+from lab.sample_decks import Sample, all_samples
 from stickslip.deck import Deck
 from stickslip.program import binary
 

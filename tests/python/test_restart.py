@@ -5,9 +5,9 @@ from pathlib import Path
 
 import h5py
 import pytest
-import restart_equality
 from conftest import ROOT
-from restart_equality import Job
+from lab import restart_equality
+from lab.restart_equality import Job
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import random_scenes
-import scene_shapes
-from scenes import GAIN, Trial
+from lab import random_scenes, scene_shapes
+from lab.scenes import GAIN, Trial
 from stickslip.penetration.outlines import LIMIT
 from stickslip.result import Array
 

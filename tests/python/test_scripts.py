@@ -1,4 +1,4 @@
-"""The scripts: plots, decks, units, generators."""
+"""The commands that draw; decks and their generators."""
 
 import runpy
 import shutil
@@ -11,7 +11,7 @@ import matplotlib.image
 import matplotlib.pyplot as plt
 import pytest
 from compare import differences
-from conftest import ROOT, Job
+from conftest import COMMANDS, ROOT, Job
 from decks import (
     BAR,
     BLOCK,
@@ -32,12 +32,11 @@ from stickslip import program
 from stickslip.deck import Deck
 
 
-def script(name: str, *arguments: object) -> None:
-    """Runs a script as from the command line, in this process; it has to succeed."""
-    path = str(ROOT / "scripts" / name)
-    with patch.object(sys, "argv", [path, *map(str, arguments)]):
+def script(path: Path, *arguments: object) -> None:
+    """Runs a Python file as from the command line, in this process; it has to succeed."""
+    with patch.object(sys, "argv", [str(path), *map(str, arguments)]):
         with pytest.raises(SystemExit) as ended:
-            runpy.run_path(path, run_name="__main__")
+            runpy.run_path(str(path), run_name="__main__")
     plt.close("all")
     assert not ended.value.code
 
@@ -56,17 +55,17 @@ def result(job: Job) -> Path:
 
 
 def test_plot_history(result: Path, tmp_path: Path) -> None:
-    script("plot_history.py", result, result, "-o", tmp_path / "history.png")
+    script(COMMANDS / "stickslip-plot-history", result, result, "-o", tmp_path / "history.png")
     assert_picture(tmp_path / "history.png")
     names = ["--x", "nodes/UPPER_TIP/U:2", "--y", "energy/strain", "energy/kinetic"]
-    script("plot_history.py", result, *names, "-o", tmp_path / "named.png")
+    script(COMMANDS / "stickslip-plot-history", result, *names, "-o", tmp_path / "named.png")
     assert_picture(tmp_path / "named.png")
 
 
 def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
     path = job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"))
     for option in ("--forces", "--overlay"):
-        script("plot_motion.py", path, option, "-o", tmp_path / "motion.png")
+        script(COMMANDS / "stickslip-plot-motion", path, option, "-o", tmp_path / "motion.png")
         assert_picture(tmp_path / "motion.png")
 
 
@@ -76,7 +75,7 @@ def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
     ids=["panels", "overlay", "forces"],
 )
 def test_plot_motion(result: Path, tmp_path: Path, options: list[object]) -> None:
-    script("plot_motion.py", result, *options, "-o", tmp_path / "motion.png")
+    script(COMMANDS / "stickslip-plot-motion", result, *options, "-o", tmp_path / "motion.png")
     assert_picture(tmp_path / "motion.png")
 
 
@@ -84,7 +83,7 @@ def test_an_animation_is_all_that_is_written(job: Job, tmp_path: Path) -> None:
     made = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
     result = Path(shutil.copy(made, tmp_path / "JOB.vtkhdf"))
     film = tmp_path / "motion.gif"
-    script("plot_motion.py", result, "--animation", film)
+    script(COMMANDS / "stickslip-plot-motion", result, "--animation", film)
     assert film.read_bytes()[:6] == b"GIF89a"
     assert {path.name for path in tmp_path.iterdir()} == {"JOB.vtkhdf", "motion.gif"}
 

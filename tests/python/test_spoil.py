@@ -1,4 +1,4 @@
-"""Decks that are spoiled at random run, stop or are rejected as documented: a short form of scripts/spoil."""
+"""Decks that are spoiled at random run, stop or are rejected as documented: a short form of scripts/lab/run spoil."""
 
 import random
 import subprocess
@@ -6,12 +6,11 @@ import sys
 from pathlib import Path
 
 import pytest
-import spoil
-from conftest import ROOT
+from lab import spoil
 
 
 def test_spoiled_decks(tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "scripts" / "spoil.py"), "60", "-o", str(tmp_path)]
+    command = [sys.executable, "-m", "lab.spoil", "60", "-o", str(tmp_path)]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "spoil: 0 faults" in done.stdout

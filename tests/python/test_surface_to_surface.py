@@ -9,8 +9,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from bench_decks import elastic_blocks
 from bodies import ELASTIC, grid, with_section
+from lab.bench_decks import elastic_blocks
 from oracle.checks import assert_holds
 from stickslip import Deck, program
 from stickslip.certificate.certify import certify

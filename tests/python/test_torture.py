@@ -4,12 +4,11 @@ import os
 import subprocess
 import sys
 
-from conftest import ROOT
 from stickslip import program
 
 
 def test_torture() -> None:
-    command = [sys.executable, str(ROOT / "scripts" / "torture.py"), "--short"]
+    command = [sys.executable, "-m", "lab.torture", "--short"]
     environment = {**os.environ, "STICKSLIP": str(program.binary())}
     done = subprocess.run(
         command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True

@@ -2,7 +2,7 @@
 
 from math import cos, pi, sin
 
-from bench_dense import wall
+from lab.bench_dense import wall
 from stickslip.decks import Grid, card, dry, elastic, step
 
 GRAVITY = 9.81

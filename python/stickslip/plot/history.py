@@ -4,7 +4,7 @@ Without names: where the energy is, its balance, momentum and contact forces, re
 or, with --overlay, on top of each other. With --y any histories, against the time or against the
 one of --x; all results stand in the same axes then, and every --y has axes of its own:
 
-    plot_history.py A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
+    stickslip-plot-history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
 
 A name is the path of a history in the result file, see --list; after a colon stands the component
 of a vector, from 1. Of a node set, displacements and velocities are means and reactions sums;
