@@ -32,8 +32,6 @@ const STATIC_PATIENCE: usize = 8;
 const STATIC_SEARCHING_PASSES: usize = 3;
 /// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
 const SLOW_PASSES: usize = 10;
-/// Most halvings of a correction that turns an element inside out.
-const CORRECTION_HALVINGS: i32 = 6;
 
 /// Relative difference of lengths between which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
@@ -242,7 +240,7 @@ impl<'m> Attempt<'_, 'm> {
     /// all of them with the last rule.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.set, rule) {
-            (ConstraintSet::All, FactorRule::Kept | FactorRule::Fresh)
+            (ConstraintSet::All, FactorRule::Kept)
                 if self.problem.integration.velocities_tell() =>
             {
                 SlaveChoice::Near
@@ -288,8 +286,7 @@ impl<'m> Attempt<'_, 'm> {
             }
             // g, Dt and their rows, V0+ and r in the iterate U = U0 + d
             let settled = number >= SEARCHING_PASSES;
-            let pass = (number, trace.correction());
-            self.evaluate(pass, &mut d, &mut contact, v)?;
+            self.evaluate(number, &mut d, &mut contact, v)?;
             let map = self.workspace.stiffness.k.map();
             trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
 
@@ -362,34 +359,10 @@ impl<'m> Attempt<'_, 'm> {
         Err(Cause::NotConverged)
     }
 
-    /// Evaluates the iterate U = U0 + d: constraints, impulses and forces. Where the last correction turns an
-    /// element inside out, what it changes beside the motion of the supports is halved. Of the pass its number
-    /// and the correction of the pass before, beside its scale.
+    /// Evaluates the iterate U = U0 + d: constraints, impulses and forces.
     fn evaluate(
         &mut self,
-        pass: (usize, f64),
-        d: &mut [f64],
-        contact: &mut ContactStates,
-        v: &mut Vectors,
-    ) -> Result<(), Cause> {
-        let halvings = if pass.0 == 0 { 0 } else { CORRECTION_HALVINGS };
-        for halving in 1..=halvings {
-            match self.evaluate_at(pass, d, contact, v) {
-                Err(Cause::Inverted { .. } | Cause::Collapsed { .. }) => {}
-                other => return other,
-            }
-            let part = 0.5_f64.powi(halving);
-            for (d, (du, d_p)) in d.iter_mut().zip(v.du.iter().zip(&v.d_p)) {
-                *d -= part * (du - d_p);
-            }
-        }
-        self.evaluate_at(pass, d, contact, v)
-    }
-
-    /// Evaluates the iterate as it is.
-    fn evaluate_at(
-        &mut self,
-        (pass, correction): (usize, f64),
+        pass: usize,
         d: &mut [f64],
         contact: &mut ContactStates,
         v: &mut Vectors,
@@ -410,7 +383,7 @@ impl<'m> Attempt<'_, 'm> {
         contact.find(problem, self.workspace, of_increment, &v.u, of_set);
 
         // V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1)
-        let last = EarlierPass::new(&v.equilibrium, correction, self.interval.dt);
+        let last = EarlierPass::new(&v.equilibrium, self.interval.dt);
         let ContactStates {
             impulses, found, ..
         } = contact;

@@ -11,8 +11,6 @@ const NEAR: f64 = 1e-4;
 const FRESH_RATE: f64 = 0.03;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 1.0;
-/// Rate of the first two corrections above which factors of an earlier increment are dropped.
-const POOR_RATE: f64 = 0.3;
 /// Rate of corrections that become hardly smaller.
 const STAGNANT: f64 = 0.5;
 /// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
@@ -25,8 +23,6 @@ const GROWING: usize = 3;
 pub(super) enum FactorRule {
     /// Those at hand, as long as they pay.
     Kept,
-    /// Those of its predictor, as long as they pay.
-    Fresh,
     /// New ones at every pass.
     EveryPass,
     /// New ones at every pass, in which closed pairs are held, eq. (4.13).
@@ -42,7 +38,7 @@ impl FactorRule {
     /// The rules in the order in which they are tried.
     pub fn order(choice: Factorization) -> &'static [FactorRule] {
         match choice {
-            Factorization::Keep => &[FactorRule::Kept, FactorRule::Fresh, FactorRule::EveryPass],
+            Factorization::Keep => &[FactorRule::Kept, FactorRule::EveryPass],
             Factorization::EveryPass => &[FactorRule::EveryPass],
         }
     }
@@ -137,9 +133,6 @@ impl Refactorization {
         self.growing = if grows { self.growing + 1 } else { 0 };
         if self.growing >= GROWING {
             return Err(Cause::Diverged);
-        }
-        if self.rule == FactorRule::Kept && !self.own && rate > POOR_RATE && self.passes <= 3 {
-            return Err(Cause::NotConverged);
         }
         let left = |rate: f64| {
             if rate < 1.0 {
