@@ -111,7 +111,8 @@ def test_a_free_body_that_flows_keeps_what_is_kept(tmp_path: Path, kind: str, sc
         result = Result(next(tmp_path.rglob("*.vtkhdf")))
         energy = result.history.energy
         assert energy.material_dissipation[-1] > 0.01 * energy.kinetic[0]
-        assert np.diff(energy.material_dissipation).min() >= 0.0
+        # a sum of it may lose its last digit
+        assert np.diff(energy.material_dissipation).min() >= -np.spacing(energy.material_dissipation[-1])
         total = energy.kinetic + energy.strain + energy.material_dissipation
         if scheme == "ENERGY-MOMENTUM":
             assert np.abs(total - total[0]).max() < 1e-10 * total[0]

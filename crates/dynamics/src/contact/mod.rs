@@ -12,6 +12,7 @@ mod curves;
 mod delassus;
 mod disc;
 mod geometry;
+mod interior;
 mod keys;
 mod kinds;
 mod lists;
@@ -41,9 +42,9 @@ pub use crossing::{Crossing, CrossingSense, QuadraticMotion, crossings, line_cro
 pub use delassus::{DelassusSpace, frictional_lcp};
 pub(crate) use geometry::position;
 pub use geometry::{
-    Along, ContactSurfaces, Interior, MasterArc, Positions, SurfaceArc, contact_surfaces,
-    shortest_faces,
+    Along, ContactSurfaces, MasterArc, Positions, SurfaceArc, contact_surfaces, shortest_faces,
 };
+pub use interior::Interior;
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use lists::PerDof;
 pub use pairing::{SlaveChoice, find_means, find_targets};

@@ -48,3 +48,8 @@ impl Projection {
         }
     }
 }
+
+/// (1 - eta) x_1 + eta x_2
+pub(super) fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
+    [0, 1].map(|i| (1.0 - eta) * x1[i] + eta * x2[i])
+}

@@ -7,10 +7,10 @@
 use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{Along, ContactSurfaces, between, position};
+use super::geometry::{Along, ContactSurfaces, position};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
-use super::projection::{Projection, project};
+use super::projection::{Projection, between, project};
 use super::search::{ListedSlave, Search};
 use super::targets::raised;
 use super::tolerances::{
