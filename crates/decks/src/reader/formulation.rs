@@ -240,9 +240,10 @@ fn report_both_orders(
         );
     }
     let lying = count(of_two);
-    if lying >= MANY_LYING
-        && let Some(pair) = of_two.iter().find(|pair| pair.lying > 0)
-    {
+    let is_slow = |pair: &&&BothOrders| {
+        pair.formulation == ContactFormulation::SurfaceToSurface || lying >= MANY_LYING
+    };
+    if let Some(pair) = of_two.iter().filter(|pair| pair.lying > 0).find(is_slow) {
         let message =
             format!("pairs stand in both orders, and {lying} of their faces lie on each other");
         cx.d.note(Code::BothOrders, second(pair), message).help(
