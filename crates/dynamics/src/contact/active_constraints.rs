@@ -3,8 +3,8 @@
 
 use super::closed_pairs::ClosedPairs;
 use super::constraint::Constraint;
-use super::geometry::Positions;
 use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};
+use super::positions::Positions;
 use super::projection::Projection;
 use super::search::{ListedSlave, Search};
 use super::target::{Segment, Target};

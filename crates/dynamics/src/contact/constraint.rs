@@ -10,9 +10,9 @@ use std::array::from_fn;
 
 use smallvec::SmallVec;
 
-use super::geometry::position;
 use super::keys::ConstraintKey;
 use super::lists::PerDof;
+use super::positions::position;
 use super::projection::position_round_off;
 use super::target::PairTarget;
 use super::tolerances::{NOTHING, SOLVED_GAP};

@@ -7,11 +7,13 @@
 use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use smallvec::SmallVec;
 
+use super::arcs::{MasterArc, SurfaceArc};
 use super::bulge::Bulge;
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
-use super::geometry::{ContactSurfaces, MasterArc, Positions, SurfaceArc};
+use super::geometry::ContactSurfaces;
 use super::keys::ConstraintKey;
 use super::node_to_segment::{SegmentRows, rows_between};
+use super::positions::Positions;
 use super::projection::{position_round_off, rise};
 use super::search::{Candidate, ListedSlave};
 use super::stiffness::changes_between;

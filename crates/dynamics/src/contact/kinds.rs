@@ -5,8 +5,8 @@ use nalgebra::DMatrix;
 
 use super::bulge::{Bulge, Lift};
 use super::constraint::{Configurations, Constraint};
-use super::geometry::Positions;
 use super::keys::{ConstraintKey, NodeAtSegment};
+use super::positions::Positions;
 use super::projection::project;
 use super::target::{PairTarget, Target};
 use super::tolerances::PROJECTION_BEYOND_ENDS;
@@ -79,13 +79,13 @@ impl Constraint {
         }
     }
 
-    /// Whether its gap is a mean over points of slave faces: not the gap of one node, whose motion says when it closes.
+    /// Whether its gap is a mean over points of slave faces, not the gap of one node.
     pub fn is_mean(&self) -> bool {
         self.source.target.mean().is_some()
     }
 
     /// What the gap of its node to the chord of its segment counts more by at the start of the increment; none of a mean,
-    /// which is no gap of one node.
+    /// which is not the gap of one node.
     pub fn lift_at_start(&self) -> Option<Lift> {
         let bulge = match &self.source.target {
             Target::Segment(contact) => contact.segment.bulge,
@@ -160,7 +160,8 @@ impl Constraint {
         }
     }
 
-    /// Whether its slave node is over its segment in some positions, or nearly; a mean has no points that are not.
+    /// Whether its slave node projects between the ends of its segment in some positions, and on neither of them. A point
+    /// of a mean always does.
     pub fn is_over(&self, at: Positions) -> bool {
         let is_over = || {
             let xi = at.place(self.pair().nodes).xi;

@@ -2,6 +2,7 @@
 //! their complementarity problem, crossing and tunnelling.
 
 mod active_constraints;
+mod arcs;
 mod bend;
 mod bulge;
 mod closed_pairs;
@@ -20,12 +21,14 @@ mod lists;
 mod node_to_corner;
 mod node_to_segment;
 mod pairing;
+mod positions;
 mod projection;
 #[cfg(test)]
 mod seam_tests;
 mod search;
 mod selection;
 mod slave_node;
+mod slave_segments;
 mod stiffness;
 mod surface_to_surface;
 mod target;
@@ -37,6 +40,7 @@ mod tunnelling;
 mod tunnelling_tests;
 
 pub use active_constraints::{ActiveConstraints, ConstraintSet};
+pub use arcs::{MasterArc, SurfaceArc};
 pub use bulge::{Bulge, Lift};
 pub use closed_pairs::{ClosedPair, ClosedPairs};
 pub use common_normal::common_normal;
@@ -44,14 +48,13 @@ pub use compliance::{Compliance, ConstraintGroup};
 pub use constraint::{Configurations, Constraint, RowForm, Rows, SurfaceParts};
 pub use crossing::{Crossing, CrossingSense, QuadraticMotion, crossings, line_crossings};
 pub use delassus::{DelassusSpace, frictional_lcp};
-pub(crate) use geometry::position;
-pub use geometry::{
-    Along, ContactSurfaces, MasterArc, Positions, SurfaceArc, contact_surfaces, shortest_faces,
-};
+pub use geometry::{Along, ContactSurfaces, contact_surfaces, shortest_faces};
 pub use interior::Interior;
 pub use keys::{ConstraintKey, NodeAtSegment, SlaveKey};
 pub use lists::PerDof;
 pub use pairing::{SlaveChoice, find_means, find_targets};
+pub use positions::Positions;
+pub(crate) use positions::position;
 pub use projection::{Projection, project};
 pub use search::{Candidate, ListedSlave, Search, Territory, all_segments};
 pub use slave_node::SlaveNode;

@@ -315,9 +315,8 @@ fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 mod tests {
     use super::super::constraint::Rows;
     use super::*;
-    use crate::contact::geometry::position;
     use crate::contact::target::Segment;
-    use crate::contact::testing;
+    use crate::contact::{position, testing};
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
     const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use super::closed_pairs::ClosedPairs;
 use super::constraint::{Constraint, RowForm};
 use super::disc;
-use super::geometry::Positions;
+use super::positions::Positions;
 use super::search::{ListedSlave, Search};
 use super::slave_node::SlaveNode;
 use super::surface_to_surface::find_points;

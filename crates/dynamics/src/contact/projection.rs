@@ -71,3 +71,16 @@ pub(super) fn rise((gap, length): (f64, f64), before: f64, s: [f64; 2]) -> f64 {
     let round_off = (SOLVED_GAP * length).max(position_round_off(s));
     if rise.abs() <= round_off { 0.0 } else { rise }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_normal_points_out_of_the_body_on_the_left() {
+        // The top of a body runs from right to left, with the body below it on its left.
+        let p = project([1.0, 3.0], [4.0, 2.0], [0.0, 2.0]);
+        assert_eq!((p.xi, p.gap, p.length), (0.75, 1.0, 4.0));
+        assert_eq!((p.tangent, p.normal), ([-1.0, 0.0], [0.0, 1.0]));
+    }
+}

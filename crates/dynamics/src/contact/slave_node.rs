@@ -3,7 +3,8 @@
 
 use super::bulge::Bulge;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{ContactSurfaces, Positions};
+use super::geometry::ContactSurfaces;
+use super::positions::Positions;
 use super::projection::{Projection, project};
 use super::target::ContactTarget;
 use super::tolerances::{

@@ -12,12 +12,14 @@ use smallvec::SmallVec;
 use super::bulge::Bulge;
 use super::constraint::sum_of;
 use super::constraint::{Configurations, Constraint, RowForm, Rows};
-use super::geometry::{ContactSurfaces, Edge, Positions, SlaveSegments, Vertex};
+use super::geometry::ContactSurfaces;
 use super::keys::ConstraintKey;
 use super::lists::{PerDof, Recycled};
 use super::node_to_segment::{SegmentRows, couple, rows_between};
+use super::positions::Positions;
 use super::projection::{Projection, between, project};
 use super::search::{Cells, Faced, FacedRun, Territory};
+use super::slave_segments::{Edge, SlaveSegments, Vertex};
 use super::stiffness::{changes_between, changes_of_face};
 use super::target::{MeanContact, Pair, PairTarget, StartSegment, SurfacePoint, Target};
 use super::tolerances::{
@@ -805,7 +807,6 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
-    use crate::contact::geometry::Vertex;
     use crate::contact::{Search, find_means, testing};
     use crate::model::Mesh;
     use crate::vectors::COMPARED;

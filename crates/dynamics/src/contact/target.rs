@@ -5,11 +5,12 @@
 
 use smallvec::SmallVec;
 
+use super::arcs::MasterArc;
 use super::bulge::Bulge;
-use super::geometry::{MasterArc, Vertex};
 use super::keys::{ConstraintKey, NodeAtSegment};
 use super::lists::{Recycled, entries};
 use super::projection::project;
+use super::slave_segments::Vertex;
 
 /// What a constraint is made from: a slave node and its target.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -116,7 +117,7 @@ pub enum StartSegment {
     Outside,
 }
 
-/// What of the master a disc must not penetrate.
+/// A segment, an arc or a vertex of the master that a disc must not penetrate.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DiscContact {
     /// Radius of the slave disc (length).
@@ -168,7 +169,7 @@ impl PairTarget {
         }
     }
 
-    /// A slave node and the segment that it meets, at a corner that before it: what messages name.
+    /// The slave node and the segment that it meets, at a corner that before it: what messages name.
     pub(super) fn named(&self) -> NodeAtSegment {
         self.at_ends(self.target.ends())
     }
@@ -244,7 +245,7 @@ impl Target {
         }
     }
 
-    /// Its segments, by their numbers in the contact; none of a mean, whose points are over many.
+    /// Numbers of the segments that it holds its slave node at; none of a mean, which holds no single node.
     pub(super) fn segments(&self) -> impl Iterator<Item = usize> {
         let numbers = match self {
             Target::Segment(contact) => [Some(contact.segment.number), None],
@@ -255,7 +256,7 @@ impl Target {
         numbers.into_iter().flatten()
     }
 
-    /// What was selected for a node; none of means and discs, whose targets do not depend on the pass before.
+    /// What was selected for its node. Means and discs are not selected: their targets do not depend on the pass before.
     pub(super) fn selected(&self) -> Option<ContactTarget> {
         match self {
             Target::Segment(SegmentContact { segment, from }) => Some(ContactTarget {
@@ -270,7 +271,7 @@ impl Target {
         }
     }
 
-    /// The points of a mean; of other kinds nothing.
+    /// The mean, if it is one.
     pub(super) fn mean(&self) -> Option<&MeanContact> {
         match self {
             Target::Mean(mean) => Some(mean),

@@ -7,9 +7,10 @@
 use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{Along, ContactSurfaces, position};
+use super::geometry::{Along, ContactSurfaces};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
+use super::positions::position;
 use super::projection::{Projection, between, project};
 use super::search::{ListedSlave, Search};
 use super::slave_node::raised;

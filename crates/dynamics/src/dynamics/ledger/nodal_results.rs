@@ -90,7 +90,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     results
 }
 
-/// Means at the master nodes of weighted constraints, by the parts of their normal forces that the nodes take.
+/// Means at the master nodes of constraints from surface to surface, by the parts of their normal forces that the nodes take.
 ///
 /// ```text
 /// g = sum_j |Bn_j| g_j / sum_j |Bn_j|    eq. (9.16)
