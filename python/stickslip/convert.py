@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip.arrays import Array
 from stickslip.errors import Fault
 from stickslip.frame import Frame
-from stickslip.history import Array
 from stickslip.quantity import Members
 
 if TYPE_CHECKING:

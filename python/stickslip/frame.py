@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.arrays import Array
 from stickslip.errors import Fault, Missing
 
 if TYPE_CHECKING:
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 
     from stickslip.result import Result
 
-Array = NDArray[np.float64]
 
 LARGEST = 1e150
 """Largest position whose square is a number."""

@@ -11,14 +11,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Integers
 from stickslip.errors import Missing
 
 if TYPE_CHECKING:
     from stickslip.result import Result
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
 
 
 class Group(Mapping[str, Any]):

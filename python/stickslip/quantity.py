@@ -13,8 +13,9 @@ Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is th
 import re
 from dataclasses import dataclass
 
+from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 NAME = re.compile(r"(?P<path>[^:]*)(?::(?P<component>\d+))?")
 OF_MEMBER = re.compile(r"(?P<place>.+)\[(?P<member>[-\d.]+)\]/(?P<field>\w+)")

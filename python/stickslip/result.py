@@ -15,12 +15,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Integers
 from stickslip.errors import Fault, one_line
 from stickslip.frame import Frame, Frames
-from stickslip.history import Array as Array
 from stickslip.history import Contacts, History
-from stickslip.history import Flags as Flags
-from stickslip.history import Integers as Integers
 
 if TYPE_CHECKING:
     import pandas

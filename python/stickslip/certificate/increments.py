@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.frame import Frame
-from stickslip.result import Array, Flags, Integers, Result
+from stickslip.result import Result
 
 EPS = float(np.finfo(np.float64).eps)
 
