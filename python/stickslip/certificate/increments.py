@@ -86,7 +86,7 @@ class Increments:
         """All frames with their increments; none where no increment has the time of a frame."""
         last: tuple[int, Array] | None = None
         for index in range(len(self.result.frames)):
-            frame = ReadOnce(self.result, index)
+            frame = ReadOnce(self.result.frames, index)
             rows = np.flatnonzero(self.time == frame.time)
             if len(rows) == 0:
                 yield frame, None

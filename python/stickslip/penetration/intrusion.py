@@ -24,11 +24,10 @@ from pathlib import Path
 import numpy as np
 
 from stickslip import command
-from stickslip.arrays import Array
+from stickslip.arrays import Array, Integers
 from stickslip.bulges import Bulges
 from stickslip.penetration.outlines import (
     LIMIT,
-    Integers,
     Outline,
     between_chord_and_curve,
     closed_hollow,

@@ -146,7 +146,7 @@ def _chosen(frames: int, most: int | None) -> Integers:
 
 
 @dataclass(frozen=True)
-class Mesh:
+class DrawnMesh:
     """Elements and what is drawn of them."""
 
     connectivity: Integers
@@ -161,7 +161,7 @@ class Mesh:
     """Segments of rigid surfaces [., 2]."""
 
 
-def _mesh(result: Result) -> Mesh:
+def _mesh(result: Result) -> DrawnMesh:
     connectivity = np.concatenate([*result.outlines, np.empty(0, np.int64)])
     offsets = np.concatenate([[0], np.cumsum([len(one) for one in result.outlines], dtype=np.int64)])
     following = np.arange(1, len(connectivity) + 1)
@@ -169,7 +169,7 @@ def _mesh(result: Result) -> Mesh:
     edges = np.stack([connectivity, connectivity[following]], axis=1)
     ordered = np.sort(edges, axis=1)
     _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
-    return Mesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], result.rigid)
+    return DrawnMesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], result.rigid)
 
 
 def _middle(result: Result) -> Array:
@@ -178,7 +178,7 @@ def _middle(result: Result) -> Array:
     return 0.5 * (coordinates.min(axis=0) + coordinates.max(axis=0))
 
 
-def _pack_mesh(result: Result, mesh: Mesh, packed: Packed) -> dict[str, Any]:
+def _pack_mesh(result: Result, mesh: DrawnMesh, packed: Packed) -> dict[str, Any]:
     coordinates = result.coordinates
     middle = _middle(result)
     return {
@@ -199,7 +199,7 @@ def _pack_mesh(result: Result, mesh: Mesh, packed: Packed) -> dict[str, Any]:
 
 
 def _motion(
-    result: Result, frames: Integers, mesh: Mesh, only: Integers | None, packed: Packed
+    result: Result, frames: Integers, mesh: DrawnMesh, only: Integers | None, packed: Packed
 ) -> dict[str, Any]:
     """Displacements [frames, 2 nodes] of all nodes or some."""
     displacement = _field_values(result, "U", frames)[:, :, :2]
@@ -272,7 +272,7 @@ def _contact_nodes(result: Result) -> Integers:
     return np.flatnonzero(known)
 
 
-def _surfaces(result: Result, mesh: Mesh) -> list[dict[str, Any]]:
+def _surfaces(result: Result, mesh: DrawnMesh) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
     A chain that is closed begins where nothing presses it, so that what is pressed is in one piece.
