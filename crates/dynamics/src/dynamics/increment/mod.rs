@@ -18,6 +18,5 @@ mod trace;
 
 pub(crate) use attempt::{Attempt, Path, Solved};
 pub(crate) use contact_forces::ContactForces;
-pub(crate) use contact_states::ContactStates;
-pub(crate) use returned::{PairReturn, Release};
+pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use trace::Failed;

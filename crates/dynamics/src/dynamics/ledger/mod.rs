@@ -8,6 +8,7 @@ mod energy_checks;
 mod nodal_results;
 mod pair_work;
 mod surface_work;
+mod terms;
 mod touches;
 
 pub(crate) use accounts::Accounts;

@@ -101,7 +101,8 @@ fn accept(
     solved: &Solved,
     may_be_halved: bool,
 ) -> Result<Ledger, Cause> {
-    let ledger = (before.ledger.clone()).with((problem, workspace), before.state, solved, dt)?;
+    let ledger = before.ledger.clone();
+    let ledger = ledger.entered(problem, workspace, before.state, solved, dt)?;
     if may_be_halved {
         check_energy_gain(problem, before.state, &ledger, solved)?;
     }
