@@ -4,10 +4,11 @@
 use std::{io, iter};
 
 use super::acceptance::{Accepted, SubincrementStart, failure, failure_at_start, start_failure};
-use super::time_control::{
-    Automatic, Bisection, Ended, ImpactControl, NextSubincrement, NominalIncrement, TimeControl,
-    nominal_increments,
-};
+use super::automatic::Automatic;
+use super::bisection::Bisection;
+use super::impact_control::ImpactControl;
+use super::nominal_increments::{NominalIncrement, nominal_increments};
+use super::time_control::{Ended, NextSubincrement, TimeControl};
 use super::truncation_error::{Ends, TruncationError};
 use crate::archive::{Archive, ArchiveError, carry_fields};
 use crate::contact::ClosedPairs;
