@@ -4,10 +4,10 @@
 use super::acceleration::PassAcceleration;
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
-use super::convergence::{Iterate, Pass, Residual};
 use super::equal_forces::EqualForces;
 use super::impulses::EarlierPass;
 use super::linear_pass::{SkewPart, Vectors, close_hinges};
+use super::pass::{Iterate, Pass, Residual};
 use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;

@@ -9,6 +9,7 @@ mod convergence;
 mod equal_forces;
 mod impulses;
 mod linear_pass;
+mod pass;
 mod pin_iteration;
 mod refactorization;
 mod returned;

@@ -1,13 +1,14 @@
 //! Checks that a converged increment must pass before it is accepted, and the failures of those that
 //! do not. Section 4 of docs/theory.md, Cutback.
 
-use super::time_control::NominalIncrement;
+use super::nominal_increments::NominalIncrement;
 use crate::contact::NodeAtSegment;
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
 use crate::dynamics::increment::{Failed, Solved};
-use crate::dynamics::landing::{return_landings, return_release};
+use crate::dynamics::landing::return_landings;
 use crate::dynamics::ledger::{Ledger, check_balance, check_energy_gain};
 use crate::dynamics::release::bring_to_rest;
+use crate::dynamics::release_return::return_release;
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
