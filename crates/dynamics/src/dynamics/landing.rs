@@ -21,7 +21,8 @@ use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 pub(crate) fn return_landings(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    (start, dt): (&State, f64),
+    start: &State,
+    dt: f64,
     solved: &mut Solved,
 ) -> Result<(), Cause> {
     if !problem.returns_landings() {
@@ -34,7 +35,7 @@ pub(crate) fn return_landings(
         .collect();
     let (pairs, loads): (Vec<_>, Vec<_>) = landings.into_iter().unzip();
     if !pairs.is_empty() {
-        factorize_anew(problem, workspace, (start, dt), solved)?;
+        factorize_anew(problem, workspace, start, dt, solved)?;
     }
     let given = give_back(problem, workspace, dt, solved, &loads)?;
     let both = pairs.iter().zip(&loads);
@@ -153,7 +154,8 @@ fn landing(
 pub(super) fn factorize_anew(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    (start, dt): (&State, f64),
+    start: &State,
+    dt: f64,
     solved: &Solved,
 ) -> Result<(), Cause> {
     let u1 = sum(&start.u, &solved.d);

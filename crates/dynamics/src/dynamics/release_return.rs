@@ -17,7 +17,8 @@ use crate::contact::Constraint;
 pub(crate) fn return_release(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    (start, dt): (&State, f64),
+    start: &State,
+    dt: f64,
     solved: &mut Solved,
     release: Release,
 ) -> Result<(), Cause> {
@@ -25,7 +26,7 @@ pub(crate) fn return_release(
     let gives = (release.opened.iter()).all(|(pair, _)| !touches(problem, &turns, pair));
     if problem.returns_landings() && release.loss > 0.0 && gives {
         if solved.returned.pairs.is_empty() {
-            factorize_anew(problem, workspace, (start, dt), solved)?;
+            factorize_anew(problem, workspace, start, dt, solved)?;
         }
         let mut force = vec![0.0; solved.d.len()];
         for (constraint, pair) in &release.opened {

@@ -44,6 +44,17 @@ pub(crate) struct Lengths {
     pub position: PerBody,
 }
 
+/// Round-off of the forces of a part, and what it meets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PartNoise {
+    /// n: round-off of the residual, eq. (4.10) (force).
+    pub force: f64,
+    /// Largest displacement increment of its body (length).
+    pub travel: f64,
+    /// Largest K_ii + (2/dt²) M_ii (force/length).
+    pub stiffness: f64,
+}
+
 /// Residual of every part and correction of every body in a pass (force; length).
 pub(crate) struct Errors {
     pub residual: PerBody,
@@ -108,10 +119,15 @@ impl<'a> Scales<'a> {
         self
     }
 
-    /// Round-off of the residual of every part, and the largest displacement increment of its body.
-    pub fn noise_and_way(&self) -> impl Iterator<Item = [f64; 2]> {
-        let parts = self.noise.iter().zip(self.parts.of_parts());
-        parts.map(|(noise, &body)| [*noise, self.increment[body]])
+    /// Round-off of the forces of every part, whose largest K_ii + (2/dt²) M_ii are given (force/length).
+    pub fn noise(&self, stiffness: impl Iterator<Item = f64>) -> Vec<PartNoise> {
+        let parts = self.noise.iter().zip(self.parts.of_parts()).zip(stiffness);
+        let of_part = |((force, &body), stiffness): ((&f64, &usize), f64)| PartNoise {
+            force: *force,
+            travel: self.increment[body],
+            stiffness,
+        };
+        parts.map(of_part).collect()
     }
 
     /// Largest relative residual and correction of a pass.

@@ -19,5 +19,6 @@ mod trace;
 
 pub(crate) use attempt::{Attempt, Path, Solved};
 pub(crate) use contact_forces::ContactForces;
+pub(crate) use convergence::PartNoise;
 pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use trace::Failed;

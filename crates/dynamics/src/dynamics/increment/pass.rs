@@ -159,6 +159,15 @@ impl ContactForce {
     }
 }
 
+/// How far the passes of an increment have come.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PassStage {
+    /// Whether the search for the closed pairs is over, so that open pairs may overlap by what is settled.
+    pub settled: bool,
+    /// Whether corrections become hardly smaller: residuals may have all their round-off.
+    pub stagnates: bool,
+}
+
 /// An iterate with the contact forces of the pass before, linearised at it.
 pub(crate) struct Iterate<'a> {
     pub equilibrium: &'a Equilibrium,
@@ -199,7 +208,7 @@ impl<'a> Iterate<'a> {
         &self,
         problem: &StepProblem,
         workspace: &Workspace,
-        [settled, stagnates]: [bool; 2],
+        stage: PassStage,
         residual: &mut Residual,
     ) -> Result<Option<f64>, Cause> {
         if !self.contact.all_have_constraints() {
@@ -209,12 +218,12 @@ impl<'a> Iterate<'a> {
         none.resize(self.displacements[0].len(), 0.0);
         let (scales, errors) = (self.pass(&none, &none)).measure(problem, workspace, residual)?;
         residual.none = none;
-        let scales = match stagnates {
+        let scales = match stage.stagnates {
             true => scales.stagnant(),
             false => scales.strict(),
         };
         if !scales.converged(&errors)
-            || !scales.obeys_contact_law(self.contact, settled)
+            || !scales.obeys_contact_law(self.contact, stage.settled)
             || !scales.closes_hinges(&problem.hinges, self.displacements[0])
         {
             return Ok(None);

@@ -363,7 +363,7 @@ impl Ledger {
         let noise = solved.noise(problem, workspace);
         let of_parts = parts.of_parts().iter().zip(&self.stiffness).zip(noise);
         let work = of_parts
-            .map(|((&body, k), [noise, way, _])| larger(noise, ROUND_OFF * k * u[body]) * way);
+            .map(|((&body, k), noise)| larger(noise.force, ROUND_OFF * k * u[body]) * noise.travel);
         work.fold(0.0, larger)
     }
 

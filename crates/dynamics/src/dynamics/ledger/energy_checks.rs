@@ -5,7 +5,7 @@
 use super::energy::{CONTACT_WORK_ROUND_OFF, Ledger};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::increment::Solved;
+use crate::dynamics::increment::{PartNoise, Solved};
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{StepProblem, Workspace};
 use crate::linear::larger;
@@ -70,9 +70,9 @@ pub(crate) fn check_balance(
     }
     let noise = solved.noise(problem, workspace);
     // max n²/(1e-3² (K_ii + (2/dt²) M_ii)), eq. (9.13)
-    let of_part = |&[noise, _, diagonal]: &[f64; 3]| match noise {
+    let of_part = |noise: &PartNoise| match noise.force {
         0.0 => 0.0,
-        _ => (noise / UNBALANCED).powi(2) / diagonal,
+        force => (force / UNBALANCED).powi(2) / noise.stiffness,
     };
     if energy <= noise.iter().map(of_part).fold(0.0, larger) {
         return Ok(());
@@ -80,7 +80,7 @@ pub(crate) fn check_balance(
     if !problem.integration.has_rates && round_off > UNBALANCED * energy {
         return Ok(());
     }
-    let is_round_off = |&[noise, way, _]: &[f64; 3]| noise * way > UNBALANCED * energy;
+    let is_round_off = |noise: &PartNoise| noise.force * noise.travel > UNBALANCED * energy;
     let is_round_off = noise.iter().any(is_round_off);
     Err(Cause::Unbalanced {
         part: balance / energy,

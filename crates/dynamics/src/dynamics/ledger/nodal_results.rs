@@ -248,7 +248,8 @@ pub(crate) fn contact_resultants(
     problem: &StepProblem,
     bodies: &Bodies,
     solved: &Solved,
-    (u0, interval): (&[f64], Interval),
+    u0: &[f64],
+    interval: Interval,
 ) -> Vec<ContactResultant> {
     let none = ContactResultant {
         min_gap: f64::NAN,

@@ -142,17 +142,12 @@ impl SurfaceWork {
             return;
         }
         for work in works.iter().chain(&given_back(solved)) {
-            self.add(problem, (faces, solved), work);
+            self.add(problem, faces, solved, work);
         }
     }
 
     /// Adds the work of a pair to the nodes of its slave surfaces.
-    fn add(
-        &mut self,
-        problem: &StepProblem,
-        (faces, solved): (&SlaveFaces, &Solved),
-        work: &PairWork,
-    ) {
+    fn add(&mut self, problem: &StepProblem, faces: &SlaveFaces, solved: &Solved, work: &PairWork) {
         let Some(own) = self.contacts[work.key.contact()] else {
             return;
         };

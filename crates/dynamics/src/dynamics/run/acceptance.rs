@@ -84,9 +84,9 @@ fn finish_motion(
     let release = bring_to_rest(problem, workspace, start, interval, solved);
     problem.check_end(&solved.end)?;
     check_paths(problem, workspace, start, solved)?;
-    let from = (start, interval.dt);
-    return_landings(problem, workspace, from, solved)?;
-    return_release(problem, workspace, from, solved, release)?;
+    let dt = interval.dt;
+    return_landings(problem, workspace, start, dt, solved)?;
+    return_release(problem, workspace, start, dt, solved, release)?;
     problem.follow_donors(&mut solved.end.v);
     problem.follow_donors(&mut solved.end.a);
     Ok(())
@@ -132,11 +132,12 @@ fn check_paths(
     })
 }
 
-/// The failure of increment number `increment`, `halvings` times halved.
+/// The failure of an attempt at increment number `increment`, `halvings` times halved.
 pub(crate) fn failure(
     increment: usize,
     place: StepPlace,
-    (interval, failed): (Interval, Failed),
+    interval: Interval,
+    failed: Failed,
     halvings: u32,
 ) -> Failure {
     let Failed {
