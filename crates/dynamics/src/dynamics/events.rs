@@ -3,7 +3,7 @@
 
 use super::impact_search::{EventTrial, ImpactSearch};
 use super::increment::{Attempt, Failed, Path, Solved};
-use super::ledger::motion;
+use super::ledger::node_path;
 use super::results::State;
 use super::step::{HeldMotions, Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
@@ -16,9 +16,9 @@ use crate::contact::{
 /// shorter.
 const IMPACT_GROUPING_TIME: f64 = 1e-3;
 /// Accuracy of the time of an impact, in nominal increments.
-const ACCURACY: f64 = 1e-10;
+const TIME_ACCURACY: f64 = 1e-10;
 /// Attempts to find the time of an impact.
-const TRIALS: usize = 12;
+const MOST_TRIALS: usize = 12;
 
 /// A converged part of an increment that ends at the next impact, or at the end of the increment.
 pub(crate) struct Subincrement {
@@ -106,7 +106,7 @@ impl FreeMotion<'_> {
         lift: Lift,
     ) -> [QuadraticMotion; 3] {
         let Path { v, a, .. } = self.path;
-        let [mut s, a, b] = nodes.map(|node| motion(problem, u0, v, a, node));
+        let [mut s, a, b] = nodes.map(|node| node_path(problem, u0, v, a, node));
         if lift.is_none() {
             return [s, a, b];
         }
@@ -187,7 +187,7 @@ impl<'m> Subincrements<'_, 'm> {
         let mut impact = ImpactSearch::new(begin());
         let (mut tau, mut guess, mut before) = (rest, None, None);
         let mut entries = Vec::new();
-        for _ in 0..TRIALS {
+        for _ in 0..MOST_TRIALS {
             let solved = match self.attempt(tau, ConstraintSet::Active(&active), guess.as_ref()) {
                 Ok(solved) => solved,
                 Err(failed) if tau == rest => {
@@ -211,7 +211,7 @@ impl<'m> Subincrements<'_, 'm> {
                 return Ok(self.converged(tau, solved));
             }
             let trial = EventTrial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
-            impact.take_in(trial.clone(), is_before);
+            impact.record(trial.clone(), is_before);
             // a node that has just bounced off has hardly a gap at the start: there its motion tells
             let expected = |entry: &Intrusion| {
                 let gap = |trial: &EventTrial| entry.gap(problem, trial)[0];
@@ -250,7 +250,7 @@ impl<'m> Subincrements<'_, 'm> {
                 let [gap, length] = entry.gap(problem, &trial);
                 gap.abs() <= IMPACT_GAP * length
             };
-            let is_near = |root: f64| (root - tau).abs() <= ACCURACY * self.nominal;
+            let is_near = |root: f64| (root - tau).abs() <= TIME_ACCURACY * self.nominal;
             if first.is_some_and(is_met) || root.is_some_and(is_near) {
                 return Ok(self.converged(tau, solved));
             }

@@ -57,8 +57,8 @@ impl ImpactSearch {
         }
     }
 
-    /// Takes in a trial that ends before, or after, an impact.
-    pub fn take_in(&mut self, trial: EventTrial, is_before: bool) {
+    /// Records a trial that ends before, or after, an impact.
+    pub fn record(&mut self, trial: EventTrial, is_before: bool) {
         self.old = match is_before {
             true => Some(std::mem::replace(&mut self.before, trial)),
             false => self.after.replace(trial),
@@ -111,7 +111,7 @@ mod tests {
         let trial = |tau: f64| EventTrial::new(tau, &[gap(tau)], &[]);
         let (mut search, mut tau) = (ImpactSearch::new(trial(0.0)), 1.0);
         (1..40).find(|_| {
-            search.take_in(trial(tau), gap(tau) >= 0.0);
+            search.record(trial(tau), gap(tau) >= 0.0);
             let expected = search.root(|trial| trial.u[0]);
             let is_found = (tau - root).abs() < 1e-10;
             tau = search.next(tau, expected);
@@ -144,7 +144,7 @@ mod tests {
         let (mut search, mut tau) = (ImpactSearch::new(EventTrial::new(0.0, &[1.0], &[])), 1.0);
         for _ in 0..12 {
             let gap = if tau < 0.4 { 1.0 } else { -1e-6 };
-            search.take_in(EventTrial::new(tau, &[gap], &[]), gap > 0.0);
+            search.record(EventTrial::new(tau, &[gap], &[]), gap > 0.0);
             let root = search.root(|trial| trial.u[0]);
             tau = search.next(tau, root);
         }

@@ -55,7 +55,7 @@ pub(super) fn touches(problem: &StepProblem, turns: &[bool], constraint: &Constr
 }
 
 /// Part of the energy of a load below which what is left of it is round-off.
-const REST: f64 = 1e-12;
+const REST_ROUND_OFF: f64 = 1e-12;
 
 /// A pair that lands.
 struct LandedPair {
@@ -276,7 +276,7 @@ fn give_rests(
         .zip(&*given)
         .map(|(load, g)| load.energy - g)
         .collect();
-    let has_rest = |j: &usize| rests[*j] > REST * loads[*j].energy;
+    let has_rest = |j: &usize| rests[*j] > REST_ROUND_OFF * loads[*j].energy;
     let mut vibrates = vec![false; body_of.iter().max().map_or(0, |last| last + 1)];
     for j in (0..loads.len()).filter(has_rest) {
         let loaded = loads[j]

@@ -10,13 +10,13 @@ use crate::elements::Motion;
 use crate::linear::{larger, largest};
 
 /// Most Newton steps to the rest.
-const STEPS: usize = 10;
+const MOST_STEPS: usize = 10;
 /// Last Newton step beside the way from which on the next is round-off.
-const NEAR: f64 = 1e-6;
+const LAST_STEP: f64 = 1e-6;
 /// Overlap, in lengths of the segment, that is round-off of positions.
-const OVERLAP: f64 = 1e-12;
+const OVERLAP_ROUND_OFF: f64 = 1e-12;
 /// Round-off of displacements, and of the sums of a strain energy.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// Lets nodes without mass come to rest at the end of an increment in which pairs have opened, if they
 /// carry no force: the mid-point rule fixes the mean of start and end alone, so that their deviation from
@@ -80,14 +80,14 @@ impl Releasing<'_, '_> {
     /// steps with the contact forces of the pairs that the nodes meet. None where they do not converge.
     fn rest(&mut self) -> Option<Vec<f64>> {
         let mut u = self.end.u.clone();
-        for _ in 0..STEPS {
+        for _ in 0..MOST_STEPS {
             let du = self.newton_step(&u)?;
             u = sum(&u, &du);
             let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
             let of_bodies = self.problem.parts.largest_of_bodies(&u);
             let seen = largest(&self.workspace.seen.displacements(of_bodies));
-            if step <= larger(NEAR * way, ROUND_OFF * seen) {
-                let overlaps = |c: &Constraint| c.gap < -OVERLAP * c.scale;
+            if step <= larger(LAST_STEP * way, SUM_ROUND_OFF * seen) {
+                let overlaps = |c: &Constraint| c.gap < -OVERLAP_ROUND_OFF * c.scale;
                 return (!self.constraints(&u).iter().any(overlaps)).then_some(u);
             }
         }
@@ -172,6 +172,6 @@ impl Releasing<'_, '_> {
             load_work,
             opened: Vec::new(),
         };
-        (loss >= -ROUND_OFF * strain).then_some((release, internal))
+        (loss >= -SUM_ROUND_OFF * strain).then_some((release, internal))
     }
 }

@@ -4,18 +4,18 @@
 use nalgebra::DMatrix;
 
 /// Change of the shares, as a part of them, at which sweeps end: their total is exact in any case.
-const SWEPT: f64 = 1e-13;
+const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
-const SWEEPS: usize = 1000;
+const MOST_SWEEPS: usize = 1000;
 /// Momentum along a pattern, as a part of that of the energy to be given, that is round-off of a
 /// velocity of zero.
-const AT_REST: f64 = 1e-8;
+const REST_MOMENTUM: f64 = 1e-8;
 
 /// Signs of the shares: those of b, which strengthen the motion along each pattern and never reverse it; without any
 /// motion the pattern of the force is taken.
 pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
     let sign = |j: usize| {
-        let is_at_rest = b[j].abs() <= AT_REST * (2.0 * a[(j, j)] * energies[j]).sqrt();
+        let is_at_rest = b[j].abs() <= REST_MOMENTUM * (2.0 * a[(j, j)] * energies[j]).sqrt();
         if b[j] < 0.0 && !is_at_rest { -1.0 } else { 1.0 }
     };
     (0..b.len()).map(sign).collect()
@@ -39,7 +39,7 @@ pub(super) fn shares(
 ) -> Vec<f64> {
     let n = b.len();
     let (mut y, mut has_share) = (vec![0.0; n], vec![true; n]);
-    for _ in 0..SWEEPS {
+    for _ in 0..MOST_SWEEPS {
         let mut change = 0.0_f64;
         for j in (0..n).filter(|&j| has_share[j]).collect::<Vec<_>>() {
             let others: f64 = (0..n).filter(|&k| k != j).map(|k| a[(j, k)] * y[k]).sum();
@@ -50,7 +50,7 @@ pub(super) fn shares(
             change = change.max((signs[j] * share - y[j]).abs() / share.max(f64::MIN_POSITIVE));
             y[j] = signs[j] * share;
         }
-        if change <= SWEPT {
+        if change <= LAST_CHANGE {
             break;
         }
     }

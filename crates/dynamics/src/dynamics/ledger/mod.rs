@@ -15,4 +15,4 @@ pub(crate) use accounts::Accounts;
 pub(crate) use contact_ledger::contact_violation;
 pub(crate) use energy::Ledger;
 pub(crate) use energy_checks::{check_balance, check_energy_gain};
-pub(crate) use nodal_results::{landings, motion};
+pub(crate) use nodal_results::{landings, node_path};

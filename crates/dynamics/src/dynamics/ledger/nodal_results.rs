@@ -337,7 +337,7 @@ fn landing(
     touched: bool,
 ) -> Landing {
     let [slave, a, b] = constraint.nearer_pair().nodes;
-    let motions = [slave, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
+    let motions = [slave, a, b].map(|node| node_path(problem, &start.u, &start.v, &start.a, node));
     let of_mean = constraint.is_weighted();
     let time = match of_mean {
         true => constraint.closing_time([&start.v, &start.a], interval.dt),
@@ -367,7 +367,7 @@ fn landing(
 }
 
 /// Second-order motion of a node from the displacements `u`.
-pub(crate) fn motion(
+pub(crate) fn node_path(
     problem: &StepProblem,
     u: &[f64],
     v: &[f64],
