@@ -10,7 +10,7 @@ use super::nodal_results::{
 };
 use super::surface_work::SurfaceWork;
 use super::touches::Touches;
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, FrictionResults, IncrementReport, Momentum, NodalResults,
@@ -63,9 +63,9 @@ impl Accounts {
         }
     }
 
-    /// Carries the sums over the run.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Self {
+    /// Transfers the sums over the run.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Self {
             [contacts, touches, surface_work] damped; bodies, faces, consistent
         })
     }

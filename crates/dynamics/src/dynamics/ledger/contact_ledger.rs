@@ -56,15 +56,15 @@ impl ContactLedger {
         }
     }
 
-    /// Carries the sums and slips.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers the sums and slips.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             contacts,
             slip,
             reference: _,
         } = self;
-        archive.carry_values(contacts)?;
-        archive.carry_values(slip)
+        archive.transfer_values(contacts)?;
+        archive.transfer_values(slip)
     }
 
     /// Enters a converged increment of length `dt` and completes the resultants of the contacts.

@@ -8,7 +8,7 @@ use super::terms::{
     impulse_work, load_work, scheme_dissipation, static_support_work, strain_before_rest,
     work_within,
 };
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, difference, dot, sum};
@@ -112,12 +112,12 @@ impl Ledger {
         ledger
     }
 
-    /// Carries all of it.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers all of it.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let mut of_elements = self.elements.to_vec();
-        archive.carry(&mut of_elements)?;
+        archive.transfer(&mut of_elements)?;
         self.elements = of_elements.into();
-        carry_fields!(archive, self => Self {
+        transfer_fields!(archive, self => Self {
             energy, largest, momentum, contact_energy, works, end, start, sources, stiffness; elements
         })
     }

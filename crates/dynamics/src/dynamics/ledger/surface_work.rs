@@ -3,7 +3,7 @@
 
 use super::contact_ledger::ContactLedger;
 use super::pair_work::{PairWork, given_back};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::SurfaceParts;
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::FrictionResults;
@@ -106,18 +106,18 @@ impl SurfaceWork {
         }
     }
 
-    /// Carries the sums.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers the sums.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let FrictionResults {
             coefficient: _,
             work,
             wear,
             heat,
         } = &mut self.fields;
-        archive.carry_values(work)?;
-        archive.carry_values(wear)?;
-        archive.carry_values(heat)?;
-        carry_fields!(archive, self => Self { added; fields, contacts })
+        archive.transfer_values(work)?;
+        archive.transfer_values(wear)?;
+        archive.transfer_values(heat)?;
+        transfer_fields!(archive, self => Self { added; fields, contacts })
     }
 
     /// Work, wear and heat so far.

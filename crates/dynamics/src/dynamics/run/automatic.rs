@@ -4,7 +4,7 @@
 use super::impact_control::{EVENT_HALVINGS, MOST_EVENTS};
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::{Interval, StepPlace};
 use crate::model::{Incrementation, Increments};
 
@@ -89,8 +89,8 @@ impl Automatic {
 }
 
 impl TimeControl for Automatic {
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Automatic {
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Automatic {
             from, dt, easy, cuts, rejections, events; nominal, increments, ends_at_impacts
         })
     }

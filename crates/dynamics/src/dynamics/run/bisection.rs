@@ -3,7 +3,7 @@
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::Interval;
 
 /// A nominal increment of which the parts up to number `part` of 2^`halvings` are done.
@@ -25,8 +25,8 @@ impl Bisection {
 }
 
 impl TimeControl for Bisection {
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Bisection { part, halvings; nominal })
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Bisection { part, halvings; nominal })
     }
 
     fn next(&self) -> Option<NextSubincrement> {

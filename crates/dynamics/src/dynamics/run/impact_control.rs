@@ -3,7 +3,7 @@
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::Interval;
 
 /// Impact events within a nominal increment, after which its rest is one subincrement without events:
@@ -35,8 +35,8 @@ impl ImpactControl {
 }
 
 impl TimeControl for ImpactControl {
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => ImpactControl { from, events, ends; nominal })
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => ImpactControl { from, events, ends; nominal })
     }
 
     fn next(&self) -> Option<NextSubincrement> {

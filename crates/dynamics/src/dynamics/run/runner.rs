@@ -10,7 +10,7 @@ use super::impact_control::ImpactControl;
 use super::nominal_increments::{NominalIncrement, nominal_increments};
 use super::time_control::{Ended, NextSubincrement, TimeControl};
 use super::truncation_error::{Ends, TruncationError};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::ClosedPairs;
 use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
@@ -203,7 +203,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         extension: f64,
     ) -> Result<RunSummary, RunError> {
         if let Some(archive) = &mut resumed {
-            self.carry(archive)?;
+            self.transfer(archive)?;
         }
         let model = self.discretization.model;
         let first = self.progress.step.max(1);
@@ -230,10 +230,10 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(self.summary)
     }
 
-    /// Carries what increments hand on, but for the workspace of their step and their time control.
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers what increments hand on, but for the workspace of their step and their time control.
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let dofs = self.state.u.len();
-        carry_fields!(archive, self => Runner {
+        transfer_fields!(archive, self => Runner {
             [ledger, accounts] progress, state, rejected, procedure, path, accuracy;
             discretization, seen, summary, observer
         })?;
@@ -241,7 +241,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         if [u, v, a].map(Vec::len) != [dofs; 3] {
             return Err(ArchiveError::Size);
         }
-        carry_fields!(archive, &mut self.summary => RunSummary {
+        transfer_fields!(archive, &mut self.summary => RunSummary {
             increments, cutbacks, rejections, events, solver; outcome, timings
         })
     }
@@ -253,9 +253,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         control: &mut dyn TimeControl,
     ) -> Result<(), RunError> {
         let mut archive = Archive::new();
-        self.carry(&mut archive)?;
-        workspace.carry(&mut archive)?;
-        control.carry(&mut archive)?;
+        self.transfer(&mut archive)?;
+        workspace.transfer(&mut archive)?;
+        control.transfer(&mut archive)?;
         Ok(self.observer.checkpoint(archive.into_bytes())?)
     }
 
@@ -314,7 +314,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         mut resumed: Option<Archive>,
     ) -> Result<Outcome, RunError> {
         match &mut resumed {
-            Some(archive) => workspace.carry(archive)?,
+            Some(archive) => workspace.transfer(archive)?,
             None => {
                 if let Some(failure) = self.begin(problem, workspace, step, place)? {
                     return Ok(Outcome::Stopped(Box::new(failure)));
@@ -326,7 +326,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         for (index, (nominal, mut control)) in nominals.skip(done) {
             self.progress.nominal = index;
             if let Some(mut archive) = resumed.take() {
-                control.carry(&mut archive)?;
+                control.transfer(&mut archive)?;
             }
             let end = self.increment(problem, workspace, nominal, &mut *control)?;
             if end != Outcome::Finished {

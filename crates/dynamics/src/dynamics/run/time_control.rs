@@ -36,11 +36,11 @@ pub(crate) trait TimeControl {
     /// Cuts an interval that failed, or whose truncation error is too large.
     fn failed(&mut self, interval: &Interval, error: Option<f64>);
 
-    /// Carries how far the nominal increment is solved.
+    /// Transfers how far the nominal increment is solved.
     ///
     /// # Errors
     /// What is read is no such control.
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
     /// Whether an interval of this length may be cut once more; `dt_min` is the least of the step.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
