@@ -1,13 +1,14 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use super::acceleration::PassAcceleration;
+use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
-use super::convergence::{Iterate, Pass, Residual};
+use super::convergence::PartNoise;
 use super::equal_forces::EqualForces;
 use super::impulses::EarlierPass;
 use super::linear_pass::{SkewPart, Vectors, close_hinges};
+use super::pass::{Iterate, Pass, PassStage, Residual};
 use super::pin_iteration::{PinIteration, PinState};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::returned::Returned;
@@ -144,9 +145,8 @@ impl Solved {
 }
 
 impl Solved {
-    /// Round-off of the forces of every part, eq. (4.10), the largest displacement increment of its body and its
-    /// largest entry of K* (force; length; force/length).
-    pub fn noise(&self, problem: &StepProblem, workspace: &Workspace) -> Vec<[f64; 3]> {
+    /// Round-off of the forces of every part in the increment.
+    pub fn noise(&self, problem: &StepProblem, workspace: &Workspace) -> Vec<PartNoise> {
         let none = vec![0.0; self.d.len()];
         let pass = Pass {
             equilibrium: &self.equilibrium,
@@ -161,10 +161,7 @@ impl Solved {
         );
         let stiffness = &workspace.stiffness;
         let diagonals = stiffness.stiffness.iter().zip(&stiffness.inertia);
-        let parts = scales.noise_and_way().zip(diagonals);
-        parts
-            .map(|([noise, way], (k, m))| [noise, way, k + m])
-            .collect()
+        scales.noise(diagonals.map(|(k, m)| k + m))
     }
 }
 
@@ -293,10 +290,13 @@ impl<'m> Attempt<'_, 'm> {
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
-            let state = [settled, factors.stagnate()];
+            let stage = PassStage {
+                settled,
+                stagnates: factors.stagnate(),
+            };
             let may_end = contact.impulses.are_at_rest() && factors.are_near();
             if may_end
-                && let Some(residual) = self.residual(&iterate, state, &mut v.residual)?
+                && let Some(residual) = self.residual(&iterate, stage, &mut v.residual)?
                 && self.complete(&mut contact, &v.u, None)
             {
                 trace.solved(residual);
@@ -339,9 +339,13 @@ impl<'m> Attempt<'_, 'm> {
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 factors.take_in(correction, may_grow)?;
                 if number >= SLOW_PASSES {
-                    let progress = [correction, factors.rate(), problem.settings.tolerance];
-                    let same_pairs = contact.forces.are_of_same_pairs();
-                    acceleration.improve(problem.parts, &d, same_pairs, progress, &mut v.du);
+                    let progress = CorrectionProgress {
+                        correction,
+                        rate: factors.rate(),
+                        tolerance: problem.settings.tolerance,
+                        same_pairs: contact.forces.are_of_same_pairs(),
+                    };
+                    acceleration.improve(problem.parts, &d, progress, &mut v.du);
                 }
             }
             // d <- d + dU, eq. (4.7)
@@ -552,10 +556,10 @@ impl<'m> Attempt<'_, 'm> {
     fn residual(
         &mut self,
         iterate: &Iterate,
-        state: [bool; 2],
+        stage: PassStage,
         residual: &mut Residual,
     ) -> Result<Option<f64>, Cause> {
-        let solved = iterate.residual(self.problem, self.workspace, state, residual)?;
+        let solved = iterate.residual(self.problem, self.workspace, stage, residual)?;
         if let Some(residual) = solved {
             self.workspace.meter.counts.residual = residual;
         }

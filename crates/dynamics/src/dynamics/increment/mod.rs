@@ -9,6 +9,7 @@ mod convergence;
 mod equal_forces;
 mod impulses;
 mod linear_pass;
+mod pass;
 mod pin_iteration;
 mod refactorization;
 mod returned;
@@ -18,6 +19,6 @@ mod trace;
 
 pub(crate) use attempt::{Attempt, Path, Solved};
 pub(crate) use contact_forces::ContactForces;
-pub(crate) use contact_states::ContactStates;
-pub(crate) use returned::{PairReturn, Release};
+pub(crate) use convergence::PartNoise;
+pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use trace::Failed;
