@@ -630,7 +630,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use crate::dynamics::FailedLcp;
-    use crate::lcp::FrictionalLcp;
+    use crate::lcp::{FreeUnknowns, FrictionalLcp};
     use crate::model::{
         Element, ElementType, Incrementation, Increments, Load, Mesh, PointLoad, Set, Variation,
     };
@@ -807,6 +807,7 @@ mod tests {
                 gap: vec![-1.0].into(),
                 slip: vec![0.0].into(),
                 mu: vec![0.2].into(),
+                free: FreeUnknowns::default(),
             },
             pairs: vec![[0, 1, 2]],
         };
@@ -866,6 +867,7 @@ mod tests {
                 gap: vec![-1.0].into(),
                 slip: vec![0.0].into(),
                 mu: vec![mu].into(),
+                free: FreeUnknowns::default(),
             };
             let pairs = vec![[0, 1, 2]];
             let failed = FailedLcp {

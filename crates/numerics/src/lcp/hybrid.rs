@@ -3,9 +3,11 @@
 //! solved exactly with the forces of all others fixed. Section 8 of docs/theory.md.
 
 use bumpalo::Bump;
+use nalgebra::DVector;
 
 use super::basis::perturbation;
 use super::dense::{List, axpy, copy, filled, list, max_abs};
+use super::free_solution::{search, tip_over};
 use super::joints::Joints;
 use super::kept::KeptFactors;
 use super::lemke::{LemkeSettings, lemke_forces};
@@ -23,7 +25,7 @@ const SWEEPS: [usize; 3] = [10, 40, 160];
 const KEPT_BYTES: usize = 1 << 24;
 
 /// Paths of Lemke's method that are tried.
-const PATHS: usize = 4;
+pub(super) const PATHS: usize = 4;
 
 /// The method a caller asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -43,13 +45,20 @@ pub struct Known<'k> {
     /// The number of the joint of every contact: contacts between the same bodies, which change their states together. An
     /// empty list leaves every contact by itself. It is asked for only where single contacts come to no end.
     pub joints: &'k dyn Fn() -> Vec<usize>,
+    /// Whether the problem is a part of another one, which has an answer where the part has none: free unknowns that its
+    /// contacts do not hold are not searched for.
+    pub is_part: bool,
 }
 
 impl<'k> Known<'k> {
     /// States alone.
     pub fn of_states(states: &'k [ContactState]) -> Self {
         let joints = &Vec::new;
-        Known { states, joints }
+        Known {
+            states,
+            joints,
+            is_part: false,
+        }
     }
 }
 
@@ -91,20 +100,68 @@ fn solve_in(
     (kept, arena): (&mut KeptFactors, &Bump),
 ) -> Result<FrictionalSolution, LcpError> {
     let mut counters = Counters::default();
-    if !problem.penetrates() {
+    if !problem.penetrates() && problem.free.is_empty() {
         let states = filled(arena, ContactState::Open, problem.len());
         let forces = [(); 2].map(|()| filled(arena, 0.0, problem.len()));
-        let found = (&*states, forces);
+        let found = (&*states, forces, filled(arena, 0.0, 0));
         let spare = &mut kept.spare;
         return Ok(finish(problem, found, (Method::Trivial, counters), spare));
     }
     let scaled = Scaled::new(problem, arena)?;
-    if method == LcpMethod::Hybrid
-        && let Some(solution) = iterate(problem, &scaled, known, (kept, &mut counters))
-    {
-        return Ok(solution);
+    let is_part = known.is_some_and(|known| known.is_part);
+    let warm = match method {
+        LcpMethod::Hybrid => iterate(problem, &scaled, known, (kept, &mut counters)),
+        LcpMethod::Lemke => None,
+    };
+    let solution = match warm {
+        Some(solution) => solution,
+        None if problem.free.is_empty() => return lemke(problem, &scaled, &mut counters),
+        None if is_part => return Err(not_held()),
+        None => search(problem, &scaled, known, &mut counters)?,
+    };
+    match problem.unstable_motion(&solution.state) {
+        None => Ok(solution),
+        // another contact may hold it
+        Some(_) if is_part => Err(not_held()),
+        Some(motion) => {
+            let stable = tip_over(problem, &scaled, (&solution, motion), &mut counters);
+            Ok(stable.unwrap_or(solution))
+        }
     }
-    lemke(problem, &scaled, &mut counters)
+}
+
+/// That contacts do not hold free unknowns.
+fn not_held() -> LcpError {
+    LcpError::Ray {
+        pivots: 0,
+        members: Vec::new(),
+    }
+}
+
+/// The answer of the active set from some states, with factors of its own.
+pub(super) fn from_states(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    states: &[ContactState],
+    counters: &mut Counters,
+) -> Option<FrictionalSolution> {
+    let states = closed_alike(scaled, states);
+    let no_joints = Joints::none();
+    let alone = Changes::Alone(&no_joints);
+    match active_set(
+        scaled,
+        states,
+        alone,
+        (&mut KeptFactors::default(), counters),
+    ) {
+        Outcome::Converged(states, p) => {
+            let found = scaled.found(&states, &admissible(scaled, &states, &p));
+            let how = (Method::Lemke, *counters);
+            let solution = finish(problem, found, how, &mut Spare::default());
+            (solution.residual <= TOLERANCE).then_some(solution)
+        }
+        Outcome::Failed(_) => None,
+    }
 }
 
 /// The active set from the warm states, contact by contact; where that does not end soon, from the same states with joints, and
@@ -127,8 +184,8 @@ fn iterate(
     loop {
         let mut p = match active_set(scaled, states.clone(), changes, (kept, counters)) {
             Outcome::Converged(states, p) => {
-                let forces = scaled.forces(&admissible(scaled, &states, &p));
-                let (found, how) = ((&*states, forces), (Method::ActiveSet, *counters));
+                let found = scaled.found(&states, &admissible(scaled, &states, &p));
+                let how = (Method::ActiveSet, *counters);
                 let solution = finish(problem, found, how, &mut kept.spare);
                 if solution.residual <= TOLERANCE {
                     return Some(solution);
@@ -146,6 +203,9 @@ fn iterate(
         if std::mem::take(&mut has_kept) {
             kept.forget();
             continue;
+        }
+        if scaled.free > 0 {
+            return None;
         }
         project(scaled, &mut p);
         states = gauss_seidel(scaled, &mut p, rounds.next()?, counters);
@@ -229,9 +289,13 @@ fn follow(
         candidates
             .chain([(own(), found_forces)])
             .map(|(states, p)| {
-                let forces = scaled.forces(&admissible(scaled, &states, &p));
-                let (found, how) = ((&*states, forces), (Method::Lemke, *counters));
-                finish(problem, found, how, &mut Spare::default())
+                let found = scaled.found(&states, &admissible(scaled, &states, &p));
+                finish(
+                    problem,
+                    found,
+                    (Method::Lemke, *counters),
+                    &mut Spare::default(),
+                )
             }),
     )
 }
@@ -276,11 +340,11 @@ fn admissible<'a>(scaled: &Scaled<'a>, states: &[ContactState], p: &[f64]) -> Li
 /// The solution with motion and residual recomputed from the problem.
 fn finish(
     problem: &FrictionalLcp,
-    (states, [pn, pt]): (&[ContactState], [List<f64>; 2]),
+    (states, [pn, pt], x): (&[ContactState], [List<f64>; 2], List<f64>),
     (method, counters): (Method, Counters),
     spare: &mut Spare,
 ) -> FrictionalSolution {
-    let (residual, motion) = frictional_residual(problem, [&pn, &pt], pn.bump());
+    let (residual, motion) = frictional_residual(problem, ([&pn, &pt], &x), pn.bump());
     let (gap, slip) = motion.split_at(problem.len());
     // Without friction the solution leaves the direction of slip open: take it from the slip.
     let states = (0..problem.len()).map(|i| match states[i] {
@@ -296,6 +360,7 @@ fn finish(
         pt: spare.vector(1, &pt),
         gap: spare.vector(2, gap),
         slip: spare.vector(3, slip),
+        free: DVector::from_column_slice(&x),
         residual,
         method,
         counters,
@@ -316,6 +381,9 @@ const ALONE: usize = 5;
 /// A condition violated by less than this, relative to the largest force, does not change a state:
 /// round-off would otherwise change degenerate contacts for ever.
 const ACTIVE_SET_TOLERANCE: f64 = 1e-12;
+
+/// Round-off of gaps that free unknowns make, beside the largest of these.
+const FREE_ROUND_OFF: f64 = 1e-14;
 
 /// Result of a call.
 pub(crate) enum Outcome<'a> {
@@ -381,8 +449,16 @@ fn next_states<'a>(
     p: &[f64],
     v: &[f64],
 ) -> List<'a, ContactState> {
-    let tolerance = ACTIVE_SET_TOLERANCE * max_abs(p).max(1.0);
-    let next = (0..scaled.contacts).map(|i| next_state(scaled, states[i], i, p, v, tolerance));
+    let (forces, free) = p.split_at(scaled.free_places().start);
+    let of_forces = ACTIVE_SET_TOLERANCE * max_abs(forces).max(1.0);
+    let of_motion = of_forces + FREE_ROUND_OFF * max_abs(free);
+    let next = (0..scaled.contacts).map(|i| {
+        let tolerance = match states[i].is_closed() {
+            true => of_forces,
+            false => of_motion,
+        };
+        next_state(scaled, states[i], i, p, v, tolerance)
+    });
     list(scaled.arena, next)
 }
 
@@ -537,7 +613,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::FreeUnknowns;
 
     #[test]
     fn beyond_the_cone_a_sticking_contact_slides_on_either_side() {
@@ -546,6 +622,7 @@ mod tests {
             gap: vec![-1.0].into(),
             slip: vec![2.0].into(),
             mu: vec![0.5].into(),
+            free: FreeUnknowns::default(),
         };
         let arena = Bump::new();
         let scaled = Scaled::new(&problem, &arena).expect("finite");
@@ -566,7 +643,7 @@ mod gauss_seidel_tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::FreeUnknowns;
 
     /// Uncoupled contacts: one is open, one slides, one sticks.
     #[test]
@@ -576,6 +653,7 @@ mod gauss_seidel_tests {
             gap: vec![0.5, -1.0, -1.0].into(),
             slip: vec![2.0, 2.0, -0.25].into(),
             mu: vec![0.5; 3].into(),
+            free: FreeUnknowns::default(),
         };
         let arena = Bump::new();
         let scaled = Scaled::new(&problem, &arena).expect("finite");

@@ -257,7 +257,7 @@ pub(crate) struct LemkeForces {
 ///
 /// The tangent of a contact that would slip in the negative direction is reversed (`signs`), so
 /// that q is negative at penetrations only and open contacts need no pivots.
-struct FrictionalMatrix<'a> {
+pub(crate) struct FrictionalMatrix<'a> {
     scaled: &'a Scaled<'a>,
     /// 1 or -1 for each tangential unknown.
     signs: Vec<f64>,
@@ -273,13 +273,8 @@ pub(crate) fn lemke_forces(
     settings: &LemkeSettings,
 ) -> Result<LemkeForces, LcpError> {
     let (n, m) = (scaled.contacts, scaled.owners.len());
-    let signs: Vec<f64> = scaled.b[n..]
-        .iter()
-        .map(|slip| if *slip < 0.0 { -1.0 } else { 1.0 })
-        .collect();
-    let mut q: Vec<f64> = scaled.b[..n].to_vec();
-    q.extend(scaled.b[n..].iter().map(|slip| slip.abs()));
-    q.resize(n + 2 * m, 0.0);
+    let matrix = FrictionalMatrix::of(scaled);
+    let q = matrix.q();
     let mut d = covering.to_vec();
     d.extend(
         scaled
@@ -288,7 +283,6 @@ pub(crate) fn lemke_forces(
             .map(|i| covering[*i] / (1.0 + scaled.mu[*i])),
     );
     d.resize(n + 2 * m, 0.0);
-    let matrix = FrictionalMatrix::new(scaled, signs);
     let vertex = follow_path(&matrix, &q, &d, settings).map_err(|error| match error {
         LcpError::Ray {
             pivots,
@@ -300,7 +294,7 @@ pub(crate) fn lemke_forces(
         other => other,
     })?;
     let p = matrix.forces(vertex.z.iter().copied().enumerate());
-    let states = (0..n).map(|i| matrix.state(i, &vertex.basic)).collect();
+    let states = matrix.states(&vertex.basic);
     Ok(LemkeForces {
         p,
         states,
@@ -318,11 +312,42 @@ impl<'a> FrictionalMatrix<'a> {
         }
     }
 
+    /// That of a problem whose tangents are turned to the slips without forces.
+    pub fn of(scaled: &'a Scaled<'a>) -> Self {
+        let slips = &scaled.b[scaled.contacts..scaled.free_places().start];
+        let sign = |slip: &f64| if *slip < 0.0 { -1.0 } else { 1.0 };
+        FrictionalMatrix::new(scaled, slips.iter().map(sign).collect())
+    }
+
+    /// q = (gap, |slip|, 0).
+    pub fn q(&self) -> Vec<f64> {
+        let (gaps, rest) = self.scaled.b.split_at(self.scaled.contacts);
+        let slips = rest.iter().take(self.scaled.owners.len());
+        let mut q = gaps.to_vec();
+        q.extend(slips.map(|slip| slip.abs()));
+        q.resize(self.size(), 0.0);
+        q
+    }
+
+    /// 1, or -1 for the row of a tangent that is reversed.
+    pub fn sign(&self, row: usize) -> f64 {
+        match row.checked_sub(self.scaled.contacts) {
+            Some(tangent) => self.signs[tangent],
+            None => 1.0,
+        }
+    }
+
+    /// States of all contacts by their basic variables.
+    pub fn states(&self, basic: &[bool]) -> Vec<ContactState> {
+        let contacts = 0..self.scaled.contacts;
+        contacts.map(|i| self.state(i, basic)).collect()
+    }
+
     /// p = (Pn, Pt) of z: Pt = sign (2 T+ - mu Pn).
-    fn forces(&self, z: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
+    pub fn forces(&self, z: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
         let n = self.scaled.contacts;
         let mut p = vec![0.0; self.scaled.size()];
-        for (j, value) in z.filter(|(j, _)| *j < self.scaled.size()) {
+        for (j, value) in z.filter(|(j, _)| *j < self.scaled.free_places().start) {
             if j >= n {
                 p[j] += 2.0 * self.signs[j - n] * value;
                 continue;
@@ -357,13 +382,13 @@ impl<'a> FrictionalMatrix<'a> {
 
 impl PivotMatrix for FrictionalMatrix<'_> {
     fn size(&self) -> usize {
-        self.scaled.size() + self.scaled.owners.len()
+        self.scaled.free_places().start + self.scaled.owners.len()
     }
 
     /// Rows of eq. (8.3): g = Qnn Pn + Qnt Pt;  Dt+ = sign (Qtn Pn + Qtt Pt) + Dt-;  T- = mu Pn -
     /// T+.
     fn add_product(&self, z: &[(usize, f64)], out: &mut [f64]) {
-        let (n, end) = (self.scaled.contacts, self.scaled.size());
+        let (n, end) = (self.scaled.contacts, self.scaled.free_places().start);
         let m = self.scaled.owners.len();
         for (j, value) in z {
             if *j >= end {
@@ -374,7 +399,7 @@ impl PivotMatrix for FrictionalMatrix<'_> {
                 out[t + m] += self.scaled.mu[*j] * value;
             }
         }
-        let mut v = vec![0.0; end];
+        let mut v = vec![0.0; self.scaled.size()];
         for (k, force) in self.forces(z.iter().copied()).iter().enumerate() {
             axpy(*force, self.scaled.column(k), &mut v);
         }
@@ -385,7 +410,7 @@ impl PivotMatrix for FrictionalMatrix<'_> {
     }
 
     fn entry(&self, i: usize, j: usize) -> f64 {
-        let (n, end) = (self.scaled.contacts, self.scaled.size());
+        let (n, end) = (self.scaled.contacts, self.scaled.free_places().start);
         let m = self.scaled.owners.len();
         let sign = |k: usize| if k >= n { self.signs[k - n] } else { 1.0 };
         if i >= end {
@@ -446,7 +471,7 @@ mod tests {
     use bumpalo::Bump;
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
     /// Three contacts with a Q that is not symmetric, the second without friction, the third slipping
     /// backwards.
@@ -458,6 +483,7 @@ mod tests {
             gap: vec![-1.0, -0.5, -2.0].into(),
             slip: vec![0.25, 0.5, -0.75].into(),
             mu: vec![0.5, 0.0, 0.25].into(),
+            free: FreeUnknowns::default(),
         };
         let arena = Bump::new();
         let scaled = Scaled::new(&problem, &arena).expect("finite");

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::dense::add_product;
+use super::free::FreeUnknowns;
 use crate::linear::{SMALLEST, larger, largest};
 
 /// Find z >= 0 with w = M z + q >= 0 and z.w = 0, eq. (8.1).
@@ -166,6 +167,8 @@ pub struct FrictionalLcp {
     pub slip: DVector<f64>,
     /// Friction coefficients (length n), zero or positive.
     pub mu: DVector<f64>,
+    /// Unknowns without a sign that gaps and slips depend on as well.
+    pub free: FreeUnknowns,
 }
 
 impl FrictionalLcp {
@@ -212,10 +215,11 @@ impl FrictionalLcp {
             expect_finite(values)?;
         }
         expect_finite(self.mu.as_slice())?;
+        self.free.check(n)?;
         expect_non_negative("mu", self.mu.as_slice())
     }
 
-    /// Gaps and slips under the forces (pn, pt).
+    /// Gaps and slips under the forces (pn, pt), the free unknowns being zero.
     pub fn motion(&self, pn: &DVector<f64>, pt: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let n = self.len();
         let mut motion: Vec<f64> = self.gap.iter().chain(&self.slip).copied().collect();
@@ -235,7 +239,12 @@ impl FrictionalLcp {
     ///     [ Qtn - Qtt mu   2 Qtt   I ]          [ slip ]
     ///     [ mu             -I      0 ]          [ 0    ]
     /// ```
+    ///
+    /// Free unknowns are eliminated.
     pub fn to_lcp(&self) -> Lcp {
+        if !self.free.is_empty() {
+            return self.eliminated().to_lcp();
+        }
         let n = self.len();
         let mut m = DMatrix::zeros(3 * n, 3 * n);
         for j in 0..n {
@@ -273,6 +282,7 @@ impl FrictionalLcp {
             gap: lcp.q.rows(0, n).into_owned(),
             slip,
             mu: mu.clone(),
+            free: FreeUnknowns::default(),
         };
         let same = problem.to_lcp();
         let size = problem.q.amax() * (1.0 + mu.amax());
@@ -368,6 +378,8 @@ pub struct FrictionalSolution {
     pub slip: DVector<f64>,
     /// States of the contacts.
     pub state: Vec<ContactState>,
+    /// Free unknowns x.
+    pub free: DVector<f64>,
     /// Scaled residual of the contact conditions.
     pub residual: f64,
     /// The method that found the states.
@@ -454,6 +466,7 @@ mod frictional_tests {
             gap: DVector::from_row_slice(&[-1.0, 0.5]),
             slip: DVector::from_row_slice(&[0.25, -0.5]),
             mu: DVector::from_row_slice(&[0.3, 0.0]),
+            free: FreeUnknowns::default(),
         }
     }
 
