@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::contact_system::{FEW, Guess, Response};
 use crate::contact::tolerances::{LIMIT_SLIP, SETTLED_OVERLAP, SOLVED_GAP};
-use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::System;
 use crate::linear::larger;
@@ -82,11 +82,6 @@ impl ContactForces {
             .filter_map(|(constraint, pair)| Some((constraint, pair?)))
     }
 
-    /// Keys of the closed pairs.
-    pub fn keys(&self) -> Vec<ConstraintKey> {
-        self.closed.iter().map(|pair| pair.key).collect()
-    }
-
     /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
         let mut force = Vec::new();
@@ -138,19 +133,30 @@ impl ContactForces {
         // g + Gn y and Dt + Gt y, eq. (5.2)
         let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
         response.gaps_and_slips(system, self.constraints.iter(), free);
-        let mut entered = inside.contains(&true) || self.enter(inside, free, overlap);
+        response.show_pins(system);
+        let mut entered =
+            inside.contains(&true) || self.enter(inside, free, overlap) || system.free().is_some();
         while entered {
             let constraints: SmallVec<[_; FEW]> = chosen(&self.constraints, inside).collect();
             terms.clear();
             terms.extend(chosen(free, inside));
             guess.take_over(&constraints, before, weight);
-            self.pivots += system.solve_contact(
+            guess.is_part = inside.contains(&false);
+            let solved = system.solve_contact(
                 &constraints,
                 terms,
                 guess,
                 &mut self.closed,
                 Some(&mut response),
-            )?;
+            );
+            if let Some(free) = system.free()
+                && inside.contains(&false)
+                && (solved.is_err() || free.goes_too_far())
+            {
+                inside.fill(true);
+                continue;
+            }
+            self.pivots += solved?;
             self.problem_size = constraints.len();
             let acting = self
                 .acting()

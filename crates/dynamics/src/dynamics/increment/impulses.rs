@@ -346,6 +346,7 @@ fn impulses(
         states,
         forces: None,
         weight: None,
+        is_part: false,
     };
     if !system.is_factorized() {
         system.factorize()?;
