@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from stickslip.arrays import Array
 from stickslip.deck import Deck
 from stickslip.errors import Fault
 
@@ -26,8 +26,6 @@ TAGS = {
     "K": "from the literature, not read in the original",
 }
 """Provenance of a reference."""
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

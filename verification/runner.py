@@ -11,8 +11,9 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 sys.path[:0] = [str(HERE), str(ROOT / "python"), str(ROOT / "scripts")]
 
-from form import Array, Curve, Form, Order, Quantity, Run, all_folders, load, markdown, read  # noqa: E402
+from form import Curve, Form, Order, Quantity, Run, all_folders, load, markdown, read  # noqa: E402
 from stickslip import program  # noqa: E402
+from stickslip.arrays import Array  # noqa: E402
 from stickslip.result import Result  # noqa: E402
 from values import Values  # noqa: E402
 

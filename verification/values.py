@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from form import Array, Form, Run
+from form import Form, Run
+from stickslip.arrays import Array
 from stickslip.result import Result
 
 FUNCTIONS: dict[str, Any] = {

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.result import Array, Integers, Result
+from stickslip.arrays import Array, Integers
+from stickslip.result import Result
 
 
 @dataclass(frozen=True)

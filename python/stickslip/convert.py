@@ -1,28 +1,27 @@
 """Results in the containers of other packages, which are imported only when they are asked for."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.frame import Frame
-from stickslip.history import Array
 from stickslip.quantity import Members
+from stickslip.result_file import ResultFile
 
 if TYPE_CHECKING:
     import pandas
     import pyvista
     import xarray
 
-    from stickslip.result import Result
-
 COMPONENTS = {2: ("1", "2"), 3: ("11", "22", "12")}
 """Names of the components of vectors and of tensors in the plane."""
 
 
-def to_dataframe(result: "Result") -> "pandas.DataFrame":
+def to_dataframe(result: ResultFile) -> "pandas.DataFrame":
     """All histories, one row per increment with the time as index.
 
     Columns bear the names of `Result.quantity`: `energy/kinetic`, `contact/A_B/force:1`,
@@ -34,9 +33,9 @@ def to_dataframe(result: "Result") -> "pandas.DataFrame":
     return pandas.DataFrame(columns, index=pandas.Index(time, name="time"))
 
 
-def _columns(result: "Result", path: str) -> Iterator[tuple[str, Array]]:
+def _columns(result: ResultFile, path: str) -> Iterator[tuple[str, Array]]:
     """The columns of a history, each with its name."""
-    data = result.history[path]
+    data = result.complete_rows(f"history/{path}")
     names = Members.of(result, path).paths
     if not names:
         names, data = [path], data[:, None]
@@ -49,13 +48,18 @@ def _columns(result: "Result", path: str) -> Iterator[tuple[str, Array]]:
                 yield f"{name}:{component}", column
 
 
-def to_xarray(result: "Result", fields: Sequence[str]) -> "xarray.Dataset":
+def to_xarray(
+    result: ResultFile, times: Array | None, fields: Mapping[str, tuple[str, NDArray[Any]]]
+) -> "xarray.Dataset":
     """All histories along `time`, named by their paths, and some fields along `frame`.
+
+    `times` are those of the frames. Of each field are given whether it is PointData or CellData, and its
+    values in all frames [F, N or E, ...].
 
     Every variable has the attributes `description` and `dimension` of the result file.
     """
     xarray = _package("xarray")
-    coordinates: dict[str, Any] = {"time": result.history.time}
+    coordinates: dict[str, Any] = {"time": result.complete_rows("history/time")}
     variables = {}
     for path, stored in result.histories.items():
         if path == "time":
@@ -66,15 +70,13 @@ def to_xarray(result: "Result", fields: Sequence[str]) -> "xarray.Dataset":
             axes.append(each.axis)
             are_numbers = all(re.fullmatch(r"-?\d+", name) for name in each.names)
             coordinates[each.axis] = list(map(int, each.names)) if are_numbers else each.names
-        variables[path] = _variable(axes, result.history[path], stored.attrs, coordinates)
-    if fields:
-        coordinates["frame"] = result.frames.times
-    for name in fields:
-        kind = result.frames.kind(name)
+        variables[path] = _variable(axes, result.complete_rows(f"history/{path}"), stored.attrs, coordinates)
+    if times is not None:
+        coordinates["frame"] = times
+    for name, (kind, data) in fields.items():
         where = "node" if kind == "PointData" else "element"
         labels = result.node_labels if where == "node" else result.element_labels
         coordinates[where] = labels
-        data = np.stack([frame[name] for frame in result.frames])
         stored = result.file[f"VTKHDF/{kind}/{name}"]
         variables[name] = _variable(["frame", where], data, stored.attrs, coordinates)
     return xarray.Dataset(variables, coordinates, {"job": result.job})
@@ -92,20 +94,24 @@ def _variable(
     return axes, data, {key: str(attributes[key]) for key in ("description", "dimension")}
 
 
-def to_pyvista(frame: Frame) -> "pyvista.UnstructuredGrid":
-    """The frame as an unstructured grid with all its fields, rigid segments included."""
+def to_pyvista(
+    result: ResultFile, time: float, fields: Mapping[str, tuple[str, NDArray[Any]]]
+) -> "pyvista.UnstructuredGrid":
+    """A frame as an unstructured grid with all its fields, rigid segments included.
+
+    Of each field are given whether it is PointData or CellData, and its rows as they stand in the file.
+    """
     pyvista = _package("pyvista")
-    result = frame.result
     ends = result.read("VTKHDF/Offsets")
     connectivity = result.read("VTKHDF/Connectivity")
     cells = np.insert(connectivity, ends[:-1], np.diff(ends))
     grid = pyvista.UnstructuredGrid(
         cells, result.read("VTKHDF/Types"), result.read("VTKHDF/Points")
     )
-    for name, kind in result.frames.fields.items():
+    for name, (kind, rows) in fields.items():
         data = grid.point_data if kind == "PointData" else grid.cell_data
-        data[name] = frame.full(name)
-    grid.field_data["TimeValue"] = [frame.time]
+        data[name] = rows
+    grid.field_data["TimeValue"] = [time]
     return grid
 
 

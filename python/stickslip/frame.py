@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip import convert
+from stickslip.arrays import Array
 from stickslip.errors import Fault, Missing
+from stickslip.result_file import ResultFile
 
 if TYPE_CHECKING:
     import pyvista
-
-    from stickslip.result import Result
-
-Array = NDArray[np.float64]
 
 LARGEST = 1e150
 """Largest position whose square is a number."""
@@ -34,13 +33,18 @@ class Frame(Mapping[str, Any]):
     elements, (xx, yy, xy); so are the values at nodes, `frame["S_AT_NODES"]` [N, 3].
     """
 
-    result: "Result"
+    frames: "Frames"
     index: int
+
+    @property
+    def result(self) -> ResultFile:
+        """The file that it is read from."""
+        return self.frames.result
 
     @property
     def time(self) -> float:
         """Time of the frame."""
-        return float(self.result.frames.times[self.index])
+        return float(self.frames.times[self.index])
 
     @property
     def positions(self) -> Array:
@@ -52,7 +56,7 @@ class Frame(Mapping[str, Any]):
         return positions
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        kind = self.result.frames.kind(name)
+        kind = self.frames.kind(name)
         rows = self.full(name)
         if kind == "PointData":
             is_vector = rows.ndim == 2 and not name.endswith(AT_NODES)
@@ -61,16 +65,15 @@ class Frame(Mapping[str, Any]):
 
     def full(self, name: str) -> NDArray[Any]:
         """A field as it stands in the file: with third components and rigid segments."""
-        frames = self.result.frames
-        kind = frames.kind(name)
-        first = frames.first_row(kind, name, self.index)
-        return self.result.read(f"VTKHDF/{kind}/{name}", first, first + frames.sizes[kind])
+        kind = self.frames.kind(name)
+        first = self.frames.first_row(kind, name, self.index)
+        return self.result.read(f"VTKHDF/{kind}/{name}", first, first + self.frames.sizes[kind])
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self.result.frames.fields)
+        return iter(self.frames.fields)
 
     def __len__(self) -> int:
-        return len(self.result.frames.fields)
+        return len(self.frames.fields)
 
     def __repr__(self) -> str:
         return f"<frame {self.index} of {self.result.path}: t = {self.time:g}, {', '.join(self)}>"
@@ -82,16 +85,16 @@ class Frame(Mapping[str, Any]):
 
         `grid.warp_by_vector("U")` is the deformed shape. Needs the package pyvista.
         """
-        from stickslip.convert import to_pyvista
-
-        return to_pyvista(self)
+        fields = {name: (kind, self.full(name)) for name, kind in self.frames.fields.items()}
+        return convert.to_pyvista(self.result, self.time, fields)
 
 
 class Frames(Sequence[Frame]):
     """The complete frames of a result, in the order of time."""
 
-    def __init__(self, result: "Result") -> None:
-        self._result = result
+    def __init__(self, result: ResultFile) -> None:
+        self.result = result
+        """The file that they are read from."""
         nodes = len(result.coordinates)
         self.sizes = {"PointData": nodes, "CellData": len(result.cells) + len(result.rigid)}
         """Rows of a frame in the nodal and in the element fields."""
@@ -121,8 +124,12 @@ class Frames(Sequence[Frame]):
         """Whether a field is PointData or CellData."""
         if name not in self.fields:
             there = ", ".join(self.fields)
-            raise Missing(f"{self._result.path} has no field {name}; there are {there}")
+            raise Missing(f"{self.result.path} has no field {name}; there are {there}")
         return self.fields[name]
+
+    def field(self, name: str) -> tuple[str, NDArray[Any]]:
+        """Whether a field is PointData or CellData, and its values in all frames [F, N or E, ...]."""
+        return self.kind(name), np.stack([frame[name] for frame in self])
 
     def first_row(self, kind: str, name: str, index: int) -> int:
         """First row of a frame in a field; one that does not change is there once."""
@@ -138,7 +145,7 @@ class Frames(Sequence[Frame]):
         first, last = float(self.times[0]), float(self.times[-1])
         margin = ROUND_OFF * max(last - first, abs(last))
         if not first - margin <= time <= last + margin:
-            path = self._result.path
+            path = self.result.path
             raise Fault(f"{path} has frames from t = {first:g} to {last:g}, none at {time:g}")
         return self.nearest(time)
 
@@ -149,11 +156,11 @@ class Frames(Sequence[Frame]):
     def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
         places = range(len(self))[index]
         if isinstance(places, range):
-            return [Frame(self._result, place) for place in places]
-        return Frame(self._result, places)
+            return [Frame(self, place) for place in places]
+        return Frame(self, places)
 
     def __len__(self) -> int:
         return len(self.times)
 
     def __repr__(self) -> str:
-        return f"<{len(self)} frames of {self._result.path}: t = {self.times[0]:g} to {self.times[-1]:g}>"
+        return f"<{len(self)} frames of {self.result.path}: t = {self.times[0]:g} to {self.times[-1]:g}>"

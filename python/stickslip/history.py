@@ -11,14 +11,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Integers
 from stickslip.errors import Missing
-
-if TYPE_CHECKING:
-    from stickslip.result import Result
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from stickslip.result_file import ResultFile
 
 
 class Group(Mapping[str, Any]):
@@ -29,7 +24,7 @@ class Group(Mapping[str, Any]):
     _others: ClassVar[type["Group"] | None] = None
     """Class of groups that it does not name."""
 
-    def __init__(self, result: "Result", path: str) -> None:
+    def __init__(self, result: ResultFile, path: str) -> None:
         self._result = result
         self._path = path
 

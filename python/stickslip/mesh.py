@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.arrays import Array, Integers
 from stickslip.errors import Fault
 
 if TYPE_CHECKING:
     import meshio
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 FLAT = 1e-9
 """Coordinates z that differ by this part of the mesh's size are the same."""

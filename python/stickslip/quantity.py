@@ -13,8 +13,9 @@ Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is th
 import re
 from dataclasses import dataclass
 
+from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.result import Array, Result
+from stickslip.result_file import ResultFile
 
 NAME = re.compile(r"(?P<path>[^:]*)(?::(?P<component>\d+))?")
 OF_MEMBER = re.compile(r"(?P<place>.+)\[(?P<member>[-\d.]+)\]/(?P<field>\w+)")
@@ -55,7 +56,7 @@ class Quantity:
         return len(self.parts) == 1
 
 
-def find(result: Result, name: str) -> Quantity:
+def find(result: ResultFile, name: str) -> Quantity:
     """The history of this name; a Fault says which there are when there is none."""
     matched = NAME.fullmatch(name)
     if matched is None:
@@ -101,7 +102,7 @@ class Members:
     """Whether they are those of a set, so that the name without brackets is the mean or the sum."""
 
     @classmethod
-    def of(cls, result: Result, path: str) -> "Members":
+    def of(cls, result: ResultFile, path: str) -> "Members":
         """The members of a history; none where it has none."""
         if path not in result.histories:
             return cls("", "", [], [])
@@ -124,7 +125,7 @@ class Members:
         return cls(kind, place, names, paths, bool(matched["nodes"] or matched["elements"]))
 
 
-def listed(result: Result) -> list[str]:
+def listed(result: ResultFile) -> list[str]:
     """All names of histories, with their components."""
     names = []
     for path, data in result.histories.items():
@@ -136,7 +137,7 @@ def listed(result: Result) -> list[str]:
     return sorted(names)
 
 
-def _selected(result: Result, path: str) -> tuple[Array, str]:
+def _selected(result: ResultFile, path: str) -> tuple[Array, str]:
     """Values [I] or [I, components] of a path with its brackets, and what they are."""
     if path not in result.histories:
         plain = re.sub(r"\[[-\d.]+\]", "", path)
@@ -149,7 +150,7 @@ def _selected(result: Result, path: str) -> tuple[Array, str]:
             if f"{place}/{kind}/{field}" in result.histories:
                 return _selected(result, f"{place}/{kind}/{field}")
         raise Fault(f"{result.path} has no history {path}: {_alternatives(result, plain)}")
-    data = result.history[path]
+    data = result.complete_rows(f"history/{path}")
     if Members.of(result, path).is_set:
         return _of_set(data, _description(result, path), path)
     place = path.rpartition("/")[0].partition("/")[2]
@@ -167,26 +168,26 @@ def _of_set(data: Array, what: str, path: str) -> tuple[Array, str]:
     return data.mean(axis=1), f"{what}, mean over {name}"
 
 
-def _of_member(result: Result, path: str, matched: re.Match[str]) -> tuple[Array, str]:
+def _of_member(result: ResultFile, path: str, matched: re.Match[str]) -> tuple[Array, str]:
     """One node, element or another member of a group."""
     member, each = matched["member"], Members.of(result, path)
     if member not in each.names:
         place = matched["place"].rpartition("/")[2]
         raise Fault(f"{each.kind or 'member'} {member} is not in {place}: {_few(each.names)}")
     at = each.names.index(member)
-    return result.history[path][:, at], f"{_description(result, path)} of {each.kind} {member}"
+    return result.complete_rows(f"history/{path}")[:, at], f"{_description(result, path)} of {each.kind} {member}"
 
 
-def _of_body(result: Result, path: str, matched: re.Match[str]) -> tuple[Array, str]:
+def _of_body(result: ResultFile, path: str, matched: re.Match[str]) -> tuple[Array, str]:
     """One body of a history that has one column for each."""
-    data, body = result.history[path], int(matched["body"])
+    data, body = result.complete_rows(f"history/{path}"), int(matched["body"])
     if data.ndim < 2 or body >= data.shape[1]:
         count = data.shape[1] if data.ndim > 1 else 0
         raise Fault(f"{path} has {count} bodies, counted from 0: there is no [{body}]")
     return data[:, body], f"{_description(result, path)}, body {body}"
 
 
-def _description(result: Result, path: str) -> str:
+def _description(result: ResultFile, path: str) -> str:
     """What a dataset says it is, without the explanation after a colon."""
     if path == "time":
         return path
@@ -194,7 +195,7 @@ def _description(result: Result, path: str) -> str:
     return str(text).partition(":")[0]
 
 
-def _alternatives(result: Result, path: str) -> str:
+def _alternatives(result: ResultFile, path: str) -> str:
     """What there is where the path leaves what exists."""
     there = ""
     for part in path.split("/"):

@@ -10,11 +10,9 @@ from dataclasses import dataclass, replace
 from itertools import count
 
 import numpy as np
-from numpy.typing import NDArray
+from stickslip.arrays import Array
 from stickslip.deck import PROCEDURES, Card, Deck
 from stickslip.errors import Fault
-
-Array = NDArray[np.float64]
 
 ANGLE = "6"
 """The direction of angles and moments."""

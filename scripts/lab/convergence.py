@@ -16,11 +16,11 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from stickslip.arrays import Array, Integers
 from stickslip.command import finish, positive, positive_integer
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 from lab.measured_run import Run, check_program, run
 from lab.sample_decks import Sample, examples, given, runner, verification_cases
@@ -80,8 +80,8 @@ class Convergence:
     """How the increments of a run converged: one row per increment, without the start."""
 
     time: Array
-    passes: NDArray[np.int64]
-    factorizations: NDArray[np.int64]
+    passes: Integers
+    factorizations: Integers
     cut: list[tuple[int, int]]
     """The increment, from 1, and the passes of each attempt that was cut back."""
     run: Run

@@ -12,11 +12,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 from rescale import Units, dimension
+from stickslip.arrays import Array, Integers
 from stickslip.deck import Deck
 from stickslip.result import OPEN
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 REPORTED_NEARBY = ("CONTACT_STATUS", "GAP", "min_gap")
 """Reported of nodes near a segment; how near depends on ways and passes of the increment."""
@@ -217,9 +215,9 @@ class Seen:
 class Order:
     """Places in the new file of what the old one has: nodes, cells, bodies."""
 
-    nodes: Numbers
-    cells: Numbers
-    bodies: Numbers
+    nodes: Integers
+    cells: Integers
+    bodies: Integers
 
     @classmethod
     def between(cls, old: Seen, new: Seen, change: Change) -> "Order":
@@ -242,8 +240,8 @@ class Order:
 
 
 def _places(
-    old: Numbers, new: Numbers, renumbered: dict[int, int] | None, tail: int, new_tail: int
-) -> Numbers:
+    old: Integers, new: Integers, renumbered: dict[int, int] | None, tail: int, new_tail: int
+) -> Integers:
     """Where the members of `old` are in `new`; the last `tail` ones are the last ones in both."""
     where = {int(label): i for i, label in enumerate(new)}
     labels = old[: len(old) - tail]
@@ -251,12 +249,12 @@ def _places(
     return np.array([*head, *range(len(new) - new_tail, len(new))], dtype=int)
 
 
-def _segments(seen: Seen) -> Numbers:
+def _segments(seen: Seen) -> Integers:
     elements = len(seen["model/element_labels"])
     return seen["VTKHDF/Connectivity"][seen["VTKHDF/Offsets"][elements] :].reshape(-1, 2)
 
 
-def _outlines(seen: Seen) -> list[Numbers]:
+def _outlines(seen: Seen) -> list[Integers]:
     """Nodes of each rigid surface in their order."""
     segments = _segments(seen)
     if not len(segments):

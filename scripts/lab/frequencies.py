@@ -10,10 +10,8 @@ from collections.abc import Sequence
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
+from stickslip.arrays import Array
 from stickslip.decks import GridMesh, disc, ring
-
-Array = NDArray[np.float64]
 
 YOUNG, POISSON, DENSITY = 1000.0, 0.3, 1.0
 MODES = 8

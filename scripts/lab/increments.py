@@ -16,10 +16,11 @@ from pathlib import Path
 
 import numpy as np
 from repository import ROOT
+from stickslip.arrays import Array
 from stickslip.command import finish, positive_integer
 from stickslip.deck import Deck
 from stickslip.errors import Fault, one_line
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 from lab.convergence import cut_attempts
 from lab.measured_run import check_program, run

@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 from repository import ROOT
 from rescale import Units, rescale
+from stickslip.arrays import Array
 from stickslip.command import finish, positive, positive_integer
 from stickslip.deck import Card, Deck
 from stickslip.errors import Fault, one_line
@@ -29,7 +30,7 @@ from stickslip.program import binary
 
 from lab import changed_decks as changed
 from lab.changed_decks import Unchangeable
-from lab.expected_results import Array, Change, Deviations, Seen, deviations
+from lab.expected_results import Change, Deviations, Seen, deviations
 from lab.measured_run import Run, run
 from lab.sample_decks import Sample, all_samples, given
 

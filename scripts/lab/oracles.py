@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from oracle.checks import broken
 from rescale import Units, Unscalable, rescale
+from stickslip.arrays import Array, Flags
 from stickslip.deck import Deck
 from stickslip.report.collect import Choice, collect_outline
 from stickslip.report.pack import Packed
@@ -26,7 +27,7 @@ from stickslip.result import Result
 
 from lab import changed_decks as changed
 from lab.changed_decks import Unchangeable
-from lab.expected_results import Array, Change, Seen, deviations
+from lab.expected_results import Change, Seen, deviations
 from lab.invariance import rotation
 from lab.levels import INELASTIC, INTERACTIONS, PROCEDURES, SLOW, STATIC
 from lab.restart_equality import contents
@@ -222,7 +223,7 @@ def _is_of_contacts(name: str) -> bool:
 
 
 def _other_contact(
-    seen: Seen, grown: Mapping[str, NDArray[np.float64]], small: float
+    seen: Seen, grown: Mapping[str, Array], small: float
 ) -> float:
     """When noise first changes a contact.
 
@@ -236,7 +237,7 @@ def _other_contact(
     return min((float(each[0]) for each in times if len(each)), default=np.inf)
 
 
-def _has_answer(seen: Seen, name: str) -> NDArray[np.bool_]:
+def _has_answer(seen: Seen, name: str) -> Flags:
     """Rows of a history or field that have one answer.
 
     Where a surface touches itself, the order of its faces decides which side is slave, and forces on bodies alone have a sign.

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.random import Generator
+from stickslip.arrays import Array
 from stickslip.decks import GridMesh, card
-from stickslip.result import Array
 
 from lab import scene_shapes as shapes
 from lab.scene_shapes import Shape

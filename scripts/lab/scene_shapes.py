@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 Corners = tuple[int, int, int, int]
 Curve = Callable[[Array], Array]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::{FrictionResults, IncrementReport, NodalResults, State};
 use crate::elements::ElementResult;
 use crate::model::{Frames, Model, Step};
@@ -39,9 +39,9 @@ impl<'a> FrameSchedule<'a> {
         }
     }
 
-    /// Carries how far it has come.
-    pub(super) fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => FrameSchedule { step, next, increments; steps })
+    /// Transfers how far it has come.
+    pub(super) fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => FrameSchedule { step, next, increments; steps })
     }
 
     /// Number of the step, from 1, and its increments so far.
@@ -148,12 +148,12 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Carries all of it.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers all of it.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let mut of_elements = self.elements.to_vec();
-        archive.carry(&mut of_elements)?;
+        archive.transfer(&mut of_elements)?;
         self.elements = of_elements.into();
-        carry_fields!(archive, self => Frame { index, time, state, nodal; elements })
+        transfer_fields!(archive, self => Frame { index, time, state, nodal; elements })
     }
 
     /// Copies the results of an increment, reusing the allocated memory.

@@ -11,7 +11,7 @@ use super::model_group::{body_times, contact_names};
 use super::run_record::phases;
 use super::strain::StrainWatch;
 use super::warnings::{Findings, Touches, never_closed};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::{
     Cause, Course, Cutback, IncrementReport, Outcome, RunSummary, SolverCounts, Touch,
 };
@@ -73,9 +73,9 @@ impl Monitor {
         }
     }
 
-    /// Carries what is known of the run, but for the kinds of cutbacks that the log has explained.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Monitor {
+    /// Transfers what is known of the run, but for the kinds of cutbacks that the log has explained.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Monitor {
             [strain] balance, closed, touches, dt, time, failed_attempts, cutbacks, landings, checks, held; kinds
         })
     }

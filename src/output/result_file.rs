@@ -117,9 +117,9 @@ impl<'m> ResultFile<'m> {
         }
     }
 
-    /// Carries how far the file is written, after [`Self::write_through`]; what is read is copied from the `earlier`
+    /// Transfers how far the file is written, after [`Self::write_through`]; what is read is copied from the `earlier`
     /// file of the same run, with its id.
-    pub fn carry(
+    pub fn transfer(
         &mut self,
         archive: &mut Archive,
         earlier: Option<(&Path, &str)>,
@@ -129,10 +129,12 @@ impl<'m> ResultFile<'m> {
             self.history.written(),
             self.checks.written(),
         ];
-        archive.carry(&mut written).map_err(io::Error::other)?;
-        archive.carry(&mut self.frames).map_err(io::Error::other)?;
+        archive.transfer(&mut written).map_err(io::Error::other)?;
         archive
-            .carry(&mut self.frame_time)
+            .transfer(&mut self.frames)
+            .map_err(io::Error::other)?;
+        archive
+            .transfer(&mut self.frame_time)
             .map_err(io::Error::other)?;
         let Some((earlier, id)) = earlier else {
             return Ok(());

@@ -1,7 +1,7 @@
 //! The largest principal strain of a run, compared with the range of the material law.
 
 use super::format::{general, scientific};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::IncrementReport;
 use crate::elements::Strained;
 use crate::materials::NeoHooke;
@@ -69,9 +69,9 @@ pub(crate) struct StrainWatch {
 }
 
 impl StrainWatch {
-    /// Carries the largest strain so far.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => StrainWatch { most, increment, warned; limited })
+    /// Transfers the largest strain so far.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => StrainWatch { most, increment, warned; limited })
     }
 
     /// Follows the elements of `model`.

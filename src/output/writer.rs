@@ -120,7 +120,7 @@ impl<'a> ResultWriter<'a> {
         let files = self.claim.files().clone();
         let mut archive = Archive::Reading(&checkpoint.files);
         let earlier = (files.result.as_path(), checkpoint.origin.run.as_str());
-        let written = self.carry(&mut archive, Some(earlier), Written::default())?;
+        let written = self.transfer(&mut archive, Some(earlier), Written::default())?;
         self.continued = Some(StatusFile::go_on(&files.status, self.model, written)?);
         Ok(())
     }
@@ -131,7 +131,8 @@ impl<'a> ResultWriter<'a> {
     /// The checkpoint is of another model; those of the file system.
     pub fn begin_at(&mut self, checkpoint: &Checkpoint) -> io::Result<()> {
         let mut archive = Archive::Reading(&checkpoint.files);
-        self.carry_state(&mut archive).map_err(io::Error::other)?;
+        self.transfer_state(&mut archive)
+            .map_err(io::Error::other)?;
         let mut report = self.numbers.clone();
         report.state = self.last.state.clone();
         report.nodal = self.last.nodal.clone();
@@ -144,26 +145,26 @@ impl<'a> ResultWriter<'a> {
         self.publish()
     }
 
-    /// Carries how far the run has come, and the last good state.
-    fn carry_state(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        self.schedule.carry(archive)?;
-        self.monitor.carry(archive)?;
-        self.last.carry(archive)?;
-        archive.carry(&mut self.numbers)
+    /// Transfers how far the run has come, and the last good state.
+    fn transfer_state(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        self.schedule.transfer(archive)?;
+        self.monitor.transfer(archive)?;
+        self.last.transfer(archive)?;
+        archive.transfer(&mut self.numbers)
     }
 
-    /// Carries how far the files are written; gives it of the status file.
-    fn carry(
+    /// Transfers how far the files are written; gives it of the status file.
+    fn transfer(
         &mut self,
         archive: &mut Archive,
         earlier: Option<(&Path, &str)>,
         mut status: Written,
     ) -> io::Result<Written> {
-        let carried = (self.carry_state(archive))
-            .and_then(|()| archive.carry(&mut self.is_last_written))
-            .and_then(|()| archive.carry(&mut status));
+        let carried = (self.transfer_state(archive))
+            .and_then(|()| archive.transfer(&mut self.is_last_written))
+            .and_then(|()| archive.transfer(&mut status));
         carried.map_err(io::Error::other)?;
-        self.result.carry(archive, earlier)?;
+        self.result.transfer(archive, earlier)?;
         Ok(status)
     }
 
@@ -176,7 +177,7 @@ impl<'a> ResultWriter<'a> {
         self.result.write_through()?;
         self.result.sync()?;
         let mut archive = Archive::new();
-        self.carry(&mut archive, None, written)?;
+        self.transfer(&mut archive, None, written)?;
         let checkpoint = Checkpoint {
             program: self.checkpoints.program.clone(),
             origin: self.checkpoints.origin.clone(),

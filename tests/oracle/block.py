@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from oracle.tensors import cofactor_of, determinant_of, identity_times, mean_of, trace_of
-from stickslip.result import Array, Integers
+from stickslip.arrays import Array, Integers
 
 PATH, PATH_WEIGHTS = np.polynomial.legendre.leggauss(5)
 """Gauss points on the way from the start to the end of an increment."""

@@ -8,12 +8,13 @@ from oracle.block import SAINT_VENANT_KIRCHHOFF
 from oracle.elements import PLASTICITY, Elements, unknown_types
 from oracle.rings import RingBlock
 from oracle.tensors import EPS
+from stickslip.arrays import Array, Flags
 from stickslip.certificate.certify import Certificate, certify
 from stickslip.certificate.check import Checks
 from stickslip.certificate.contacts import contacts
 from stickslip.certificate.increments import EULER, STATIC, Increment, Increments
 from stickslip.frame import Frame
-from stickslip.result import Array, Flags, Result
+from stickslip.result import Result
 
 TEXTS = {
     "mass": "masses of the bodies, part of the largest",

@@ -6,7 +6,8 @@ from oracle.block import NEO_HOOKE, POLYNOMIAL, SAINT_VENANT_KIRCHHOFF, Block
 from oracle.shapes import gradients, integration_rule, mass_rule, shape_functions
 from oracle.types import TYPES
 from oracle.untold import UntoldBlock
-from stickslip.result import Array, Integers, Result
+from stickslip.arrays import Array, Integers
+from stickslip.result import Result
 
 PLASTICITY = 3
 """Law of metals among those of /model/materials/law."""

@@ -8,7 +8,7 @@ import numpy as np
 from oracle.block import LAST_STEP, PATH, PATH_WEIGHTS, REST, SAINT_VENANT_KIRCHHOFF, Block
 from oracle.shapes import CORNERS
 from oracle.tensors import EPS
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 PATTERN = np.array([1.0, -1.0, 1.0, -1.0])
 """Hourglass pattern of the nodes."""

@@ -4,7 +4,7 @@ import numpy as np
 
 from oracle.block import Block
 from oracle.enhanced import patterns
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 
 class ReducedBlock(Block):

@@ -7,7 +7,7 @@ import numpy as np
 
 from oracle.block import NEO_HOOKE, PATH, PATH_WEIGHTS, POLYNOMIAL, SAINT_VENANT_KIRCHHOFF, Block
 from oracle.tensors import cofactor_of, determinant_of, identity_times, mean_of, trace_of
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 Strain = tuple[Array, Array]
 

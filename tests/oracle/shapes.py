@@ -3,7 +3,7 @@
 import numpy as np
 
 from oracle.tensors import determinant_of
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 """Corners of the reference square."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 EPS = float(np.finfo(np.float64).eps)
 

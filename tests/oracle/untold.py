@@ -7,7 +7,7 @@ import numpy as np
 
 from oracle.block import Block
 from oracle.tensors import mean_of
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 
 class UntoldBlock(Block):

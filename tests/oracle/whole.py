@@ -10,7 +10,7 @@ from oracle.enhanced import DIFFERENCE, MOST_STEPS, PATTERN, Beside
 from oracle.rings import RingBlock, Strain, work_of
 from oracle.shapes import CORNERS
 from oracle.tensors import EPS, cofactor_of, determinant_of, identity_times, mean_of, trace_of
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 
 def _plus(a: Strain, b: Strain, factor: float = 1.0) -> Strain:

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 from oracle.checks import assert_holds
 from stickslip import Deck, program
+from stickslip.arrays import Array
 from stickslip.mesh import Mesh
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 ELASTIC = "*ELASTIC\n1000., 0.3"
 NEO_HOOKE = "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3"

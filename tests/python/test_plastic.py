@@ -8,7 +8,8 @@ import pytest
 from bodies import SCHEMES, bodies, end, grid, keeps_energy_and_momenta, solved, with_section
 from oracle.checks import assert_holds
 from stickslip import Deck
-from stickslip.result import Array, Result
+from stickslip.arrays import Array
+from stickslip.result import Result
 from test_axisymmetric import ring
 
 YOUNG, POISSON = 1000.0, 0.3

@@ -19,8 +19,8 @@ from bodies import (
     solved,
 )
 from oracle.shapes import gradients, integration_rule, shape_functions
+from stickslip.arrays import Array
 from stickslip.mesh import Mesh
-from stickslip.result import Array
 
 
 def bent(tmp_path: Path, kind: str, mesh: Mesh, force: float, *constants: float) -> Array:

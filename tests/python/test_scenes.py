@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from lab import random_scenes, scene_shapes
 from lab.scenes import GAIN, Trial
+from stickslip.arrays import Array
 from stickslip.penetration.outlines import LIMIT
-from stickslip.result import Array
 
 INCREMENTS = 100
 SCENES = [("falling", seed) for seed in (0, 2, 3, 4, 5, 6, 7, 8, 9, 10)]

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from bodies import ELASTIC, grid
 from stickslip import Deck, program
-from stickslip.result import Array, Result
+from stickslip.arrays import Array
+from stickslip.result import Result
 from test_surface_to_surface import (
     PRESSED,
     QUADRATIC,

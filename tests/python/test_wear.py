@@ -8,8 +8,9 @@ import pytest
 from conftest import ROOT, Job
 from decks import parse
 from oracle.checks import assert_holds
+from stickslip.arrays import Array
 from stickslip.deck import Deck
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 DECKS = ROOT / "tests" / "decks"
 

@@ -10,10 +10,11 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
 from stickslip.plot.page import Legends, Page  # noqa: E402
 from stickslip.plot.motion import shades, shown_at, time_legend  # noqa: E402
-from pointmass import Array, PointMass  # noqa: E402
+from pointmass import PointMass  # noqa: E402
 from stickslip.plot.shapes import draw_overlay, limits  # noqa: E402
 from stickslip.result import Result  # noqa: E402
 

@@ -7,9 +7,7 @@ min(2 mu |v_n|, |v_t|).
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from stickslip.arrays import Array
 
 
 @dataclass(frozen=True)

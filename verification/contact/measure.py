@@ -9,10 +9,11 @@ sys.path.insert(0, str(HERE.parent))
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from stickslip.arrays import Array  # noqa: E402
 from stickslip.penetration import intrusion as penetration  # noqa: E402
 from stickslip.plot import style  # noqa: E402
 from stickslip.plot.motion import Look, panels, shown_at  # noqa: E402
-from stickslip.result import Array, Result  # noqa: E402
+from stickslip.result import Result  # noqa: E402
 
 MOTION = {
     "rings_mu02": (0.0, 0.6, 1.2, 2.0, 3.0, 4.0),

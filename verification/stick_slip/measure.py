@@ -11,8 +11,9 @@ sys.path.insert(0, str(HERE.parent))
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
-from stickslip.result import Array, Result  # noqa: E402
+from stickslip.result import Result  # noqa: E402
 
 made = runner.load(HERE / "generate.py")
 

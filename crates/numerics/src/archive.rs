@@ -1,5 +1,5 @@
-//! Archive of what a run carries from increment to increment: values one after the other, exact in bits. One function
-//! of each structure lists what it carries, both to write and to read it, so that the two cannot differ. docs/restart.md.
+//! Archive of what a run hands on from increment to increment: values one after the other, exact in bits. One function
+//! `transfer` of each structure lists these values, both to write and to read them, so that the two cannot differ. docs/restart.md.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -26,20 +26,20 @@ pub enum ArchiveError {
     Factors,
 }
 
-/// Carries the fields of a structure: those in brackets by their own functions, those behind the semicolon not at all. A
-/// field that is not named is an error of the compiler.
+/// Transfers the fields of a structure: those in brackets by their own functions `transfer`, those behind the semicolon not at all.
+/// A field that is not named is an error of the compiler.
 #[macro_export]
-macro_rules! carry_fields {
+macro_rules! transfer_fields {
     ($archive:ident, $of:expr => $type:ident {
         $([$($part:ident),*])? $($field:ident),* $(; $($left:ident),*)?
     }) => {{
         let $type { $($($part,)*)? $($field,)* $($($left: _,)*)? } = $of;
-        $($($part.carry($archive)?;)*)?
-        $($archive.carry($field)?;)*
+        $($($part.transfer($archive)?;)*)?
+        $($archive.transfer($field)?;)*
         Ok::<(), $crate::archive::ArchiveError>(())
     }};
 }
-pub use carry_fields;
+pub use transfer_fields;
 
 impl Archive<'_> {
     /// An archive to write.
@@ -64,7 +64,7 @@ impl Archive<'_> {
     ///
     /// # Errors
     /// What is read is no such value.
-    pub fn carry<T: Serialize + DeserializeOwned>(
+    pub fn transfer<T: Serialize + DeserializeOwned>(
         &mut self,
         value: &mut T,
     ) -> Result<(), ArchiveError> {
@@ -85,12 +85,12 @@ impl Archive<'_> {
     ///
     /// # Errors
     /// What is read are not as many such values.
-    pub fn carry_values<T: Serialize + DeserializeOwned + Clone>(
+    pub fn transfer_values<T: Serialize + DeserializeOwned + Clone>(
         &mut self,
         values: &mut [T],
     ) -> Result<(), ArchiveError> {
         let mut all = values.to_vec();
-        self.carry(&mut all)?;
+        self.transfer(&mut all)?;
         if all.len() != values.len() {
             return Err(ArchiveError::Size);
         }
@@ -114,19 +114,19 @@ mod tests {
         let numbers = [0.1, -0.0, f64::NAN, f64::INFINITY, 5e-324, 1e300];
         let mut archive = Archive::new();
         let (mut values, mut more) = (numbers, Some(vec![(3_usize, "text".to_owned())]));
-        archive.carry_values(&mut values).expect("written");
-        archive.carry(&mut more).expect("written");
+        archive.transfer_values(&mut values).expect("written");
+        archive.transfer(&mut more).expect("written");
         let bytes = archive.into_bytes();
         let mut archive = Archive::Reading(&bytes);
         (values, more) = ([0.0; 6], None);
-        archive.carry_values(&mut values).expect("read");
-        archive.carry(&mut more).expect("read");
+        archive.transfer_values(&mut values).expect("read");
+        archive.transfer(&mut more).expect("read");
         assert_eq!(values.map(f64::to_bits), numbers.map(f64::to_bits));
         assert_eq!(more, Some(vec![(3, "text".to_owned())]));
         let mut values = [0.0; 5];
-        let other = Archive::Reading(&bytes).carry_values(&mut values);
+        let other = Archive::Reading(&bytes).transfer_values(&mut values);
         assert_eq!(other, Err(ArchiveError::Size));
-        let cut = Archive::Reading(&bytes[..20]).carry_values(&mut values);
+        let cut = Archive::Reading(&bytes[..20]).transfer_values(&mut values);
         assert_eq!(cut, Err(ArchiveError::Content));
     }
 }

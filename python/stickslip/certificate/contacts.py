@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.arrays import Array, Integers
 from stickslip.bulges import Bulges, straight
-from stickslip.result import Array, Integers, Result
+from stickslip.result import Result
 
 BEYOND = 1.0
 """A node belongs to the line of a segment as far as this part of a length beyond its ends, and as far

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.certificate.check import Check, Checks
-from stickslip.result import Array, Flags, Integers, Result
+from stickslip.result import Result
 
 EPS = float(np.finfo(np.float64).eps)
 

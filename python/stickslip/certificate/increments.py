@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.frame import Frame
-from stickslip.result import Array, Flags, Integers, Result
+from stickslip.result import Result
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -85,7 +86,7 @@ class Increments:
         """All frames with their increments; none where no increment has the time of a frame."""
         last: tuple[int, Array] | None = None
         for index in range(len(self.result.frames)):
-            frame = ReadOnce(self.result, index)
+            frame = ReadOnce(self.result.frames, index)
             rows = np.flatnonzero(self.time == frame.time)
             if len(rows) == 0:
                 yield frame, None

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from stickslip.arrays import Array, Integers
 from stickslip.bulges import Bulges
 from stickslip.certificate.check import Check, Checks
 from stickslip.certificate.contacts import Contact
@@ -17,7 +18,7 @@ from stickslip.penetration.intrusion import (
 )
 from stickslip.penetration.outlines import Outline, outlines
 from stickslip.penetration.profiles import Profile, profiles
-from stickslip.result import Array, Integers, Result
+from stickslip.result import Result
 
 DEPTH = 1e-9
 """Depth of a slave node, in lengths of the edge, that is round-off."""

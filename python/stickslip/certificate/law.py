@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.arrays import Array, Integers
 from stickslip.certificate.check import Checks
 from stickslip.certificate.contacts import (
     BEYOND,
@@ -19,7 +20,7 @@ from stickslip.certificate.fits import REASON, Fits
 from stickslip.certificate.increments import ENERGY_MOMENTUM, EPS, STATIC, Increment, Increments
 from stickslip.certificate.means import Mean, Means
 from stickslip.frame import Frame
-from stickslip.result import OPEN, STICK, Array, Integers
+from stickslip.result import OPEN, STICK
 
 GAP = 1e-9
 """Gap of a closed pair in lengths of its segment; the solver stops at 1e-10."""

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from stickslip.arrays import Array, Integers
 from stickslip.bulges import Bulges
 from stickslip.certificate.contacts import Contact
-from stickslip.result import Array, Integers
 
 CORNER = 0.866
 """Cosine of the turn from which on a surface has a corner."""

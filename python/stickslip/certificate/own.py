@@ -4,7 +4,8 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
-from stickslip.result import Array, Result
+from stickslip.arrays import Array
+from stickslip.result import Result
 from stickslip.whole import whole
 
 

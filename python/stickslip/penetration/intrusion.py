@@ -24,10 +24,10 @@ from pathlib import Path
 import numpy as np
 
 from stickslip import command
+from stickslip.arrays import Array, Integers
 from stickslip.bulges import Bulges
 from stickslip.penetration.outlines import (
     LIMIT,
-    Integers,
     Outline,
     between_chord_and_curve,
     closed_hollow,
@@ -37,7 +37,7 @@ from stickslip.penetration.outlines import (
     winding,
 )
 from stickslip.penetration.profiles import Profile, nearest, passed, profiles, sunk
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 TIE = 1e-9
 """Part of a distance by which others are the same."""

@@ -4,13 +4,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.bulges import Bulges, Curves, curves, of_edges
 from stickslip.errors import Fault
-from stickslip.result import Array, Result
-
-Integers = NDArray[np.int64]
+from stickslip.result import Result
 
 LIMIT = 1e-9
 """Depth in element sizes from which a node counts as inside."""
@@ -74,7 +72,7 @@ def _exact_side(start: tuple[float, ...], end: tuple[float, ...], at: tuple[floa
     return (area > 0) - (area < 0)
 
 
-def winding(point: Array, start: Array, end: Array, counted: NDArray[np.bool_]) -> Integers:
+def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
     """How often edges wind around points, by the crossings of a ray to the right of each point.
 
     `counted` [points, edges] says which edges count for which point. For points on an edge it is
@@ -91,14 +89,14 @@ def winding(point: Array, start: Array, end: Array, counted: NDArray[np.bool_]) 
     return total
 
 
-def ray_starts_inside(point: Array, before: Array, after: Array) -> NDArray[np.bool_]:
+def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
     """Whether the ray to the right of an outline's node starts in the body's angle there.
 
     The ray lies above the node by less than anything: its direction is (1, 0+).
     """
     one, two = after - point, before - point
 
-    def rising(direction: Array) -> NDArray[np.bool_]:
+    def rising(direction: Array) -> Flags:
         """Whether the ray is to the right of a direction."""
         level = direction[:, 1] == 0.0
         return np.where(level, direction[:, 0] < 0.0, direction[:, 1] > 0.0)
@@ -131,7 +129,7 @@ def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulg
     return np.where(over & out, 1, np.where(over & within, -1, 0))
 
 
-def _across(point: Array, start: Array, end: Array, bulges: Bulges) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _across(point: Array, start: Array, end: Array, bulges: Bulges) -> tuple[Array, Array, Flags]:
     """Distances of points out of the body from chords, those of the curves there, and whether the points are over the
     edges [points, edges]."""
     along = end - start

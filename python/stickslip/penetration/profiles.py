@@ -10,13 +10,11 @@ node on its left. What has come around the ends of an open profile is not inside
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.bulges import Bulges, curves, of_edges
-from stickslip.penetration.outlines import LIMIT, Integers, Outline, distances, side, winding
-from stickslip.result import Array, Result
-
-Flags = NDArray[np.bool_]
+from stickslip.penetration.outlines import LIMIT, Outline, distances, side, winding
+from stickslip.result import Result
 
 
 @dataclass(frozen=True)

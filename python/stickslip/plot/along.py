@@ -14,19 +14,19 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from stickslip import command
+from stickslip.arrays import Array, Integers
 from stickslip.errors import Fault
 from stickslip.plot import style
 from stickslip.plot.motion import chosen_times, shown_at
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 MOST = 8
 """More lines of nodes than this are refused: they would find no room."""
 
 
-def chains(results: Result, nodes: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def chains(results: Result, nodes: Integers) -> list[Integers]:
     """The given nodes as lines along the outlines, body on the left; closed ones end where they begin."""
     chosen = np.isin(results.boundary, nodes).all(axis=1)
     following = {int(a): int(b) for a, b in results.boundary[chosen]}
@@ -53,7 +53,7 @@ def field(results: Result, name: str, frame: int) -> Array:
     raise Fault(f"{path} is a {kind} the component")
 
 
-def abscissa(results: Result, line: NDArray[np.int64], frame: int, against: str) -> Array:
+def abscissa(results: Result, line: Integers, frame: int, against: str) -> Array:
     """Length along the line in the undeformed mesh, or the current x or y."""
     if against != "length":
         return results.frames[frame].positions[line, "xy".index(against)]
@@ -62,7 +62,7 @@ def abscissa(results: Result, line: NDArray[np.int64], frame: int, against: str)
 
 
 def draw(
-    results: Result, lines: list[NDArray[np.int64]], frames: Sequence[int], name: str, against: str
+    results: Result, lines: list[Integers], frames: Sequence[int], name: str, against: str
 ) -> Figure:
     """Axes for each line, a curve for each frame."""
     figure, axes = plt.subplots(

@@ -7,7 +7,8 @@ from functools import partial
 import numpy as np
 from matplotlib.colors import Normalize
 
-from stickslip.result import Array, Result
+from stickslip.arrays import Array
+from stickslip.result import Result
 
 Shown = tuple[Result, int]
 """A result and one of its frames."""

@@ -27,10 +27,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from stickslip import command
+from stickslip.arrays import Array
 from stickslip.errors import Fault
 from stickslip.plot import style
 from stickslip.quantity import find, listed
-from stickslip.result import Array, Result
+from stickslip.result import Result
 
 LEDGER = (
     ("kinetic", "kinetic", 1),

@@ -22,12 +22,13 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from stickslip import command
+from stickslip.arrays import Array
 from stickslip.errors import Fault
 from stickslip.plot import style
 from stickslip.plot.fields import FIELDS, Colouring, Shown
 from stickslip.plot.page import Legends, Page
 from stickslip.plot.shapes import VECTORS, Arrows, draw_overlay, draw_shape, limits, status_legend
-from stickslip.result import Array, Result
+from stickslip.result import Result
 from stickslip.whole import whole
 
 MOST = 100

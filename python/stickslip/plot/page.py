@@ -13,7 +13,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
-from stickslip.result import Array
+from stickslip.arrays import Array
 
 WIDTH, HEIGHT = 11.0, 7.7
 """Largest page that is filled; one with very many panels is higher."""

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.collections import Collection, LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.plot.fields import Colouring, Shown
-from stickslip.result import SLIP, STICK, Array, Result
+from stickslip.result import SLIP, STICK, Result
 
 BACKGROUND, EDGE, MARK, ARROW = "#eef1f4", "#40464d", "#d1495b", "#111111"
 
@@ -84,7 +84,7 @@ class Arrows:
         vector = results.frames[frame][self.name][results.drawn]
         return results.frames[frame].positions[results.drawn] + vector / self.per_length
 
-    def _thinned(self, nodes: NDArray[np.int64], position: Array) -> NDArray[np.int64]:
+    def _thinned(self, nodes: Integers, position: Array) -> Integers:
         """One node of each square of a lattice."""
         squares = np.floor(position[nodes] / self.spacing).astype(np.int64)
         return nodes[np.unique(squares, axis=0, return_index=True)[1]]
@@ -187,7 +187,7 @@ def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) ->
     farthest = np.array([way[results.body == body].max() for body in bodies])
     moving = (farthest > 0.01 * way.max())[results.body]
 
-    def draw(frame: int, select: NDArray[np.bool_], face: object, edge: object) -> None:
+    def draw(frame: int, select: Flags, face: object, edge: object) -> None:
         position = results.frames[frame].positions
         cells = [position[cell] for cell in results.outlines if select[cell[0]]]
         outline = position[[side for side in results.boundary if select[side[0]]]]

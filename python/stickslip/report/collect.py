@@ -6,17 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.arrays import Array, Integers
 from stickslip.certificate.certify import certify
 from stickslip.certificate.own import own_checks
 from stickslip.errors import Fault
 from stickslip.quantity import Members, components
 from stickslip.report.pack import Packed
 from stickslip.result import Result
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 EDGE_PARTS = 2000.0
 """Displacements are accurate to a part of the mesh's shortest usual edge."""
@@ -41,7 +38,7 @@ class Choice:
     """At most so many frames, evenly chosen; None for all."""
 
 
-def _field_values(result: Result, name: str, frames: Whole) -> Array:
+def _field_values(result: Result, name: str, frames: Integers) -> Array:
     """A field [frames, nodes or cells, ...] of the chosen frames."""
     return np.stack([result.frames[int(frame)].full(name) for frame in frames])
 
@@ -100,7 +97,7 @@ def collect_outline(path: Path, packed: Packed, choice: Choice) -> dict[str, Any
 # The run.
 
 
-def _record(result: Result, frames: Whole) -> dict[str, Any]:
+def _record(result: Result, frames: Integers) -> dict[str, Any]:
     """Name, times of the frames and record of the run."""
     record = {name: _plain(value) for name, value in result.run.items() if name != "deck"}
     return {
@@ -138,7 +135,7 @@ def _heading(deck: str) -> str:
     return ""
 
 
-def _chosen(frames: int, most: int | None) -> Whole:
+def _chosen(frames: int, most: int | None) -> Integers:
     """Indices of at most `most` frames, evenly chosen, the first and the last among them."""
     if most is None or frames <= most:
         return np.arange(frames)
@@ -149,22 +146,22 @@ def _chosen(frames: int, most: int | None) -> Whole:
 
 
 @dataclass(frozen=True)
-class Mesh:
+class DrawnMesh:
     """Elements and what is drawn of them."""
 
-    connectivity: Whole
+    connectivity: Integers
     """Node indices around all elements, one element after the other, nodes between corners in their places."""
-    offsets: Whole
+    offsets: Integers
     """Where each element's nodes start [E + 1]."""
-    outline: Whole
+    outline: Integers
     """Edges of one element only [., 2], the body on the left."""
-    inner: Whole
+    inner: Integers
     """The other edges, each once [., 2]."""
-    rigid: Whole
+    rigid: Integers
     """Segments of rigid surfaces [., 2]."""
 
 
-def _mesh(result: Result) -> Mesh:
+def _mesh(result: Result) -> DrawnMesh:
     connectivity = np.concatenate([*result.outlines, np.empty(0, np.int64)])
     offsets = np.concatenate([[0], np.cumsum([len(one) for one in result.outlines], dtype=np.int64)])
     following = np.arange(1, len(connectivity) + 1)
@@ -172,7 +169,7 @@ def _mesh(result: Result) -> Mesh:
     edges = np.stack([connectivity, connectivity[following]], axis=1)
     ordered = np.sort(edges, axis=1)
     _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
-    return Mesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], result.rigid)
+    return DrawnMesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], result.rigid)
 
 
 def _middle(result: Result) -> Array:
@@ -181,7 +178,7 @@ def _middle(result: Result) -> Array:
     return 0.5 * (coordinates.min(axis=0) + coordinates.max(axis=0))
 
 
-def _pack_mesh(result: Result, mesh: Mesh, packed: Packed) -> dict[str, Any]:
+def _pack_mesh(result: Result, mesh: DrawnMesh, packed: Packed) -> dict[str, Any]:
     coordinates = result.coordinates
     middle = _middle(result)
     return {
@@ -202,7 +199,7 @@ def _pack_mesh(result: Result, mesh: Mesh, packed: Packed) -> dict[str, Any]:
 
 
 def _motion(
-    result: Result, frames: Whole, mesh: Mesh, only: Whole | None, packed: Packed
+    result: Result, frames: Integers, mesh: DrawnMesh, only: Integers | None, packed: Packed
 ) -> dict[str, Any]:
     """Displacements [frames, 2 nodes] of all nodes or some."""
     displacement = _field_values(result, "U", frames)[:, :, :2]
@@ -225,7 +222,7 @@ COMPONENTS = {"U": 2, "V": 2, "A": 2, "RF": 2, "CONTACT_FORCE": 2, "CF": 2}
 
 
 def _fields(
-    result: Result, frames: Whole, names: tuple[str, ...] | None, packed: Packed
+    result: Result, frames: Integers, names: tuple[str, ...] | None, packed: Packed
 ) -> list[dict[str, Any]]:
     """Fields [frames, places components]; places without any value are left out."""
     for name in names or ():
@@ -267,7 +264,7 @@ def _field(kind: str, name: str, attributes: Any, values: Array, packed: Packed)
 # Surfaces.
 
 
-def _contact_nodes(result: Result) -> Whole:
+def _contact_nodes(result: Result) -> Integers:
     """Nodes that carry a contact pressure in a frame."""
     known = np.zeros(len(result.coordinates), dtype=bool)
     for frame in result.frames:
@@ -275,7 +272,7 @@ def _contact_nodes(result: Result) -> Whole:
     return np.flatnonzero(known)
 
 
-def _surfaces(result: Result, mesh: Mesh) -> list[dict[str, Any]]:
+def _surfaces(result: Result, mesh: DrawnMesh) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
     A chain that is closed begins where nothing presses it, so that what is pressed is in one piece.
@@ -309,7 +306,7 @@ def _surfaces(result: Result, mesh: Mesh) -> list[dict[str, Any]]:
     return sorted(found, key=lambda surface: -surface["largest"])
 
 
-def _chains(edges: Whole) -> list[list[int]]:
+def _chains(edges: Integers) -> list[list[int]]:
     """Ways along the edges [., 2] from start to end; a closed one ends where it starts."""
     following: dict[int, list[int]] = {}
     for start, end in edges.tolist():
@@ -377,7 +374,7 @@ def _columns(each: Members, shape: tuple[int, ...]) -> list[str]:
     return [", ".join(filter(None, pair)) for pair in itertools.product(of, of_each)]
 
 
-def _thinned(values: Array, parts: Whole | None) -> Array:
+def _thinned(values: Array, parts: Integers | None) -> Array:
     """The smallest and the largest value of each part of the rows, in their order."""
     if parts is None:
         return values

@@ -18,8 +18,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[Any]
-
 FINE = 5e-4
 """Relative distance of neighbouring values of the curved map."""
 
@@ -36,7 +34,7 @@ class Packed:
 
     blobs: list[str] = field(default_factory=list)
 
-    def linear(self, values: Array, step: float) -> dict[str, Any]:
+    def linear(self, values: NDArray[Any], step: float) -> dict[str, Any]:
         """Values [rows, columns] that need an absolute accuracy; there may be no NaN."""
         largest = float(np.abs(values).max(initial=0.0))
         step = max(step, largest / LARGEST_WHOLE)
@@ -47,11 +45,11 @@ class Packed:
         )
         return self._add(whole.astype(np.int32), {"map": "linear", "step": step})
 
-    def whole(self, values: Array) -> dict[str, Any]:
+    def whole(self, values: NDArray[Any]) -> dict[str, Any]:
         """Whole numbers [rows, columns] below 2^30."""
         return self._add(np.asarray(values, dtype=np.int32), {"map": "linear", "step": 1})
 
-    def curved(self, values: Array) -> dict[str, Any]:
+    def curved(self, values: NDArray[Any]) -> dict[str, Any]:
         """Values [rows, columns] that need a relative accuracy; NaN and infinity become NaN."""
         values = np.asarray(values, dtype=np.float64)
         finite = np.isfinite(values)
@@ -70,7 +68,7 @@ class Packed:
             whole.astype(np.int32), {"map": "curved", "small": small, "fine": FINE, "none": none}
         )
 
-    def bits(self, values: Array) -> dict[str, Any]:
+    def bits(self, values: NDArray[Any]) -> dict[str, Any]:
         """Values [rows, columns] as float32."""
         return self._add(np.ascontiguousarray(values, dtype="<f4").view(np.int32), {"map": "bits"})
 

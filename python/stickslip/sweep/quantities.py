@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.history import Array
 from stickslip.result import Result
 
 REDUCTIONS: dict[str, Callable[[Array], np.floating]] = {

@@ -91,19 +91,19 @@ impl Compliance {
         self.inverses.clear();
     }
 
-    /// Carries the rotation and the unknowns at which the inverse is known; what is read is computed anew by the
+    /// Transfers the rotation and the unknowns at which the inverse is known; what is read is computed anew by the
     /// `solver`, the same bits.
     ///
     /// # Errors
     /// What is read is of another model.
-    pub fn carry(
+    pub fn transfer(
         &mut self,
         archive: &mut Archive,
         solver: &mut CheckedSolver,
     ) -> Result<(), ArchiveError> {
-        self.map.carry(archive)?;
-        archive.carry(&mut self.rotation)?;
-        archive.carry_values(&mut self.groups)?;
+        self.map.transfer(archive)?;
+        archive.transfer(&mut self.rotation)?;
+        archive.transfer_values(&mut self.groups)?;
         let lists = |blocks: &Vec<InverseBlock>| {
             let list = |block: &InverseBlock| (block.group, block.unknowns.clone());
             blocks.iter().map(list).collect::<Vec<_>>()
@@ -112,7 +112,7 @@ impl Compliance {
         let mut lists: Vec<_> = scopes
             .map(|(scope, blocks)| (scope.clone(), lists(blocks)))
             .collect();
-        archive.carry(&mut lists)?;
+        archive.transfer(&mut lists)?;
         if !archive.is_reading() {
             return Ok(());
         }

@@ -99,11 +99,11 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Carries the lists, with the positions that they are valid for.
+    /// Transfers the lists, with the positions that they are valid for.
     ///
     /// # Errors
     /// What is read is of other contacts.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         for territory in &mut self.territories {
             let Territory {
                 contact,
@@ -114,16 +114,16 @@ impl<'m> Search<'m> {
                 ..
             } = territory;
             for side in [slaves, segments] {
-                archive.carry_values(&mut side.travel)?;
-                archive.carry(&mut side.reference)?;
-                archive.carry(&mut side.margin)?;
+                archive.transfer_values(&mut side.travel)?;
+                archive.transfer(&mut side.reference)?;
+                archive.transfer(&mut side.margin)?;
                 let sizes = [side.reference.len(), side.margin.len()];
                 if sizes != [0; 2] && sizes != [side.ends.len(); 2] {
                     return Err(ArchiveError::Size);
                 }
             }
-            archive.carry(candidates)?;
-            archive.carry(starts)?;
+            archive.transfer(candidates)?;
+            archive.transfer(starts)?;
             let last = starts.last().map_or(0, |last| *last);
             let segments = contact.segments.len();
             let fit = last == candidates.len()
@@ -135,7 +135,7 @@ impl<'m> Search<'m> {
                 return Err(ArchiveError::Size);
             }
         }
-        archive.carry(&mut self.searches)
+        archive.transfer(&mut self.searches)
     }
 
     /// Searches the contacts whose lists are not valid for the displacements `u`.

@@ -1,27 +1,24 @@
 //! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
 //! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
-//!
-//! Time of an impact: the length tau of a subincrement at whose end a gap that stays out of the constraints
-//! is zero, eq. (6.4), bracketed and interpolated. Section 6 of docs/theory.md, Impacts as events, item 3.
 
+use super::impact_search::{EventTrial, ImpactSearch};
 use super::increment::{Attempt, Failed, Path, Solved};
-use super::ledger::motion;
+use super::ledger::node_path;
 use super::results::State;
 use super::step::{HeldMotions, Interval, StepProblem, TimePoint, Workspace};
 use crate::contact::tolerances::{CLOSED_GAP, CROSSING_BEYOND_ENDS, IMPACT_GAP};
 use crate::contact::{
-    ActiveConstraints, ClosedPairs, Constraint, ConstraintKey, ConstraintSet, Crossing,
-    CrossingSense, Lift, ListedSlave, NodeAtSegment, Projection, QuadraticMotion, crossings,
-    line_crossings, project,
+    ActiveConstraints, ClosedPairs, Constraint, ConstraintSet, Crossing, CrossingSense, Lift,
+    ListedSlave, NodeAtSegment, Projection, QuadraticMotion, crossings, line_crossings, project,
 };
 
 /// Part of a nominal increment within which impacts are taken together; no subincrement is
 /// shorter.
 const IMPACT_GROUPING_TIME: f64 = 1e-3;
 /// Accuracy of the time of an impact, in nominal increments.
-const ACCURACY: f64 = 1e-10;
+const TIME_ACCURACY: f64 = 1e-10;
 /// Attempts to find the time of an impact.
-const TRIALS: usize = 12;
+const MOST_TRIALS: usize = 12;
 
 /// A converged part of an increment that ends at the next impact, or at the end of the increment.
 pub(crate) struct Subincrement {
@@ -109,7 +106,7 @@ impl FreeMotion<'_> {
         lift: Lift,
     ) -> [QuadraticMotion; 3] {
         let Path { v, a, .. } = self.path;
-        let [mut s, a, b] = nodes.map(|node| motion(problem, u0, v, a, node));
+        let [mut s, a, b] = nodes.map(|node| node_path(problem, u0, v, a, node));
         if lift.is_none() {
             return [s, a, b];
         }
@@ -190,7 +187,7 @@ impl<'m> Subincrements<'_, 'm> {
         let mut impact = ImpactSearch::new(begin());
         let (mut tau, mut guess, mut before) = (rest, None, None);
         let mut entries = Vec::new();
-        for _ in 0..TRIALS {
+        for _ in 0..MOST_TRIALS {
             let solved = match self.attempt(tau, ConstraintSet::Active(&active), guess.as_ref()) {
                 Ok(solved) => solved,
                 Err(failed) if tau == rest => {
@@ -214,7 +211,7 @@ impl<'m> Subincrements<'_, 'm> {
                 return Ok(self.converged(tau, solved));
             }
             let trial = EventTrial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
-            impact.take_in(trial.clone(), is_before);
+            impact.record(trial.clone(), is_before);
             // a node that has just bounced off has hardly a gap at the start: there its motion tells
             let expected = |entry: &Intrusion| {
                 let gap = |trial: &EventTrial| entry.gap(problem, trial)[0];
@@ -253,7 +250,7 @@ impl<'m> Subincrements<'_, 'm> {
                 let [gap, length] = entry.gap(problem, &trial);
                 gap.abs() <= IMPACT_GAP * length
             };
-            let is_near = |root: f64| (root - tau).abs() <= ACCURACY * self.nominal;
+            let is_near = |root: f64| (root - tau).abs() <= TIME_ACCURACY * self.nominal;
             if first.is_some_and(is_met) || root.is_some_and(is_near) {
                 return Ok(self.converged(tau, solved));
             }
@@ -463,155 +460,5 @@ impl<'m> Subincrements<'_, 'm> {
             end,
             dt: tau,
         }
-    }
-}
-
-/// A converged subincrement that starts like the others.
-#[derive(Clone)]
-pub(crate) struct EventTrial {
-    /// Its length tau.
-    length: f64,
-    /// Displacements at its end.
-    u: Vec<f64>,
-    /// Mean gaps from surface to surface at its end, with increasing keys, and the lengths that they are relative to.
-    means: Vec<(ConstraintKey, [f64; 2])>,
-}
-
-impl EventTrial {
-    /// That of the given length, whose end has the displacements `u` and some constraints.
-    fn new(length: f64, u: &[f64], constraints: &[Constraint]) -> Self {
-        let weighted = constraints.iter().filter(|c| c.is_weighted());
-        let mut means: Vec<_> = weighted.map(|c| (c.key, [c.gap, c.scale])).collect();
-        means.sort_unstable_by_key(|(key, _)| *key);
-        EventTrial {
-            length,
-            u: u.to_vec(),
-            means,
-        }
-    }
-
-    /// The mean gap of a constraint and the length that it is relative to; no number where it has none.
-    fn mean(&self, key: ConstraintKey) -> [f64; 2] {
-        let place = self.means.binary_search_by_key(&key, |(key, _)| *key);
-        place.map_or([f64::NAN; 2], |place| self.means[place].1)
-    }
-}
-
-/// Looks for the length of a subincrement that ends at the first impact.
-pub(crate) struct ImpactSearch {
-    /// The longest trial that ends before an impact; at first the start.
-    before: EventTrial,
-    /// The shortest one that ends after it.
-    after: Option<EventTrial>,
-    /// The one that the last trial has taken the place of.
-    old: Option<EventTrial>,
-    /// The last two changes of the length.
-    steps: [f64; 2],
-}
-
-impl ImpactSearch {
-    /// Begins with the start, a trial without length.
-    pub fn new(start: EventTrial) -> Self {
-        ImpactSearch {
-            before: start,
-            after: None,
-            old: None,
-            steps: [f64::INFINITY; 2],
-        }
-    }
-
-    /// Takes in a trial that ends before, or after, an impact.
-    pub fn take_in(&mut self, trial: EventTrial, is_before: bool) {
-        self.old = match is_before {
-            true => Some(std::mem::replace(&mut self.before, trial)),
-            false => self.after.replace(trial),
-        };
-    }
-
-    /// When the gap that a pair has at the end of a trial is zero: by inverse quadratic interpolation of
-    /// three trials, or else linear interpolation of two. None where it has no change of sign.
-    pub fn root(&self, gap: impl Fn(&EventTrial) -> f64) -> Option<f64> {
-        let (low, high) = (&self.before, self.after.as_ref()?);
-        let (g, h) = (gap(low), gap(high));
-        if !(g >= 0.0 && h < 0.0) {
-            return None;
-        }
-        let linear = low.length + (high.length - low.length) * (g / (g - h));
-        let is_inside = |t: &f64| *t > low.length && *t < high.length;
-        let quadratic = self.old.as_ref().map(|old| {
-            let points = [(low.length, g), (high.length, h), (old.length, gap(old))];
-            let term = |i: usize| {
-                let [(t, g), (_, p), (_, q)] = [0, 1, 2].map(|k| points[(i + k) % 3]);
-                t * (p / (g - p)) * (q / (g - q))
-            };
-            term(0) + term(1) + term(2)
-        });
-        Some(quadratic.filter(is_inside).unwrap_or(linear))
-    }
-
-    /// The length to try after the last one, `tau`, where the impact is expected at `root`: halfway between
-    /// the trials before and after where it is not, or where the steps become hardly smaller.
-    pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
-        let (low, high) = (
-            self.before.length,
-            self.after.as_ref().map_or(tau, |t| t.length),
-        );
-        let middle = low + (high - low) / 2.0;
-        let is_fast = |t: &f64| (t - tau).abs() < self.steps[0] / 2.0;
-        let root = root.filter(|t| *t > low && *t < high);
-        let next = root.filter(is_fast).unwrap_or(middle);
-        self.steps = [self.steps[1], (next - tau).abs()];
-        next
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Number of trials until the root of a gap is found to 1e-10, from the length 1 on.
-    fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
-        let trial = |tau: f64| EventTrial::new(tau, &[gap(tau)], &[]);
-        let (mut search, mut tau) = (ImpactSearch::new(trial(0.0)), 1.0);
-        (1..40).find(|_| {
-            search.take_in(trial(tau), gap(tau) >= 0.0);
-            let expected = search.root(|trial| trial.u[0]);
-            let is_found = (tau - root).abs() < 1e-10;
-            tau = search.next(tau, expected);
-            is_found
-        })
-    }
-
-    #[test]
-    fn the_time_of_an_impact_is_found() {
-        assert_eq!(trials(|t| 0.3 - t, 0.3), Some(2), "free motion");
-        let falls = |t: f64| 0.3 - 0.5 * t - t * t / 2.0;
-        let found = trials(falls, (0.25_f64 + 0.6).sqrt() - 0.5);
-        assert!(found.unwrap() <= 6, "{found:?}");
-        // the surface swings: the gap as a function of the length is bent
-        let swings = |t: f64| 0.02 - 0.5 * t - 0.05 * (20.0 * t).sin();
-        let root = (0..60).fold([0.0, 0.05], |[low, high], _| {
-            let middle = (low + high) / 2.0;
-            if swings(middle) > 0.0 {
-                [middle, high]
-            } else {
-                [low, middle]
-            }
-        });
-        let found = trials(swings, root[0]);
-        assert!(found.unwrap() <= 9, "{found:?}");
-    }
-
-    #[test]
-    fn a_gap_that_jumps_is_bracketed() {
-        let (mut search, mut tau) = (ImpactSearch::new(EventTrial::new(0.0, &[1.0], &[])), 1.0);
-        for _ in 0..12 {
-            let gap = if tau < 0.4 { 1.0 } else { -1e-6 };
-            search.take_in(EventTrial::new(tau, &[gap], &[]), gap > 0.0);
-            let root = search.root(|trial| trial.u[0]);
-            tau = search.next(tau, root);
-        }
-        let (low, high) = (search.before.length, search.after.expect("after").length);
-        assert!(low < 0.4 && high >= 0.4 && high - low < 0.2, "{low} {high}");
     }
 }

@@ -1,17 +1,14 @@
 //! What landing pairs lose in an increment, given back to the velocities of its end. Section 6 of
 //! docs/theory.md, Landing return.
-//!
-//! What releases take of nodes without mass, given back to the velocities of the end. Section 6 of
-//! docs/theory.md, Releases.
 
 use nalgebra::DMatrix;
 
-use super::increment::{PairReturn, Release, Solved};
+use super::increment::{PairReturn, Solved};
 use super::patterns::{
-    FrictionLoad, ReturnLoad, RigidBodies, VelocityPattern, given, pattern, shares, signs,
-    turning_bodies,
+    FrictionLoad, ReturnLoad, RigidBodies, VelocityPattern, pattern, turning_bodies,
 };
 use super::results::{Cause, State};
+use super::shares::{given, shares, signs};
 use super::step::{ClosedConstraints, HeldMotions, StepProblem, Workspace, difference, dot, sum};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
@@ -24,7 +21,8 @@ use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 pub(crate) fn return_landings(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    (start, dt): (&State, f64),
+    start: &State,
+    dt: f64,
     solved: &mut Solved,
 ) -> Result<(), Cause> {
     if !problem.returns_landings() {
@@ -37,7 +35,7 @@ pub(crate) fn return_landings(
         .collect();
     let (pairs, loads): (Vec<_>, Vec<_>) = landings.into_iter().unzip();
     if !pairs.is_empty() {
-        factorize_anew(problem, workspace, (start, dt), solved)?;
+        factorize_anew(problem, workspace, start, dt, solved)?;
     }
     let given = give_back(problem, workspace, dt, solved, &loads)?;
     let both = pairs.iter().zip(&loads);
@@ -51,13 +49,13 @@ pub(crate) fn return_landings(
 }
 
 /// Whether a constraint acts on a body that a rigid one that turns is a part of: its landings take what they take.
-fn touches(problem: &StepProblem, turns: &[bool], constraint: &Constraint) -> bool {
+pub(super) fn touches(problem: &StepProblem, turns: &[bool], constraint: &Constraint) -> bool {
     let body_of = problem.parts.of_nodes();
     constraint.nodes().any(|node| turns[body_of[node]])
 }
 
 /// Part of the energy of a load below which what is left of it is round-off.
-const REST: f64 = 1e-12;
+const REST_ROUND_OFF: f64 = 1e-12;
 
 /// A pair that lands.
 struct LandedPair {
@@ -156,7 +154,8 @@ fn landing(
 pub(super) fn factorize_anew(
     problem: &StepProblem,
     workspace: &mut Workspace,
-    (start, dt): (&State, f64),
+    start: &State,
+    dt: f64,
     solved: &Solved,
 ) -> Result<(), Cause> {
     let u1 = sum(&start.u, &solved.d);
@@ -277,7 +276,7 @@ fn give_rests(
         .zip(&*given)
         .map(|(load, g)| load.energy - g)
         .collect();
-    let has_rest = |j: &usize| rests[*j] > REST * loads[*j].energy;
+    let has_rest = |j: &usize| rests[*j] > REST_ROUND_OFF * loads[*j].energy;
     let mut vibrates = vec![false; body_of.iter().max().map_or(0, |last| last + 1)];
     for j in (0..loads.len()).filter(has_rest) {
         let loaded = loads[j]
@@ -302,73 +301,4 @@ fn give_rests(
             .zip(rests)
             .for_each(|(given, rest)| *given += rest);
     }
-}
-
-/// Enters the release at the end of an increment of length `dt` from `start` and, where the step asks for it
-/// (`LANDING=RETURN`), gives back what it has taken: along the pattern of the forces that the opened pairs
-/// carried before, each by its normal force.
-///
-/// # Errors
-/// Solves with K* that fail.
-pub(crate) fn return_release(
-    problem: &StepProblem,
-    workspace: &mut Workspace,
-    (start, dt): (&State, f64),
-    solved: &mut Solved,
-    release: Release,
-) -> Result<(), Cause> {
-    let turns = turning_bodies(problem);
-    let gives = (release.opened.iter()).all(|(pair, _)| !touches(problem, &turns, pair));
-    if problem.returns_landings() && release.loss > 0.0 && gives {
-        if solved.returned.pairs.is_empty() {
-            factorize_anew(problem, workspace, (start, dt), solved)?;
-        }
-        let mut force = vec![0.0; solved.d.len()];
-        for (constraint, pair) in &release.opened {
-            constraint.add_force(*pair, &mut force);
-        }
-        let energy = release.loss;
-        let given = give_back(
-            problem,
-            workspace,
-            dt,
-            solved,
-            &[ReturnLoad {
-                force,
-                friction: None,
-                energy,
-                most: 2.0 / dt,
-                pulls: false,
-            }],
-        )?;
-        solved.returned.support_work += given.support_work;
-        let impulse = dt * dt / 2.0 * given.y[0];
-        (solved.returned.pairs).extend(parts(&release, impulse, given.energies[0]));
-    }
-    solved.returned.release = release;
-    Ok(())
-}
-
-/// What every pair has of a return of `energy` whose load is `factor` times the forces before.
-fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
-    if energy == 0.0 {
-        return Vec::new();
-    }
-    let whole: f64 = release.opened.iter().map(|(_, force)| force[0]).sum();
-    let part = |(constraint, force): &(Constraint, [f64; 2])| {
-        let mut vector = [0.0; 2];
-        for (_, [x, y]) in constraint.forces_on_slave_surface(*force) {
-            vector = [vector[0] + factor * x, vector[1] + factor * y];
-        }
-        let [normal, tangential] = constraint.normal_and_tangential(*force);
-        PairReturn {
-            key: constraint.key,
-            energy: energy * force[0] / whole,
-            friction: 0.0,
-            normal: factor * normal,
-            tangential: factor * tangential,
-            vector,
-        }
-    };
-    release.opened.iter().map(part).collect()
 }

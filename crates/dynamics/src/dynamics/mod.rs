@@ -1,13 +1,17 @@
 //! Time integration with contact and impact.
 
 mod events;
+mod free_nodes;
+mod impact_search;
 mod increment;
 mod landing;
 mod ledger;
 mod patterns;
 mod release;
+mod release_return;
 mod results;
 mod run;
+mod shares;
 mod step;
 
 pub use results::{

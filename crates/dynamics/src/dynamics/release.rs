@@ -1,27 +1,22 @@
 //! Rest of nodes without mass at the end of an increment in which pairs open. Section 6 of
 //! docs/theory.md, Releases.
-//!
-//! Nodes without mass that carry no contact force, with the stiffness that holds them. Section 6 of
-//! docs/theory.md, Releases.
 
-use std::collections::BTreeSet;
-
+use super::free_nodes::FreeNodes;
 use super::increment::{ContactForces, Release, Solved};
 use super::results::State;
-use super::step::{FactoredMatrix, Interval, StepProblem, System, Workspace, difference, dot, sum};
-use crate::contact::tolerances::TIED_ROW;
+use super::step::{Interval, StepProblem, System, Workspace, difference, dot, sum};
 use crate::contact::{ClosedPair, Constraint, SlaveChoice};
 use crate::elements::Motion;
-use crate::linear::{Assembled, Transformation, larger, largest, linear_solver};
+use crate::linear::{larger, largest};
 
 /// Most Newton steps to the rest.
-const STEPS: usize = 10;
+const MOST_STEPS: usize = 10;
 /// Last Newton step beside the way from which on the next is round-off.
-const NEAR: f64 = 1e-6;
+const LAST_STEP: f64 = 1e-6;
 /// Overlap, in lengths of the segment, that is round-off of positions.
-const OVERLAP: f64 = 1e-12;
+const OVERLAP_ROUND_OFF: f64 = 1e-12;
 /// Round-off of displacements, and of the sums of a strain energy.
-const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
+const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// Lets nodes without mass come to rest at the end of an increment in which pairs have opened, if they
 /// carry no force: the mid-point rule fixes the mean of start and end alone, so that their deviation from
@@ -85,14 +80,14 @@ impl Releasing<'_, '_> {
     /// steps with the contact forces of the pairs that the nodes meet. None where they do not converge.
     fn rest(&mut self) -> Option<Vec<f64>> {
         let mut u = self.end.u.clone();
-        for _ in 0..STEPS {
+        for _ in 0..MOST_STEPS {
             let du = self.newton_step(&u)?;
             u = sum(&u, &du);
             let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
             let of_bodies = self.problem.parts.largest_of_bodies(&u);
             let seen = largest(&self.workspace.seen.displacements(of_bodies));
-            if step <= larger(NEAR * way, ROUND_OFF * seen) {
-                let overlaps = |c: &Constraint| c.gap < -OVERLAP * c.scale;
+            if step <= larger(LAST_STEP * way, SUM_ROUND_OFF * seen) {
+                let overlaps = |c: &Constraint| c.gap < -OVERLAP_ROUND_OFF * c.scale;
                 return (!self.constraints(&u).iter().any(overlaps)).then_some(u);
             }
         }
@@ -177,85 +172,6 @@ impl Releasing<'_, '_> {
             load_work,
             opened: Vec::new(),
         };
-        (loss >= -ROUND_OFF * strain).then_some((release, internal))
+        (loss >= -SUM_ROUND_OFF * strain).then_some((release, internal))
     }
-}
-
-/// The free nodes without mass of some bodies.
-pub(super) struct FreeNodes {
-    /// Their dofs as unknowns.
-    pub map: Transformation,
-    /// Elements at them.
-    elements: Vec<usize>,
-    /// Pattern of their stiffness.
-    pattern: Assembled,
-}
-
-impl FreeNodes {
-    /// Those of the bodies of the pairs `opened` that no closed pair holds at the end of an increment.
-    pub fn new(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Self {
-        let is_free = free(problem, solved, opened);
-        let touches = |&element: &usize| {
-            let mut nodes = problem.elements.nodes(element).iter();
-            nodes.any(|&node| is_free[node])
-        };
-        let elements: Vec<usize> = (0..problem.elements.len()).filter(touches).collect();
-        let mut unknowns = 0;
-        let row = |dof: usize| match is_free[dof / 2] && problem.unknowns.depends(dof) {
-            true => {
-                unknowns += 1;
-                vec![(unknowns - 1, 1.0)]
-            }
-            false => Vec::new(),
-        };
-        let rows: Vec<_> = (0..2 * is_free.len()).map(row).collect();
-        let map = Transformation::new(unknowns, rows);
-        let of_node = |&node: &usize| [2 * node, 2 * node + 1];
-        let nodes = |&element: &usize| problem.elements.nodes(element);
-        let dofs = |element: &usize| nodes(element).iter().flat_map(of_node).collect();
-        let lists: Vec<Vec<usize>> = elements.iter().map(dofs).collect();
-        FreeNodes {
-            pattern: Assembled::new(&map, &lists),
-            map,
-            elements,
-        }
-    }
-
-    /// Their stiffness K_ii in the configuration of a motion.
-    pub fn stiffness(&self, problem: &StepProblem, motion: Motion) -> FactoredMatrix {
-        let mut k = self.pattern.clone();
-        for (list, &element) in self.elements.iter().enumerate() {
-            k.add(list, &problem.elements.tangent(element, motion), 1.0);
-        }
-        FactoredMatrix::new(
-            (linear_solver(problem.settings.solver), problem.method()),
-            k,
-            &self.map,
-        )
-    }
-
-    /// Whether the gap of a constraint depends on them.
-    pub fn open(&self, constraint: &Constraint) -> bool {
-        let rows = &constraint.derivative_rows().normal;
-        let mut entries = constraint.dofs.iter().zip(rows);
-        entries.any(|(&dof, b)| b.abs() > TIED_ROW && !self.map.row(dof).is_empty())
-    }
-}
-
-/// Which nodes are without mass, of the bodies of the pairs `opened`, and held by no closed pair.
-fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<bool> {
-    let body_of = problem.parts.of_nodes();
-    let nodes = opened.iter().flat_map(|pair| pair.nodes());
-    let bodies: BTreeSet<usize> = nodes.map(|node| body_of[node]).collect();
-    let mut free = vec![false; body_of.len()];
-    for node in problem.redistribution.massless() {
-        free[node] = bodies.contains(&body_of[node]);
-    }
-    for (constraint, _) in solved.contact.forces.acting() {
-        // next to a vertex the far end of a segment takes nothing but round-off
-        let rows = (constraint.dofs.iter()).zip(&constraint.derivative_rows().normal);
-        let held = rows.filter(|(_, b)| b.abs() > TIED_ROW);
-        held.for_each(|(&dof, _)| free[dof / 2] = false);
-    }
-    free
 }

@@ -29,12 +29,12 @@ struct Kept {
 }
 
 impl KeptFactors {
-    /// Carries the factors.
+    /// Transfers the factors.
     ///
     /// # Errors
     /// What is read are no factors.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        archive.carry(&mut self.kept)
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.transfer(&mut self.kept)
     }
 
     /// Takes the memory of a solution that is not needed any more.

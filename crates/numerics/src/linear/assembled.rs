@@ -250,10 +250,10 @@ impl Assembled {
         }
     }
 
-    /// Carries the values and coefficients.
-    pub(super) fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        archive.carry_values(self.matrix.data_mut())?;
-        archive.carry_values(&mut self.coefficients)
+    /// Transfers the values and coefficients.
+    pub(super) fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.transfer_values(self.matrix.data_mut())?;
+        archive.transfer_values(&mut self.coefficients)
     }
 
     /// Sets all values to zero.

@@ -66,14 +66,14 @@ impl CheckedSolver {
         }
     }
 
-    /// Carries the matrix with its blocks; factors that are read are made anew, the same bits.
+    /// Transfers the matrix with its blocks; factors that are read are made anew, the same bits.
     ///
     /// # Errors
     /// What is read is of another matrix.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        self.matrix.carry(archive)?;
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        self.matrix.transfer(archive)?;
         let mut places = self.sum.as_ref().map(|sum| sum.places().to_vec());
-        archive.carry(&mut places)?;
+        archive.transfer(&mut places)?;
         if archive.is_reading() {
             let n = self.matrix.size();
             let are_inside = |places: &Vec<(usize, usize)>| {
@@ -86,10 +86,10 @@ impl CheckedSolver {
             self.sum = places.map(|places| BlockSum::new(self.matrix.matrix(), places));
         }
         if let Some(sum) = &mut self.sum {
-            archive.carry_values(sum.values_mut())?;
+            archive.transfer_values(sum.values_mut())?;
         }
-        archive.carry(&mut self.has_blocks)?;
-        archive.carry(&mut self.factorized)?;
+        archive.transfer(&mut self.has_blocks)?;
+        archive.transfer(&mut self.factorized)?;
         if archive.is_reading() && self.factorized {
             self.factorize().map_err(|_| ArchiveError::Factors)?;
         }

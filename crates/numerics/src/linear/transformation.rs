@@ -117,15 +117,15 @@ impl Transformation {
         self.terms[last].1 = force;
     }
 
-    /// Carries the coefficients, which bodies that turn change.
+    /// Transfers the coefficients, which bodies that turn change.
     ///
     /// # Errors
     /// What is read is of another map.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        archive.carry(&mut self.derivatives)?;
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.transfer(&mut self.derivatives)?;
         match &self.derivatives {
             Some(derivatives) if derivatives.len() != self.terms.len() => Err(ArchiveError::Size),
-            Some(_) => archive.carry_values(&mut self.terms),
+            Some(_) => archive.transfer_values(&mut self.terms),
             None => Ok(()),
         }
     }

@@ -14,6 +14,19 @@ const MEMORY: usize = 5;
 /// Part of a change of the correction, beside what is along those before, below which it is round-off.
 const DEPENDENT: f64 = 1e-6;
 
+/// How the corrections of the passes fall.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CorrectionProgress {
+    /// Largest correction beside the increment.
+    pub correction: f64,
+    /// That beside the one of the pass before.
+    pub rate: f64,
+    /// Correction at which the passes end.
+    pub tolerance: f64,
+    /// Whether both passes may have closed the same pairs.
+    pub same_pairs: bool,
+}
+
 /// What the last passes with the same closed pairs say about the solution.
 #[derive(Debug)]
 pub(super) struct PassAcceleration(Acceleration<1>);
@@ -25,17 +38,20 @@ impl PassAcceleration {
     }
 
     /// Writes the correction dU of a pass from the iterate d anew where passes are slow, eq. (4.15): the pass leads to
-    /// f(d) = d + dU, and every body's part of dU counts beside its increment. `correction` is its
-    /// largest value beside the increment, `rate` that beside the one of the pass before, and
-    /// both may have closed the same pairs.
+    /// f(d) = d + dU, and every body's part of dU counts beside its increment.
     pub fn improve(
         &mut self,
         parts: &Parts,
         d: &[f64],
-        same_pairs: bool,
-        [correction, rate, tolerance]: [f64; 3],
+        progress: CorrectionProgress,
         du: &mut [f64],
     ) {
+        let CorrectionProgress {
+            correction,
+            rate,
+            tolerance,
+            same_pairs,
+        } = progress;
         if !same_pairs || rate.is_nan() || rate > JUMP {
             self.0.clear();
         }

@@ -1,12 +1,12 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
 //! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
 
-use super::acceleration::PassAcceleration;
+use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
-use super::convergence::Iterate;
 use super::equal_forces::EqualForces;
 use super::linear_pass::{Vectors, close_hinges};
+use super::pass::{Iterate, PassStage};
 use super::passes::{Passes, SLOW_PASSES};
 use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
 use super::rigid_predictor::rigid_predictor;
@@ -152,10 +152,13 @@ impl DynamicAttempt<'_, '_> {
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let corrections = factors.corrections();
-            let state = [settled, corrections.stagnate()];
+            let stage = PassStage {
+                settled,
+                stagnates: corrections.stagnate(),
+            };
             let may_end = contact.impulses.are_at_rest() && corrections.are_near();
             if may_end
-                && let Some(residual) = self.passes.residual(&iterate, state, &mut v.residual)?
+                && let Some(residual) = self.passes.residual(&iterate, stage, &mut v.residual)?
                 && self.passes.complete(&mut contact, &v.u, None)
             {
                 trace.solved(residual);
@@ -186,10 +189,13 @@ impl DynamicAttempt<'_, '_> {
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 factors.take_in(correction, may_grow)?;
                 if number >= SLOW_PASSES {
-                    let rate = factors.corrections().rate();
-                    let progress = [correction, rate, settings.tolerance];
-                    let same_pairs = contact.forces.are_of_same_pairs();
-                    acceleration.improve(problem.parts, &d, same_pairs, progress, &mut v.du);
+                    let progress = CorrectionProgress {
+                        correction,
+                        rate: factors.corrections().rate(),
+                        tolerance: settings.tolerance,
+                        same_pairs: contact.forces.are_of_same_pairs(),
+                    };
+                    acceleration.improve(problem.parts, &d, progress, &mut v.du);
                 }
             }
             // d <- d + dU, eq. (4.7)

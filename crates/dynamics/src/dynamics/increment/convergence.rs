@@ -1,20 +1,13 @@
 //! Convergence criterion of the passes: relative residual and correction with local scales and a
 //! round-off floor. Section 4 of docs/theory.md, Convergence.
-//!
-//! Forces and displacements of a pass, and its residual beside its scales. Section 4 of docs/theory.md,
-//! Convergence.
-
-use std::ops::Range;
 
 use smallvec::{SmallVec, smallvec};
 
 use super::contact_forces::ContactForces;
 use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::results::{Cause, PassReport, Worst};
-use crate::dynamics::step::{
-    Equilibrium, Hinges, Parts, PerBody, ROUND_OFF, StepProblem, Workspace, check_finite,
-};
+use crate::dynamics::results::{PassReport, Worst};
+use crate::dynamics::step::{Hinges, Parts, PerBody, ROUND_OFF};
 use crate::linear::larger;
 
 /// Part of the tolerance to which an iterate must be in balance to be the solution, unless its corrections
@@ -49,6 +42,17 @@ pub(crate) struct Lengths {
     pub increment: PerBody,
     /// Largest coordinate of a pair in contact.
     pub position: PerBody,
+}
+
+/// Round-off of the forces of a part, and what it meets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PartNoise {
+    /// n: round-off of the residual, eq. (4.10) (force).
+    pub force: f64,
+    /// Largest displacement increment of its body (length).
+    pub travel: f64,
+    /// Largest K_ii + (2/dt²) M_ii (force/length).
+    pub stiffness: f64,
 }
 
 /// Residual of every part and correction of every body in a pass (force; length).
@@ -115,10 +119,15 @@ impl<'a> Scales<'a> {
         self
     }
 
-    /// Round-off of the residual of every part, and the largest displacement increment of its body.
-    pub fn noise_and_way(&self) -> impl Iterator<Item = [f64; 2]> {
-        let parts = self.noise.iter().zip(self.parts.of_parts());
-        parts.map(|(noise, &body)| [*noise, self.increment[body]])
+    /// Round-off of the forces of every part, whose largest K_ii + (2/dt²) M_ii are given (force/length).
+    pub fn noise(&self, stiffness: impl Iterator<Item = f64>) -> Vec<PartNoise> {
+        let parts = self.noise.iter().zip(self.parts.of_parts()).zip(stiffness);
+        let of_part = |((force, &body), stiffness): ((&f64, &usize), f64)| PartNoise {
+            force: *force,
+            travel: self.increment[body],
+            stiffness,
+        };
+        parts.map(of_part).collect()
     }
 
     /// Largest relative residual and correction of a pass.
@@ -259,218 +268,6 @@ impl<'a> Scales<'a> {
     fn relative(&self, value: f64, scale: f64, floor: f64) -> f64 {
         let scale = larger(scale, floor / self.tolerance);
         if scale == 0.0 { value } else { value / scale }
-    }
-}
-
-/// Forces and displacements of a pass, over all dofs.
-pub(crate) struct Pass<'a> {
-    /// Load, internal force and inertia of the iterate.
-    pub equilibrium: &'a Equilibrium,
-    /// Force of the supports' motion.
-    pub support_force: &'a Vec<f64>,
-    /// Constraints and their forces.
-    pub contact: &'a ContactForces,
-    /// Displacement U of the iterate, increment d = U - U0 and correction dU.
-    pub displacements: [&'a Vec<f64>; 3],
-}
-
-impl Pass<'_> {
-    /// All forces and the correction must be finite.
-    ///
-    /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not.
-    pub fn check_finite(&self, contact_force: &Vec<f64>) -> Result<(), Cause> {
-        check_finite(&[
-            ("the load", &self.equilibrium.load),
-            ("the internal force", &self.equilibrium.internal),
-            ("the inertia force", &self.equilibrium.inertia),
-            ("the contact force", contact_force),
-            ("the force of the supports", self.support_force),
-            ("the displacement correction", self.displacements[2]),
-        ])
-    }
-
-    /// Residual and correction of the pass, and what they are measured against; writes the residual.
-    ///
-    /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not.
-    pub fn measure<'m>(
-        &self,
-        problem: &StepProblem<'m>,
-        workspace: &Workspace,
-        residual: &mut Residual,
-    ) -> Result<(Scales<'m>, Errors), Cause> {
-        let [u, _, du] = self.displacements;
-        let Residual {
-            contact_force: contact,
-            values,
-            ..
-        } = residual;
-        contact.write(self.contact, u.len());
-        let scales = self.scales(problem, workspace, &contact.values);
-        // r - theta2 K d_p + Bn^T Pn + Bt^T Pt, eq. (4.7)
-        let sum = |dofs: Range<usize>, to: &mut Vec<f64>| {
-            let r = &self.equilibrium.out_of_balance[dofs.clone()];
-            let forces = [&self.support_force[..], &contact.values].map(|all| &all[dofs.clone()]);
-            let all = r.iter().zip(forces[0]).zip(forces[1]);
-            to.extend(all.map(|((r, s), c)| r - s + c));
-        };
-        let map = workspace.stiffness.k.map();
-        map.write_restricted_by(sum, values);
-        let errors = Errors {
-            residual: (problem.parts).largest_of_unknowns(&problem.parts_of_unknowns, values),
-            correction: problem.parts.largest_of_bodies(du),
-        };
-        if !scales.are_finite(&errors) {
-            self.check_finite(&residual.contact_force.values)?;
-        }
-        Ok((scales, errors))
-    }
-
-    /// What residual and correction of the pass are measured against.
-    pub fn scales<'m>(
-        &self,
-        problem: &StepProblem<'m>,
-        Workspace {
-            stiffness, seen, ..
-        }: &Workspace,
-        contact_force: &[f64],
-    ) -> Scales<'m> {
-        let parts = problem.parts;
-        let Equilibrium {
-            load,
-            internal,
-            inertia,
-            ..
-        } = self.equilibrium;
-        let forces = [load, internal, inertia, contact_force, self.support_force];
-        let [u, d, du] = self.displacements.map(|u| parts.largest_of_bodies(u));
-        let lengths = Lengths {
-            displacement: seen.displacements(u),
-            increment: d.into_iter().zip(du).map(|(d, du)| larger(d, du)).collect(),
-            position: self.contact_positions(problem),
-        };
-        let diagonals = (stiffness.stiffness.as_slice(), stiffness.inertia.as_slice());
-        let forces = forces.map(|force| problem.unknowns.magnitudes(force));
-        let force = parts.largest_of_all(forces.iter().map(|force| force.as_ref()));
-        let (before, tolerance) = (seen.forces(), problem.settings.tolerance);
-        Scales::new(parts, [&force, before], diagonals, lengths, tolerance)
-    }
-
-    /// The largest coordinate of the nodes of closed constraints and hinges with every body.
-    fn contact_positions(&self, problem: &StepProblem) -> PerBody {
-        let [u, ..] = self.displacements;
-        let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];
-        for (constraint, _) in self.contact.acting() {
-            let of_node = |node: usize| problem.position(u, node);
-            let coordinates = constraint.nodes().flat_map(of_node).map(f64::abs);
-            let most = coordinates.fold(0.0, larger);
-            for node in constraint.nodes() {
-                let position = &mut positions[problem.parts.of_nodes()[node]];
-                *position = larger(*position, most);
-            }
-        }
-        for node in problem.hinges.nodes().flatten() {
-            let position = &mut positions[problem.parts.of_nodes()[node]];
-            let at = problem.position(u, node).map(f64::abs);
-            *position = at.into_iter().fold(*position, larger);
-        }
-        positions
-    }
-}
-
-/// The residual of a pass, in memory that the next one uses again.
-#[derive(Default)]
-pub(crate) struct Residual {
-    contact_force: ContactForce,
-    /// Sum of all forces over the unknowns.
-    pub values: Vec<f64>,
-    /// Zero at all dofs.
-    none: Vec<f64>,
-}
-
-/// A contact force over all dofs.
-#[derive(Default)]
-struct ContactForce {
-    values: Vec<f64>,
-    /// Where it may not be zero.
-    dofs: Vec<usize>,
-}
-
-impl ContactForce {
-    /// Writes Bn^T Pn + Bt^T Pt of eq. (3.1) in place of the force before, over so many dofs.
-    fn write(&mut self, contact: &ContactForces, dofs: usize) {
-        let Self { values, dofs: own } = self;
-        own.drain(..).for_each(|dof| values[dof] = 0.0);
-        values.resize(dofs, 0.0);
-        for (constraint, pair) in contact.acting() {
-            constraint.add_force(pair.force, values);
-            own.extend_from_slice(&constraint.dofs);
-        }
-    }
-}
-
-/// An iterate with the contact forces of the pass before, linearised at it.
-pub(crate) struct Iterate<'a> {
-    pub equilibrium: &'a Equilibrium,
-    /// Constraints of the iterate and the forces at hand.
-    pub contact: &'a ContactForces,
-    /// Displacement U and increment d = U - U0.
-    pub displacements: [&'a Vec<f64>; 2],
-}
-
-impl<'a> Iterate<'a> {
-    /// An iterate U = U0 + d.
-    pub fn new(
-        equilibrium: &'a Equilibrium,
-        contact: &'a ContactForces,
-        displacements: [&'a Vec<f64>; 2],
-    ) -> Self {
-        Iterate {
-            equilibrium,
-            contact,
-            displacements,
-        }
-    }
-
-    /// The pass that makes the correction dU of the iterate.
-    pub fn pass<'p>(&'p self, support_force: &'p Vec<f64>, du: &'p Vec<f64>) -> Pass<'p> {
-        let [u, d] = self.displacements;
-        Pass {
-            equilibrium: self.equilibrium,
-            support_force,
-            contact: self.contact,
-            displacements: [u, d, du],
-        }
-    }
-
-    /// The relative residual, if the iterate is solved: residual, gaps and slips are below the tolerance,
-    /// or round-off.
-    pub fn residual(
-        &self,
-        problem: &StepProblem,
-        workspace: &Workspace,
-        [settled, stagnates]: [bool; 2],
-        residual: &mut Residual,
-    ) -> Result<Option<f64>, Cause> {
-        if !self.contact.all_have_constraints() {
-            return Ok(None);
-        }
-        let mut none = std::mem::take(&mut residual.none);
-        none.resize(self.displacements[0].len(), 0.0);
-        let (scales, errors) = (self.pass(&none, &none)).measure(problem, workspace, residual)?;
-        residual.none = none;
-        let scales = match stagnates {
-            true => scales.stagnant(),
-            false => scales.strict(),
-        };
-        if !scales.converged(&errors)
-            || !scales.obeys_contact_law(self.contact, settled)
-            || !scales.closes_hinges(&problem.hinges, self.displacements[0])
-        {
-            return Ok(None);
-        }
-        Ok(Some(scales.report(&errors, self.contact).residual))
     }
 }
 

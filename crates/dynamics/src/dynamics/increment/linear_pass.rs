@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::convergence::Residual;
+use super::pass::Residual;
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
 use crate::linear::largest;

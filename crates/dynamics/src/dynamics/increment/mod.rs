@@ -10,6 +10,7 @@ mod corrections;
 mod equal_forces;
 mod impulses;
 mod linear_pass;
+mod pass;
 mod passes;
 mod pin_iteration;
 mod refactorization;
@@ -22,7 +23,7 @@ mod trace;
 
 pub(crate) use attempt::Attempt;
 pub(crate) use contact_forces::ContactForces;
-pub(crate) use contact_states::ContactStates;
-pub(crate) use returned::{PairReturn, Release};
+pub(crate) use convergence::PartNoise;
+pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use solved::{Path, Solved};
 pub(crate) use trace::Failed;

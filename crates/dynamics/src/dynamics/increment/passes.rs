@@ -3,9 +3,9 @@
 //! 49).
 
 use super::contact_states::ContactStates;
-use super::convergence::{Iterate, Pass, Residual};
 use super::impulses::EarlierPass;
 use super::linear_pass::Vectors;
+use super::pass::{Iterate, Pass, PassStage, Residual};
 use super::returned::Returned;
 use super::solved::Solved;
 use super::trace::Trace;
@@ -164,10 +164,10 @@ impl Passes<'_, '_> {
     pub fn residual(
         &mut self,
         iterate: &Iterate,
-        state: [bool; 2],
+        stage: PassStage,
         residual: &mut Residual,
     ) -> Result<Option<f64>, Cause> {
-        let solved = iterate.residual(self.problem, self.workspace, state, residual)?;
+        let solved = iterate.residual(self.problem, self.workspace, stage, residual)?;
         if let Some(residual) = solved {
             self.workspace.meter.counts.residual = residual;
         }

@@ -1,7 +1,8 @@
 //! A converged increment, and its motion as the path that another attempt begins with. Section 4 of docs/theory.md.
 
 use super::contact_states::ContactStates;
-use super::convergence::Pass;
+use super::convergence::PartNoise;
+use super::pass::Pass;
 use super::returned::Returned;
 use crate::contact::ClosedPairs;
 use crate::dynamics::results::{PassReport, State};
@@ -86,9 +87,8 @@ impl Solved {
 }
 
 impl Solved {
-    /// Round-off of the forces of every part, eq. (4.10), the largest displacement increment of its body and its
-    /// largest entry of K* (force; length; force/length).
-    pub fn noise(&self, problem: &StepProblem, workspace: &Workspace) -> Vec<[f64; 3]> {
+    /// Round-off of the forces of every part in the increment.
+    pub fn noise(&self, problem: &StepProblem, workspace: &Workspace) -> Vec<PartNoise> {
         let none = vec![0.0; self.d.len()];
         let pass = Pass {
             equilibrium: &self.equilibrium,
@@ -103,9 +103,6 @@ impl Solved {
         );
         let stiffness = &workspace.stiffness;
         let diagonals = stiffness.stiffness.iter().zip(&stiffness.inertia);
-        let parts = scales.noise_and_way().zip(diagonals);
-        parts
-            .map(|([noise, way], (k, m))| [noise, way, k + m])
-            .collect()
+        scales.noise(diagonals.map(|(k, m)| k + m))
     }
 }

@@ -1,13 +1,13 @@
 //! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact lets
 //! them. Section 12 of docs/theory.md.
 
-use super::acceleration::PassAcceleration;
+use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
-use super::convergence::Iterate;
 use super::corrections::Corrections;
 use super::equal_forces::EqualForces;
 use super::linear_pass::{SkewPart, Vectors};
+use super::pass::{Iterate, PassStage};
 use super::passes::{Passes, SLOW_PASSES};
 use super::pin_iteration::{PinIteration, PinState};
 use super::rigid_predictor::rigid_predictor;
@@ -122,9 +122,12 @@ impl<'m> StaticAttempt<'_, 'm> {
             // the forces at hand may balance r and close the gaps of the iterate
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
-            let state = [settled, corrections.stagnate()];
+            let stage = PassStage {
+                settled,
+                stagnates: corrections.stagnate(),
+            };
             if corrections.are_near()
-                && let Some(residual) = self.passes.residual(&iterate, state, &mut v.residual)?
+                && let Some(residual) = self.passes.residual(&iterate, stage, &mut v.residual)?
                 && self.passes.complete(&mut contact, &v.u, None)
             {
                 trace.solved(residual);
@@ -160,9 +163,13 @@ impl<'m> StaticAttempt<'_, 'm> {
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 corrections.take_in(correction, may_grow)?;
                 if number >= SLOW_PASSES {
-                    let progress = [correction, corrections.rate(), settings.tolerance];
-                    let same_pairs = contact.forces.are_of_same_pairs();
-                    acceleration.improve(problem.parts, &d, same_pairs, progress, &mut v.du);
+                    let progress = CorrectionProgress {
+                        correction,
+                        rate: corrections.rate(),
+                        tolerance: settings.tolerance,
+                        same_pairs: contact.forces.are_of_same_pairs(),
+                    };
+                    acceleration.improve(problem.parts, &d, progress, &mut v.du);
                 }
             }
             // d <- d + dU, eq. (4.7)

@@ -10,7 +10,7 @@ use super::nodal_results::{
 };
 use super::surface_work::SurfaceWork;
 use super::touches::Touches;
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{
     ContactOnBody, ContactResultant, FrictionResults, IncrementReport, Momentum, NodalResults,
@@ -63,9 +63,9 @@ impl Accounts {
         }
     }
 
-    /// Carries the sums over the run.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Self {
+    /// Transfers the sums over the run.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Self {
             [contacts, touches, surface_work] damped; bodies, faces, consistent
         })
     }
@@ -112,13 +112,14 @@ impl Accounts {
     pub fn enter(
         &mut self,
         problem: &StepProblem,
-        (start, solved): (&State, &Solved),
+        start: &State,
+        solved: &Solved,
         interval: Interval,
         ledger: &Ledger,
     ) -> IncrementReport {
         self.enter_damping(problem, solved);
         let bodies = &self.bodies.bodies;
-        let mut contacts = contact_resultants(problem, bodies, solved, (&start.u, interval));
+        let mut contacts = contact_resultants(problem, bodies, solved, &start.u, interval);
         let mut report = self.moving(problem, &solved.end, ledger);
         let u = &solved.equilibrium.u_theta;
         // forces that act in no time give no impulse
@@ -131,9 +132,9 @@ impl Accounts {
         };
         report.touches = (self.touches).enter(problem, bodies, solved, interval, &mut contacts);
         report.returns =
-            (self.contacts).enter_returns((problem.model, bodies), solved, interval, &mut contacts);
-        let both = (solved, &ledger.works[..]);
-        (self.contacts).enter(problem, bodies, both, interval.dt, &mut contacts);
+            (self.contacts).enter_returns(problem.model, bodies, solved, interval, &mut contacts);
+        let (works, dt) = (&ledger.works, interval.dt);
+        (self.contacts).enter(problem, bodies, solved, works, dt, &mut contacts);
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.integration.theta1, interval);
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());

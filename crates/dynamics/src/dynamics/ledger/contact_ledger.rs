@@ -56,15 +56,15 @@ impl ContactLedger {
         }
     }
 
-    /// Carries the sums and slips.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers the sums and slips.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             contacts,
             slip,
             reference: _,
         } = self;
-        archive.carry_values(contacts)?;
-        archive.carry_values(slip)
+        archive.transfer_values(contacts)?;
+        archive.transfer_values(slip)
     }
 
     /// Enters a converged increment of length `dt` and completes the resultants of the contacts.
@@ -72,7 +72,8 @@ impl ContactLedger {
         &mut self,
         problem: &StepProblem,
         bodies: &Bodies,
-        (solved, works): (&Solved, &[PairWork]),
+        solved: &Solved,
+        works: &[PairWork],
         dt: f64,
         resultants: &mut [ContactResultant],
     ) {
@@ -137,7 +138,8 @@ impl ContactLedger {
     /// pairs.
     pub fn enter_returns(
         &mut self,
-        (model, bodies): (&Model, &Bodies),
+        model: &Model,
+        bodies: &Bodies,
         solved: &Solved,
         interval: Interval,
         resultants: &mut [ContactResultant],
@@ -330,7 +332,10 @@ pub(crate) fn contact_violation(
 ) -> ContactViolation {
     let at = problem.configurations(&start.u, &solved.end.u);
     let of_pair = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| match pair {
-        None => violation_of_open_pair(constraint.gap_and_scale(&at)),
+        None => {
+            let (gap, scale) = constraint.gap_and_scale(&at);
+            violation_of_open_pair(gap, scale)
+        }
         Some(pair) => violation_of_closed_pair(&constraint.relinearized(&at), pair.slips),
     };
     let pairs = solved.contact.forces.iter();
@@ -346,7 +351,7 @@ pub(crate) fn contact_violation(
 }
 
 /// An open pair must not overlap.
-fn violation_of_open_pair((gap, scale): (f64, f64)) -> ContactViolation {
+fn violation_of_open_pair(gap: f64, scale: f64) -> ContactViolation {
     ContactViolation {
         overlap: (-gap).max(0.0) / scale,
         ..ContactViolation::default()
@@ -379,7 +384,7 @@ mod tests {
         let mut constraint = testing::at_face(gap_and_slip);
         constraint.mu = mu;
         match slips {
-            None => violation_of_open_pair((constraint.gap, constraint.scale)),
+            None => violation_of_open_pair(constraint.gap, constraint.scale),
             Some(slips) => violation_of_closed_pair(&constraint, slips),
         }
     }

@@ -1,18 +1,15 @@
 //! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
-//!
-//! Energy checks of a converged increment: positive normal work of contact in the energy-momentum scheme, at
-//! corners that turn concave under a sliding node (section 7 of docs/theory.md), and the balance of the ledger
-//! (section 9).
 
 use std::sync::Arc;
 
 use super::pair_work::{EndForces, PairWork, fit_impulse_work, steady_works};
-use std::borrow::Cow;
-
-use crate::archive::{Archive, ArchiveError, carry_fields};
-use crate::contact::tolerances::CLOSED_GAP;
-use crate::contact::{ClosedPair, Constraint};
-use crate::dynamics::increment::{ContactStates, Solved};
+use super::terms::{
+    HandedOver, Kinematics, balance, enter_pair_works, enter_returned, impulse_support_work,
+    impulse_work, load_work, scheme_dissipation, static_support_work, strain_before_rest,
+    work_within,
+};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
+use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, difference, dot, sum};
 use crate::elements::{ElementResult, Motion, TangentPart};
@@ -75,6 +72,20 @@ fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
     most
 }
 
+/// Forces at the end of an increment of a slow motion, from which a static step goes on: its inertia counts as load.
+fn end_of_slow_motion(problem: &StepProblem, solved: &Solved) -> EndForces {
+    let Equilibrium {
+        load,
+        internal,
+        inertia,
+        ..
+    } = &solved.equilibrium;
+    let load = difference(load, inertia);
+    let mut last = EndForces::new(load, internal.clone(), &solved.contact.forces);
+    last.reactions = last.of_supports(problem, [&solved.end.u, &solved.d]);
+    last
+}
+
 impl Ledger {
     /// Opens the ledger at the start of the analysis.
     pub fn new(problem: &StepProblem, start: &State) -> Self {
@@ -101,12 +112,12 @@ impl Ledger {
         ledger
     }
 
-    /// Carries all of it.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers all of it.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let mut of_elements = self.elements.to_vec();
-        archive.carry(&mut of_elements)?;
+        archive.transfer(&mut of_elements)?;
         self.elements = of_elements.into();
-        carry_fields!(archive, self => Self {
+        transfer_fields!(archive, self => Self {
             energy, largest, momentum, contact_energy, works, end, start, sources, stiffness; elements
         })
     }
@@ -149,136 +160,138 @@ impl Ledger {
         }
     }
 
-    /// The ledger with a converged increment that started from `start`, and what is given back after it.
+    /// The ledger with a converged increment of length `dt` entered, which started from `start`, and what is given back
+    /// after it.
     ///
     /// # Errors
     /// An energy that is not finite.
-    pub fn with(
+    pub fn entered(
         mut self,
-        (problem, workspace): (&StepProblem, &Workspace),
+        problem: &StepProblem,
+        workspace: &Workspace,
         start: &State,
         solved: &Solved,
         dt: f64,
     ) -> Result<Self, Cause> {
-        let Solved {
-            d,
-            v0p,
-            end,
-            contact: ContactStates { forces, .. },
-            ..
-        } = solved;
-        let Equilibrium {
-            load,
-            internal,
-            inertia,
-            ..
-        } = &solved.equilibrium;
-        let turning = &problem.unknowns.turning;
-        // -Phi.(Bn V) - Psi.(Bt V), V = V0 + (V0+ - V0)/2 with what impulses see of V0, eq. (9.4); at supports
-        // V0.(M (V0+ - V0) - B^T Phi) of eq. (9.1), with what equations pass on to them
-        if v0p != &start.v {
-            let impulse = solved.contact.impulses.resultant();
-            let change = difference(v0p, &start.v);
-            let seen = solved.contact.impulses.seen(&start.v);
-            self.energy.impact_loss -= dot(seen, impulse) + dot(&change, impulse) / 2.0;
-            let reaction = difference(&problem.mass.times(&change), impulse);
-            let mut reaction = problem.unknowns.passed_on(&reaction).into_owned();
-            let nothing = vec![0.0; d.len()];
-            turning.hand_over([&start.u, &nothing], false, &mut reaction);
-            let prescribed = problem.unknowns.prescribed();
-            self.energy.external_work += prescribed.map(|p| start.v[p] * reaction[p]).sum::<f64>();
+        let (strain0, contact_work0) = (self.energy.strain, self.energy.normal_contact_work);
+        self.enter_impulses(problem, start, solved);
+        self.enter_state(problem, &solved.end);
+        if problem.integration.has_rates {
+            self.enter_motion(problem, start, solved, dt, strain0);
+        } else {
+            self.enter_equilibrium(problem, start, solved, strain0)?;
+            self.energy.round_off += self.round_off_work(problem, workspace, solved);
         }
+        let work = self.close(&solved.end, contact_work0)?;
+        self.contact_energy = work.filter(|_| problem.integration.has_rates);
+        Ok(self)
+    }
+
+    /// Enters the impulses at the start of an increment: what they take, and the work of supports, which keep their velocity.
+    fn enter_impulses(&mut self, problem: &StepProblem, start: &State, solved: &Solved) {
+        if solved.v0p == start.v {
+            return;
+        }
+        let impulses = &solved.contact.impulses;
+        let (impulse, seen) = (impulses.resultant(), impulses.seen(&start.v));
+        let change = difference(&solved.v0p, &start.v);
+        // -(Phi.Bn + Psi.Bt) (V0 + V0+)/2, eq. (9.4)
+        self.energy.impact_loss -= impulse_work(seen, &change, impulse);
+        // M (V0+ - V0) - J, with what equations and bodies that turn hand over
+        let unknowns = &problem.unknowns;
+        let reaction = difference(&problem.mass.times(&change), impulse);
+        let mut reaction = unknowns.passed_on(&reaction).into_owned();
+        let nothing = vec![0.0; solved.d.len()];
+        (unknowns.turning).hand_over([&start.u, &nothing], false, &mut reaction);
+        // V0.(M (V0+ - V0) - J) at supports, eq. (9.1)
+        self.energy.external_work +=
+            impulse_support_work(unknowns.prescribed(), &start.v, &reaction);
+    }
+
+    /// Takes in the energies and the momentum of the state at the end of an increment.
+    fn enter_state(&mut self, problem: &StepProblem, end: &State) {
         let elements = problem.elements.evaluate(&end.u, &end.internal);
         problem.mass.write_product(&end.v, &mut self.momentum);
         self.enter_bodies(problem, end, &elements);
         self.elements = elements.into();
         let e = &mut self.energy;
-        let (strain0, contact_work0) = (e.strain, e.normal_contact_work);
         e.strain = strain_energy(problem, end, &self.elements);
         e.hourglass = self.elements.iter().map(|e| e.hourglass_energy).sum();
         e.kinetic = dot(&end.v, &self.momentum) / 2.0;
-        if !problem.integration.has_rates {
-            self.enter_equilibrium(problem, start, solved, strain0)?;
-            self.energy.round_off += self.round_off_work((problem, workspace), solved);
-            return Ok(Ledger {
-                contact_energy: None,
-                ..self.balanced(end, contact_work0)?
-            });
-        }
-        let e = &mut self.energy;
+    }
 
-        // d.R_theta, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1), with
-        // what equations pass on to them
-        // without that of hinges, which is none
-        e.external_work += dot(d, load) - dot(&solved.equilibrium.hinges, &problem.hinges.gaps(d));
-        let contact = &forces.resultant(d.len());
-        let handed_over = |force, keeps_driven| {
-            let mut force: Cow<[f64]> = problem.unknowns.passed_on(force);
-            if !turning.is_empty() {
-                turning.hand_over([&end.u, d], keeps_driven, force.to_mut());
-            }
-            force
+    /// Enters the work and the losses of a dynamic increment that started from `start` with the strain energy `strain0`, term by
+    /// term, eq. (9.1) to eq. (9.5).
+    fn enter_motion(
+        &mut self,
+        problem: &StepProblem,
+        start: &State,
+        solved: &Solved,
+        dt: f64,
+        strain0: f64,
+    ) {
+        let Solved {
+            d,
+            v0p,
+            end,
+            equilibrium,
+            returned,
+            ..
+        } = solved;
+        let turning = &problem.unknowns.turning;
+        let kinematics = Kinematics {
+            d,
+            v0p,
+            v1: &end.v,
+            dt,
         };
-        let [load, internal, contact] = [load, internal, contact].map(|f| handed_over(f, false));
-        let inertia = handed_over(inertia, true);
-        let prescribed = || problem.unknowns.prescribed().chain(turning.driven_dofs());
-        // (d - dt V_mid).M A of what is free, eq. (4.27)
-        if problem.integration.backward_euler {
-            let beyond = |dof: usize| d[dof] - dt * (v0p[dof] + end.v[dof]) / 2.0;
-            let all: f64 = (0..d.len())
-                .map(|dof| beyond(dof) * solved.equilibrium.inertia[dof])
-                .sum();
-            let passed: f64 = prescribed().map(|p| beyond(p) * inertia[p]).sum();
-            e.numerical_dissipation += all - passed;
+        let contact = solved.contact.forces.resultant(d.len());
+        let forces = HandedOver::new(problem, solved, &contact);
+        let supports = || problem.unknowns.prescribed().chain(turning.driven_dofs());
+        let e = &mut self.energy;
+        // d.R, and at supports dt V_mid,p (M A)_p + d_p (F - R - B^T P)_p, eq. (9.1)
+        let gaps = problem.hinges.gaps(d);
+        e.external_work += load_work(d, &equilibrium.load, &equilibrium.hinges, &gaps);
+        for p in supports() {
+            e.external_work += forces.support_work(&kinematics, p);
         }
-        for p in prescribed() {
-            let v_mid = (v0p[p] + end.v[p]) / 2.0;
-            e.external_work +=
-                dt * v_mid * inertia[p] + d[p] * (internal[p] - load[p] - contact[p]);
-        }
+        // Pn.(Bn d) and -Pt.(Bt d), eq. (9.2) and eq. (9.3)
         self.works = steady_works(solved);
-        // Phi (a0 - a1)/dt, eq. (9.14)
-        let of_fits = fit_impulse_work(solved, dt);
-        e.external_work += of_fits;
-        e.impact_loss += of_fits;
+        enter_pair_works(e, &self.works);
+        // Phi (a0 - a1)/dt and Pn (a0 - a1), eq. (9.14)
+        let of_impulses = fit_impulse_work(solved, dt);
+        e.external_work += of_impulses;
+        e.impact_loss += of_impulses;
         for work in &self.works {
-            e.normal_contact_work += work.normal;
             e.external_work += work.fit;
-            e.friction_dissipation += work.friction;
         }
-        // what landings and releases are given back, with the work of the supports on the way, eq. (6.10), and of
-        // friction that is taken back, eq. (6.13), R and the work of the loads on the way to rest, eq. (6.15)
-        let returned = &solved.returned;
-        let (loss, load_work) = (returned.release.loss, returned.release.load_work);
-        e.landing_return += returned.energy();
-        e.friction_dissipation -= returned.friction();
-        e.release_loss += loss;
-        e.external_work += load_work + returned.support_work;
-        // d.F_d, D, and d.F - (W1 - W0) - d.F_d - D, eq. (9.5), W1 that before the rest
-        let (mut u1, dissipated) = (sum(&start.u, d), solved.material_dissipation);
-        turning.turn([&start.u, d], &mut u1);
+        // y s, y c, D and R, eq. (6.5), eq. (6.10), eq. (6.13) and eq. (6.15)
+        enter_returned(e, returned);
+        // d.F_d, eq. (4.18), and int D dOmega
         let damping = match problem.has_damping() {
-            true => (problem.elements).damping_dissipation([&start.u, &u1], d, dt),
+            true => {
+                let mut u1 = sum(&start.u, d);
+                turning.turn([&start.u, d], &mut u1);
+                (problem.elements).damping_dissipation([&start.u, &u1], d, dt)
+            }
             false => 0.0,
         };
         e.damping += damping;
-        e.material_dissipation += dissipated;
-        let strain1 = e.strain + loss - load_work;
-        e.numerical_dissipation +=
-            dot(d, &solved.equilibrium.internal) - (strain1 - strain0) - damping - dissipated;
-        // of a slow motion its inertia counts as load
-        self.end = problem.integration.fades().then(|| {
-            let Equilibrium {
-                load,
-                internal,
-                inertia,
-                ..
-            } = &solved.equilibrium;
-            let mut last = EndForces::new(difference(load, inertia), internal.clone(), forces);
-            last.reactions = last.of_supports(problem, [&end.u, d]);
-            last
-        });
-        self.balanced(end, contact_work0)
+        e.material_dissipation += solved.material_dissipation;
+        // (d - dt V_mid).M A, eq. (4.27)
+        if problem.integration.backward_euler {
+            let dissipation =
+                forces.euler_dissipation(&kinematics, &equilibrium.inertia, supports());
+            e.numerical_dissipation += dissipation;
+        }
+        // d.F - (W1 - W0) - d.F_d - int D dOmega, eq. (9.5)
+        e.numerical_dissipation += scheme_dissipation(
+            dot(d, &equilibrium.internal),
+            [strain0, strain_before_rest(e.strain, &returned.release)],
+            damping,
+            solved.material_dissipation,
+        );
+        self.end = (problem.integration.fades()).then(|| end_of_slow_motion(problem, solved));
     }
 
     /// Enters the work of a static increment that started from `start` with the strain energy `strain0`: between two
@@ -290,12 +303,7 @@ impl Ledger {
         solved: &Solved,
         strain0: f64,
     ) -> Result<(), Cause> {
-        let Solved {
-            d,
-            equilibrium,
-            contact,
-            ..
-        } = solved;
+        let Solved { d, equilibrium, .. } = solved;
         let before = match self.end.take() {
             Some(before) => before,
             None => EndForces::at(problem, start)?,
@@ -303,36 +311,28 @@ impl Ledger {
         let mut end = EndForces::new(
             equilibrium.load.clone(),
             equilibrium.internal.clone(),
-            &contact.forces,
+            &solved.contact.forces,
         );
-        let e = &mut self.energy;
-        // d.(R0 + R1)/2, and at supports d_p ((F - R - B^T P)0 + (F - R - B^T P)1)_p/2, eq. (12.7); what is left is
-        // the work of the forces within rigid bodies on the chords of their nodes
-        let turning = &problem.unknowns.turning;
-        let way = turning.way(d);
-        let [of_loads, mut of_supports] =
-            [EndForces::trapezoid(&way, [&before.load, &end.load]), 0.0];
         end.reactions = end.of_supports(problem, [&solved.end.u, d]);
         let at_start = before.of_supports(problem, [&start.u, d]);
-        for (forces, reactions) in [(&before, &at_start), (&end, &end.reactions)] {
-            let mut left = match turning.is_empty() {
-                true => 0.0,
-                false => dot(&way, &forces.missing(d.len())),
-            };
-            for &(p, reaction) in reactions {
-                let work = way[p] * reaction;
-                of_supports += work / 2.0;
-                left -= work;
-            }
-            if !turning.is_empty() {
-                e.numerical_dissipation -= left / 2.0;
+        let turning = &problem.unknowns.turning;
+        let way = turning.way(d);
+        let e = &mut self.energy;
+        // d.(R0 + R1)/2, and at supports d_p (f0 + f1)_p/2, f = F - R - B^T P, eq. (12.7); what is left is the work of the
+        // forces within rigid bodies on the chords of their nodes
+        let of_loads = EndForces::trapezoid(&way, [&before.load, &end.load]);
+        let mut of_supports = static_support_work(&way, [&at_start, &end.reactions]);
+        if !turning.is_empty() {
+            for (forces, reactions) in [(&before, &at_start), (&end, &end.reactions)] {
+                let within = work_within(&way, &forces.missing(d.len()), reactions);
+                e.numerical_dissipation -= within / 2.0;
             }
         }
+        // the pairs, eq. (12.8)
         let (works, kept) = before.works(solved, &end);
+        enter_pair_works(e, &works);
         for work in &works {
-            e.normal_contact_work += work.normal;
             of_supports += work.fit;
-            e.friction_dissipation += work.friction;
         }
         self.works = works;
         e.external_work += of_loads + of_supports;
@@ -357,40 +357,31 @@ impl Ledger {
     /// ```text
     /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)
     /// ```
-    fn round_off_work(
-        &self,
-        (problem, workspace): (&StepProblem, &Workspace),
-        solved: &Solved,
-    ) -> f64 {
+    fn round_off_work(&self, problem: &StepProblem, workspace: &Workspace, solved: &Solved) -> f64 {
         let parts = problem.parts;
         let u = (workspace.seen).displacements(parts.largest_of_bodies(&solved.end.u));
         let noise = solved.noise(problem, workspace);
         let of_parts = parts.of_parts().iter().zip(&self.stiffness).zip(noise);
         let work = of_parts
-            .map(|((&body, k), [noise, way, _])| larger(noise, ROUND_OFF * k * u[body]) * way);
+            .map(|((&body, k), noise)| larger(noise.force, ROUND_OFF * k * u[body]) * noise.travel);
         work.fold(0.0, larger)
     }
 
-    /// The ledger with its balance in a state, `contact_work0` being the work of the normal contact forces before the
-    /// increment.
-    fn balanced(mut self, end: &State, contact_work0: f64) -> Result<Self, Cause> {
+    /// Closes an increment that ends in a state: the balance, the largest energy, and the work of the normal contact forces
+    /// since `contact_work0` if it is positive beyond round-off.
+    ///
+    /// # Errors
+    /// An energy that is not finite.
+    fn close(&mut self, end: &State, contact_work0: f64) -> Result<Option<f64>, Cause> {
         let e = &mut self.energy;
-        // T + W less what they were at the start and every term above, eq. (9.6)
-        e.balance = e.kinetic + e.strain - self.start - e.external_work - e.normal_contact_work
-            + e.friction_dissipation
-            + e.impact_loss
-            - e.landing_return
-            + e.release_loss
-            + e.damping
-            + e.material_dissipation
-            + e.numerical_dissipation;
+        e.balance = balance(e, self.start);
         for energy in [e.kinetic, e.strain, e.external_work] {
             e.scale = larger(e.scale, energy.abs());
         }
         let work = e.normal_contact_work - contact_work0;
-        self.contact_energy = (work > CONTACT_WORK_ROUND_OFF * e.scale).then_some(work);
+        let is_positive = work > CONTACT_WORK_ROUND_OFF * e.scale;
         self.check(end)?;
-        Ok(self)
+        Ok(is_positive.then_some(work))
     }
 
     /// All energies must be finite.
@@ -435,114 +426,4 @@ impl Ledger {
             })
         })
     }
-}
-
-/// Energy balance, as a part of the largest energy, beyond which a run says nothing any more.
-const UNBALANCED: f64 = 1e-3;
-
-/// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside
-/// the largest energy that the bodies in contact have had up to its end.
-///
-/// # Errors
-/// [`Cause::GainedEnergy`]: in halves of the increment a node passes a corner before or after the
-/// corner turns concave.
-pub(crate) fn check_energy_gain(
-    problem: &StepProblem,
-    start: &State,
-    ledger: &Ledger,
-    solved: &Solved,
-) -> Result<(), Cause> {
-    let part = gain(problem, start, ledger, solved);
-    if part <= CONTACT_WORK_ROUND_OFF {
-        return Ok(());
-    }
-    let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| {
-        let work = pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage);
-        (work, constraint.pair().nodes)
-    };
-    let acting = solved.contact.forces.acting().map(of_pair);
-    let worst = acting.max_by(|p, q| p.0.total_cmp(&q.0));
-    let pair = worst.map(|(_, nodes)| nodes);
-    Err(Cause::GainedEnergy { part, pair })
-}
-
-/// Checks that the energy balance counts for nothing beside the largest energy so far.
-///
-/// Round-off of positions makes forces that are out of balance by as much as they are. Of a motion with so
-/// little energy that these forces n are more than a thousandth of its own no balance is asked,
-///
-/// ```text
-/// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
-/// ```
-///
-/// E the largest energy so far, n, K_ii and M_ii those of eq. (4.10); nor is one asked in a static step of bodies on whose
-/// way n has done more than a thousandth of E of work, since they move rigidly.
-///
-/// # Errors
-/// [`Cause::Unbalanced`].
-pub(crate) fn check_balance(
-    problem: &StepProblem,
-    workspace: &Workspace,
-    ledger: &Ledger,
-    solved: &Solved,
-) -> Result<(), Cause> {
-    let Energy {
-        scale: energy,
-        round_off,
-        ..
-    } = ledger.energy;
-    let balance = ledger.energy.balance.abs();
-    if balance <= UNBALANCED * energy {
-        return Ok(());
-    }
-    let noise = solved.noise(problem, workspace);
-    // max n²/(1e-3² (K_ii + (2/dt²) M_ii)), eq. (9.13)
-    let of_part = |&[noise, _, diagonal]: &[f64; 3]| match noise {
-        0.0 => 0.0,
-        _ => (noise / UNBALANCED).powi(2) / diagonal,
-    };
-    if energy <= noise.iter().map(of_part).fold(0.0, larger) {
-        return Ok(());
-    }
-    if !problem.integration.has_rates && round_off > UNBALANCED * energy {
-        return Ok(());
-    }
-    let is_round_off = |&[noise, way, _]: &[f64; 3]| noise * way > UNBALANCED * energy;
-    let is_round_off = noise.iter().any(is_round_off);
-    Err(Cause::Unbalanced {
-        part: balance / energy,
-        is_round_off,
-    })
-}
-
-/// Energy that contact puts in because nodes slide on to segments that they were behind: the sum over
-/// the pairs, each relative to the largest energy of its bodies.
-///
-/// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
-/// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
-/// concave in the same increment. Nodes that the mesh places inside are left out.
-fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
-    if !problem.integration.energy_momentum {
-        return 0.0;
-    }
-    let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
-        let p = problem.positions(&start.u).place(constraint.pair().nodes);
-        let gap = constraint.lift_at_start().of(p).gap;
-        let was_beyond = match constraint.is_weighted() {
-            true => constraint.start_gap < -CLOSED_GAP * constraint.scale,
-            false => !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length,
-        };
-        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
-        let work = if was_beyond {
-            pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage)
-        } else {
-            0.0
-        };
-        (constraint, work)
-    });
-    let largest = |c: &Constraint| problem.parts.most(&ledger.largest, c.nodes());
-    let parts = works.filter(|&(_, work)| work > 0.0);
-    parts
-        .map(|(constraint, work)| work / largest(constraint))
-        .sum()
 }

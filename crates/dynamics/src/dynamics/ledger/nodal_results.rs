@@ -248,7 +248,8 @@ pub(crate) fn contact_resultants(
     problem: &StepProblem,
     bodies: &Bodies,
     solved: &Solved,
-    (u0, interval): (&[f64], Interval),
+    u0: &[f64],
+    interval: Interval,
 ) -> Vec<ContactResultant> {
     let none = ContactResultant {
         min_gap: f64::NAN,
@@ -336,7 +337,7 @@ fn landing(
     touched: bool,
 ) -> Landing {
     let [slave, a, b] = constraint.nearer_pair().nodes;
-    let motions = [slave, a, b].map(|node| motion(problem, &start.u, &start.v, &start.a, node));
+    let motions = [slave, a, b].map(|node| node_path(problem, &start.u, &start.v, &start.a, node));
     let of_mean = constraint.is_weighted();
     let time = match of_mean {
         true => constraint.closing_time([&start.v, &start.a], interval.dt),
@@ -366,7 +367,7 @@ fn landing(
 }
 
 /// Second-order motion of a node from the displacements `u`.
-pub(crate) fn motion(
+pub(crate) fn node_path(
     problem: &StepProblem,
     u: &[f64],
     v: &[f64],

@@ -3,7 +3,7 @@
 
 use super::contact_ledger::ContactLedger;
 use super::pair_work::{PairWork, given_back};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::SurfaceParts;
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::FrictionResults;
@@ -106,18 +106,18 @@ impl SurfaceWork {
         }
     }
 
-    /// Carries the sums.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers the sums.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let FrictionResults {
             coefficient: _,
             work,
             wear,
             heat,
         } = &mut self.fields;
-        archive.carry_values(work)?;
-        archive.carry_values(wear)?;
-        archive.carry_values(heat)?;
-        carry_fields!(archive, self => Self { added; fields, contacts })
+        archive.transfer_values(work)?;
+        archive.transfer_values(wear)?;
+        archive.transfer_values(heat)?;
+        transfer_fields!(archive, self => Self { added; fields, contacts })
     }
 
     /// Work, wear and heat so far.
@@ -142,17 +142,12 @@ impl SurfaceWork {
             return;
         }
         for work in works.iter().chain(&given_back(solved)) {
-            self.add(problem, (faces, solved), work);
+            self.add(problem, faces, solved, work);
         }
     }
 
     /// Adds the work of a pair to the nodes of its slave surfaces.
-    fn add(
-        &mut self,
-        problem: &StepProblem,
-        (faces, solved): (&SlaveFaces, &Solved),
-        work: &PairWork,
-    ) {
+    fn add(&mut self, problem: &StepProblem, faces: &SlaveFaces, solved: &Solved, work: &PairWork) {
         let Some(own) = self.contacts[work.key.contact()] else {
             return;
         };

@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, SlaveKey};
 use crate::dynamics::increment::Solved;
@@ -55,9 +55,9 @@ impl Touches {
         }
     }
 
-    /// Carries the touches under way.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Self { increments, under_way; corners })
+    /// Transfers the touches under way.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Self { increments, under_way; corners })
     }
 
     /// Enters a converged increment; adds the work of nodes that take the place of others to the contacts, and gives

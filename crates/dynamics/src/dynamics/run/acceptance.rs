@@ -1,13 +1,14 @@
 //! Checks that a converged increment must pass before it is accepted, and the failures of those that
 //! do not. Section 4 of docs/theory.md, Cutback.
 
-use super::time_control::NominalIncrement;
+use super::nominal_increments::NominalIncrement;
 use crate::contact::NodeAtSegment;
 use crate::dynamics::events::{FailedSubincrement, Subincrement};
 use crate::dynamics::increment::{Failed, Solved};
-use crate::dynamics::landing::{return_landings, return_release};
+use crate::dynamics::landing::return_landings;
 use crate::dynamics::ledger::{Ledger, check_balance, check_energy_gain};
 use crate::dynamics::release::bring_to_rest;
+use crate::dynamics::release_return::return_release;
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
@@ -83,9 +84,9 @@ fn finish_motion(
     let release = bring_to_rest(problem, workspace, start, interval, solved);
     problem.check_end(&solved.end)?;
     check_paths(problem, workspace, start, solved)?;
-    let from = (start, interval.dt);
-    return_landings(problem, workspace, from, solved)?;
-    return_release(problem, workspace, from, solved, release)?;
+    let dt = interval.dt;
+    return_landings(problem, workspace, start, dt, solved)?;
+    return_release(problem, workspace, start, dt, solved, release)?;
     problem.follow_donors(&mut solved.end.v);
     problem.follow_donors(&mut solved.end.a);
     Ok(())
@@ -101,7 +102,8 @@ fn accept(
     solved: &Solved,
     may_be_halved: bool,
 ) -> Result<Ledger, Cause> {
-    let ledger = (before.ledger.clone()).with((problem, workspace), before.state, solved, dt)?;
+    let ledger = before.ledger.clone();
+    let ledger = ledger.entered(problem, workspace, before.state, solved, dt)?;
     if may_be_halved {
         check_energy_gain(problem, before.state, &ledger, solved)?;
     }
@@ -130,11 +132,12 @@ fn check_paths(
     })
 }
 
-/// The failure of increment number `increment`, `halvings` times halved.
+/// The failure of an attempt at increment number `increment`, `halvings` times halved.
 pub(crate) fn failure(
     increment: usize,
     place: StepPlace,
-    (interval, failed): (Interval, Failed),
+    interval: Interval,
+    failed: Failed,
     halvings: u32,
 ) -> Failure {
     let Failed {

@@ -4,12 +4,13 @@
 use std::{io, iter};
 
 use super::acceptance::{Accepted, SubincrementStart, failure, failure_at_start, start_failure};
-use super::time_control::{
-    Automatic, Bisection, Ended, ImpactControl, NextSubincrement, NominalIncrement, TimeControl,
-    nominal_increments,
-};
+use super::automatic::Automatic;
+use super::bisection::Bisection;
+use super::impact_control::ImpactControl;
+use super::nominal_increments::{NominalIncrement, nominal_increments};
+use super::time_control::{Ended, NextSubincrement, TimeControl};
 use super::truncation_error::{Ends, TruncationError};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::ClosedPairs;
 use crate::contact::ConstraintSet;
 use crate::dynamics::events::{FailedSubincrement, Subincrement, Subincrements};
@@ -33,7 +34,8 @@ use crate::prepare::{PreparedModel, deepest_fault};
 const FAR: f64 = 5.0;
 /// Displacement increment beside the displacements from which on it counts.
 const COUNTS: f64 = 0.01;
-/// Displacement beside that of a longer increment, both at their rate, up to which it is none.
+/// Largest ratio of the rates of displacement of an increment and of a longer one, which was rejected, at which the shorter
+/// one is no jump.
 const SHRINKS: f64 = 1.5;
 
 /// Errors that end a run, apart from a failed increment.
@@ -126,6 +128,15 @@ fn ends<'a>(start: &'a State, solved: &'a Solved, dt: f64) -> Ends<'a> {
     }
 }
 
+/// Static increment that has led too far.
+#[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
+struct RejectedTravel {
+    /// Largest displacement increment (length).
+    travel: f64,
+    /// Length of the increment (time).
+    dt: f64,
+}
+
 /// A run in progress.
 struct Runner<'m, 'o> {
     discretization: &'m Discretization<'m>,
@@ -134,8 +145,8 @@ struct Runner<'m, 'o> {
     ledger: Ledger,
     /// What the steps before have seen.
     seen: Seen,
-    /// Largest displacement increment and length of a static increment that has led too far (length; time).
-    rejected: Option<[f64; 2]>,
+    /// The static increment before that has led too far.
+    rejected: Option<RejectedTravel>,
     /// Procedure of the step before.
     procedure: Procedure,
     /// The motion of the last increment, in a static step.
@@ -192,7 +203,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         extension: f64,
     ) -> Result<RunSummary, RunError> {
         if let Some(archive) = &mut resumed {
-            self.carry(archive)?;
+            self.transfer(archive)?;
         }
         let model = self.discretization.model;
         let first = self.progress.step.max(1);
@@ -219,10 +230,10 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(self.summary)
     }
 
-    /// Carries what increments hand on, but for the workspace of their step and their time control.
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers what increments hand on, but for the workspace of their step and their time control.
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let dofs = self.state.u.len();
-        carry_fields!(archive, self => Runner {
+        transfer_fields!(archive, self => Runner {
             [ledger, accounts] progress, state, rejected, procedure, path, accuracy;
             discretization, seen, summary, observer
         })?;
@@ -230,7 +241,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         if [u, v, a].map(Vec::len) != [dofs; 3] {
             return Err(ArchiveError::Size);
         }
-        carry_fields!(archive, &mut self.summary => RunSummary {
+        transfer_fields!(archive, &mut self.summary => RunSummary {
             increments, cutbacks, rejections, events, solver; outcome, timings
         })
     }
@@ -242,9 +253,9 @@ impl<'m, 'o> Runner<'m, 'o> {
         control: &mut dyn TimeControl,
     ) -> Result<(), RunError> {
         let mut archive = Archive::new();
-        self.carry(&mut archive)?;
-        workspace.carry(&mut archive)?;
-        control.carry(&mut archive)?;
+        self.transfer(&mut archive)?;
+        workspace.transfer(&mut archive)?;
+        control.transfer(&mut archive)?;
         Ok(self.observer.checkpoint(archive.into_bytes())?)
     }
 
@@ -272,7 +283,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             Some(_) => problem.release(&self.progress.released),
         }
         let mut workspace = Workspace::new(&problem, std::mem::take(&mut self.seen));
-        let outcome = self.increments(&problem, &mut workspace, (step, place), resumed);
+        let outcome = self.increments(&problem, &mut workspace, step, place, resumed);
         self.seen = std::mem::take(&mut workspace.seen);
         self.summary.timings.add(&workspace.meter.timings);
         outcome
@@ -298,13 +309,14 @@ impl<'m, 'o> Runner<'m, 'o> {
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
-        (step, place): (&Step, StepPlace),
+        step: &Step,
+        place: StepPlace,
         mut resumed: Option<Archive>,
     ) -> Result<Outcome, RunError> {
         match &mut resumed {
-            Some(archive) => workspace.carry(archive)?,
+            Some(archive) => workspace.transfer(archive)?,
             None => {
-                if let Some(failure) = self.begin(problem, workspace, (step, place))? {
+                if let Some(failure) = self.begin(problem, workspace, step, place)? {
                     return Ok(Outcome::Stopped(Box::new(failure)));
                 }
             }
@@ -314,7 +326,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         for (index, (nominal, mut control)) in nominals.skip(done) {
             self.progress.nominal = index;
             if let Some(mut archive) = resumed.take() {
-                control.carry(&mut archive)?;
+                control.transfer(&mut archive)?;
             }
             let end = self.increment(problem, workspace, nominal, &mut *control)?;
             if end != Outcome::Finished {
@@ -329,7 +341,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         &mut self,
         problem: &StepProblem<'m>,
         workspace: &mut Workspace<'m>,
-        (step, place): (&Step, StepPlace),
+        step: &Step,
+        place: StepPlace,
     ) -> Result<Option<Failure>, RunError> {
         if place.number == 1
             && let Some(failure) = self.start(problem, workspace, place)?
@@ -429,7 +442,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                         error: error.unwrap_or(0.0),
                     };
                     control.accepted(&interval, how);
-                    self.accept(problem, workspace, nominal.place, (accepted, error))?;
+                    self.accept(problem, workspace, nominal.place, accepted, error)?;
                 }
                 Err(failed) => {
                     let dt = failed.0.dt;
@@ -441,7 +454,8 @@ impl<'m, 'o> Runner<'m, 'o> {
                     control.failed(&failed.0, error);
                     let next_dt = control.next().map_or(dt, |span| span.interval.dt);
                     let number = self.summary.increments + 1;
-                    let failure = failure(number, nominal.place, *failed, halvings);
+                    let (interval, failed) = *failed;
+                    let failure = failure(number, nominal.place, interval, failed, halvings);
                     let next_dt = may_be_cut.then_some(next_dt);
                     if let Some(failure) = self.cut_back(failure, next_dt)? {
                         return Ok(Outcome::Stopped(Box::new(failure)));
@@ -478,7 +492,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             return Ok((accepted, Some(error)));
         };
         let mut filtered = || -> Result<f64, Cause> {
-            factorize_anew(problem, workspace, (&self.state, interval.dt), solved)?;
+            factorize_anew(problem, workspace, &self.state, interval.dt, solved)?;
             let e = TruncationError::filter(problem, workspace.k(), interval.dt, &e)?;
             Ok(accuracy.relative(problem, &workspace.seen, &ends, &e))
         };
@@ -538,8 +552,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         let fail = |failed| Box::new((interval, failed));
         let solved = attempt.solve().map_err(fail)?;
         let checked = self
-            .check_stability(problem, workspace, (&solved, interval.end))
-            .and_then(|()| self.check_way(problem, workspace, (&solved, interval.dt)));
+            .check_stability(problem, workspace, &solved, interval.end)
+            .and_then(|()| self.check_jump(problem, workspace, &solved, interval.dt));
         match checked {
             Ok(()) => Ok(Subincrement {
                 interval,
@@ -560,7 +574,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         &self,
         problem: &StepProblem,
         workspace: &mut Workspace,
-        (solved, now): (&Solved, TimePoint),
+        solved: &Solved,
+        now: TimePoint,
     ) -> Result<(), Cause> {
         let end = &solved.end;
         let followers = (problem.loads).changes(problem.elements, now, &end.u);
@@ -581,13 +596,14 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// A static increment must not lead to another equilibrium: much farther than at the rate of the last increment,
-    /// in the first one than by its tangent, unless the way becomes shorter with the increment, or is none beside what
-    /// the passes resolve. Bodies that contact alone holds may move freely up to it, and others suddenly when it begins.
-    fn check_way(
+    /// in the first one than by its tangent, unless the travel becomes shorter with the increment, or is below what the
+    /// passes resolve. Bodies that contact alone holds may move freely up to it, and others suddenly when it begins.
+    fn check_jump(
         &mut self,
         problem: &StepProblem,
         workspace: &Workspace,
-        (solved, dt): (&Solved, f64),
+        solved: &Solved,
+        dt: f64,
     ) -> Result<(), Cause> {
         let pins = &workspace.pins;
         let is_held: Vec<bool> = match pins.are_none() {
@@ -603,17 +619,17 @@ impl<'m, 'o> Runner<'m, 'o> {
             Some(path) => larger(dt * largest(&path.v), by_tangent()),
             None => by_tangent(),
         };
-        let way = largest(&solved.d);
-        let shrinks = |[before, dt_before]: [f64; 2]| way <= SHRINKS * before * dt / dt_before;
+        let travel = largest(&solved.d);
+        let shrinks = |before: RejectedTravel| travel <= SHRINKS * before.travel * dt / before.dt;
         let unresolved = workspace.seen.unresolved(problem, &solved.end.u);
         let least = unresolved.into_iter().fold(0.0, larger);
-        let counts = way > larger(COUNTS * largest(&solved.end.u), least);
-        let is_far = counts && way > FAR * expected;
+        let counts = travel > larger(COUNTS * largest(&solved.end.u), least);
+        let is_far = counts && travel > FAR * expected;
         if !is_far || self.rejected.is_some_and(shrinks) {
             self.rejected = None;
             return Ok(());
         }
-        self.rejected = Some([way, dt]);
+        self.rejected = Some(RejectedTravel { travel, dt });
         let size = |dof: &&usize| solved.d[**dof].abs();
         let most = dofs.iter().max_by(|i, k| size(i).total_cmp(&size(k)));
         Err(Cause::Jump {
@@ -646,7 +662,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         problem: &StepProblem,
         workspace: &mut Workspace,
         place: StepPlace,
-        (accepted, truncation_error): (Accepted, Option<f64>),
+        accepted: Accepted,
+        truncation_error: Option<f64>,
     ) -> Result<(), RunError> {
         let Accepted {
             subincrement,
@@ -663,7 +680,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let Equilibrium { load, internal, .. } = &solved.equilibrium;
         (workspace.seen).take_in(problem, &solved.end.u, [load, internal]);
         let path = (!problem.integration.has_rates).then(|| solved.static_path(interval.dt));
-        let accounted = (self.accounts).enter(problem, (&self.state, &solved), interval, &ledger);
+        let accounted = (self.accounts).enter(problem, &self.state, &solved, interval, &ledger);
         let (held, part) = held_motions(problem, workspace, &solved);
         let solver = SolverCounts {
             held: part,

@@ -39,9 +39,9 @@ impl BodyAngles {
         }
     }
 
-    /// Carries the angles of the configuration in which K* was assembled.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        archive.carry_values(&mut self.assembled)
+    /// Transfers the angles of the configuration in which K* was assembled.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.transfer_values(&mut self.assembled)
     }
 
     /// K* is assembled in the configuration of a motion.

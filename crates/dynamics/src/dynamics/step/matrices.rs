@@ -18,7 +18,7 @@ use super::meter::Meter;
 use super::pins::Pins;
 use super::rank_update::RankUpdate;
 use super::step_problem::StepProblem;
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::{
     ClosedPair, Compliance, Configurations, Constraint, ConstraintGroup, DelassusSpace,
     frictional_lcp,
@@ -117,8 +117,8 @@ impl FactoredMatrix {
         self.solver.factorize()
     }
 
-    /// Carries the matrix and what is known of its inverse.
-    fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+    /// Transfers the matrix and what is known of its inverse.
+    fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             solver,
             compliance,
@@ -130,17 +130,17 @@ impl FactoredMatrix {
             hinges: _,
             method: _,
         } = self;
-        solver.carry(archive)?;
-        compliance.carry(archive, solver)?;
+        solver.transfer(archive)?;
+        compliance.transfer(archive, solver)?;
         let mut scopes: Vec<ConstraintGroup> = kept.keys().cloned().collect();
-        archive.carry(&mut scopes)?;
+        archive.transfer(&mut scopes)?;
         if archive.is_reading() {
             kept.clear();
         }
         for scope in scopes {
-            kept.entry(scope).or_default().carry(archive)?;
+            kept.entry(scope).or_default().transfer(archive)?;
         }
-        archive.carry(update)
+        archive.transfer(update)
     }
 
     /// The rows of T of bodies that turn, which are to change.
@@ -284,9 +284,9 @@ impl EffectiveStiffness {
         }
     }
 
-    /// Carries both matrices and the configuration of K*.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Self {
+    /// Transfers both matrices and the configuration of K*.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Self {
             [k, m, angles] form, pins, dt, stiffness, inertia
         })
     }

@@ -29,13 +29,13 @@ impl Seen {
         }
     }
 
-    /// Carries all of it.
+    /// Transfers all of it.
     ///
     /// # Errors
     /// What is read is of another model.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        archive.carry_values(&mut self.displacement)?;
-        archive.carry_values(&mut self.force)
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        archive.transfer_values(&mut self.displacement)?;
+        archive.transfer_values(&mut self.force)
     }
 
     /// Takes in the displacement, load and internal force of an increment.

@@ -8,7 +8,7 @@ use super::meter::Meter;
 use super::pins::Pins;
 use super::seen::Seen;
 use super::step_problem::{StepProblem, difference, sum};
-use crate::archive::{Archive, ArchiveError, carry_fields};
+use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, SlaveChoice, find_means,
     find_penetration, find_targets,
@@ -51,9 +51,9 @@ impl<'m> Workspace<'m> {
         }
     }
 
-    /// Carries what the increments of the step hand on.
-    pub fn carry(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        carry_fields!(archive, self => Self { [stiffness, search, seen]; meter, pins, pairs })
+    /// Transfers what the increments of the step hand on.
+    pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
+        transfer_fields!(archive, self => Self { [stiffness, search, seen]; meter, pins, pairs })
     }
 
     /// The effective stiffness K*.

@@ -1,0 +1,121 @@
+//! Energy checks of a converged increment: positive normal work of contact in the energy-momentum scheme, at
+//! corners that turn concave under a sliding node (section 7 of docs/theory.md), and the balance of the ledger
+//! (section 9).
+
+use super::energy::{CONTACT_WORK_ROUND_OFF, Ledger};
+use crate::contact::tolerances::CLOSED_GAP;
+use crate::contact::{ClosedPair, Constraint};
+use crate::dynamics::increment::{PartNoise, Solved};
+use crate::dynamics::results::{Cause, Energy, State};
+use crate::dynamics::step::{StepProblem, Workspace};
+use crate::linear::larger;
+
+/// Energy balance, as a part of the largest energy, beyond which a run says nothing any more.
+const UNBALANCED: f64 = 1e-3;
+
+/// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside
+/// the largest energy that the bodies in contact have had up to its end.
+///
+/// # Errors
+/// [`Cause::GainedEnergy`]: in halves of the increment a node passes a corner before or after the
+/// corner turns concave.
+pub(crate) fn check_energy_gain(
+    problem: &StepProblem,
+    start: &State,
+    ledger: &Ledger,
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let part = gain(problem, start, ledger, solved);
+    if part <= CONTACT_WORK_ROUND_OFF {
+        return Ok(());
+    }
+    let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| {
+        let work = pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage);
+        (work, constraint.pair().nodes)
+    };
+    let acting = solved.contact.forces.acting().map(of_pair);
+    let worst = acting.max_by(|p, q| p.0.total_cmp(&q.0));
+    let pair = worst.map(|(_, nodes)| nodes);
+    Err(Cause::GainedEnergy { part, pair })
+}
+
+/// Checks that the energy balance counts for nothing beside the largest energy so far.
+///
+/// Round-off of positions makes forces that are out of balance by as much as they are. Of a motion with so
+/// little energy that these forces n are more than a thousandth of its own no balance is asked,
+///
+/// ```text
+/// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
+/// ```
+///
+/// E the largest energy so far, n, K_ii and M_ii those of eq. (4.10); nor is one asked in a static step of bodies on whose
+/// way n has done more than a thousandth of E of work, since they move rigidly.
+///
+/// # Errors
+/// [`Cause::Unbalanced`].
+pub(crate) fn check_balance(
+    problem: &StepProblem,
+    workspace: &Workspace,
+    ledger: &Ledger,
+    solved: &Solved,
+) -> Result<(), Cause> {
+    let Energy {
+        scale: energy,
+        round_off,
+        ..
+    } = ledger.energy;
+    let balance = ledger.energy.balance.abs();
+    if balance <= UNBALANCED * energy {
+        return Ok(());
+    }
+    let noise = solved.noise(problem, workspace);
+    // max n²/(1e-3² (K_ii + (2/dt²) M_ii)), eq. (9.13)
+    let of_part = |noise: &PartNoise| match noise.force {
+        0.0 => 0.0,
+        force => (force / UNBALANCED).powi(2) / noise.stiffness,
+    };
+    if energy <= noise.iter().map(of_part).fold(0.0, larger) {
+        return Ok(());
+    }
+    if !problem.integration.has_rates && round_off > UNBALANCED * energy {
+        return Ok(());
+    }
+    let is_round_off = |noise: &PartNoise| noise.force * noise.travel > UNBALANCED * energy;
+    let is_round_off = noise.iter().any(is_round_off);
+    Err(Cause::Unbalanced {
+        part: balance / energy,
+        is_round_off,
+    })
+}
+
+/// Energy that contact puts in because nodes slide on to segments that they were behind: the sum over
+/// the pairs, each relative to the largest energy of its bodies.
+///
+/// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
+/// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
+/// concave in the same increment. Nodes that the mesh places inside are left out.
+fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
+    if !problem.integration.energy_momentum {
+        return 0.0;
+    }
+    let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
+        let p = problem.positions(&start.u).place(constraint.pair().nodes);
+        let gap = constraint.lift_at_start().of(p).gap;
+        let was_beyond = match constraint.is_weighted() {
+            true => constraint.start_gap < -CLOSED_GAP * constraint.scale,
+            false => !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length,
+        };
+        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
+        let work = if was_beyond {
+            pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage)
+        } else {
+            0.0
+        };
+        (constraint, work)
+    });
+    let largest = |c: &Constraint| problem.parts.most(&ledger.largest, c.nodes());
+    let parts = works.filter(|&(_, work)| work > 0.0);
+    parts
+        .map(|(constraint, work)| work / largest(constraint))
+        .sum()
+}

@@ -1,0 +1,79 @@
+//! What releases take of nodes without mass, given back to the velocities of the end. Section 6 of
+//! docs/theory.md, Releases.
+
+use super::increment::{PairReturn, Release, Solved};
+use super::landing::{factorize_anew, give_back, touches};
+use super::patterns::{ReturnLoad, turning_bodies};
+use super::results::{Cause, State};
+use super::step::{StepProblem, Workspace};
+use crate::contact::Constraint;
+
+/// Enters the release at the end of an increment of length `dt` from `start` and, where the step asks for it
+/// (`LANDING=RETURN`), gives back what it has taken: along the pattern of the forces that the opened pairs
+/// carried before, each by its normal force.
+///
+/// # Errors
+/// Solves with K* that fail.
+pub(crate) fn return_release(
+    problem: &StepProblem,
+    workspace: &mut Workspace,
+    start: &State,
+    dt: f64,
+    solved: &mut Solved,
+    release: Release,
+) -> Result<(), Cause> {
+    let turns = turning_bodies(problem);
+    let gives = (release.opened.iter()).all(|(pair, _)| !touches(problem, &turns, pair));
+    if problem.returns_landings() && release.loss > 0.0 && gives {
+        if solved.returned.pairs.is_empty() {
+            factorize_anew(problem, workspace, start, dt, solved)?;
+        }
+        let mut force = vec![0.0; solved.d.len()];
+        for (constraint, pair) in &release.opened {
+            constraint.add_force(*pair, &mut force);
+        }
+        let energy = release.loss;
+        let given = give_back(
+            problem,
+            workspace,
+            dt,
+            solved,
+            &[ReturnLoad {
+                force,
+                friction: None,
+                energy,
+                most: 2.0 / dt,
+                pulls: false,
+            }],
+        )?;
+        solved.returned.support_work += given.support_work;
+        let impulse = dt * dt / 2.0 * given.y[0];
+        (solved.returned.pairs).extend(parts(&release, impulse, given.energies[0]));
+    }
+    solved.returned.release = release;
+    Ok(())
+}
+
+/// What every pair has of a return of `energy` whose load is `factor` times the forces before.
+fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
+    if energy == 0.0 {
+        return Vec::new();
+    }
+    let whole: f64 = release.opened.iter().map(|(_, force)| force[0]).sum();
+    let part = |(constraint, force): &(Constraint, [f64; 2])| {
+        let mut vector = [0.0; 2];
+        for (_, [x, y]) in constraint.forces_on_slave_surface(*force) {
+            vector = [vector[0] + factor * x, vector[1] + factor * y];
+        }
+        let [normal, tangential] = constraint.normal_and_tangential(*force);
+        PairReturn {
+            key: constraint.key,
+            energy: energy * force[0] / whole,
+            friction: 0.0,
+            normal: factor * normal,
+            tangential: factor * tangential,
+            vector,
+        }
+    };
+    release.opened.iter().map(part).collect()
+}

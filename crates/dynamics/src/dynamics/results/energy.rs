@@ -1,0 +1,37 @@
+//! Energies of the ledger. Section 9 of docs/theory.md.
+
+/// Energies; all but the first two are cumulative from the start of the analysis.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Energy {
+    /// Kinetic energy T.
+    pub kinetic: f64,
+    /// Strain energy W.
+    pub strain: f64,
+    /// The part of it in hourglass modes.
+    pub hourglass: f64,
+    /// Work of the loads and of the supports' prescribed motion.
+    pub external_work: f64,
+    /// Work of the normal contact forces.
+    pub normal_contact_work: f64,
+    /// Energy dissipated by friction.
+    pub friction_dissipation: f64,
+    /// Kinetic energy taken by the impact impulses.
+    pub impact_loss: f64,
+    /// Kinetic energy given back after landings.
+    pub landing_return: f64,
+    /// Strain energy that nodes without mass lose as they come to rest after a release.
+    pub release_loss: f64,
+    /// Energy dissipated by the damping of the materials.
+    pub damping: f64,
+    /// Energy dissipated by the materials.
+    pub material_dissipation: f64,
+    /// Energy dissipated by the integration scheme.
+    pub numerical_dissipation: f64,
+    /// Energy balance; for exact solutions zero, so that it measures the residual of the passes.
+    pub balance: f64,
+    /// Largest kinetic or strain energy or external work so far, in static steps also the work of the loads or of the
+    /// supports alone.
+    pub scale: f64,
+    /// Work that the round-off of the forces may have done in static steps.
+    pub round_off: f64,
+}

@@ -1,0 +1,18 @@
+//! One pass of an increment: errors, contact states, work of the complementarity problem.
+
+/// One pass of an increment.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PassReport {
+    /// Relative force residual with the contact forces of this pass.
+    pub residual: f64,
+    /// Relative displacement correction.
+    pub correction: f64,
+    /// Pairs with Pn > 0.
+    pub active: usize,
+    /// Active pairs that stick.
+    pub stick: usize,
+    /// Pairs in the complementarity problem.
+    pub lcp_size: usize,
+    /// Pivots of Lemke's method.
+    pub pivots: usize,
+}

@@ -1,0 +1,53 @@
+//! The end of a run: outcome, counts and times of its phases.
+
+use std::time::Duration;
+
+use super::failure::Failure;
+use super::increment_report::SolverCounts;
+
+/// Wall-clock time per phase.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Timings {
+    /// Internal force, tangent and loads.
+    pub assembly: Duration,
+    /// Factorisations.
+    pub factorization: Duration,
+    /// Solves with the factors, those for the Delassus matrices included.
+    pub solve: Duration,
+    /// Contact search: territories and their candidates.
+    pub search: Duration,
+    /// Pairing of candidates, constraint rows and Delassus matrices, penetration check.
+    pub contact: Duration,
+    /// Complementarity problems.
+    pub lcp: Duration,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// All steps are done.
+    Finished,
+    /// An increment failed for good; the results up to it are valid.
+    Stopped(Box<Failure>),
+    /// The observer requested the end; the results up to there are valid.
+    Interrupted,
+}
+
+/// Totals of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSummary {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Number of increments done.
+    pub increments: usize,
+    /// Number of cutbacks.
+    pub cutbacks: usize,
+    /// Number of increments that were repeated because of their truncation error.
+    pub rejections: usize,
+    /// Number of increments that an impact ended (`IMPACT TIME=EVENT`).
+    pub events: usize,
+    /// Counters summed over the increments (`lcp_size`, `residual` and `violation`: the largest).
+    pub solver: SolverCounts,
+    /// Time per phase.
+    pub timings: Timings,
+}
