@@ -62,7 +62,7 @@ fn constraints(
         u: &u,
     };
     let made = pairs.into_iter().map(|pair| Constraint::new(pair, &at));
-    made.filter(Constraint::is_weighted).collect()
+    made.filter(Constraint::is_mean).collect()
 }
 
 /// Normal rows above tangential ones, over all dofs.

@@ -1,14 +1,13 @@
 //! Active constraints of a subincrement in event-driven integration. Section 6 of docs/theory.md,
 //! Impacts as events, items 1 and 4.
 
-use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;
 use super::constraint::Constraint;
-use super::geometry::Positions;
-use super::keys::NodeAtSegment;
-use super::keys::{ConstraintKey, SlaveKey};
+use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};
+use super::positions::Positions;
 use super::projection::Projection;
 use super::search::{ListedSlave, Search};
+use super::target::{Segment, Target};
 use super::tolerances::{CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTION_BEYOND_ENDS};
 
 /// Which pairs are constraints in a subincrement.
@@ -156,25 +155,37 @@ impl ActiveConstraints {
     /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner,
     /// or the node of the corner out of a segment of the slave node: two nodes that are each other's corner
     /// are one constraint.
-    /// From surface to surface, whether its mean touches, or has come over the end of the master without a gap.
+    /// From surface to surface, whether its mean touches, or has come over the end of the master without a gap. A disc has
+    /// joined.
     pub fn is_held(&self, start: Positions, constraint: &Constraint) -> bool {
-        let (source, slave) = (&constraint.source, constraint.key.slave);
-        if constraint.is_weighted() {
-            let before = (self.means).binary_search_by_key(&constraint.key, |mean| mean.key);
-            let touches = match before {
-                Ok(place) => self.means[place].touches,
-                Err(_) => constraint.start_gap <= CLOSED_GAP * constraint.scale,
-            };
-            return touches || self.has_joined(slave);
-        }
-        let ([s, a, b, c], [first, second]) = (source.nodes, &source.bulges);
-        let is_held = |nodes, bulge: &Bulge| {
-            let place = bulge.below(start.place(nodes)).raised(source.allowed[0]);
-            self.holds(slave, &place)
+        let (slave, pair) = (constraint.key.slave, &constraint.source.pair);
+        let is_held = |Segment {
+                           ends: [a, b],
+                           bulge,
+                           ..
+                       }: &Segment| {
+            let place = start.place([pair.slave, *a, *b]);
+            self.holds(slave, &bulge.below(place).raised(pair.allowed[0]))
         };
-        is_held([s, a, b], first)
-            || (source.target.corner.is_some()
-                && (is_held([s, b, c], second) || self.touches_end(b, s)))
+        match &constraint.source.target {
+            Target::Segment(contact) => is_held(&contact.segment),
+            Target::Corner(corner) => {
+                is_held(&corner.before)
+                    || is_held(&corner.behind)
+                    || self.touches_end(corner.tip(), pair.slave)
+            }
+            Target::Mean(_) => self.touches_mean(constraint) || self.has_joined(slave),
+            Target::Disc(_) => self.has_joined(slave),
+        }
+    }
+
+    /// Whether the mean of a constraint touches, or has come over the end of the master without a gap.
+    fn touches_mean(&self, constraint: &Constraint) -> bool {
+        let before = (self.means).binary_search_by_key(&constraint.key, |mean| mean.key);
+        match before {
+            Ok(place) => self.means[place].touches,
+            Err(_) => constraint.start_gap <= CLOSED_GAP * constraint.scale,
+        }
     }
 
     /// Whether a slave node touches a segment that ends at another node.

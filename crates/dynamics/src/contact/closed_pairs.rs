@@ -3,8 +3,8 @@
 //! tunnelling check and the landings which nodes are in contact. Sections 5 and 6 of docs/theory.md.
 
 use super::constraint::{Configurations, Constraint};
-use super::keys::{ConstraintKey, SlaveKey};
-use super::targets::{PairTarget, SurfacePoint};
+use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};
+use super::target::PairTarget;
 use crate::lcp::ContactState;
 
 /// A pair in contact.
@@ -30,7 +30,7 @@ impl ClosedPair {
     pub fn new(constraint: &Constraint, force: [f64; 2], state: ContactState) -> Self {
         ClosedPair {
             key: constraint.key,
-            source: constraint.source.clone().allowing(1),
+            source: constraint.source.clone().at_end(),
             force,
             mu: constraint.mu,
             state,
@@ -53,18 +53,13 @@ impl ClosedPair {
     pub fn constraint(&self, at: &Configurations) -> Constraint {
         Constraint {
             mu: self.mu,
-            ..Constraint::new(self.source.clone().untilted(), at)
+            ..Constraint::new(self.source.clone(), at)
         }
     }
 
-    /// The points of its mean, none of a node on a segment.
-    pub(super) fn points(&self) -> impl Iterator<Item = &SurfacePoint> {
-        self.source.points.iter()
-    }
-
-    /// Its nodes; one may come twice.
-    pub fn nodes(&self) -> [usize; 4] {
-        self.source.nodes
+    /// A slave node and the segment that it meets, at a corner that before it.
+    pub fn pair(&self) -> NodeAtSegment {
+        self.source.named()
     }
 }
 
@@ -115,8 +110,8 @@ impl ClosedPairs {
 
     /// Whether a node lies in one of the means.
     pub(super) fn means_have(&self, node: usize) -> bool {
-        let mut points = self.0.iter().flat_map(ClosedPair::points);
-        points.any(|point| point.nodes().any(|other| other == node))
+        let mut means = self.0.iter().filter_map(|pair| pair.source.target.mean());
+        means.any(|mean| mean.has(node))
     }
 
     /// Their keys, increasing.

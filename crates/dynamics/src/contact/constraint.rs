@@ -10,11 +10,11 @@ use std::array::from_fn;
 
 use smallvec::SmallVec;
 
-use super::bulge::Lift;
-use super::geometry::position;
-use super::keys::{ConstraintKey, NodeAtSegment};
+use super::keys::ConstraintKey;
 use super::lists::PerDof;
-use super::targets::{PairTarget, position_round_off};
+use super::positions::position;
+use super::projection::position_round_off;
+use super::target::PairTarget;
 use super::tolerances::{NOTHING, SOLVED_GAP};
 use crate::vectors::dot;
 
@@ -108,21 +108,22 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// The constraint at the first nodes of its source, the slave node before the others, with its force rows
-    /// and derivative rows over their N dofs; its slip is Bt d. Its gap has the overlaps `allowed` at start and end.
+    /// The constraint of some nodes, the slave node before the others, with its force rows and derivative rows over
+    /// their N dofs; its slip is Bt d. Its gap has the overlaps `allowed` at start and end.
     #[inline]
     pub(super) fn of_nodes<const N: usize>(
         source: PairTarget,
+        nodes: &[usize],
         [force, derivative]: [RowPair<N>; 2],
         (gap, scale, allowed): (f64, f64, [f64; 2]),
         at: &Configurations,
     ) -> Self {
-        let dofs: [usize; N] = from_fn(|k| 2 * source.nodes[k / 2] + k % 2);
+        let dofs: [usize; N] = from_fn(|k| 2 * nodes[k / 2] + k % 2);
         // g0 = g - Bn d; Dt = Bt d, eq. (3.5); d = U - U0
         let d = dofs.map(|dof| at.u[dof] - at.u0[dof]);
         let product = |row: &[f64; N]| -> f64 { row.iter().zip(&d).map(|(b, d)| b * d).sum() };
         Constraint {
-            key: source.key,
+            key: source.pair.key,
             dofs: PerDof::of(dofs),
             slave_dofs: 2,
             force_rows: force.rows(),
@@ -147,14 +148,6 @@ impl Constraint {
     /// Normal and tangential force s Pn and Pt of its multipliers.
     pub fn normal_and_tangential(&self, [pn, pt]: [f64; 2]) -> [f64; 2] {
         [self.stretch * pn, pt]
-    }
-
-    /// What the gap of its node to the chord of its segment counts more by at the start of the increment.
-    pub fn lift_at_start(&self) -> Lift {
-        Lift {
-            allowed: self.source.allowed[0],
-            bulge: self.source.bulges[0],
-        }
     }
 
     /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
@@ -202,7 +195,7 @@ impl Constraint {
 
     /// Round-off of its slip (length): what solves leave of it, and round-off of the slave node's position at the start.
     pub fn slip_round_off(&self, (x, u0): (&[[f64; 2]], &[f64])) -> f64 {
-        let place = position(x, u0, self.source.nodes[0]);
+        let place = position(x, u0, self.source.pair.slave);
         SOLVED_GAP * self.scale + 4.0 * position_round_off(place)
     }
 
@@ -246,69 +239,6 @@ impl Constraint {
         self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
     }
 
-    /// A slave node and the segment that it meets, at a corner that before it: what messages name.
-    pub fn pair(&self) -> NodeAtSegment {
-        let [s, a, b, _] = self.source.nodes;
-        NodeAtSegment {
-            key: self.key,
-            nodes: [s, a, b],
-        }
-    }
-
-    /// The same; at a corner, with the segment whose normal has the larger weight.
-    pub fn nearer_pair(&self) -> NodeAtSegment {
-        let [s, a, b, c] = self.source.nodes;
-        let nodes = match self.source.target.corner {
-            Some(corner) if corner.weight > 0.5 => [s, b, c],
-            _ => [s, a, b],
-        };
-        NodeAtSegment {
-            key: self.key,
-            nodes,
-        }
-    }
-
-    /// The keys that its slave node has at each of its segments: at a corner, two.
-    pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
-        let slave = self.key.slave;
-        let is_own = self.is_weighted() || self.source.round.is_some();
-        let own = is_own.then_some(self.key);
-        let segments = self.source.target.segments().filter(move |_| own.is_none());
-        let of_segments = segments.map(move |segment| ConstraintKey { slave, segment });
-        own.into_iter().chain(of_segments)
-    }
-
-    /// Its slave nodes.
-    pub fn slave_nodes(&self) -> impl Iterator<Item = usize> {
-        self.nodes().take(self.slave_dofs / 2)
-    }
-
-    /// The slave nodes whose state it says: of a weighted constraint only the one that it is named by, of a disc its
-    /// centre.
-    pub fn named_slaves(&self) -> impl Iterator<Item = usize> {
-        let count = match self.is_weighted() || self.source.round.is_some() {
-            true => 1,
-            false => self.slave_dofs / 2,
-        };
-        self.nodes().take(count)
-    }
-
-    /// The master nodes of a weighted constraint, each with |Bn| there: the part of the normal force that it takes.
-    pub fn shares_of_masters(&self) -> impl Iterator<Item = (usize, f64)> {
-        let normal = &self.force_rows.normal;
-        let first = match self.is_weighted() {
-            true => self.slave_dofs,
-            false => self.dofs.len(),
-        };
-        let places = (first..self.dofs.len()).step_by(2);
-        places.map(|k| (self.dofs[k] / 2, normal[k].hypot(normal[k + 1])))
-    }
-
-    /// Whether its gap is a mean over points of slave faces.
-    pub fn is_weighted(&self) -> bool {
-        !self.source.points.is_empty()
-    }
-
     /// Bn^T Pn + Bt^T Pt at every node.
     pub fn nodal_forces(&self, [pn, pt]: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         let Rows { normal, tangential } = &self.force_rows;
@@ -319,7 +249,7 @@ impl Constraint {
 
     /// Whether its slave node is a corner of the contact's master.
     pub fn is_of_master(&self) -> bool {
-        self.source.is_of_master
+        self.source.pair.is_of_master
     }
 
     /// Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
@@ -347,12 +277,6 @@ impl Constraint {
     /// Bn^T Pn + Bt^T Pt at every slave node.
     pub fn slave_forces(&self, force: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         self.nodal_forces(force).take(self.slave_dofs / 2)
-    }
-
-    /// Whether it keeps a node out of a body: its slave node, or the corner that this meets.
-    pub fn keeps_out(&self, node: usize) -> bool {
-        let [s, _, corner, _] = self.source.nodes;
-        node == s || (self.source.target.corner.is_some() && node == corner)
     }
 
     fn product(&self, row: &[f64], v: impl Fn(usize) -> f64) -> f64 {

@@ -7,16 +7,17 @@
 use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use smallvec::SmallVec;
 
+use super::arcs::{MasterArc, SurfaceArc};
 use super::bulge::Bulge;
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
-use super::geometry::{ContactSurfaces, MasterArc, Positions, SurfaceArc};
+use super::geometry::ContactSurfaces;
 use super::keys::ConstraintKey;
-use super::lists::Recycled;
 use super::node_to_segment::{SegmentRows, rows_between};
-use super::projection::Projection;
+use super::positions::Positions;
+use super::projection::{position_round_off, rise};
 use super::search::{Candidate, ListedSlave};
 use super::stiffness::changes_between;
-use super::targets::{ContactTarget, Feature, PairTarget, Round, position_round_off, rise};
+use super::target::{DiscContact, MasterFeature, Pair, PairTarget, Target};
 use super::tolerances::{END_OF_FEATURE, SLIDING_SINE};
 use crate::vectors::{angle, difference};
 
@@ -38,30 +39,30 @@ pub(super) fn find_targets(
     };
     let now = finder.over(listed.candidates(), 1, allowed);
     let start = finder.over(listed.candidates(), 0, allowed);
-    let at_start = |feature: &Feature| feature.gap(positions[0].of(centre), |n| positions[0].of(n));
+    let at_start =
+        |feature: &MasterFeature| feature.gap(positions[0].of(centre), |n| positions[0].of(n));
     let nearest = (start.iter()).min_by(|f, g| at_start(&f.2).total_cmp(&at_start(&g.2)));
     for (key, segment, feature) in now {
         if at_start(&feature) <= 0.0 {
             continue;
         }
-        pairs.push(PairTarget {
+        let pair = Pair {
             key: ConstraintKey {
                 slave: listed.key,
                 segment: key,
             },
-            target: ContactTarget::face(segment),
-            nodes: [centre, feature.nodes[0], feature.nodes[1], disc.arm],
-            bulges: [Bulge::FLAT; 2],
-            from: None,
+            slave: centre,
             allowed,
-            points: Recycled::default(),
             is_of_master: false,
-            round: Some(Round {
-                radius: disc.radius,
-                arc: feature.arc,
-                from: nearest.filter(|from| from.0 != key).map(|from| from.2),
-            }),
+        };
+        let target = Target::Disc(DiscContact {
+            radius: disc.radius,
+            arm: disc.arm,
+            segment,
+            feature,
+            from: nearest.filter(|from| from.0 != key).map(|from| from.2),
         });
+        pairs.push(PairTarget { pair, target });
     }
 }
 
@@ -73,7 +74,7 @@ struct Finder<'a> {
 }
 
 /// Features with the numbers of their constraints, increasing, and a segment of theirs.
-type Over = SmallVec<[(usize, usize, Feature); 4]>;
+type Over = SmallVec<[(usize, usize, MasterFeature); 4]>;
 
 impl Finder<'_> {
     /// What the centre is over and near to, at the start (0) or in the iterate (1): segments and arcs between their ends,
@@ -88,7 +89,7 @@ impl Finder<'_> {
         let (count, mut over) = (surfaces.segments.len(), Over::new());
         for Candidate { segment: i, reach } in candidates {
             let arc = surfaces.arc_of(i);
-            let mut add = |number: usize, feature: Feature| {
+            let mut add = |number: usize, feature: MasterFeature| {
                 let s = self.positions[k].of(self.centre);
                 let gap = feature.gap(s, |node| self.positions[k].of(node)) + allowed[k];
                 if gap.abs() <= reach && over.iter().all(|(n, ..)| *n != number) {
@@ -100,7 +101,7 @@ impl Finder<'_> {
                 let number = arc.map_or(i, |arc| arc.circle);
                 add(number, self.feature(i));
             }
-            let vertex = |node: usize, other: usize| Feature {
+            let vertex = |node: usize, other: usize| MasterFeature {
                 nodes: [node, other],
                 arc: Some(MasterArc::VERTEX),
             };
@@ -120,13 +121,13 @@ impl Finder<'_> {
     }
 
     /// The arc that a segment is a chord of, or the segment.
-    fn feature(&self, segment: usize) -> Feature {
+    fn feature(&self, segment: usize) -> MasterFeature {
         match self.surfaces.arc_of(segment) {
-            Some(arc) => Feature {
+            Some(arc) => MasterFeature {
                 nodes: arc.nodes,
                 arc: Some(arc.arc),
             },
-            None => Feature {
+            None => MasterFeature {
                 nodes: self.surfaces.segments[segment],
                 arc: None,
             },
@@ -164,7 +165,7 @@ impl NodePositions {
     fn new(nodes: [usize; 4], at: &Configurations) -> Self {
         NodePositions {
             form: at.form,
-            nodes: [at.start(in_rows(nodes)), at.iterate(in_rows(nodes))],
+            nodes: [at.start(nodes), at.iterate(nodes)],
         }
     }
 
@@ -249,76 +250,121 @@ struct DiscRows {
     of_centre: [DiscRow; 2],
 }
 
-/// The constraint of the centre s of a disc at the segment from a to b, or at an arc; nodes s, a, b and one that turns with
-/// the disc.
-pub(super) fn constraint(source: PairTarget, round: &Round, at: &Configurations) -> Constraint {
-    let rows = rows(&source, round, at);
-    let gap = (rows.gap, rows.scale, source.allowed);
-    let nodes = source.nodes;
-    let in_rows = PairTarget {
-        nodes: in_rows(nodes),
-        ..source
-    };
-    let mut all = Constraint::of_nodes(in_rows, [rows.force, rows.derivative], gap, at);
-    all.slave_dofs = 4;
-    all.source.nodes = nodes;
-    all
-}
-
-/// The nodes s, a, b and the one that turns with the disc in the order of the rows.
-fn in_rows([s, a, b, arm]: [usize; 4]) -> [usize; 4] {
-    [s, arm, a, b]
-}
-
-fn rows(source: &PairTarget, round: &Round, at: &Configurations) -> DiscRows {
-    let places = NodePositions::new(source.nodes, at);
-    let mut rows = match &round.arc {
-        None => at_segment(&places, round.radius, -source.allowed[1]),
-        Some(arc) => at_arc(&places, round.radius, arc),
-    };
-    if let Some(from) = round.from.filter(|_| at.form == RowForm::DiscreteGradient) {
-        rows.kappa = tilt(source, round, &from, &rows, at);
-        let tilted = row(&rows.force.normal) + rows.of_centre[0] * rows.kappa;
-        rows.force.normal = tilted.into();
+impl DiscContact {
+    /// The centre s, the node that turns with the disc, and the nodes a and b of the master, in the order of the rows.
+    fn nodes(&self, pair: &Pair) -> [usize; 4] {
+        let [a, b] = self.feature.nodes;
+        [pair.slave, self.arm, a, b]
     }
-    rows
-}
 
-/// Tilt of the force on a disc that has come from another feature, eq. (7.6), along the way of its centre.
-fn tilt(
-    source: &PairTarget,
-    round: &Round,
-    from: &Feature,
-    rows: &DiscRows,
-    at: &Configurations,
-) -> f64 {
-    let [s, a, b, _] = source.nodes;
-    let feature = Feature {
-        nodes: [a, b],
-        arc: round.arc,
-    };
-    let centre = at.start([s])[0];
-    let start =
-        |feature: &Feature| feature.gap(centre, |node| at.start([node])[0]) + source.allowed[0];
-    let [gap, before] = [start(&feature), start(from)];
-    let of_start = Projection {
-        gap,
-        length: rows.scale,
-        xi: 0.0,
-        tangent: [0.0; 2],
-        normal: [0.0; 2],
-    };
-    let dofs = in_rows(source.nodes).map(|node| [2 * node, 2 * node + 1]);
-    let d = dofs
-        .as_flattened()
-        .iter()
-        .map(|&dof| at.u[dof] - at.u0[dof]);
-    let way = rows.of_centre[0].dot(&DiscRow::from_iterator(d));
-    let rise = rise(&of_start, before, centre);
-    // a force that leans too far is left as it is: what it gains is cut back
-    match way.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * way.abs() {
-        true => rise / way,
-        false => 0.0,
+    /// The constraint of the centre s of a disc at the segment from a to b, or at an arc.
+    pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
+        let rows = self.rows(&pair, at);
+        let gap = (rows.gap, rows.scale, pair.allowed);
+        let target = Target::Disc(self);
+        let source = PairTarget { pair, target };
+        let both = [rows.force, rows.derivative];
+        Constraint {
+            slave_dofs: 4,
+            ..Constraint::of_nodes(source, &self.nodes(&pair), both, gap, at)
+        }
+    }
+
+    fn rows(&self, pair: &Pair, at: &Configurations) -> DiscRows {
+        let places = NodePositions::new(self.nodes(pair), at);
+        let mut rows = match &self.feature.arc {
+            None => at_segment(&places, self.radius, -pair.allowed[1]),
+            Some(arc) => at_arc(&places, self.radius, arc),
+        };
+        if let Some(from) = self.from.filter(|_| at.form == RowForm::DiscreteGradient) {
+            rows.kappa = self.tilt(pair, &from, &rows, at);
+            let tilted = row(&rows.force.normal) + rows.of_centre[0] * rows.kappa;
+            rows.force.normal = tilted.into();
+        }
+        rows
+    }
+
+    /// Displacements of its nodes since the start, in the order of the rows.
+    fn displacements(&self, pair: &Pair, at: &Configurations) -> DiscRow {
+        let dofs = self.nodes(pair).map(|node| [2 * node, 2 * node + 1]);
+        let dofs = dofs.as_flattened().iter();
+        DiscRow::from_iterator(dofs.map(|&dof| at.u[dof] - at.u0[dof]))
+    }
+
+    /// Tilt of the force on a disc that has come from another feature, eq. (7.6), along the way of its centre.
+    fn tilt(&self, pair: &Pair, from: &MasterFeature, rows: &DiscRows, at: &Configurations) -> f64 {
+        let centre = at.start([pair.slave])[0];
+        let start = |feature: &MasterFeature| {
+            feature.gap(centre, |node| at.start([node])[0]) + pair.allowed[0]
+        };
+        let [gap, before] = [start(&self.feature), start(from)];
+        let way = rows.of_centre[0].dot(&self.displacements(pair, at));
+        let rise = rise((gap, rows.scale), before, centre);
+        // a force that leans too far is left as it is: what it gains is cut back
+        match way.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * way.abs() {
+            true => rise / way,
+            false => 0.0,
+        }
+    }
+
+    /// Change of the contact force Pn, Pt of a disc, over the dofs of the constraint.
+    pub(super) fn change(
+        &self,
+        pair: &Pair,
+        [pn, pt]: [f64; 2],
+        at: &Configurations,
+    ) -> DMatrix<f64> {
+        let places = NodePositions::new(self.nodes(pair), at);
+        let rows = self.rows(pair, at);
+        // the force of a tilted row is Bn^T Pn + Bt^T Pt + kappa Pn times the row of the centre
+        let leaning = rows.kappa * pn;
+        let mut k = SMatrix::<f64, 8, 8>::zeros();
+        match &self.feature.arc {
+            None => {
+                let (places_of_segment, force) = (places.of_segment(), [pn, pt + leaning]);
+                let of_centre =
+                    changes_between(places_of_segment, -pair.allowed[1], force, at.form);
+                let of_segment = [0, 1, 4, 5, 6, 7];
+                for (i, &row) in of_segment.iter().enumerate() {
+                    for (j, &column) in of_segment.iter().enumerate() {
+                        k[(row, column)] = of_centre[(i, j)];
+                    }
+                }
+                for (map, sign) in arms().iter().zip([1.0, -1.0]) {
+                    let turn = Turn::new(places.vectors(map), places.part());
+                    k += map.transpose() * turn.change * map * (sign * self.radius * pt);
+                }
+            }
+            Some(arc) => {
+                let own = AtArc::new(&places, self.radius, arc);
+                let [r0, r1] = own.r;
+                let [l0, l1] = own.r.map(|r| r.norm());
+                let normal = match at.form {
+                    RowForm::End => Matrix2::identity() / l1 - r1 * r1.transpose() / l1.powi(3),
+                    RowForm::DiscreteGradient => {
+                        let sum = l0 + l1;
+                        Matrix2::identity() / sum - (r0 + r1) * r1.transpose() / (l1 * sum * sum)
+                    }
+                };
+                let dm = own.middle * (own.part / own.m);
+                let along = J * own.middle / own.m;
+                let change = J * (own.part / own.m) - along * dm.transpose() / own.m;
+                let [r, arm, e] = own.maps;
+                k += r.transpose() * (normal * pn + change * (pt + leaning)) * r * own.sign;
+                let couples = [own.shares[0] * pt, own.shares[1] * pt + leaning];
+                for ((map, turn), couple) in [arm, e].iter().zip(&own.turns).zip(couples) {
+                    let of_turn = turn.change * own.m * map + turn.force * dm.transpose() * r;
+                    k -= map.transpose() * of_turn * (own.sign * couple);
+                }
+            }
+        }
+        if rows.kappa != 0.0 {
+            // dkappa = -kappa/s times the derivative of the way s
+            let [force, slope] = rows.of_centre;
+            let way = force.dot(&self.displacements(pair, at));
+            k -= force * slope.transpose() * (leaning / way);
+        }
+        DMatrix::from_column_slice(8, 8, k.as_slice())
     }
 }
 
@@ -448,70 +494,6 @@ fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
     }
 }
 
-/// Change of the contact force Pn, Pt of a disc, over the dofs of the constraint.
-pub(super) fn change(
-    source: &PairTarget,
-    round: &Round,
-    [pn, pt]: [f64; 2],
-    at: &Configurations,
-) -> DMatrix<f64> {
-    let places = NodePositions::new(source.nodes, at);
-    let rows = rows(source, round, at);
-    // the force of a tilted row is Bn^T Pn + Bt^T Pt + kappa Pn times the row of the centre
-    let leaning = rows.kappa * pn;
-    let mut k = SMatrix::<f64, 8, 8>::zeros();
-    match &round.arc {
-        None => {
-            let (places_of_segment, force) = (places.of_segment(), [pn, pt + leaning]);
-            let of_centre = changes_between(places_of_segment, -source.allowed[1], force, at.form);
-            let of_segment = [0, 1, 4, 5, 6, 7];
-            for (i, &row) in of_segment.iter().enumerate() {
-                for (j, &column) in of_segment.iter().enumerate() {
-                    k[(row, column)] = of_centre[(i, j)];
-                }
-            }
-            for (map, sign) in arms().iter().zip([1.0, -1.0]) {
-                let turn = Turn::new(places.vectors(map), places.part());
-                k += map.transpose() * turn.change * map * (sign * round.radius * pt);
-            }
-        }
-        Some(arc) => {
-            let own = AtArc::new(&places, round.radius, arc);
-            let [r0, r1] = own.r;
-            let [l0, l1] = own.r.map(|r| r.norm());
-            let normal = match at.form {
-                RowForm::End => Matrix2::identity() / l1 - r1 * r1.transpose() / l1.powi(3),
-                RowForm::DiscreteGradient => {
-                    let sum = l0 + l1;
-                    Matrix2::identity() / sum - (r0 + r1) * r1.transpose() / (l1 * sum * sum)
-                }
-            };
-            let dm = own.middle * (own.part / own.m);
-            let along = J * own.middle / own.m;
-            let change = J * (own.part / own.m) - along * dm.transpose() / own.m;
-            let [r, arm, e] = own.maps;
-            k += r.transpose() * (normal * pn + change * (pt + leaning)) * r * own.sign;
-            let couples = [own.shares[0] * pt, own.shares[1] * pt + leaning];
-            for ((map, turn), couple) in [arm, e].iter().zip(&own.turns).zip(couples) {
-                let of_turn = turn.change * own.m * map + turn.force * dm.transpose() * r;
-                k -= map.transpose() * of_turn * (own.sign * couple);
-            }
-        }
-    }
-    if rows.kappa != 0.0 {
-        // dkappa = -kappa/s times the derivative of the way s
-        let [force, slope] = rows.of_centre;
-        let dofs = in_rows(source.nodes).map(|node| [2 * node, 2 * node + 1]);
-        let d = dofs
-            .as_flattened()
-            .iter()
-            .map(|&dof| at.u[dof] - at.u0[dof]);
-        let way = force.dot(&DiscRow::from_iterator(d));
-        k -= force * slope.transpose() * (leaning / way);
-    }
-    DMatrix::from_column_slice(8, 8, k.as_slice())
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::constraint::Rows;
@@ -535,36 +517,41 @@ mod tests {
             Some(arc(-0.7, 1.9)),
             Some(arc(0.4, -2.1)),
         ];
-        let [a, b, c, d] = arcs.map(|arc| PairTarget {
-            nodes: [0, 1, 2, 3],
-            round: Some(Round {
-                radius: 0.8,
-                arc,
-                from: None,
-            }),
-            ..testing::face()
-        });
-        let [e, f, g, h] = [&a, &b, &c, &d].map(|source| behind_a_rise(source.clone()));
-        [a, b, c, d, e, f, g, h]
+        let [a, b, c, d] = arcs.map(|arc| disc(0.8, arc));
+        let [e, f, g, h] = [a, b, c, d].map(behind_a_rise);
+        [a, b, c, d, e, f, g, h].map(|(pair, disc)| PairTarget {
+            pair,
+            target: Target::Disc(disc),
+        })
+    }
+
+    /// A disc about node 0, turned by node 3, at the segment from node 1 to node 2, or at an arc that they move.
+    fn disc(radius: f64, arc: Option<MasterArc>) -> (Pair, DiscContact) {
+        let contact = DiscContact {
+            radius,
+            arm: 3,
+            segment: 0,
+            feature: MasterFeature { nodes: [1, 2], arc },
+            from: None,
+        };
+        (testing::face().pair, contact)
     }
 
     /// The disc comes from an arc that it was behind, and is 0.02 in front of the feature at the start.
-    fn behind_a_rise(mut source: PairTarget) -> PairTarget {
+    fn behind_a_rise((mut pair, mut disc): (Pair, DiscContact)) -> (Pair, DiscContact) {
         let at = between(RowForm::End, &U0, &U0);
-        source.allowed[0] = 0.02 - Constraint::new(source.clone(), &at).gap;
-        if let Some(round) = &mut source.round {
-            round.from = Some(Feature {
-                nodes: [1, 2],
-                arc: Some(MasterArc {
-                    place: [0.5, 0.0],
-                    radius: 100.0,
-                }),
-            });
-        }
+        pair.allowed[0] = 0.02 - disc.constraint(pair, &at).gap;
+        disc.from = Some(MasterFeature {
+            nodes: [1, 2],
+            arc: Some(MasterArc {
+                place: [0.5, 0.0],
+                radius: 100.0,
+            }),
+        });
         let at = between(RowForm::DiscreteGradient, &U0, &U1);
-        let rows = rows(&source, source.round.as_ref().expect("a disc"), &at);
-        assert!(rows.kappa.abs() > 1e-2, "{} {source:?}", rows.kappa);
-        source
+        let rows = disc.rows(&pair, &at);
+        assert!(rows.kappa.abs() > 1e-2, "{} {disc:?}", rows.kappa);
+        (pair, disc)
     }
 
     fn between<'a>(form: RowForm, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
@@ -600,12 +587,12 @@ mod tests {
         for source in sources() {
             let at = between(RowForm::DiscreteGradient, &U0, &U1);
             let found = Constraint::new(source.clone(), &at);
-            let rise = match source.round.as_ref().and_then(|round| round.from) {
-                Some(_) => 0.02,
-                None => 0.0,
+            let rise = match source.target {
+                Target::Disc(DiscContact { from: Some(_), .. }) => 0.02,
+                _ => 0.0,
             };
             let start = Constraint::new(source.clone(), &between(RowForm::End, &U0, &U0));
-            let counted = start.gap + source.allowed[0] - rise;
+            let counted = start.gap + source.pair.allowed[0] - rise;
             assert!((found.start_gap - counted).abs() < 1e-14);
         }
     }
@@ -614,7 +601,7 @@ mod tests {
     fn forces_of_a_closed_pair_keep_both_momenta() {
         for mut source in sources() {
             let gap = Constraint::new(source.clone(), &between(RowForm::End, &U0, &U1)).gap;
-            source.allowed[1] -= gap;
+            source.pair.allowed[1] -= gap;
             for (form, part) in [(RowForm::DiscreteGradient, 0.5), (RowForm::End, 1.0)] {
                 let found = Constraint::new(source.clone(), &between(form, &U0, &U1));
                 assert!(found.gap.abs() < 1e-15);
@@ -672,23 +659,15 @@ mod tests {
         let t = 0.3_f64;
         let way = 2.0 * (t / 2.0).tan();
         let u = [way, 0.0, 0.0, 0.0, 0.0, 0.0, way + t.sin(), t.cos() - 1.0];
-        let source = PairTarget {
-            nodes: [0, 1, 2, 3],
-            allowed: [-1.0; 2],
-            round: Some(Round {
-                radius: 1.0,
-                arc: None,
-                from: None,
-            }),
-            ..testing::face()
-        };
+        let (mut pair, disc) = disc(1.0, None);
+        pair.allowed = [-1.0; 2];
         let at = Configurations {
             form: RowForm::DiscreteGradient,
             x: &x,
             u0: &[0.0; 8],
             u: &u,
         };
-        let found = Constraint::new(source, &at);
+        let found = disc.constraint(pair, &at);
         assert!(found.gap.abs() < 1e-15);
         assert!(found.slip.abs() < 1e-15, "{}", found.slip);
     }

@@ -2,59 +2,20 @@
 //! corners. Section 10 of docs/theory.md.
 
 use std::collections::{HashMap, HashSet};
-use std::ops::Range;
 use std::sync::Arc;
 
+use super::arcs::SurfaceArc;
 use super::bulge::Bulge;
 use super::curves::{Chain, FaceShapes};
 use super::interior::Interior;
-use super::lists::{Recycled, entries};
-use super::projection::{Projection, between, project};
+use super::projection::project;
+use super::slave_segments::{SlaveSegments, Vertex};
 use super::tolerances::{CORNER_COSINE, CORNER_DEPTH, SHARP_TURN_COSINE, VERTEX_COSINE};
 use crate::linear::larger;
 use crate::model::{
-    CircleArc, Contact, ContactFormulation, Disc, Element, Mesh, Model, RigidProfile, Smoothing,
-    SurfaceKind,
+    Contact, ContactFormulation, Disc, Element, Mesh, Model, Smoothing, SurfaceKind,
 };
 use crate::vectors::{cross, difference, dot, length};
-
-/// Positions of all nodes in a configuration: reference coordinates plus displacements.
-#[derive(Debug, Clone, Copy)]
-pub struct Positions<'a> {
-    x: &'a [[f64; 2]],
-    u: &'a [[f64; 2]],
-}
-
-impl<'a> Positions<'a> {
-    /// Reference coordinates of the nodes and displacements over all dofs (length).
-    pub fn new(x: &'a [[f64; 2]], u: &'a [f64]) -> Self {
-        let u = u.as_chunks().0;
-        Positions { x, u }
-    }
-
-    /// Position of a node.
-    #[inline]
-    pub fn of(&self, node: usize) -> [f64; 2] {
-        let ([x, y], [u, v]) = (self.x[node], self.u[node]);
-        [x + u, y + v]
-    }
-
-    /// Reference coordinates of the nodes (length).
-    pub fn reference(&self) -> &'a [[f64; 2]] {
-        self.x
-    }
-
-    /// Projection of a node on a segment; `nodes` are slave, a and b.
-    pub fn place(&self, nodes: [usize; 3]) -> Projection {
-        let [s, a, b] = nodes.map(|node| self.of(node));
-        project(s, a, b)
-    }
-}
-
-/// Position of a node: reference coordinates plus displacement.
-pub(crate) fn position(x: &[[f64; 2]], u: &[f64], node: usize) -> [f64; 2] {
-    [x[node][0] + u[2 * node], x[node][1] + u[2 * node + 1]]
-}
 
 /// Nodes at one place that equations join, as those of both sides of a pre-tension section: one vertex of the surface on both
 /// sides of it, which does not touch the segments there.
@@ -117,79 +78,6 @@ pub struct ContactSurfaces {
     pub joined: Arc<JoinedNodes>,
 }
 
-/// An arc about a point that moves with two nodes p and q of the master: x_c = x_p + alpha e + beta J e, e = x_q - x_p.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct MasterArc {
-    /// alpha and beta.
-    pub place: [f64; 2],
-    /// Radius (length): negative where the body is outside of the circle, 0 of a vertex.
-    pub radius: f64,
-}
-
-impl MasterArc {
-    /// A vertex: the first of its nodes.
-    pub(super) const VERTEX: MasterArc = MasterArc {
-        place: [0.0; 2],
-        radius: 0.0,
-    };
-
-    /// Its centre, p and q being at these places.
-    pub(super) fn centre(&self, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
-        let ([alpha, beta], [x, y]) = (self.place, difference(p, q));
-        [p[0] + alpha * x - beta * y, p[1] + alpha * y + beta * x]
-    }
-
-    /// Distance of a point out of the body, p and q being at these places: |r| - R, or R - |r| in a hole.
-    pub(super) fn gap(&self, s: [f64; 2], nodes: [[f64; 2]; 2]) -> f64 {
-        let [x, y] = difference(self.centre(nodes), s);
-        self.sign() * x.hypot(y) - self.radius
-    }
-
-    /// 1, or -1 of an arc whose body is outside.
-    pub(super) fn sign(&self) -> f64 {
-        match self.radius < 0.0 {
-            true => -1.0,
-            false => 1.0,
-        }
-    }
-}
-
-/// An arc of a rigid master.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SurfaceArc {
-    /// Its chords.
-    pub segments: Range<usize>,
-    /// Nodes at its ends.
-    pub nodes: [usize; 2],
-    /// Its centre and radius.
-    pub arc: MasterArc,
-    /// First chord of the first arc of the same circle: what constraints are named by.
-    pub circle: usize,
-}
-
-impl SurfaceArc {
-    /// An arc of a profile; `x` are the reference coordinates of the nodes.
-    fn new(profile: &RigidProfile, arc: &CircleArc, x: &[[f64; 2]]) -> Self {
-        let Range { start, end } = arc.segments;
-        let nodes = [profile.segments[start][0], profile.segments[end - 1][1]];
-        let [p, q] = nodes.map(|node| x[node]);
-        let (e, r) = (difference(p, q), difference(p, arc.centre));
-        // the centre is as far from p as from q
-        let (square, beta) = (dot(e, e), cross(e, r) / dot(e, e));
-        let radius = (square * (0.25 + beta * beta)).sqrt();
-        let mut others = profile.arcs.iter().filter(|other| other.is_of_circle(arc));
-        SurfaceArc {
-            circle: others.next().map_or(start, |first| first.segments.start),
-            segments: arc.segments.clone(),
-            nodes,
-            arc: MasterArc {
-                place: [0.5, beta],
-                radius: radius.copysign(beta),
-            },
-        }
-    }
-}
-
 /// Corners of one surface against the segments of the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corners {
@@ -201,141 +89,6 @@ pub struct Corners {
     pub are_rigid: Vec<bool>,
     /// Whether they are corners of the contact's master.
     pub are_of_master: bool,
-}
-
-/// Slave faces and slave nodes of a contact from surface to surface.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SlaveSegments {
-    /// Numbers of the slave nodes at the ends of every face, none of a node that takes no part.
-    pub ends: Vec<[Option<usize>; 2]>,
-    /// For every slave node its faces on both sides, two lists where it is a corner, each face with the end
-    /// (0 or 1) at which the node is.
-    pub at_nodes: Vec<Vec<Vec<[usize; 2]>>>,
-    /// Number of the run of every master segment: segments without a corner between them.
-    pub runs: Vec<usize>,
-    /// Rank of every segment of a surface that touches itself: of two faces the one of lower rank is slave.
-    pub ranks: Option<Vec<usize>>,
-    /// Ends of every slave face, and after them those of every master segment.
-    pub vertices: Vec<[Vertex; 2]>,
-    /// Bulges of the same, for points.
-    pub bulges: Vec<Bulge>,
-    /// Whether the faces are those of bodies of revolution.
-    pub are_rings: bool,
-}
-
-/// A slave face or a master segment in one configuration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
-    /// Positions of its ends.
-    pub ends: [[f64; 2]; 2],
-    /// Unit vector from the first to the second.
-    pub tangent: [f64; 2],
-}
-
-entries!(Edge);
-
-impl SlaveSegments {
-    /// All faces, and after them all segments, at some positions.
-    pub fn edges(&self, positions: Positions) -> Recycled<Edge> {
-        let edge = |vertices: &[Vertex; 2]| {
-            let ends = vertices.map(|vertex| vertex.place(|node| positions.of(node)));
-            let e = difference(ends[0], ends[1]);
-            let length = length(e);
-            Edge {
-                ends,
-                tangent: e.map(|e| e / length),
-            }
-        };
-        self.vertices.iter().map(edge).collect()
-    }
-
-    /// Ends of a slave face.
-    pub fn face(&self, face: usize) -> [Vertex; 2] {
-        self.vertices[face]
-    }
-
-    /// Ends of a master segment.
-    pub fn segment(&self, segment: usize) -> [Vertex; 2] {
-        self.vertices[self.ends.len() + segment]
-    }
-
-    /// Bulge of a slave face.
-    pub fn face_bulge(&self, face: usize) -> &Bulge {
-        &self.bulges[face]
-    }
-
-    /// Bulge of a master segment.
-    pub fn segment_bulge(&self, segment: usize) -> &Bulge {
-        &self.bulges[self.ends.len() + segment]
-    }
-
-    /// That of a slave face among the edges.
-    pub fn edge_of_face<'e>(&self, edges: &'e [Edge], face: usize) -> &'e Edge {
-        &edges[face]
-    }
-
-    /// That of a master segment among the edges.
-    pub fn edge_of_segment<'e>(&self, edges: &'e [Edge], segment: usize) -> &'e Edge {
-        &edges[self.ends.len() + segment]
-    }
-
-    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
-    pub fn reference_weight(&self, face: usize, positions: Positions, eta: f64, part: f64) -> f64 {
-        let x = positions.reference();
-        let [a, b] = self.face(face).map(|vertex| vertex.place(|node| x[node]));
-        let radius = match self.are_rings {
-            true => between(a, b, eta)[0],
-            false => 1.0,
-        };
-        length(difference(a, b)) * part * radius
-    }
-}
-
-/// A vertex of the straight lines that the surfaces are made of: a node, or where a side has a node between its corners
-/// what takes its place, so that a pressure that is linear along the side has the right forces on all its nodes.
-///
-/// ```text
-/// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
-/// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Vertex {
-    /// The node.
-    pub node: usize,
-    /// Corners of the side that it is between.
-    pub corners: Option<[usize; 2]>,
-}
-
-impl Vertex {
-    /// Calls `take` with each of its nodes and the node's part in the position.
-    #[inline]
-    pub fn each_share(self, mut take: impl FnMut(usize, f64)) {
-        match self.corners {
-            None => take(self.node, 1.0),
-            Some([a, b]) => {
-                take(self.node, 4.0 / 3.0);
-                take(a, -1.0 / 6.0);
-                take(b, -1.0 / 6.0);
-            }
-        }
-    }
-
-    /// Its nodes.
-    pub fn nodes(self) -> impl Iterator<Item = usize> {
-        std::iter::once(self.node).chain(self.corners.into_iter().flatten())
-    }
-
-    /// Its position.
-    #[inline]
-    pub fn place(self, at: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
-        let x = at(self.node);
-        match self.corners {
-            None => x,
-            Some(corners) => {
-                let [a, b] = corners.map(at);
-                [0, 1].map(|i| 4.0 / 3.0 * x[i] - (a[i] + b[i]) / 6.0)
-            }
-        }
-    }
 }
 
 impl ContactSurfaces {
@@ -814,17 +567,4 @@ pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces>
         }
     };
     model.contacts.iter().map(of_contact).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_normal_points_out_of_the_body_on_the_left() {
-        // The top of a body runs from right to left, with the body below it on its left.
-        let p = project([1.0, 3.0], [4.0, 2.0], [0.0, 2.0]);
-        assert_eq!((p.xi, p.gap, p.length), (0.75, 1.0, 4.0));
-        assert_eq!((p.tangent, p.normal), ([-1.0, 0.0], [0.0, 1.0]));
-    }
 }

@@ -3,55 +3,65 @@
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
 use super::node_to_segment::{SegmentRows, segment_rows};
-use super::targets::Corner;
-use super::targets::PairTarget;
+use super::target::{Corner, CornerContact, Pair, PairTarget, Target};
 
-/// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
-///
-/// With the weight w of the corner, i the segment before and j that behind it, eq. (10.3),
-///
-/// ```text
-/// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
-/// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
-/// ```
-///
-/// whose normal has the length 1. Both g_i and g_j have the overlap a that a fit allows, eq. (3.15). The weights are constant in a pass, so that rows and gap stay
-/// exact differences. With other weights than those of the increment before, a closed corner may begin with a small
-/// overlap; it keeps it, since work would be done on its way out.
-pub(super) fn constraint(source: PairTarget, corner: Corner, at: &Configurations) -> Constraint {
-    let [s, a, b, c] = source.nodes;
-    // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
-    let [first, second] = source.bulges;
-    let before = segment_rows([s, a, b], (first, source.allowed), at);
-    let behind = segment_rows([s, b, c], (second, source.allowed), at);
-    let [m, along] = lengths_of_rows(corner, [&before, &behind]);
-    let blend = |row: [f64; 6], next: [f64; 6], m: f64| -> [f64; 8] {
-        let (row, next) = (at_first_nodes(row), at_last_nodes(next));
-        std::array::from_fn(|k| corner.blend(row[k], next[k]) / m)
-    };
-    let both = |p: RowPair<6>, q: RowPair<6>| RowPair {
-        normal: blend(p.normal, q.normal, m),
-        tangential: blend(p.tangential, q.tangential, along),
-    };
-    let rows = [
-        both(before.force, behind.force),
-        both(before.derivative, behind.derivative),
-    ];
-    let gap = corner.blend(before.gap, behind.gap) / m;
-    let allowed = source.allowed.map(|allowed| allowed / m);
-    let scale = before.projection.length;
-    let mut constraint = Constraint::of_nodes(source, rows, (gap, scale, allowed), at);
-    if at.form == RowForm::DiscreteGradient && constraint.start_gap < 0.0 {
-        constraint.gap -= constraint.start_gap;
-        constraint.start_gap = 0.0;
+impl CornerContact {
+    /// Rows at the segments before and behind, each over three nodes, and the lengths of their blends.
+    pub(super) fn rows(&self, pair: &Pair, at: &Configurations) -> ([SegmentRows; 2], [f64; 2]) {
+        let rows = [self.before, self.behind].map(|segment| {
+            let [a, b] = segment.ends;
+            segment_rows([pair.slave, a, b], (segment.bulge, pair.allowed), at)
+        });
+        let lengths = lengths_of_rows(self.corner(), &rows);
+        (rows, lengths)
     }
-    constraint
+
+    /// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
+    ///
+    /// With the weight w of the corner, i the segment before and j that behind it, eq. (10.3),
+    ///
+    /// ```text
+    /// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
+    /// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
+    /// ```
+    ///
+    /// whose normal has the length 1. Both g_i and g_j have the overlap a that a fit allows, eq. (3.15). The weights are constant in a pass, so that rows and gap stay
+    /// exact differences. With other weights than those of the increment before, a closed corner may begin with a small
+    /// overlap; it keeps it, since work would be done on its way out.
+    pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
+        // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
+        let corner = self.corner();
+        let ([before, behind], [m, along]) = self.rows(&pair, at);
+        let blend = |row: [f64; 6], next: [f64; 6], m: f64| -> [f64; 8] {
+            let (row, next) = (at_first_nodes(row), at_last_nodes(next));
+            std::array::from_fn(|k| corner.blend(row[k], next[k]) / m)
+        };
+        let both = |p: RowPair<6>, q: RowPair<6>| RowPair {
+            normal: blend(p.normal, q.normal, m),
+            tangential: blend(p.tangential, q.tangential, along),
+        };
+        let rows = [
+            both(before.force, behind.force),
+            both(before.derivative, behind.derivative),
+        ];
+        let gap = corner.blend(before.gap, behind.gap) / m;
+        let gap = (gap, before.projection.length, pair.allowed.map(|a| a / m));
+        let ([a, b], [_, c]) = (self.before.ends, self.behind.ends);
+        let target = Target::Corner(self);
+        let source = PairTarget { pair, target };
+        let mut constraint = Constraint::of_nodes(source, &[pair.slave, a, b, c], rows, gap, at);
+        if at.form == RowForm::DiscreteGradient && constraint.start_gap < 0.0 {
+            constraint.gap -= constraint.start_gap;
+            constraint.start_gap = 0.0;
+        }
+        constraint
+    }
 }
 
 /// Lengths m of the blended normal and tangential rows at s, which are one of straight faces.
-pub(super) fn lengths_of_rows(corner: Corner, sides: [&SegmentRows; 2]) -> [f64; 2] {
+fn lengths_of_rows(corner: Corner, sides: &[SegmentRows; 2]) -> [f64; 2] {
     let length = |of: fn(&SegmentRows) -> [f64; 2]| {
-        let [p, q] = sides.map(of);
+        let [p, q] = sides.each_ref().map(of);
         let [x, y] = [0, 1].map(|i| corner.blend(p[i], q[i]));
         x.hypot(y)
     };
@@ -81,7 +91,6 @@ fn at_last_nodes([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::targets::ContactTarget;
     use crate::contact::{RowForm, project, testing};
     use crate::vectors::dot;
 
@@ -99,15 +108,7 @@ mod tests {
 
     /// Node 0 at the corner of the segments from node 1 to 2 and from 2 to 3.
     fn source() -> PairTarget {
-        let corner = Corner {
-            next: 1,
-            weight: 0.3,
-        };
-        let target = ContactTarget {
-            corner: Some(corner),
-            ..ContactTarget::face(0)
-        };
-        testing::pair(target, [0, 1, 2, 3])
+        testing::corner([1, 2, 3], 0.3)
     }
 
     #[test]
@@ -158,10 +159,8 @@ mod tests {
             x[0] = start;
             let mut u = [0.0; 8];
             u[..2].copy_from_slice(&[0, 1].map(|i| end[i] - start[i]));
-            let source = PairTarget {
-                allowed: depths,
-                ..source()
-            };
+            let mut source = source();
+            source.pair.allowed = depths;
             let (x, u0, u) = (&x, &[0.0; 8], &u);
             let constraint = Constraint::new(source, &Configurations { form, x, u0, u });
             assert!(constraint.gap.abs() < 1e-15, "{form:?} {}", constraint.gap);

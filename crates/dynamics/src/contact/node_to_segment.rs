@@ -4,8 +4,8 @@
 use super::bend::{Bend, OfChord};
 use super::bulge::Bulge;
 use super::constraint::{Configurations, Constraint, RowForm, RowPair, product, sum_of};
-use super::projection::{Projection, project};
-use super::targets::{PairTarget, position_round_off, rise};
+use super::projection::{Projection, position_round_off, project, rise};
+use super::target::{Pair, PairTarget, SegmentContact, Target};
 use crate::vectors::{cross, difference, dot};
 
 /// A node on a segment, with its force rows and derivative rows.
@@ -44,53 +44,66 @@ struct Arms {
     cross: f64,
 }
 
-/// The constraint of the slave node s at the segment from a to b; nodes s, a, b.
-pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
-    let [s, a, b, _] = source.nodes;
-    let mut rows = segment_rows([s, a, b], (source.bulges[0], source.allowed), at);
-    let kappa = tilt(&source, at);
-    if kappa != 0.0 {
-        let [chord, _] = rows.chord();
-        rows.force.normal = sum_of(1.0, &rows.force.normal, kappa, &chord.tangential);
+impl SegmentContact {
+    /// The slave node s and the ends a and b.
+    pub(super) fn nodes(&self, pair: &Pair) -> [usize; 3] {
+        let [a, b] = self.segment.ends;
+        [pair.slave, a, b]
     }
-    let gap = (rows.gap, rows.projection.length, source.allowed);
-    Constraint {
-        stretch: rows.stretch(),
-        ..Constraint::of_nodes(source, [rows.force, rows.derivative], gap, at)
+
+    pub(super) fn rows(&self, pair: &Pair, at: &Configurations) -> SegmentRows {
+        segment_rows(self.nodes(pair), (self.segment.bulge, pair.allowed), at)
     }
-}
 
-/// Gap of the constraint, and the length that it is relative to.
-pub(super) fn gap_and_scale(source: &PairTarget, at: &Configurations) -> (f64, f64) {
-    let [s, a, b, _] = source.nodes;
-    let [s, a, b] = at.iterate([s, a, b]);
-    let projection = source.bulges[0].below(project(s, a, b));
-    (projection.gap + source.allowed[1], projection.length)
-}
+    /// The constraint of the slave node s at the segment from a to b; nodes s, a, b.
+    pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
+        let mut rows = self.rows(&pair, at);
+        let kappa = self.tilt(&pair, at);
+        if kappa != 0.0 {
+            let [chord, _] = rows.chord();
+            rows.force.normal = sum_of(1.0, &rows.force.normal, kappa, &chord.tangential);
+        }
+        let gap = (rows.gap, rows.projection.length, pair.allowed);
+        let target = Target::Segment(self);
+        let source = PairTarget { pair, target };
+        let both = [rows.force, rows.derivative];
+        Constraint {
+            stretch: rows.stretch(),
+            ..Constraint::of_nodes(source, &self.nodes(&pair), both, gap, at)
+        }
+    }
 
-/// Tilt of the force on a node that has slid on from another segment, eq. (7.6), zero on all others:
-///
-/// ```text
-/// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
-/// ```
-///
-/// Then Bn d = g1 - h0, so that contact puts no energy in.
-pub(super) fn tilt(source: &PairTarget, at: &Configurations) -> f64 {
-    let from = source.from.filter(|_| at.form == RowForm::DiscreteGradient);
-    let Some(from) = from else { return 0.0 };
-    let [s, a, b, _] = source.nodes;
-    let [start, end] = [at.start([s, a, b]), at.iterate([s, a, b])]
-        .map(|[s, a, b]| source.bulges[0].below(project(s, a, b)));
-    let [i, j] = from.ends;
-    let [s, i, j] = at.start([s, i, j]);
-    let allowed = source.allowed[0];
-    let before = from.bulge.below(project(s, i, j)).raised(allowed);
-    let rise = rise(&start.raised(allowed), before.gap, s);
-    let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
-    // a node that has not moved has no direction to be tilted in
-    match rise != 0.0 && slip.abs() > position_round_off(s) {
-        true => rise / slip,
-        false => 0.0,
+    /// Gap of the constraint, and the length that it is relative to.
+    pub(super) fn gap_and_scale(&self, pair: &Pair, at: &Configurations) -> (f64, f64) {
+        let [s, a, b] = at.iterate(self.nodes(pair));
+        let projection = self.segment.bulge.below(project(s, a, b));
+        (projection.gap + pair.allowed[1], projection.length)
+    }
+
+    /// Tilt of the force on a node that has slid on from another segment, eq. (7.6), zero on all others:
+    ///
+    /// ```text
+    /// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
+    /// ```
+    ///
+    /// Then Bn d = g1 - h0, so that contact puts no energy in.
+    pub(super) fn tilt(&self, pair: &Pair, at: &Configurations) -> f64 {
+        let from = self.from.filter(|_| at.form == RowForm::DiscreteGradient);
+        let Some(from) = from else { return 0.0 };
+        let nodes = self.nodes(pair);
+        let [start, end] = [at.start(nodes), at.iterate(nodes)]
+            .map(|[s, a, b]| self.segment.bulge.below(project(s, a, b)));
+        let [i, j] = from.ends;
+        let [s, i, j] = at.start([pair.slave, i, j]);
+        let allowed = pair.allowed[0];
+        let before = from.bulge.below(project(s, i, j)).raised(allowed);
+        let rise = rise((start.gap + allowed, start.length), before.gap, s);
+        let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
+        // a node that has not moved has no direction to be tilted in
+        match rise != 0.0 && slip.abs() > position_round_off(s) {
+            true => rise / slip,
+            false => 0.0,
+        }
     }
 }
 
@@ -301,10 +314,9 @@ fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
 #[cfg(test)]
 mod tests {
     use super::super::constraint::Rows;
-    use super::super::targets::Segment;
     use super::*;
-    use crate::contact::geometry::position;
-    use crate::contact::testing;
+    use crate::contact::target::Segment;
+    use crate::contact::{position, testing};
 
     const X: [[f64; 2]; 3] = [[0.7, 0.4], [2.0, 0.1], [-0.5, -0.2]];
     const U0: [f64; 6] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01];
@@ -323,10 +335,17 @@ mod tests {
     fn fit() -> PairTarget {
         let gap = projected(&U1).gap;
         assert!(gap.abs() > 0.1);
-        PairTarget {
-            allowed: [-gap; 2],
-            ..testing::face()
-        }
+        let mut source = testing::face();
+        source.pair.allowed = [-gap; 2];
+        source
+    }
+
+    /// Node 0 at the face from node 1 to node 2.
+    fn bent(bulge: Bulge) -> PairTarget {
+        testing::at_segment(Segment {
+            bulge,
+            ..testing::segment(0, [1, 2])
+        })
     }
 
     fn closed(form: RowForm, u0: &[f64]) -> Constraint {
@@ -344,10 +363,7 @@ mod tests {
         let bulges = [Bulge::FLAT, Bulge::steep(2.5)];
         let forms = [RowForm::End, RowForm::DiscreteGradient];
         for (form, bulge) in forms.map(|form| bulges.map(|bulge| (form, bulge))).concat() {
-            let source = PairTarget {
-                bulges: [bulge; 2],
-                ..testing::face()
-            };
+            let source = bent(bulge);
             let between = |form, u0: &[f64], u: &[f64]| of(source.clone(), form, u0, u);
             let constraint = between(form, &U0, &U1);
             assert_eq!(constraint.gap, bulge.below(projected(&U1)).gap);
@@ -371,10 +387,7 @@ mod tests {
     #[test]
     fn rows_of_curved_faces_are_exact_differences_normal_to_each_other() {
         let bulge = Bulge::steep(2.5);
-        let source = PairTarget {
-            bulges: [bulge; 2],
-            ..testing::face()
-        };
+        let source = bent(bulge);
         for form in [RowForm::End, RowForm::DiscreteGradient] {
             let constraint = of(source.clone(), form, &U0, &U1);
             let Rows { normal, tangential } = &constraint.force_rows;
@@ -418,17 +431,15 @@ mod tests {
         let rise_and_slip = |height: f64, slip: f64| {
             let x = [[0.0, height], [0.0; 2], [-1.0, 0.0], [1.0, 0.0]];
             let u = [-slip, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-            let source = PairTarget {
-                from: Some(Segment {
-                    ends: [3, 1],
-                    bulge: Bulge::FLAT,
-                }),
-                ..testing::face()
+            let contact = SegmentContact {
+                segment: testing::segment(0, [1, 2]),
+                from: Some(testing::segment(1, [3, 1])),
             };
+            let pair = testing::face().pair;
             let form = RowForm::DiscreteGradient;
             let u0 = &[0.0; 8];
             let x = &x;
-            tilt(&source, &Configurations { form, x, u0, u: &u })
+            contact.tilt(&pair, &Configurations { form, x, u0, u: &u })
         };
         // a gap is no rise, an overlap is
         assert_eq!(rise_and_slip(1e-3, 1e-2), 0.0);

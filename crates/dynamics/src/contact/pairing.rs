@@ -6,12 +6,14 @@ use smallvec::SmallVec;
 use super::closed_pairs::ClosedPairs;
 use super::constraint::{Constraint, RowForm};
 use super::disc;
-use super::geometry::Positions;
-use super::keys::NodeAtSegment;
-use super::lists::Recycled;
+use super::positions::Positions;
 use super::search::{ListedSlave, Search};
+use super::slave_node::SlaveNode;
 use super::surface_to_surface::find_points;
-use super::targets::{ContactTarget, ContactTargets, PairTarget, Segment, SlaveNode};
+use super::target::{
+    ContactTarget, ContactTargets, Corner, CornerContact, Pair, PairTarget, Segment,
+    SegmentContact, Target,
+};
 use super::tolerances::{CLOSED_GAP, KEPT_BEYOND_ENDS};
 
 /// The slave nodes whose pairs are found.
@@ -66,8 +68,9 @@ pub fn find_targets(
     let mut corners = Corners::new();
     for listed in search.slaves() {
         let held_by = held.of_slave(listed.key);
-        while (before.next_if(|pair| pair.key.slave < listed.key)).is_some() {}
-        let has_pair = (before.peek()).is_some_and(|pair| pair.key.slave == listed.key);
+        while (before.next_if(|source| source.pair.key.slave < listed.key)).is_some() {}
+        let is_own = |source: &&PairTarget| source.pair.key.slave == listed.key;
+        let has_pair = before.peek().is_some_and(is_own);
         let is_chosen = choice.takes(&listed, now, has_pair || !held_by.is_empty());
         if listed.surfaces.slave_segments.is_some() {
             if listed.number == 0 && is_chosen {
@@ -82,7 +85,10 @@ pub fn find_targets(
             disc::find_targets(&listed, [start, now], pairs);
             continue;
         }
-        let held_by: ContactTargets = held_by.iter().map(|pair| pair.source.target).collect();
+        let selected = |source: &PairTarget| source.target.selected();
+        let held_by: ContactTargets = (held_by.iter())
+            .filter_map(|pair| selected(&pair.source))
+            .collect();
         let node = SlaveNode {
             surfaces: listed.surfaces,
             start,
@@ -93,8 +99,8 @@ pub fn find_targets(
         };
         let found = node.targets(listed.candidates());
         let mut own = ContactTargets::new();
-        while let Some(pair) = before.next_if(|pair| pair.key.slave == listed.key) {
-            own.push(pair.target);
+        while let Some(source) = before.next_if(is_own) {
+            own.extend(selected(source));
         }
         let keeps = !own.is_empty() && (kept.is_some() || found.is_empty());
         if keeps {
@@ -103,7 +109,7 @@ pub fn find_targets(
         for &target in if keeps { &own } else { &found } {
             let pair = pair_target(&listed, target, (start, form), held);
             if node.meets_corner(&target) {
-                corners.push([pair.nodes[0], pair.nodes[2]]);
+                corners.extend(pair.at_corner());
             }
             pairs.push(pair);
         }
@@ -160,38 +166,49 @@ fn pair_target(
     held: &ClosedPairs,
 ) -> PairTarget {
     let surfaces = listed.surfaces;
-    let NodeAtSegment {
-        key,
-        nodes: [s, a, b],
-    } = listed.at(target.segment);
-    let c = target.corner.map_or(b, |v| surfaces.segments[v.next][1]);
-    let bulge = |i: usize| surfaces.bulges[i];
-    let next = target.corner.map_or(target.segment, |v| v.next);
+    let segment = |number: usize| Segment {
+        number,
+        ends: surfaces.segments[number],
+        bulge: surfaces.bulges[number],
+    };
+    let before = segment(target.segment);
     let mut allowed = listed.allowed();
     if listed.is_corner() && form == RowForm::DiscreteGradient {
         allowed = listed.allowed_where(|node| held.means_have(node));
         let held_by = target.from.unwrap_or(target.segment);
-        let place = bulge(held_by)
+        let place = surfaces.bulges[held_by]
             .below(start.place(listed.at(held_by).nodes))
             .raised(allowed[0]);
         if place.gap < -CLOSED_GAP * place.length {
             allowed = allowed.map(|overlap| overlap - place.gap);
         }
     }
-    PairTarget {
-        key,
-        target,
-        nodes: [s, a, b, c],
-        bulges: [target.segment, next].map(bulge),
-        from: target.from.map(|i| Segment {
-            ends: surfaces.segments[i],
-            bulge: bulge(i),
-        }),
+    let pair = Pair {
+        key: listed.at(target.segment).key,
+        slave: listed.node(),
         allowed,
-        points: Recycled::default(),
         is_of_master: listed.is_of_master(),
-        round: None,
-    }
+    };
+    let target = match target.corner {
+        None => Target::Segment(SegmentContact {
+            segment: before,
+            from: target.from.map(segment),
+        }),
+        Some(Corner { next, weight }) => {
+            let ([_, tip], [_, c]) = (before.ends, surfaces.segments[next]);
+            // at joined nodes the next segment begins with another node at the same place
+            let behind = Segment {
+                ends: [tip, c],
+                ..segment(next)
+            };
+            Target::Corner(CornerContact {
+                before,
+                behind,
+                weight,
+            })
+        }
+    };
+    PairTarget { pair, target }
 }
 
 /// Slave nodes with the corners that they meet, few.
@@ -201,16 +218,13 @@ type Corners = SmallVec<[[usize; 2]; 8]>;
 fn remove_twins(corners: &Corners, pairs: &mut Vec<PairTarget>) {
     let is_twin =
         |[s, v]: [usize; 2]| s > v && corners.contains(&[s, v]) && corners.contains(&[v, s]);
-    pairs.retain(|pair| {
-        let [s, _, v, _] = pair.nodes;
-        pair.target.corner.is_none() || !is_twin([s, v])
-    });
+    pairs.retain(|pair| !pair.at_corner().is_some_and(is_twin));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::{Configurations, ContactSurfaces, Rows, targets::Corner, testing};
+    use crate::contact::{Configurations, ContactSurfaces, testing};
 
     #[test]
     fn slave_nodes_are_near_by_distance_by_motion_or_by_their_pair() {
@@ -230,7 +244,7 @@ mod tests {
         };
         let slaves = |search: &Search, before: &[Constraint], choice: SlaveChoice| {
             let pairs = pairs_of(search, before, choice).into_iter();
-            pairs.map(|pair| pair.nodes[0]).collect::<Vec<_>>()
+            pairs.map(|source| source.pair.slave).collect::<Vec<_>>()
         };
         assert_eq!(slaves(&search, &[], SlaveChoice::All), [2, 3, 4, 5]);
         assert_eq!(slaves(&search, &[], SlaveChoice::Near), [2, 3]);
@@ -279,21 +293,23 @@ mod tests {
         for (rise, count) in [(0.0, 2), (4e-4, 2), (4e-3, 1), (0.5, 1)] {
             let pairs = pairs_of(rise);
             assert_eq!(pairs.len(), count, "{rise}");
-            assert!(pairs.iter().all(|pair| pair.target.corner.is_some()));
+            assert!(pairs.iter().all(|pair| pair.at_corner().is_some()));
         }
     }
 
     #[test]
     fn the_nearer_segment_at_a_corner_is_that_of_the_larger_weight() {
-        let nearer = |corner: Option<f64>| {
-            let mut constraint = testing::made_up(&[0; 8], Rows::new(&[0.0; 8], &[0.0; 8]));
-            constraint.source.nodes = [9, 1, 2, 3];
-            constraint.source.target.corner = corner.map(|weight| Corner { next: 1, weight });
-            constraint.nearer_pair().nodes
+        let x = [[-1.0, 0.0], [0.0, 1.0], [0.0; 2], [1.0, 0.0]];
+        let at = Configurations {
+            form: RowForm::End,
+            x: &x,
+            u0: &[0.0; 8],
+            u: &[0.0; 8],
         };
-        assert_eq!(nearer(None), [9, 1, 2]);
-        assert_eq!(nearer(Some(0.3)), [9, 1, 2]);
-        assert_eq!(nearer(Some(0.7)), [9, 2, 3]);
+        let nearer = |source: PairTarget| Constraint::new(source, &at).nearer_pair().nodes;
+        assert_eq!(nearer(testing::face()), [0, 1, 2]);
+        assert_eq!(nearer(testing::corner([1, 2, 3], 0.3)), [0, 1, 2]);
+        assert_eq!(nearer(testing::corner([1, 2, 3], 0.7)), [0, 2, 3]);
     }
 
     #[test]

@@ -1,5 +1,8 @@
-//! Projection of a point on a segment: gap, projection point and local frame. Section 3 of docs/theory.md.
+//! Projection of a point on a segment: gap, projection point and local frame; what of gaps and slips is round-off.
+//! Section 3 of docs/theory.md.
 
+use super::tolerances::{POSITION_ROUND_OFF, SOLVED_GAP};
+use crate::linear::largest;
 use crate::vectors::{difference, dot, length};
 
 /// A point in the local frame of a segment from a to b, which has its body on the left.
@@ -52,4 +55,32 @@ impl Projection {
 /// (1 - eta) x_1 + eta x_2
 pub(super) fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
     [0, 1].map(|i| (1.0 - eta) * x1[i] + eta * x2[i])
+}
+
+/// Round-off of gaps and slips of a node at `s` (length).
+pub(super) fn position_round_off(s: [f64; 2]) -> f64 {
+    POSITION_ROUND_OFF * largest(&s)
+}
+
+/// Rise g0 - h0 of eq. (7.6) (length): the gap at the start of the segment of the given length that a node at `s` has slid
+/// on to, above what it counts as, the gap `before` of the segment that the node came from, and no overlap. What is
+/// round-off of closed gaps and positions is zero: over the slip of a node that has come back it would tilt the force
+/// at random.
+pub(super) fn rise((gap, length): (f64, f64), before: f64, s: [f64; 2]) -> f64 {
+    let rise = gap - gap.min(before).max(0.0);
+    let round_off = (SOLVED_GAP * length).max(position_round_off(s));
+    if rise.abs() <= round_off { 0.0 } else { rise }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_normal_points_out_of_the_body_on_the_left() {
+        // The top of a body runs from right to left, with the body below it on its left.
+        let p = project([1.0, 3.0], [4.0, 2.0], [0.0, 2.0]);
+        assert_eq!((p.xi, p.gap, p.length), (0.75, 1.0, 4.0));
+        assert_eq!((p.tangent, p.normal), ([-1.0, 0.0], [0.0, 1.0]));
+    }
 }

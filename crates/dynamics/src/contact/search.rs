@@ -6,10 +6,12 @@ use std::sync::{Mutex, PoisonError};
 use smallvec::SmallVec;
 
 use super::bulge::Lift;
-use super::geometry::{ContactSurfaces, Corners, Edge, Positions, position};
+use super::geometry::{ContactSurfaces, Corners};
 use super::keys::NodeAtSegment;
 use super::keys::{ConstraintKey, SlaveKey};
 use super::lists::{Recycled, entries};
+use super::positions::{Positions, position};
+use super::slave_segments::Edge;
 use super::tolerances::{
     NEAR_PER_MOTION, NEAR_REACH, PAIRING_REACH, PAIRING_REACH_WITHOUT_VELOCITIES,
     PROJECTION_BEYOND_ENDS, SEARCH_MARGIN, SEARCH_MARGIN_PER_MOTION,

@@ -25,65 +25,89 @@
 use nalgebra::{DMatrix, DVector, Matrix4, Matrix6, SMatrix, Vector4, Vector6};
 
 use super::bend::Bend;
-use super::constraint::product;
-use super::constraint::{Configurations, Constraint, RowForm};
-use super::node_to_corner::lengths_of_rows;
-use super::node_to_segment::{SegmentRows, couple, segment_rows, tilt};
+use super::constraint::{Configurations, Constraint, RowForm, product};
+use super::node_to_segment::{SegmentRows, couple};
 use super::projection::project;
+use super::target::{CornerContact, Pair, Segment, SegmentContact};
 
-/// Places of the dofs of s, a and b, or s, b and c, among those of the constraint.
+/// Places of the dofs of s, a and b, and of s, b and c, among those of the constraint.
 const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
 
-impl Constraint {
-    /// Change of the contact force of a node, over the dofs of the constraint (force/length). The weight of a corner and
-    /// the length of its normal are those of the iterate.
-    pub(super) fn change_of_node(&self, [pn, pt]: [f64; 2], at: &Configurations) -> DMatrix<f64> {
-        let ([s, a, b, c], allowed) = (self.source.nodes, self.source.allowed);
-        let [first, second] = self.source.bulges;
-        let mut k = DMatrix::zeros(self.dofs.len(), self.dofs.len());
-        match self.source.target.corner {
-            None => {
-                // the force of a tilted row is Bn^T Pn + Bt^T (Pt + kappa Pn), eq. (7.6)
-                let (nodes, kappa) = ([s, a, b], tilt(&self.source, at));
-                let bent = (!first.is_flat()).then(|| segment_rows(nodes, (first, allowed), at));
-                let force = ([pn, pt], kappa * pn);
-                add_block(
-                    &mut k,
-                    &changes((nodes, allowed[1]), bent.as_ref(), force, at),
-                    0,
-                );
-                if kappa != 0.0 {
-                    // kappa = (g0 - h0)/s: dkappa = -kappa/s Gt, both of the chord
-                    let column = |row: &[f64]| DVector::from_column_slice(row);
-                    let (row, change, slip) = match bent {
-                        None => {
-                            let row = column(&self.force_rows.tangential);
-                            (row, column(&self.derivative_rows().tangential), self.slip)
-                        }
-                        Some(bent) => {
-                            let [force, derivative] = bent.chord().map(|rows| rows.tangential);
-                            let slip = product(&force, &displacements(nodes, at));
-                            (column(&force), column(&derivative), slip)
-                        }
-                    };
-                    k -= row * change.transpose() * (pn * kappa / slip);
+impl SegmentContact {
+    /// Change of the contact force Pn, Pt of the constraint, over its dofs (force/length).
+    pub(super) fn change(
+        &self,
+        constraint: &Constraint,
+        [pn, pt]: [f64; 2],
+        at: &Configurations,
+    ) -> DMatrix<f64> {
+        // the force of a tilted row is Bn^T Pn + Bt^T (Pt + kappa Pn), eq. (7.6)
+        let pair = &constraint.source.pair;
+        let (nodes, kappa) = (self.nodes(pair), self.tilt(pair, at));
+        let bent = (!self.segment.bulge.is_flat()).then(|| self.rows(pair, at));
+        let force = ([pn, pt], kappa * pn);
+        let mut k = DMatrix::zeros(6, 6);
+        k += changes((nodes, pair.allowed[1]), bent.as_ref(), force, at);
+        if kappa != 0.0 {
+            // kappa = (g0 - h0)/s: dkappa = -kappa/s Gt, both of the chord
+            let column = |row: &[f64]| DVector::from_column_slice(row);
+            let (row, change, slip) = match bent {
+                None => {
+                    let row = column(&constraint.force_rows.tangential);
+                    let change = column(&constraint.derivative_rows().tangential);
+                    (row, change, constraint.slip)
                 }
-            }
-            Some(corner) => {
-                let before = segment_rows([s, a, b], (first, allowed), at);
-                let behind = segment_rows([s, b, c], (second, allowed), at);
-                let [m, along] = lengths_of_rows(corner, [&before, &behind]);
-                let of = |nodes: [usize; 3], rows: &SegmentRows, weight: f64| {
-                    let force = [weight * pn / m, weight * pt / along];
-                    changes((nodes, allowed[1]), Some(rows), (force, 0.0), at)
-                };
-                add_block(&mut k, &of([s, a, b], &before, corner.blend(1.0, 0.0)), 0);
-                add_block(&mut k, &of([s, b, c], &behind, corner.blend(0.0, 1.0)), 1);
-            }
+                Some(bent) => {
+                    let [force, derivative] = bent.chord().map(|rows| rows.tangential);
+                    let slip = product(&force, &displacements(nodes, at));
+                    (column(&force), column(&derivative), slip)
+                }
+            };
+            k -= row * change.transpose() * (pn * kappa / slip);
         }
         k
     }
+}
 
+impl CornerContact {
+    /// Change of the contact force Pn, Pt, over the dofs of the constraint (force/length). The weight of the corner and
+    /// the length of its normal are those of the iterate.
+    pub(super) fn change(
+        &self,
+        pair: &Pair,
+        [pn, pt]: [f64; 2],
+        at: &Configurations,
+    ) -> DMatrix<f64> {
+        let ([before, behind], [m, along]) = self.rows(pair, at);
+        let of = |segment: &Segment, rows: &SegmentRows, weight: f64| {
+            let [a, b] = segment.ends;
+            let at_segment = ([pair.slave, a, b], pair.allowed[1]);
+            let force = [weight * pn / m, weight * pt / along];
+            changes(at_segment, Some(rows), (force, 0.0), at)
+        };
+        let corner = self.corner();
+        let blocks = [
+            of(&self.before, &before, corner.blend(1.0, 0.0)),
+            of(&self.behind, &behind, corner.blend(0.0, 1.0)),
+        ];
+        let mut k = DMatrix::zeros(8, 8);
+        for (block, places) in blocks.iter().zip(&PLACES) {
+            add_block(&mut k, block, places);
+        }
+        k
+    }
+}
+
+/// Adds the block of three nodes to the matrix over the dofs of a constraint, at their places.
+fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, places: &[usize; 6]) {
+    for (j, &column) in places.iter().enumerate() {
+        for (i, &row) in places.iter().enumerate() {
+            k[(row, column)] += block[(i, j)];
+        }
+    }
+}
+
+impl Constraint {
     /// Gn^T Gn, and Gt^T Gt where the constraint `sticks`, eq. (4.13), over its dofs
     /// (dimensionless).
     pub fn hold(&self, sticks: bool) -> DMatrix<f64> {
@@ -94,16 +118,6 @@ impl Constraint {
         match sticks {
             true => held + &tangential * tangential.transpose(),
             false => held,
-        }
-    }
-}
-
-/// Adds the block of three nodes to the matrix over the dofs of a constraint.
-fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, segment: usize) {
-    let places = PLACES[segment];
-    for (j, &column) in places.iter().enumerate() {
-        for (i, &row) in places.iter().enumerate() {
-            k[(row, column)] += block[(i, j)];
         }
     }
 }
@@ -261,7 +275,7 @@ fn products() -> [Matrix4<f64>; 3] {
 mod tests {
     use super::*;
     use crate::contact::bulge::Bulge;
-    use crate::contact::targets::{ContactTarget, Corner, PairTarget, Segment};
+    use crate::contact::target::{PairTarget, Target};
     use crate::contact::testing;
 
     /// A node at a roof, and the foot of the segment before it.
@@ -271,20 +285,15 @@ mod tests {
     const FORCE: [f64; 2] = [1.3, -0.4];
     const FORMS: [RowForm; 2] = [RowForm::End, RowForm::DiscreteGradient];
 
-    fn target(target: ContactTarget, nodes: [usize; 4], from: Option<[usize; 2]>) -> PairTarget {
-        bent(target, nodes, from, Bulge::FLAT)
-    }
-
-    fn bent(
-        target: ContactTarget,
-        nodes: [usize; 4],
-        from: Option<[usize; 2]>,
-        bulge: Bulge,
-    ) -> PairTarget {
-        PairTarget {
-            bulges: [bulge; 2],
-            from: from.map(|ends| Segment { ends, bulge }),
-            ..testing::pair(target, nodes)
+    /// Node 0 at the face from node 1 to node 2, to which it may have slid on.
+    fn bent(from: Option<[usize; 2]>, bulge: Bulge) -> SegmentContact {
+        let segment = |number: usize, ends: [usize; 2]| Segment {
+            bulge,
+            ..testing::segment(number, ends)
+        };
+        SegmentContact {
+            segment: segment(0, [1, 2]),
+            from: from.map(|ends| segment(1, ends)),
         }
     }
 
@@ -322,12 +331,12 @@ mod tests {
 
     #[test]
     fn the_change_of_the_force_is_its_derivative() {
-        let face = ContactTarget::face(0);
         for form in FORMS {
             let froms = [None, Some([4, 1])];
             let cases = froms.map(|from| [Bulge::FLAT, Bulge::steep(2.0)].map(|b| (from, b)));
             for (from, bulge) in cases.concat() {
-                let source = bent(face, [0, 1, 2, 2], from, bulge);
+                let target = Target::Segment(bent(from, bulge));
+                let source = testing::pair(testing::key(0, 0), 0, target);
                 let at = between(form, &U1);
                 let found = Constraint::new(source.clone(), &at).change(FORCE, &at);
                 let error = (&found - quotients(&source, form)).amax();
@@ -338,27 +347,23 @@ mod tests {
             }
         }
         let at = between(FORMS[1], &U1);
-        assert!(tilt(&target(face, [0, 1, 2, 2], Some([4, 1])), &at).abs() > 0.1);
+        let kappa = bent(Some([4, 1]), Bulge::FLAT).tilt(&testing::face().pair, &at);
+        assert!(kappa.abs() > 0.1);
     }
 
     #[test]
     fn contact_stiffness_at_a_corner_is_that_of_its_segments() {
         // a corner of weight 0 or 1 is one of its segments
         for form in FORMS {
-            for (weight, nodes) in [(0.0, [0, 1, 2, 2]), (1.0, [0, 2, 3, 3])] {
-                let corner = Some(Corner { next: 1, weight });
-                let of_corner = ContactTarget {
-                    corner,
-                    ..ContactTarget::face(0)
-                };
+            for (weight, ends) in [(0.0, [1, 2]), (1.0, [2, 3])] {
                 let at = between(form, &U1);
                 let stiffness =
                     |source: PairTarget| Constraint::new(source, &at).stiffness(FORCE, &at);
-                let found = stiffness(target(of_corner, [0, 1, 2, 3], None));
-                let face = stiffness(target(ContactTarget::face(0), nodes, None));
+                let found = stiffness(testing::corner([1, 2, 3], weight));
+                let face = stiffness(testing::at_segment(testing::segment(0, ends)));
                 let mut expected = DMatrix::zeros(8, 8);
                 let block = face.fixed_view::<6, 6>(0, 0).into_owned();
-                add_block(&mut expected, &block, weight as usize);
+                add_block(&mut expected, &block, &PLACES[weight as usize]);
                 assert!((found - expected).amax() < 1e-14, "{form:?} {weight}");
             }
         }
@@ -367,7 +372,7 @@ mod tests {
     #[test]
     fn held_constraints_resist_gap_and_slip() {
         let at = between(FORMS[1], &U1);
-        let constraint = Constraint::new(target(ContactTarget::face(0), [0, 1, 2, 2], None), &at);
+        let constraint = Constraint::new(testing::face(), &at);
         let v: [f64; 6] = [0.3, -0.2, 0.5, 0.1, -0.4, 0.7];
         let (gap, slip) = (constraint.gap_change(&v), constraint.slip_change(&v));
         let v = DVector::from_column_slice(&v);

@@ -12,14 +12,16 @@ use smallvec::SmallVec;
 use super::bulge::Bulge;
 use super::constraint::sum_of;
 use super::constraint::{Configurations, Constraint, RowForm, Rows};
-use super::geometry::{ContactSurfaces, Edge, Positions, SlaveSegments, Vertex};
+use super::geometry::ContactSurfaces;
 use super::keys::ConstraintKey;
 use super::lists::{PerDof, Recycled};
 use super::node_to_segment::{SegmentRows, couple, rows_between};
+use super::positions::Positions;
 use super::projection::{Projection, between, project};
 use super::search::{Cells, Faced, FacedRun, Territory};
+use super::slave_segments::{Edge, SlaveSegments, Vertex};
 use super::stiffness::{changes_between, changes_of_face};
-use super::targets::{ContactTarget, Origin, PairTarget, SurfacePoint};
+use super::target::{MeanContact, Pair, PairTarget, StartSegment, SurfacePoint, Target};
 use super::tolerances::{
     CLOSED_GAP, FACING_COSINE, LEAST_CELL, LEAST_COVER, NEARER_DEPTH, POINT_TILT, SIDE_BY_SIDE,
     SLIVER, STRAIGHT_SINE,
@@ -76,22 +78,20 @@ pub(super) fn find_points(
                 mean.points
                     .iter_mut()
                     .for_each(|q| q.weight /= mean.covered);
-                let segment = mean.nearest.0;
-                let [a, b] = surfaces.segments[segment];
-                pairs.push(PairTarget {
+                let pair = Pair {
                     key: ConstraintKey {
                         slave: key,
                         segment: side * surfaces.segments.len() + mean.run,
                     },
-                    target: ContactTarget::face(segment),
-                    nodes: [node, a, b, b],
-                    bulges: [Bulge::FLAT; 2],
-                    from: None,
+                    slave: node,
                     allowed: territory.allowed(number),
-                    points: mean.points,
                     is_of_master: false,
-                    round: None,
+                };
+                let target = Target::Mean(MeanContact {
+                    nearest: surfaces.segments[mean.nearest.0],
+                    points: mean.points,
                 });
+                pairs.push(PairTarget { pair, target });
             }
         }
     }
@@ -319,10 +319,10 @@ impl<'a> Finder<'a> {
     ) -> (usize, SurfacePoint) {
         let [x1, x2] = self.slave.face(face);
         let [a, b] = self.slave.segment(j);
-        let origin = match i {
-            Some(i) if i == j => Origin::Same,
-            Some(i) => Origin::Other(self.slave.segment(i), *self.slave.segment_bulge(i)),
-            None => Origin::Outside,
+        let from = match i {
+            Some(i) if i == j => StartSegment::Same,
+            Some(i) => StartSegment::Other(self.slave.segment(i), *self.slave.segment_bulge(i)),
+            None => StartSegment::Outside,
         };
         let point = SurfacePoint {
             vertices: [x1, x2, a, b],
@@ -330,7 +330,7 @@ impl<'a> Finder<'a> {
             rise: self.slave.face_bulge(face).at(eta),
             bulge: *self.slave.segment_bulge(j),
             weight,
-            origin,
+            from,
         };
         (j, point)
     }
@@ -528,15 +528,15 @@ impl SurfacePoint {
             bulge.below(project(s, a, b)).raised(-self.rise)
         };
         let [p, q] = [start, end].map(|places| over(&self.bulge, places));
-        let (before, turn) = match self.origin {
-            Origin::Same => return Tilt::default(),
-            Origin::Other(segment, bulge) => {
+        let (before, turn) = match self.from {
+            StartSegment::Same => return Tilt::default(),
+            StartSegment::Other(segment, bulge) => {
                 let [a, b] = segment.map(|vertex| vertex.place(&at_start));
                 let from = over(&bulge, [start[0], a, b]);
                 (from.gap, cross(from.tangent, p.tangent).abs())
             }
             // it may slide along its face over the end of the master
-            Origin::Outside => {
+            StartSegment::Outside => {
                 let [x1, x2] = [0, 1].map(|i| self.vertices[i].place(&at_start));
                 let face = project(x1, x1, x2).tangent;
                 (p.gap.max(0.0), cross(face, p.tangent).abs())
@@ -627,188 +627,179 @@ fn slip(start: &Projection, end: &Projection) -> f64 {
     (start.length + end.length) / 2.0 * (end.xi - start.xi)
 }
 
-/// The points of a constraint at the start of the increment; those that have come in later are left out.
-pub(super) fn at_start(mut source: PairTarget) -> PairTarget {
-    if source.points.iter().any(|q| q.origin != Origin::Outside) {
-        source.points.retain(|q| q.origin != Origin::Outside);
-    }
-    for point in source.points.iter_mut() {
-        if let Origin::Other([a, b], bulge) = point.origin {
-            (point.vertices[2], point.vertices[3], point.bulge) = (a, b, bulge);
-        }
-        point.origin = Origin::Same;
-    }
-    let sum: f64 = source.points.iter().map(|q| q.weight).sum();
-    source.points.iter_mut().for_each(|q| q.weight /= sum);
-    source
-}
-
-/// Nodes of a constraint, its slave nodes first, of them the one that it is named by; and the number of slave nodes.
-fn nodes(source: &PairTarget) -> (Recycled<usize>, usize) {
-    let mut nodes = Recycled::with_room();
-    nodes.push(source.nodes[0]);
-    let mut slaves = 1;
-    for ends in [0..2, 2..4] {
-        for point in source.points.iter() {
-            for vertex in &point.vertices[ends.clone()] {
-                vertex.each_share(|node, _| {
-                    if !nodes.contains(&node) {
-                        nodes.push(node);
-                    }
-                });
-            }
-        }
-        if ends.start == 0 {
-            slaves = nodes.len();
-        }
-    }
-    (nodes, slaves)
-}
-
-/// The constraint of a slave node with its points: sums of their gaps and rows by their weights,
-///
-/// ```text
-/// Bn_j = sum_q C_jq Bn_q,  Gn_j = sum_q C_jq Gn_q,  s_j = Bt_j d,   C_jq = w_q N_j/c_j    eq. (3.20)
-/// ```
-///
-/// A point is at the height g_q - g_j when the constraint is closed, which changes with both gaps:
-///
-/// ```text
-/// Gt_j = sum_q C_jq (Gt_q + (e_n.d_e)/l (Gn_q - Gn_j))   of end rows, Gt_q with constant heights
-/// ```
-pub(super) fn constraint(source: PairTarget, at: &Configurations) -> Constraint {
-    let (nodes, slaves) = nodes(&source);
-    // force rows n, t and derivative rows n, t
-    let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
-    let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
-    let [allowed_before, allowed] = source.allowed;
-    let mean: f64 = (source.points.iter().map(|q| q.weight * q.gaps(at)[0])).sum();
-    let (mut gap, mut scale, mut turn) = (mean + allowed, 0.0, 0.0);
-    let mut stretch = 0.0;
-    for point in source.points.iter() {
-        let (mut rows, _) = point.rows(gap, at);
-        scale += point.weight * rows.projection.length;
-        stretch += point.weight * rows.stretch();
-        if at.form == RowForm::End {
-            let turned = point.turn(&rows.projection, at) / rows.stretch();
-            let [_, chord] = rows.chord();
-            let tangential = &mut rows.derivative.tangential;
-            *tangential = sum_of(1.0, tangential, turned, &chord.normal);
-            turn += point.weight * turned;
-        }
-        let of_point = [
-            &rows.force.normal,
-            &rows.force.tangential,
-            &rows.derivative.normal,
-            &rows.derivative.tangential,
-        ];
-        point.each_share(&nodes, |place, own, share| {
-            let part = point.weight * share;
-            for (sums, row) in at_nodes.iter_mut().zip(of_point) {
-                let sum = &mut sums[place];
-                for i in 0..2 {
-                    sum[i] += part * row[2 * own + i];
+impl MeanContact {
+    /// Nodes of a constraint, its slave nodes first, of them the one that it is named by; and the number of slave nodes.
+    fn nodes(&self, slave: usize) -> (Recycled<usize>, usize) {
+        let mut nodes = Recycled::with_room();
+        nodes.push(slave);
+        let mut slaves = 1;
+        for ends in [0..2, 2..4] {
+            for point in self.points.iter() {
+                for vertex in &point.vertices[ends.clone()] {
+                    vertex.each_share(|node, _| {
+                        if !nodes.contains(&node) {
+                            nodes.push(node);
+                        }
+                    });
                 }
             }
-        });
-    }
-    let dofs: PerDof<usize> = nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
-    let product = |row: &[f64]| -> f64 {
-        let motions = dofs.iter().map(|&dof| at.u[dof] - at.u0[dof]);
-        row.iter().zip(motions).map(|(b, d)| b * d).sum()
-    };
-    let [n, t, gn, mut gt] = sums;
-    gt.iter_mut().zip(&gn).for_each(|(gt, gn)| *gt -= turn * gn);
-    let (mut start_gap, slip) = (mean - product(&n) + allowed_before, product(&t));
-    // what overlaps at the start stays, eq. (7.9)
-    if at.form == RowForm::DiscreteGradient && start_gap < 0.0 {
-        gap -= start_gap;
-        start_gap = 0.0;
-    }
-    let (force_rows, derivative_rows) = (
-        Rows {
-            normal: n,
-            tangential: t,
-        },
-        Rows {
-            normal: gn,
-            tangential: gt,
-        },
-    );
-    Constraint {
-        key: source.key,
-        slave_dofs: 2 * slaves,
-        other_derivative_rows: (derivative_rows != force_rows).then_some(derivative_rows),
-        force_rows,
-        gap,
-        start_gap,
-        slip,
-        mu: 0.0,
-        mu_varies: false,
-        // of straight faces one, whatever round-off the weights have
-        stretch: match source.points.iter().all(|q| q.bulge.is_flat()) {
-            true => 1.0,
-            false => stretch,
-        },
-        shrinkage: allowed_before - allowed,
-        scale,
-        dofs,
-        source,
-    }
-}
-
-/// Change of the contact force of a constraint with the given points: the sum of those of its points, the weights as
-/// they are.
-pub(super) fn change(
-    constraint: &Constraint,
-    points: &[SurfacePoint],
-    [pn, pt]: [f64; 2],
-    at: &Configurations,
-) -> DMatrix<f64> {
-    let nodes: SmallVec<[usize; 16]> = constraint.nodes().collect();
-    let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
-    // of heights, end rows alone
-    let mut couples = DVector::zeros(constraint.dofs.len());
-    for point in points {
-        let places = point.configurations(at);
-        let (rows, Tilt { kappa, slope }) = point.rows(constraint.gap, at);
-        let height = rows.projection.gap - constraint.gap;
-        let [pn, pt] = [pn, pt].map(|p| point.weight * p);
-        let mut own: Matrix6<f64> = match &rows.bend {
-            None => changes_between(places, height, [pn, pt + kappa * pn], at.form),
-            Some(bend) => changes_of_face(places, (height, bend), ([pn, pt], kappa * pn), at.form),
-        };
-        let [of_force, of_derivative] = rows.chord();
-        let [_, along] = (rows.bend.as_ref()).map_or([pn, pt], |bend| bend.at_chord([pn, pt]));
-        let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
-        let mut lean = Vector6::zeros();
-        if at.form == RowForm::End {
-            // the couple has a height, which changes with the gap of its point and with the gap of the constraint
-            lean = column(couple(&rows.projection)) * along;
-            own += lean * column(of_derivative.normal).transpose();
-        }
-        if slope != 0.0 {
-            // dkappa = (dkappa/ds) Gt
-            let (force, change) = (
-                column(of_force.tangential),
-                column(of_derivative.tangential),
-            );
-            own += force * change.transpose() * (pn * slope);
-        }
-        let mut shares: SmallVec<[(usize, usize, f64); 12]> = SmallVec::new();
-        point.each_share(&nodes, |place, own, share| shares.push((place, own, share)));
-        for &(row, i, p) in &shares {
-            let mut place = couples.fixed_rows_mut::<2>(2 * row);
-            place += lean.fixed_rows::<2>(2 * i) * p;
-            for &(col, j, q) in &shares {
-                let block: SMatrix<f64, 2, 2> =
-                    own.fixed_view::<2, 2>(2 * i, 2 * j).into_owned() * (p * q);
-                let mut place = k.fixed_view_mut::<2, 2>(2 * row, 2 * col);
-                place += block;
+            if ends.start == 0 {
+                slaves = nodes.len();
             }
         }
+        (nodes, slaves)
     }
-    k - couples * DVector::from_column_slice(&constraint.derivative_rows().normal).transpose()
+
+    /// The constraint of a slave node with its points: sums of their gaps and rows by their weights,
+    ///
+    /// ```text
+    /// Bn_j = sum_q C_jq Bn_q,  Gn_j = sum_q C_jq Gn_q,  s_j = Bt_j d,   C_jq = w_q N_j/c_j    eq. (3.20)
+    /// ```
+    ///
+    /// A point is at the height g_q - g_j when the constraint is closed, which changes with both gaps:
+    ///
+    /// ```text
+    /// Gt_j = sum_q C_jq (Gt_q + (e_n.d_e)/l (Gn_q - Gn_j))   of end rows, Gt_q with constant heights
+    /// ```
+    pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
+        let (nodes, slaves) = self.nodes(pair.slave);
+        // force rows n, t and derivative rows n, t
+        let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
+        let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
+        let [allowed_before, allowed] = pair.allowed;
+        let mean: f64 = (self.points.iter().map(|q| q.weight * q.gaps(at)[0])).sum();
+        let (mut gap, mut scale, mut turn) = (mean + allowed, 0.0, 0.0);
+        let mut stretch = 0.0;
+        for point in self.points.iter() {
+            let (mut rows, _) = point.rows(gap, at);
+            scale += point.weight * rows.projection.length;
+            stretch += point.weight * rows.stretch();
+            if at.form == RowForm::End {
+                let turned = point.turn(&rows.projection, at) / rows.stretch();
+                let [_, chord] = rows.chord();
+                let tangential = &mut rows.derivative.tangential;
+                *tangential = sum_of(1.0, tangential, turned, &chord.normal);
+                turn += point.weight * turned;
+            }
+            let of_point = [
+                &rows.force.normal,
+                &rows.force.tangential,
+                &rows.derivative.normal,
+                &rows.derivative.tangential,
+            ];
+            point.each_share(&nodes, |place, own, share| {
+                let part = point.weight * share;
+                for (sums, row) in at_nodes.iter_mut().zip(of_point) {
+                    let sum = &mut sums[place];
+                    for i in 0..2 {
+                        sum[i] += part * row[2 * own + i];
+                    }
+                }
+            });
+        }
+        let dofs: PerDof<usize> = nodes.iter().flat_map(|n| [2 * n, 2 * n + 1]).collect();
+        let product = |row: &[f64]| -> f64 {
+            let motions = dofs.iter().map(|&dof| at.u[dof] - at.u0[dof]);
+            row.iter().zip(motions).map(|(b, d)| b * d).sum()
+        };
+        let [n, t, gn, mut gt] = sums;
+        gt.iter_mut().zip(&gn).for_each(|(gt, gn)| *gt -= turn * gn);
+        let (mut start_gap, slip) = (mean - product(&n) + allowed_before, product(&t));
+        // what overlaps at the start stays, eq. (7.9)
+        if at.form == RowForm::DiscreteGradient && start_gap < 0.0 {
+            gap -= start_gap;
+            start_gap = 0.0;
+        }
+        let (force_rows, derivative_rows) = (
+            Rows {
+                normal: n,
+                tangential: t,
+            },
+            Rows {
+                normal: gn,
+                tangential: gt,
+            },
+        );
+        Constraint {
+            key: pair.key,
+            slave_dofs: 2 * slaves,
+            other_derivative_rows: (derivative_rows != force_rows).then_some(derivative_rows),
+            force_rows,
+            gap,
+            start_gap,
+            slip,
+            mu: 0.0,
+            mu_varies: false,
+            // of straight faces one, whatever round-off the weights have
+            stretch: match self.points.iter().all(|q| q.bulge.is_flat()) {
+                true => 1.0,
+                false => stretch,
+            },
+            shrinkage: allowed_before - allowed,
+            scale,
+            dofs,
+            source: PairTarget {
+                pair,
+                target: Target::Mean(self),
+            },
+        }
+    }
+
+    /// Change of the contact force of the constraint: the sum of those of its points, the weights as
+    /// they are.
+    pub(super) fn change(
+        &self,
+        constraint: &Constraint,
+        [pn, pt]: [f64; 2],
+        at: &Configurations,
+    ) -> DMatrix<f64> {
+        let nodes: SmallVec<[usize; 16]> = constraint.nodes().collect();
+        let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
+        // of heights, end rows alone
+        let mut couples = DVector::zeros(constraint.dofs.len());
+        for point in self.points.iter() {
+            let places = point.configurations(at);
+            let (rows, Tilt { kappa, slope }) = point.rows(constraint.gap, at);
+            let height = rows.projection.gap - constraint.gap;
+            let [pn, pt] = [pn, pt].map(|p| point.weight * p);
+            let mut own: Matrix6<f64> = match &rows.bend {
+                None => changes_between(places, height, [pn, pt + kappa * pn], at.form),
+                Some(bend) => {
+                    changes_of_face(places, (height, bend), ([pn, pt], kappa * pn), at.form)
+                }
+            };
+            let [of_force, of_derivative] = rows.chord();
+            let [_, along] = (rows.bend.as_ref()).map_or([pn, pt], |bend| bend.at_chord([pn, pt]));
+            let column = |row: [f64; 6]| Vector6::from_column_slice(&row);
+            let mut lean = Vector6::zeros();
+            if at.form == RowForm::End {
+                // the couple has a height, which changes with the gap of its point and with the gap of the constraint
+                lean = column(couple(&rows.projection)) * along;
+                own += lean * column(of_derivative.normal).transpose();
+            }
+            if slope != 0.0 {
+                // dkappa = (dkappa/ds) Gt
+                let (force, change) = (
+                    column(of_force.tangential),
+                    column(of_derivative.tangential),
+                );
+                own += force * change.transpose() * (pn * slope);
+            }
+            let mut shares: SmallVec<[(usize, usize, f64); 12]> = SmallVec::new();
+            point.each_share(&nodes, |place, own, share| shares.push((place, own, share)));
+            for &(row, i, p) in &shares {
+                let mut place = couples.fixed_rows_mut::<2>(2 * row);
+                place += lean.fixed_rows::<2>(2 * i) * p;
+                for &(col, j, q) in &shares {
+                    let block: SMatrix<f64, 2, 2> =
+                        own.fixed_view::<2, 2>(2 * i, 2 * j).into_owned() * (p * q);
+                    let mut place = k.fixed_view_mut::<2, 2>(2 * row, 2 * col);
+                    place += block;
+                }
+            }
+        }
+        k - couples * DVector::from_column_slice(&constraint.derivative_rows().normal).transpose()
+    }
 }
 
 #[cfg(test)]
@@ -816,7 +807,6 @@ mod tests {
     use std::collections::HashMap;
 
     use super::*;
-    use crate::contact::geometry::Vertex;
     use crate::contact::{Search, find_means, testing};
     use crate::model::Mesh;
     use crate::vectors::COMPARED;
@@ -837,45 +827,53 @@ mod tests {
         0.11, -0.05, 0.08, -0.02, 0.15, 0.03, -0.04, 0.06, 0.03, -0.02, 0.05, 0.04,
     ];
 
+    /// The pair that is named by node 1.
+    fn pair() -> Pair {
+        Pair {
+            slave: 1,
+            ..testing::face().pair
+        }
+    }
+
     /// The constraint of node 1 with points over both segments; one has come from the other segment.
-    fn source() -> PairTarget {
+    fn source() -> MeanContact {
         source_of([Bulge::FLAT; 2])
     }
 
     /// The same between faces that bend, those of the slave by a constant rise.
-    fn sources() -> [PairTarget; 2] {
+    fn sources() -> [MeanContact; 2] {
         [Bulge::FLAT, Bulge::steep(1.2)].map(|bulge| source_of([bulge; 2]))
     }
 
-    fn source_of([bulge, own]: [Bulge; 2]) -> PairTarget {
+    fn source_of([bulge, own]: [Bulge; 2]) -> MeanContact {
         let vertex = |node: usize| Vertex {
             node,
             corners: None,
         };
-        let point = |ends: [usize; 2], eta, weight, [a, b]: [usize; 2], origin| SurfacePoint {
+        let point = |ends: [usize; 2], eta, weight, [a, b]: [usize; 2], from| SurfacePoint {
             vertices: [ends[0], ends[1], a, b].map(vertex),
             eta,
             rise: own.at(eta),
             bulge: bulge.of_points([false; 2]),
             weight,
-            origin,
+            from,
         };
-        PairTarget {
+        MeanContact {
+            nearest: [4, 5],
             points: [
-                point([0, 1], 0.3, 0.1, [4, 5], Origin::Same),
-                point([0, 1], 0.9, 0.4, [4, 5], Origin::Same),
+                point([0, 1], 0.3, 0.1, [4, 5], StartSegment::Same),
+                point([0, 1], 0.9, 0.4, [4, 5], StartSegment::Same),
                 point(
                     [1, 2],
                     0.15,
                     0.3,
                     [3, 4],
-                    Origin::Other([4, 5].map(vertex), bulge.of_points([false; 2])),
+                    StartSegment::Other([4, 5].map(vertex), bulge.of_points([false; 2])),
                 ),
-                point([1, 2], 0.6, 0.2, [3, 4], Origin::Same),
+                point([1, 2], 0.6, 0.2, [3, 4], StartSegment::Same),
             ]
             .into_iter()
             .collect(),
-            ..testing::pair(ContactTarget::face(0), [1, 4, 5, 5])
         }
     }
 
@@ -890,11 +888,11 @@ mod tests {
         gap_of(&source(), u, is_start)
     }
 
-    fn gap_of(source: &PairTarget, u: &[f64], is_start: bool) -> f64 {
+    fn gap_of(source: &MeanContact, u: &[f64], is_start: bool) -> f64 {
         let at = |node: usize| [X[node][0] + u[2 * node], X[node][1] + u[2 * node + 1]];
         let gaps = source.points.iter().map(|q| {
-            let ([x1, x2, a, b], bulge) = match q.origin {
-                Origin::Other([a, b], bulge) if is_start => {
+            let ([x1, x2, a, b], bulge) = match q.from {
+                StartSegment::Other([a, b], bulge) if is_start => {
                     ([q.vertices[0], q.vertices[1], a, b], bulge)
                 }
                 _ => (q.vertices, q.bulge),
@@ -934,7 +932,8 @@ mod tests {
         let listed = search.slaves().map(|slave| slave.candidates().count());
         let mut pairs = Vec::new();
         find_means(&search, [&u; 2], RowForm::DiscreteGradient, &mut pairs);
-        let points = pairs.iter().map(|pair| pair.points.len());
+        let points = pairs.iter().filter_map(|source| source.target.mean());
+        let points = points.map(|mean| mean.points.len());
         [compared, listed.sum(), points.sum()]
     }
 
@@ -994,7 +993,7 @@ mod tests {
         search.cover(&u);
         let mut pairs = Vec::new();
         find_means(&search, [&u; 2], RowForm::DiscreteGradient, &mut pairs);
-        pairs.iter().filter(|pair| pair.nodes[0] == 3).count()
+        pairs.iter().filter(|source| source.pair.slave == 3).count()
     }
 
     #[test]
@@ -1008,7 +1007,7 @@ mod tests {
     fn rows_are_discrete_gradients_of_the_mean_gap() {
         let at = between_displacements(RowForm::DiscreteGradient, &U0, &U1);
         for source in sources() {
-            let constraint = constraint(source.clone(), &at);
+            let constraint = source.clone().constraint(pair(), &at);
             let overlap = gap_of(&source, &U0, true).min(0.0);
             let [gap, start_gap] = [constraint.gap + overlap, constraint.start_gap + overlap];
             assert!((gap - gap_of(&source, &U1, false)).abs() < 1e-14);
@@ -1037,14 +1036,16 @@ mod tests {
 
     #[test]
     fn end_rows_of_a_closed_mean_keep_both_momenta_and_are_those_of_a_body_at_rest() {
-        let source = PairTarget {
+        let closed = Pair {
             allowed: [-gap(&U1, false); 2],
-            ..source().untilted()
+            ..pair()
         };
+        let source = source().untilted();
         let rows = |form, u0: &[f64]| {
-            constraint(source.clone(), &between_displacements(form, u0, &U1)).force_rows
+            let at = between_displacements(form, u0, &U1);
+            source.clone().constraint(closed, &at).force_rows
         };
-        let nodes = nodes(&source).0;
+        let nodes = source.nodes(1).0;
         let found = rows(RowForm::End, &U0);
         for row in [&found.normal, &found.tangential] {
             let moment: f64 = (row.chunks(2).zip(nodes.iter()))
@@ -1064,7 +1065,7 @@ mod tests {
     #[test]
     fn the_parts_of_its_force_on_each_surface_sum_to_one() {
         let at = between_displacements(RowForm::DiscreteGradient, &U0, &U1);
-        let surfaces = constraint(source(), &at).surface_parts();
+        let surfaces = source().constraint(pair(), &at).surface_parts();
         for (surface, nodes) in surfaces.iter().zip([[0, 1, 2], [3, 4, 5]]) {
             let mut found: Vec<usize> = surface.parts.iter().map(|(node, _)| *node).collect();
             found.sort_unstable();
@@ -1086,7 +1087,7 @@ mod tests {
             u1[2 * node + 1] -= 0.7;
         }
         let at = between_displacements(RowForm::DiscreteGradient, &u0, &u1);
-        let constraint = constraint(source(), &at);
+        let constraint = source().constraint(pair(), &at);
         let before = gap(&u0, true);
         assert!(before < -0.1, "{before}");
         assert!((constraint.gap - (gap(&u1, false) - before)).abs() < 1e-13);
@@ -1100,7 +1101,10 @@ mod tests {
             .map(|form| sources().map(|source| (form, source)))
             .concat()
         {
-            let of = |u: &[f64]| constraint(source.clone(), &between_displacements(form, &U0, u));
+            let of = |u: &[f64]| {
+                let at = between_displacements(form, &U0, u);
+                source.clone().constraint(pair(), &at)
+            };
             let found = of(&U1);
             let rows = found.derivative_rows();
             for (k, &dof) in found.dofs.iter().enumerate() {
@@ -1132,13 +1136,16 @@ mod tests {
         {
             let nodal = |u: &[f64]| {
                 let mut forces = [0.0; 12];
-                constraint(source.clone(), &between_displacements(form, &U0, u))
+                let at = between_displacements(form, &U0, u);
+                source
+                    .clone()
+                    .constraint(pair(), &at)
                     .add_force(force, &mut forces);
                 forces
             };
             let at = between_displacements(form, &U0, &U1);
-            let of_all = constraint(source.clone(), &at);
-            let found = change(&of_all, &source.points, force, &at);
+            let of_all = source.clone().constraint(pair(), &at);
+            let found = source.change(&of_all, force, &at);
             let quotient = |row: usize, column: usize| {
                 let [mut plus, mut minus] = [U1; 2];
                 (plus[column], minus[column]) = (plus[column] + 1e-6, minus[column] - 1e-6);

@@ -4,9 +4,7 @@ use super::bulge::Bulge;
 use super::closed_pairs::{ClosedPair, ClosedPairs};
 use super::constraint::{Configurations, Constraint, RowForm, Rows};
 use super::keys::{ConstraintKey, SlaveKey};
-use super::lists::Recycled;
-use super::targets::ContactTarget;
-use super::targets::PairTarget;
+use super::target::{CornerContact, Pair, PairTarget, Segment, SegmentContact, Target};
 use crate::lcp::ContactState;
 
 /// Key of slave node number `slave` of the first contact at a segment.
@@ -15,24 +13,45 @@ pub(crate) fn key(slave: usize, segment: usize) -> ConstraintKey {
     ConstraintKey { slave, segment }
 }
 
-/// A slave node at a target of nodes a, b and c.
-pub(crate) fn pair(target: ContactTarget, nodes: [usize; 4]) -> PairTarget {
-    PairTarget {
-        key: key(0, target.segment),
-        target,
-        nodes,
-        bulges: [Bulge::FLAT; 2],
-        from: None,
+/// A slave node at a target, with the given key.
+pub(crate) fn pair(key: ConstraintKey, slave: usize, target: Target) -> PairTarget {
+    let pair = Pair {
+        key,
+        slave,
         allowed: [0.0; 2],
-        points: Recycled::default(),
         is_of_master: false,
-        round: None,
+    };
+    PairTarget { pair, target }
+}
+
+/// A straight segment.
+pub(crate) fn segment(number: usize, ends: [usize; 2]) -> Segment {
+    Segment {
+        number,
+        ends,
+        bulge: Bulge::FLAT,
     }
+}
+
+/// Node 0 at a segment, which has held it since the start.
+pub(crate) fn at_segment(segment: Segment) -> PairTarget {
+    let contact = SegmentContact::new(segment);
+    pair(key(0, segment.number), 0, Target::Segment(contact))
 }
 
 /// Node 0 at the segment from node 1 to node 2.
 pub(crate) fn face() -> PairTarget {
-    pair(ContactTarget::face(0), [0, 1, 2, 2])
+    at_segment(segment(0, [1, 2]))
+}
+
+/// Node 0 at the corner between the segments from a to b and from b to c.
+pub(crate) fn corner([a, b, c]: [usize; 3], weight: f64) -> PairTarget {
+    let contact = CornerContact {
+        before: segment(0, [a, b]),
+        behind: segment(1, [b, c]),
+        weight,
+    };
+    pair(key(0, 0), 0, Target::Corner(contact))
 }
 
 /// The constraint of [`face`] with the given gap and slip: the node starts at 1/4 of a segment of length 2.
@@ -52,7 +71,7 @@ pub(crate) fn at_face([gap, slip]: [f64; 2]) -> Constraint {
 pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
     let source = face();
     Constraint {
-        key: source.key,
+        key: source.pair.key,
         dofs: dofs.iter().copied().collect(),
         slave_dofs: 2,
         force_rows: rows,
@@ -74,10 +93,11 @@ pub(crate) fn closed_pair(slave: usize, segment: usize) -> ClosedPair {
     let key = key(slave, segment);
     ClosedPair {
         key,
-        source: PairTarget {
+        source: pair(
             key,
-            ..pair(ContactTarget::face(segment), [0, 1, 2, 2])
-        },
+            0,
+            Target::Segment(SegmentContact::new(self::segment(segment, [1, 2]))),
+        ),
         force: [0.0; 2],
         mu: 0.0,
         state: ContactState::Stick,

@@ -7,12 +7,13 @@
 use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};
-use super::geometry::{Along, ContactSurfaces, position};
+use super::geometry::{Along, ContactSurfaces};
 use super::keys::NodeAtSegment;
 use super::keys::SlaveKey;
+use super::positions::position;
 use super::projection::{Projection, between, project};
 use super::search::{ListedSlave, Search};
-use super::targets::raised;
+use super::slave_node::raised;
 use super::tolerances::{
     CORNER_CLIP_DEPTH, CORNER_DEPTH, CORNER_PATH_DEPTH, DEPTH_ROUND_OFF, NODE_DEPTH, SEGMENT_END,
 };
@@ -99,8 +100,7 @@ impl NodePath<'_> {
     /// Segments that hold the node at the end.
     fn held_by(&self) -> impl Iterator<Item = usize> {
         let pairs = self.closed[1].of_slave(self.key).iter();
-        let of_nodes = pairs.filter(|pair| pair.points().next().is_none());
-        of_nodes.flat_map(|pair| pair.source.target.segments())
+        pairs.flat_map(|pair| pair.source.target.segments())
     }
 
     fn motions(&self, segment: usize) -> [QuadraticMotion; 3] {

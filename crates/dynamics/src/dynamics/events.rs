@@ -142,10 +142,9 @@ impl FreeMotion<'_> {
     /// When a constraint that did not count, and that ends with an overlap, has closed: its slave node has gone behind the
     /// line of the segment.
     fn overlap(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> Option<f64> {
-        if constraint.is_weighted() {
+        let Some(lift) = constraint.lift_at_start() else {
             return constraint.closing_time([&self.path.v, &self.path.a], self.duration);
-        }
-        let lift = constraint.lift_at_start();
+        };
         let motions = self.motions(problem, u0, constraint.pair().nodes, lift);
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
@@ -329,8 +328,7 @@ impl<'m> Subincrements<'_, 'm> {
         let constraints = solved.map_or(&predicted, |solved| &solved.contact.forces.constraints);
         let counts = |c: &&Constraint| active.is_held(problem.positions(u0), c);
         let (counting, left_out): (Vec<_>, Vec<_>) = constraints.iter().partition(counts);
-        let of_nodes = counting.iter().filter(|c| !c.is_weighted());
-        let has_constraint = |slave: usize| of_nodes.clone().any(|c| c.keeps_out(slave));
+        let has_constraint = |slave: usize| counting.iter().any(|c| c.keeps_out(slave));
         let place = |u: &[f64], (pair, lift): (NodeAtSegment, Lift)| {
             lift.of(problem.positions(u).place(pair.nodes))
         };
@@ -347,11 +345,12 @@ impl<'m> Subincrements<'_, 'm> {
         let mut entries: Vec<Intrusion> = Vec::new();
         for c in left_out {
             // nodes that have gone in by less are found by their motion
-            let least = if c.is_weighted() { 0.0 } else { CLOSED_GAP };
+            let lift = c.lift_at_start();
+            let least = lift.map_or(0.0, |_| CLOSED_GAP);
             if c.gap < -least * c.scale {
                 let entry = |time| Intrusion {
                     pair: c.pair(),
-                    lift: (!c.is_weighted()).then_some(c.lift_at_start()),
+                    lift,
                     time,
                 };
                 entries.extend(motion.overlap(problem, u0, c).map(entry));

@@ -74,7 +74,7 @@ impl FreeNodes {
 /// Which nodes are without mass, of the bodies of the pairs `opened`, and held by no closed pair.
 fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<bool> {
     let body_of = problem.parts.of_nodes();
-    let nodes = opened.iter().flat_map(|pair| pair.nodes());
+    let nodes = opened.iter().flat_map(|closed| closed.pair().nodes);
     let bodies: BTreeSet<usize> = nodes.map(|node| body_of[node]).collect();
     let mut free = vec![false; body_of.len()];
     for node in problem.redistribution.massless() {

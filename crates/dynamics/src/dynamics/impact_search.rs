@@ -17,8 +17,8 @@ pub(crate) struct EventTrial {
 impl EventTrial {
     /// That of the given length, whose end has the displacements `u` and some constraints.
     pub fn new(length: f64, u: &[f64], constraints: &[Constraint]) -> Self {
-        let weighted = constraints.iter().filter(|c| c.is_weighted());
-        let mut means: Vec<_> = weighted.map(|c| (c.key, [c.gap, c.scale])).collect();
+        let means = constraints.iter().filter(|c| c.is_mean());
+        let mut means: Vec<_> = means.map(|c| (c.key, [c.gap, c.scale])).collect();
         means.sort_unstable_by_key(|(key, _)| *key);
         EventTrial {
             length,

@@ -3,7 +3,6 @@
 
 use super::contact_forces::ContactForces;
 use super::impulses::Impulses;
-use crate::contact::tolerances::PROJECTION_BEYOND_ENDS;
 use crate::contact::{ClosedPairs, Constraint, ConstraintSet, SlaveChoice};
 use crate::dynamics::results::State;
 use crate::dynamics::step::{BeforeIterate, Interval, StepProblem, Workspace};
@@ -143,11 +142,7 @@ impl ContactStates {
     /// node past a corner, or at it, is behind: the line of the segment that it came from.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
-        let is_over = |constraint: &Constraint| {
-            let xi = at.place(constraint.pair().nodes).xi;
-            constraint.is_weighted() || xi.min(1.0 - xi) > PROJECTION_BEYOND_ENDS
-        };
         let left_out = self.left_out.drain(..);
-        (self.forces.constraints).extend(left_out.filter(|c| c.gap >= 0.0 || is_over(c)));
+        (self.forces.constraints).extend(left_out.filter(|c| c.gap >= 0.0 || c.is_over(at)));
     }
 }

@@ -208,9 +208,8 @@ impl ContactLedger {
         for (constraint, _) in solved.contact.forces.acting() {
             let slip = constraint.tangential_motion(&solved.d).abs();
             of_masters.add(constraint, slip);
-            for node in constraint.named_slaves() {
-                increments[node] = increments[node].max(slip);
-            }
+            let node = constraint.named_slave();
+            increments[node] = increments[node].max(slip);
         }
         let increments = increments.into_iter().zip(of_masters.values());
         for (slip, (increment, mean)) in self.slip.iter_mut().zip(increments) {

@@ -100,10 +100,9 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
     }
     let works = (solved.contact.forces.acting()).map(|(constraint, pair)| {
         let p = problem.positions(&start.u).place(constraint.pair().nodes);
-        let gap = constraint.lift_at_start().of(p).gap;
-        let was_beyond = match constraint.is_weighted() {
-            true => constraint.start_gap < -CLOSED_GAP * constraint.scale,
-            false => !(0.0..=1.0).contains(&p.xi) && gap < -CLOSED_GAP * p.length,
+        let was_beyond = match constraint.lift_at_start() {
+            None => constraint.start_gap < -CLOSED_GAP * constraint.scale,
+            Some(lift) => !(0.0..=1.0).contains(&p.xi) && lift.of(p).gap < -CLOSED_GAP * p.length,
         };
         // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
         let work = if was_beyond {

@@ -77,10 +77,9 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
             Some(false) => NodeStatus::Stick,
             Some(true) => NodeStatus::Slip,
         };
-        for slave in constraint.named_slaves() {
-            results.gap[slave] = results.gap[slave].min(gap);
-            results.status[slave] = results.status[slave].max(status);
-        }
+        let slave = constraint.named_slave();
+        results.gap[slave] = results.gap[slave].min(gap);
+        results.status[slave] = results.status[slave].max(status);
         for (node, _) in (constraint.shares_of_masters()).filter(|(_, share)| *share > 0.0) {
             results.status[node] = results.status[node].max(status);
         }
@@ -91,7 +90,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     results
 }
 
-/// Means at the master nodes of weighted constraints, by the parts of their normal forces that the nodes take.
+/// Means at the master nodes of constraints from surface to surface, by the parts of their normal forces that the nodes take.
 ///
 /// ```text
 /// g = sum_j |Bn_j| g_j / sum_j |Bn_j|    eq. (9.16)
@@ -159,9 +158,7 @@ fn friction_coefficients(problem: &StepProblem, forces: &ContactForces) -> Vec<f
     }
     let mut means = vec![MeanCoefficient::default(); problem.model.mesh.node_count()];
     for (constraint, pair) in forces.acting() {
-        for node in constraint.named_slaves() {
-            means[node].add(constraint.mu, pair.force[0]);
-        }
+        means[constraint.named_slave()].add(constraint.mu, pair.force[0]);
         for (node, share) in constraint.shares_of_masters() {
             means[node].add(constraint.mu, share * pair.force[0]);
         }
@@ -338,7 +335,7 @@ fn landing(
 ) -> Landing {
     let [slave, a, b] = constraint.nearer_pair().nodes;
     let motions = [slave, a, b].map(|node| node_path(problem, &start.u, &start.v, &start.a, node));
-    let of_mean = constraint.is_weighted();
+    let of_mean = constraint.is_mean();
     let time = match of_mean {
         true => constraint.closing_time([&start.v, &start.a], interval.dt),
         false => Some(impact_time(&motions, interval.dt)),

@@ -261,11 +261,7 @@ impl StepProblem<'_> {
         let configurations = self.configurations(u0, u);
         constraints.clear();
         constraints.reserve(pairs.len());
-        let moves = |pair: &&PairTarget| {
-            let mut points = pair.points.iter();
-            self.unknowns.moves(&pair.nodes)
-                || points.any(|q| q.nodes().any(|node| self.unknowns.moves(&[node])))
-        };
+        let moves = |pair: &&PairTarget| pair.any_node(|node| self.unknowns.moves(&[node]));
         for source in pairs.iter().filter(moves) {
             let constraint = Constraint::new(source.clone(), &configurations);
             if self.unknowns.opens(&constraint) {

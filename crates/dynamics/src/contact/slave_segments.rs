@@ -1,0 +1,143 @@
+//! Slave faces and master segments of contact from surface to surface, with the vertices at their ends. Section 3 of
+//! docs/theory.md, From surface to surface.
+
+use super::bulge::Bulge;
+use super::lists::{Recycled, entries};
+use super::positions::Positions;
+use super::projection::between;
+use crate::vectors::{difference, length};
+
+/// Slave faces and slave nodes of a contact from surface to surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlaveSegments {
+    /// Numbers of the slave nodes at the ends of every face, none of a node that takes no part.
+    pub ends: Vec<[Option<usize>; 2]>,
+    /// For every slave node its faces on both sides, two lists where it is a corner, each face with the end
+    /// (0 or 1) at which the node is.
+    pub at_nodes: Vec<Vec<Vec<[usize; 2]>>>,
+    /// Number of the run of every master segment: segments without a corner between them.
+    pub runs: Vec<usize>,
+    /// Rank of every segment of a surface that touches itself: of two faces the one of lower rank is slave.
+    pub ranks: Option<Vec<usize>>,
+    /// Ends of every slave face, and after them those of every master segment.
+    pub vertices: Vec<[Vertex; 2]>,
+    /// Bulges of the same, for points.
+    pub bulges: Vec<Bulge>,
+    /// Whether the faces are those of bodies of revolution.
+    pub are_rings: bool,
+}
+
+/// A slave face or a master segment in one configuration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// Positions of its ends.
+    pub ends: [[f64; 2]; 2],
+    /// Unit vector from the first to the second.
+    pub tangent: [f64; 2],
+}
+
+entries!(Edge);
+
+impl SlaveSegments {
+    /// All faces, and after them all segments, at some positions.
+    pub fn edges(&self, positions: Positions) -> Recycled<Edge> {
+        let edge = |vertices: &[Vertex; 2]| {
+            let ends = vertices.map(|vertex| vertex.place(|node| positions.of(node)));
+            let e = difference(ends[0], ends[1]);
+            let length = length(e);
+            Edge {
+                ends,
+                tangent: e.map(|e| e / length),
+            }
+        };
+        self.vertices.iter().map(edge).collect()
+    }
+
+    /// Ends of a slave face.
+    pub fn face(&self, face: usize) -> [Vertex; 2] {
+        self.vertices[face]
+    }
+
+    /// Ends of a master segment.
+    pub fn segment(&self, segment: usize) -> [Vertex; 2] {
+        self.vertices[self.ends.len() + segment]
+    }
+
+    /// Bulge of a slave face.
+    pub fn face_bulge(&self, face: usize) -> &Bulge {
+        &self.bulges[face]
+    }
+
+    /// Bulge of a master segment.
+    pub fn segment_bulge(&self, segment: usize) -> &Bulge {
+        &self.bulges[self.ends.len() + segment]
+    }
+
+    /// That of a slave face among the edges.
+    pub fn edge_of_face<'e>(&self, edges: &'e [Edge], face: usize) -> &'e Edge {
+        &edges[face]
+    }
+
+    /// That of a master segment among the edges.
+    pub fn edge_of_segment<'e>(&self, edges: &'e [Edge], segment: usize) -> &'e Edge {
+        &edges[self.ends.len() + segment]
+    }
+
+    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
+    pub fn reference_weight(&self, face: usize, positions: Positions, eta: f64, part: f64) -> f64 {
+        let x = positions.reference();
+        let [a, b] = self.face(face).map(|vertex| vertex.place(|node| x[node]));
+        let radius = match self.are_rings {
+            true => between(a, b, eta)[0],
+            false => 1.0,
+        };
+        length(difference(a, b)) * part * radius
+    }
+}
+
+/// A vertex of the straight lines that the surfaces are made of: a node, or where a side has a node between its corners
+/// what takes its place, so that a pressure that is linear along the side has the right forces on all its nodes.
+///
+/// ```text
+/// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Vertex {
+    /// The node.
+    pub node: usize,
+    /// Corners of the side that it is between.
+    pub corners: Option<[usize; 2]>,
+}
+
+impl Vertex {
+    /// Calls `take` with each of its nodes and the node's part in the position.
+    #[inline]
+    pub fn each_share(self, mut take: impl FnMut(usize, f64)) {
+        match self.corners {
+            None => take(self.node, 1.0),
+            Some([a, b]) => {
+                take(self.node, 4.0 / 3.0);
+                take(a, -1.0 / 6.0);
+                take(b, -1.0 / 6.0);
+            }
+        }
+    }
+
+    /// Its nodes.
+    pub fn nodes(self) -> impl Iterator<Item = usize> {
+        std::iter::once(self.node).chain(self.corners.into_iter().flatten())
+    }
+
+    /// Its position.
+    #[inline]
+    pub fn place(self, at: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+        let x = at(self.node);
+        match self.corners {
+            None => x,
+            Some(corners) => {
+                let [a, b] = corners.map(at);
+                [0, 1].map(|i| 4.0 / 3.0 * x[i] - (a[i] + b[i]) / 6.0)
+            }
+        }
+    }
+}

@@ -1,0 +1,421 @@
+//! Targets of slave nodes: what is selected for a node, and what a constraint is made from, by kind. Sections 3 and 10
+//! of docs/theory.md.
+//!
+//! Constraints of each kind are made in a file of their own; `kinds` leads to them.
+
+use smallvec::SmallVec;
+
+use super::arcs::MasterArc;
+use super::bulge::Bulge;
+use super::keys::{ConstraintKey, NodeAtSegment};
+use super::lists::{Recycled, entries};
+use super::projection::project;
+use super::slave_segments::Vertex;
+
+/// What a constraint is made from: a slave node and its target.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PairTarget {
+    /// The slave node, with what all kinds have in common.
+    pub pair: Pair,
+    /// What the slave node must not penetrate.
+    pub target: Target,
+}
+
+/// What the pairs of all kinds have in common.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Pair {
+    /// Key of the constraint.
+    pub key: ConstraintKey,
+    /// The slave node that the constraint is named by.
+    pub slave: usize,
+    /// Overlap that a fit allows the node at the start of the increment and at its end (length), eq. (3.15).
+    pub allowed: [f64; 2],
+    /// Whether the slave node is a corner of the contact's master.
+    pub is_of_master: bool,
+}
+
+/// What a slave node must not penetrate.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum Target {
+    /// A segment of the master.
+    Segment(SegmentContact),
+    /// A corner of the master, or the vertex of a face.
+    Corner(CornerContact),
+    /// Segments of the master that points of slave faces are over: the mean of the gaps is not negative.
+    Mean(MeanContact),
+    /// A segment, an arc or a vertex of the master; the slave node is the centre of a disc.
+    Disc(DiscContact),
+}
+
+/// A segment with the shape of its face.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Segment {
+    /// Its number in the contact.
+    pub number: usize,
+    /// Its ends a and b.
+    pub ends: [usize; 2],
+    /// How far the face is outside of the chord.
+    pub bulge: Bulge,
+}
+
+/// A segment that a slave node must not penetrate.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SegmentContact {
+    /// The segment.
+    pub segment: Segment,
+    /// The segment that held the node at the start, if the node has slid on from there to this one.
+    pub from: Option<Segment>,
+}
+
+/// A corner of the master, or the vertex of a face, that a slave node must not penetrate.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CornerContact {
+    /// The segment from a to the corner b.
+    pub before: Segment,
+    /// The segment from the corner b to c.
+    pub behind: Segment,
+    /// Weight of the normal of the segment behind, between 0 and 1; that of the segment before is 1 - weight.
+    pub weight: f64,
+}
+
+/// Points of slave faces whose mean gap is not negative, and the segments of the master that they are over.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MeanContact {
+    /// Ends a and b of the segment that the point of the largest hat function is over: what messages name.
+    pub nearest: [usize; 2],
+    /// The points.
+    pub points: Recycled<SurfacePoint>,
+}
+
+/// A point of a slave face at the line of a master segment.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SurfacePoint {
+    /// Ends of the slave face, and ends a and b of the master segment.
+    pub vertices: [Vertex; 4],
+    /// Place on the slave face, 0 at its first end and 1 at its second.
+    pub eta: f64,
+    /// How far the slave face is outside of its chord there (length).
+    pub rise: f64,
+    /// Bulge of the master segment.
+    pub bulge: Bulge,
+    /// Part of its gap in that of the constraint, w N/c of eq. (3.18).
+    pub weight: f64,
+    /// Where it was at the start of the increment.
+    pub from: StartSegment,
+}
+
+entries!(SurfacePoint, (usize, SurfacePoint));
+
+/// The master segment that a point was over at the start of the increment.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum StartSegment {
+    /// The same.
+    Same,
+    /// Another one, with these ends and this bulge.
+    Other([Vertex; 2], Bulge),
+    /// None: it has come in over the end of the master surface.
+    Outside,
+}
+
+/// A segment, an arc or a vertex of the master that a disc must not penetrate.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct DiscContact {
+    /// Radius of the slave disc (length).
+    pub radius: f64,
+    /// The node that turns with the disc about its centre.
+    pub arm: usize,
+    /// Number of the segment, or of one at the arc or vertex.
+    pub segment: usize,
+    /// What the centre is over.
+    pub feature: MasterFeature,
+    /// What the centre was over at the start, where that was something else.
+    pub from: Option<MasterFeature>,
+}
+
+/// A segment or an arc of the master, by its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct MasterFeature {
+    /// Ends a and b of the segment; the nodes p and q that move the arc.
+    pub nodes: [usize; 2],
+    /// The arc, or the vertex p, an arc without radius; none of a segment.
+    pub arc: Option<MasterArc>,
+}
+
+impl Pair {
+    /// The same pair in one configuration: with the overlap that is allowed at the start of the increment (0) or at its
+    /// end (1).
+    fn in_one(self, configuration: usize) -> Self {
+        Pair {
+            allowed: [self.allowed[configuration]; 2],
+            ..self
+        }
+    }
+}
+
+impl PairTarget {
+    /// The pair at the start of the increment, with what held the slave node there.
+    pub(super) fn at_start(self) -> Self {
+        PairTarget {
+            pair: self.pair.in_one(0),
+            target: self.target.at_start(),
+        }
+    }
+
+    /// The pair at the end of the increment, as one that its target has held since the start.
+    pub(super) fn at_end(self) -> Self {
+        PairTarget {
+            pair: self.pair.in_one(1),
+            target: self.target.untilted(),
+        }
+    }
+
+    /// The slave node and the segment that it meets, at a corner that before it: what messages name.
+    pub(super) fn named(&self) -> NodeAtSegment {
+        self.at_ends(self.target.ends())
+    }
+
+    /// The slave node at the segment with the given ends.
+    pub(super) fn at_ends(&self, [a, b]: [usize; 2]) -> NodeAtSegment {
+        NodeAtSegment {
+            key: self.pair.key,
+            nodes: [self.pair.slave, a, b],
+        }
+    }
+
+    /// Whether a condition holds for one of its nodes.
+    pub fn any_node(&self, holds: impl Fn(usize) -> bool) -> bool {
+        let named = self.named().nodes;
+        named.into_iter().any(&holds)
+            || match &self.target {
+                Target::Segment(_) => false,
+                Target::Corner(corner) => holds(corner.behind.ends[1]),
+                Target::Mean(mean) => mean.points.iter().flat_map(SurfacePoint::nodes).any(holds),
+                Target::Disc(disc) => holds(disc.arm),
+            }
+    }
+
+    /// The slave node and the corner of the master that it meets, if it meets one.
+    pub(super) fn at_corner(&self) -> Option<[usize; 2]> {
+        match &self.target {
+            Target::Corner(corner) => Some([self.pair.slave, corner.tip()]),
+            Target::Segment(_) | Target::Mean(_) | Target::Disc(_) => None,
+        }
+    }
+}
+
+impl Target {
+    /// The same target, whatever held the slave node at the start.
+    pub(super) fn untilted(self) -> Self {
+        match self {
+            Target::Segment(contact) => Target::Segment(SegmentContact::new(contact.segment)),
+            Target::Corner(corner) => Target::Corner(corner),
+            Target::Mean(mean) => Target::Mean(mean.untilted()),
+            Target::Disc(disc) => Target::Disc(DiscContact { from: None, ..disc }),
+        }
+    }
+
+    /// What held the slave node at the start.
+    fn at_start(self) -> Self {
+        match self {
+            // the key of the constraint has the number, which stays
+            Target::Segment(SegmentContact { segment, from }) => {
+                Target::Segment(SegmentContact::new(Segment {
+                    number: segment.number,
+                    ..from.unwrap_or(segment)
+                }))
+            }
+            Target::Corner(corner) => Target::Corner(corner),
+            Target::Mean(mean) => Target::Mean(mean.at_start()),
+            Target::Disc(disc) => Target::Disc(DiscContact {
+                feature: disc.from.unwrap_or(disc.feature),
+                from: None,
+                ..disc
+            }),
+        }
+    }
+
+    /// Ends of its segment, at a corner of that before it; of a mean, of the segment that counts most; of a disc, the
+    /// nodes of the segment or arc.
+    fn ends(&self) -> [usize; 2] {
+        match self {
+            Target::Segment(contact) => contact.segment.ends,
+            Target::Corner(corner) => corner.before.ends,
+            Target::Mean(mean) => mean.nearest,
+            Target::Disc(disc) => disc.feature.nodes,
+        }
+    }
+
+    /// Numbers of the segments that it holds its slave node at; none of a mean, which holds no single node.
+    pub(super) fn segments(&self) -> impl Iterator<Item = usize> {
+        let numbers = match self {
+            Target::Segment(contact) => [Some(contact.segment.number), None],
+            Target::Corner(corner) => [corner.before, corner.behind].map(|s| Some(s.number)),
+            Target::Mean(_) => [None; 2],
+            Target::Disc(disc) => [Some(disc.segment), None],
+        };
+        numbers.into_iter().flatten()
+    }
+
+    /// What was selected for its node. Means and discs are not selected: their targets do not depend on the pass before.
+    pub(super) fn selected(&self) -> Option<ContactTarget> {
+        match self {
+            Target::Segment(SegmentContact { segment, from }) => Some(ContactTarget {
+                from: from.map(|from| from.number),
+                ..ContactTarget::face(segment.number)
+            }),
+            Target::Corner(corner) => Some(ContactTarget {
+                corner: Some(corner.corner()),
+                ..ContactTarget::face(corner.before.number)
+            }),
+            Target::Mean(_) | Target::Disc(_) => None,
+        }
+    }
+
+    /// The mean, if it is one.
+    pub(super) fn mean(&self) -> Option<&MeanContact> {
+        match self {
+            Target::Mean(mean) => Some(mean),
+            Target::Segment(_) | Target::Corner(_) | Target::Disc(_) => None,
+        }
+    }
+}
+
+impl SegmentContact {
+    /// A segment that has held its node since the start.
+    pub fn new(segment: Segment) -> Self {
+        SegmentContact {
+            segment,
+            from: None,
+        }
+    }
+}
+
+impl CornerContact {
+    /// The node at the corner.
+    pub(super) fn tip(&self) -> usize {
+        self.before.ends[1]
+    }
+
+    /// The corner as it is selected for a node.
+    pub(super) fn corner(&self) -> Corner {
+        Corner {
+            next: self.behind.number,
+            weight: self.weight,
+        }
+    }
+
+    /// The segment whose normal has the larger weight.
+    pub(super) fn nearer(&self) -> &Segment {
+        match self.weight > 0.5 {
+            true => &self.behind,
+            false => &self.before,
+        }
+    }
+}
+
+impl MeanContact {
+    /// Whether one of its points depends on the position of a node.
+    pub(super) fn has(&self, node: usize) -> bool {
+        let mut nodes = self.points.iter().flat_map(SurfacePoint::nodes);
+        nodes.any(|other| other == node)
+    }
+
+    /// The same points, whatever they were over at the start.
+    pub(super) fn untilted(mut self) -> Self {
+        for point in self.points.iter_mut() {
+            point.from = StartSegment::Same;
+        }
+        self
+    }
+
+    /// The points at the start of the increment; those that have come in later are left out.
+    fn at_start(mut self) -> Self {
+        let is_inside = |q: &SurfacePoint| q.from != StartSegment::Outside;
+        if self.points.iter().any(is_inside) {
+            self.points.retain(is_inside);
+        }
+        for point in self.points.iter_mut() {
+            if let StartSegment::Other([a, b], bulge) = point.from {
+                (point.vertices[2], point.vertices[3], point.bulge) = (a, b, bulge);
+            }
+        }
+        let sum: f64 = self.points.iter().map(|q| q.weight).sum();
+        self.points.iter_mut().for_each(|q| q.weight /= sum);
+        self.untilted()
+    }
+}
+
+impl SurfacePoint {
+    /// Nodes whose positions it depends on; some may come twice.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.vertices.into_iter().flat_map(Vertex::nodes)
+    }
+}
+
+impl MasterFeature {
+    /// Distance of a point out of the body (length).
+    pub(super) fn gap(&self, s: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
+        let [a, b] = self.nodes.map(at);
+        match self.arc {
+            None => project(s, a, b).gap,
+            Some(arc) => arc.gap(s, [a, b]),
+        }
+    }
+}
+
+/// What a slave node must not penetrate: a segment, or the corner at its end.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ContactTarget {
+    /// Index of the segment in its contact.
+    pub segment: usize,
+    /// The corner at the segment's end b, if the node meets the corner.
+    pub corner: Option<Corner>,
+    /// The segment that held the node at the start, if the node has slid on from there to this one.
+    pub from: Option<usize>,
+}
+
+impl ContactTarget {
+    /// A segment that is met between its ends.
+    pub fn face(segment: usize) -> Self {
+        ContactTarget {
+            segment,
+            corner: None,
+            from: None,
+        }
+    }
+
+    /// Takes the weight that the same corner has in another iterate.
+    pub fn take_weight(&mut self, other: &ContactTarget) {
+        if let (Some(corner), Some(now)) = (&mut self.corner, other.corner)
+            && [self.segment, corner.next] == [other.segment, now.next]
+        {
+            corner.weight = now.weight;
+        }
+    }
+
+    /// Segments it is made of.
+    pub fn segments(&self) -> impl Iterator<Item = usize> + use<> {
+        [Some(self.segment), self.corner.map(|v| v.next)]
+            .into_iter()
+            .flatten()
+    }
+}
+
+/// A convex corner or the vertex of a face, between a segment and the next, as the target of a slave node.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Corner {
+    /// The segment after the corner.
+    pub next: usize,
+    /// Weight of its normal, between 0 and 1; that of the segment before the corner is 1 - weight.
+    pub weight: f64,
+}
+
+impl Corner {
+    /// The sum of two quantities with the weights of the corner.
+    pub fn blend(&self, before: f64, after: f64) -> f64 {
+        (1.0 - self.weight) * before + self.weight * after
+    }
+}
+
+/// The targets of a node, mostly one.
+pub type ContactTargets = SmallVec<[ContactTarget; 4]>;
