@@ -258,11 +258,11 @@ impl Pins {
         all
     }
 
-    /// Stiffness against turns that forces over all dofs, which the iterate does not balance yet, will make once it does, over
-    /// the motions of the pins at the positions `at`:
+    /// Stiffness against turns that forces over all dofs, which the iterate does not balance yet, will make once it does, where
+    /// they pull apart, over the motions of the pins at the positions `at`:
     ///
     /// ```text
-    /// Z_p^-T e (sum_i x_i.r_i) e^T Z_p^-1,   e the turn      eq. (12.14)
+    /// Z_p^-T e max(sum_i x_i.r_i, 0) e^T Z_p^-1,   e the turn      eq. (12.14)
     /// ```
     pub fn turning_stiffness(&self, force: &[f64], at: &dyn Fn(usize) -> [f64; 2]) -> DMatrix<f64> {
         let of_bodies = self.of_bodies();
@@ -271,7 +271,7 @@ impl Pins {
         for (body, own) in self.bodies.iter().zip(of_bodies) {
             if let Some(turn) = body.turn(at) {
                 let size = (own.len(), own.len());
-                let virial = body.virial(force, at);
+                let virial = larger(body.virial(force, at), 0.0);
                 all.view_mut((own.start, own.start), size)
                     .copy_from(&(virial * &turn * turn.transpose()));
             }

@@ -78,10 +78,15 @@ impl<'m> Workspace<'m> {
         } = self;
         let EffectiveStiffness { k, pins: a, .. } = stiffness;
         let reach = search.reach();
+        // what equations and rigid bodies hand on is balanced within them
+        let mut at_unknowns = vec![0.0; unbalanced.len()];
+        let restricted = k.map().restrict(unbalanced);
+        let both = problem.unknowns.dof.iter().zip(restricted);
+        both.for_each(|(&dof, force)| at_unknowns[dof] = force);
         let at = |node: usize| problem.position(u, node);
         System::new(k, meter).free_pins(
             (pins, a, held.projection(pins)),
-            (&at, unbalanced),
+            (&at, &at_unknowns),
             (skew, reach),
         )
     }
