@@ -190,7 +190,8 @@ impl FreeMotions {
     }
 
     /// Motions n of the mean square 1 with a stiffness of at most that of E and of facets, `of_facets`, under the closed pairs
-    /// of the last answer: eigenvectors of its symmetric part beside the mean square motion.
+    /// of the last answer: right singular vectors of S_e beside the mean square motion, since a pair that slides resists with
+    /// its friction what it does not feel.
     pub fn loose(&self, of_facets: &dyn Fn(&[f64]) -> f64) -> Vec<Loose> {
         let Some(Answer {
             p,
@@ -203,24 +204,29 @@ impl FreeMotions {
         let Some(root) = Cholesky::new(self.mean_square.clone()) else {
             return Vec::new();
         };
-        let (root, symmetric) = (root.l(), (under_contact + under_contact.transpose()) / 2.0);
-        let Some(half) = root.solve_lower_triangular(&symmetric) else {
+        let root = root.l();
+        let Some(half) = root.solve_lower_triangular(under_contact) else {
             return Vec::new();
         };
         let Some(scaled) = root.solve_lower_triangular(&half.transpose()) else {
             return Vec::new();
         };
-        let scaled = (&scaled + scaled.transpose()) / 2.0;
-        let eigen = scaled.symmetric_eigen();
+        let scaled = scaled.transpose();
+        let Some(v_t) = scaled.svd(false, true).v_t else {
+            return Vec::new();
+        };
         let mut all = Vec::new();
-        for (k, &stiffness) in eigen.eigenvalues.iter().enumerate() {
-            let direction = eigen.eigenvectors.column(k).into_owned();
-            let Some(pins) = root.tr_solve_lower_triangular(&direction) else {
+        for direction in v_t.row_iter() {
+            let Some(pins) = root.tr_solve_lower_triangular(&direction.transpose()) else {
                 continue;
             };
-            let is_unresisted = stiffness.abs() <= UNRESISTED * regular;
+            // |S_e n| and n^T S_e n, n being of the mean square 1
+            let resisted = root.solve_lower_triangular(&(under_contact * &pins));
+            let resisted = resisted.map_or(f64::INFINITY, |force| force.norm());
+            let stiffness = pins.dot(&(under_contact * &pins));
+            let is_unresisted = resisted <= UNRESISTED * regular;
             let of_facets = of_facets(&self.motion(pins.as_slice()));
-            if is_unresisted || stiffness.abs() <= of_facets {
+            if is_unresisted || resisted <= of_facets {
                 let way = pins.dot(&(&self.mean_square * p));
                 all.push(Loose {
                     force: (stiffness + regular) * way,
