@@ -10,8 +10,8 @@ use super::pivoted::Pivoted;
 use super::problems::{Counters, FrictionalLcp, FrictionalSolution, LcpError};
 use super::scaled::Scaled;
 
-/// Part of E that resists free unknowns in proximal steps.
-const RESISTED: f64 = 1e8;
+/// Stiffness that resists free unknowns in proximal steps, beside that of the contacts in the mean.
+const RESISTED: f64 = 1e-2;
 /// Steps with that part, after which each goes so many times as far as the last one, and all of them.
 const STEADY_STEPS: usize = 20;
 const FARTHER: f64 = 4.0;
@@ -46,7 +46,8 @@ fn by_steps(
 ) -> Result<FrictionalSolution, LcpError> {
     let mut error = None;
     let mut last: Option<FrictionalSolution> = None;
-    let mut part = RESISTED;
+    let diagonal = problem.free.regular.diagonal();
+    let mut part = (RESISTED / (problem.compliance() * diagonal.mean())).max(1.0);
     for step in 0..STEPS {
         let x = last.as_ref().map(|last| &last.free);
         let states = last.as_ref().map(|last| &last.state[..]);

@@ -58,7 +58,11 @@ impl<'a> Scaled<'a> {
             tangents[*i] = Some(n + f);
         }
         let compliance = power_of_two(problem.compliance());
-        let weight = |i: usize| power_of_two((problem.q[(i, i)] / compliance).max(0.0).sqrt());
+        let weight = |i: usize| match problem.free.is_empty() {
+            true => power_of_two((problem.q[(i, i)] / compliance).max(0.0).sqrt()),
+            // what is held where free unknowns count from says nothing of a contact
+            false => 1.0,
+        };
         let weights = list(arena, (0..n).map(weight));
         let penetrations = problem.gap.iter().zip(&weights).map(|(g, w)| -g / w);
         let free = &problem.free;

@@ -7,8 +7,8 @@ use crate::contact::Constraint;
 use crate::lcp::{FreeUnknowns, FrictionalLcp, FrictionalSolution};
 use crate::linear::{larger, largest};
 
-/// E of eq. (12.5) beside the mean compliance of the pairs.
-const REGULAR: f64 = 1e-10;
+/// eps of eq. (12.5) beside the stiffness of the pins in the mean.
+const REGULAR: f64 = 1e-11;
 /// Stiffness against a motion that nothing resists, in units of E.
 const UNRESISTED: f64 = 10.0;
 /// Force, beside the others, that is round-off.
@@ -107,7 +107,7 @@ impl FreeMotions {
     /// ```text
     /// H f + P^T a P S^T dU = 0,   H = (1 - P)^T - P^T P    eq. (12.11)
     /// ```
-    pub fn unknowns(&self, constraints: &[&Constraint], q: &DMatrix<f64>) -> FreeUnknowns {
+    pub fn unknowns(&self, constraints: &[&Constraint]) -> FreeUnknowns {
         let (n, m) = (constraints.len(), self.dofs.len());
         let of_constraints = |of: &dyn Fn(&Constraint, usize) -> [f64; 2]| {
             DMatrix::from_fn(2 * n, m, |i, k| of(constraints[i % n], k)[i / n])
@@ -129,20 +129,15 @@ impl FreeMotions {
             motions,
             works: works * h.transpose(),
             stiffness: &h * &self.stiffness + kept * &a,
-            regular: &self.mean_square * self.regular(q),
+            regular: &self.mean_square * self.regular(),
             force: h * a * alone,
         }
     }
 
-    /// E beside the mean square motion, for the compliance Q of some constraints.
-    fn regular(&self, q: &DMatrix<f64>) -> f64 {
-        let n = q.nrows() / 2;
-        let compliance = (0..n).map(|i| q[(i, i)]).sum::<f64>() / n as f64;
+    /// Part of the mean square motion in E (force/length).
+    fn regular(&self) -> f64 {
         let mean = self.a.iter().sum::<f64>() / self.a.len() as f64;
-        match compliance > 0.0 {
-            true => REGULAR / compliance,
-            false => REGULAR * mean,
-        }
+        REGULAR * mean
     }
 
     /// Takes the answer p of a problem. Motions that nothing resists and that round-off of the other forces drives are
@@ -151,7 +146,7 @@ impl FreeMotions {
         self.answer = Some(Answer {
             p: solution.free.clone(),
             under_contact: problem.stiffness_under_contact(&solution.state),
-            regular: self.regular(&problem.q),
+            regular: self.regular(),
         });
         let of_pairs = solution.pn.iter().copied().fold(0.0, larger);
         let none = self.none_beside(larger(self.largest_force(), of_pairs));

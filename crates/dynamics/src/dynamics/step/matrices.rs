@@ -751,7 +751,7 @@ impl<'a> System<'a> {
                 update.change(constraints, &mut problem.q);
             }
             if let Some(free) = free {
-                problem.free = free.unknowns(constraints, &problem.q);
+                problem.free = free.unknowns(constraints);
             }
             problem
         };
