@@ -1,11 +1,9 @@
-//! Unknowns of a frictional problem without a sign, beside the contact forces: motions that contacts alone resist.
-//! Section 8 of docs/theory.md, Free unknowns.
+//! What contacts do against the free unknowns of a frictional problem, and the problem without these. Section 8 of
+//! docs/theory.md, Free unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::problems::{
-    ContactState, FrictionalLcp, FrictionalSolution, LcpError, expect_finite, expect_size,
-};
+use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, FrictionalSolution};
 use crate::linear::largest;
 
 /// Shift of the diagonal, relative to its largest entry, that shares the load among contacts that are one.
@@ -13,89 +11,6 @@ const SHIFT: f64 = 1e-10;
 
 /// Negative stiffness, in units of E, that is none.
 const COVERED: f64 = 10.0;
-
-/// Unknowns x without a sign, eq. (8.8), which add to gaps and slips and are in balance with the contact forces.
-///
-/// ```text
-/// (g, Dt) = Q P + D x + (gap, slip),   (S + E) x = L^T P + h
-/// ```
-///
-/// S may be singular; E bounds motions that no contact sees.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FreeUnknowns {
-    /// D (2n x m): gaps, then slips, that they make (dimensionless).
-    pub motions: DMatrix<f64>,
-    /// L (2n x m): parts of the normal, then of the tangential forces in their balance (dimensionless).
-    pub works: DMatrix<f64>,
-    /// S (m x m): stiffness without contact (force/length).
-    pub stiffness: DMatrix<f64>,
-    /// E (m x m): stiffness that is small beside that of contacts (force/length).
-    pub regular: DMatrix<f64>,
-    /// h: forces without contact (length m, force).
-    pub force: DVector<f64>,
-}
-
-impl Default for FreeUnknowns {
-    /// None.
-    fn default() -> Self {
-        let none = || DMatrix::zeros(0, 0);
-        FreeUnknowns {
-            motions: none(),
-            works: none(),
-            stiffness: none(),
-            regular: none(),
-            force: DVector::zeros(0),
-        }
-    }
-}
-
-impl FreeUnknowns {
-    /// Number of unknowns m.
-    pub fn len(&self) -> usize {
-        self.force.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.force.is_empty()
-    }
-
-    /// Largest force that the balance (S + E) x = L^T P + h leaves over.
-    pub(crate) fn left_over(&self, x: &[f64], p: &[f64]) -> f64 {
-        if self.is_empty() {
-            return 0.0;
-        }
-        let [x, p] = [x, p].map(DVector::from_column_slice);
-        let left = (&self.stiffness + &self.regular) * x - self.works.tr_mul(&p) - &self.force;
-        largest(left.as_slice())
-    }
-
-    /// x in balance with forces P.
-    pub(crate) fn balanced(&self, p: &[f64]) -> DVector<f64> {
-        let force = self.works.tr_mul(&DVector::from_column_slice(p)) + &self.force;
-        let x = (&self.stiffness + &self.regular).lu().solve(&force);
-        x.unwrap_or_else(|| DVector::zeros(self.len()))
-    }
-
-    /// Refuses wrong sizes, for n contacts, and numbers that are not finite.
-    pub(crate) fn check(&self, n: usize) -> Result<(), LcpError> {
-        let m = self.len();
-        if m == 0 {
-            return Ok(());
-        }
-        for (rows, matrix) in [
-            (2 * n, &self.motions),
-            (2 * n, &self.works),
-            (m, &self.stiffness),
-            (m, &self.regular),
-        ] {
-            expect_size("rows of free unknowns", rows, matrix.nrows())?;
-            expect_size("columns of free unknowns", m, matrix.ncols())?;
-            expect_finite(matrix.as_slice())?;
-        }
-        expect_finite(self.force.as_slice())
-    }
-}
 
 impl FrictionalLcp {
     /// The problem with a part of E in place of E, from which x counts as `from`.
@@ -137,7 +52,7 @@ impl FrictionalLcp {
         eliminated
     }
 
-    /// The motion of the free unknowns with the most negative stiffness (8.10), if one is negative but for what E covers, with
+    /// The motion of the free unknowns with the most negative stiffness (8.11), if one is negative but for what E covers, with
     /// contacts in the given states, those with friction held along the surface too.
     pub(crate) fn unstable_motion(&self, states: &[ContactState]) -> Option<DVector<f64>> {
         if self.free.is_empty() {
@@ -187,7 +102,7 @@ impl FrictionalLcp {
     /// Stiffness against the free unknowns with contacts in the given states.
     ///
     /// ```text
-    /// S + L_a^T Q_aa^-1 D_a    eq. (8.10)
+    /// S + L_a^T Q_aa^-1 D_a    eq. (8.11)
     /// ```
     ///
     /// a being the gaps of closed and the slips of sticking contacts; the normal force of one that slides comes with its

@@ -4,10 +4,9 @@
 use nalgebra::DVector;
 
 use super::basis::perturbation;
-use super::hybrid::{Known, LcpMethod, PATHS, from_states, solve_similar};
-use super::kept::KeptFactors;
+use super::known::Known;
 use super::pivoted::Pivoted;
-use super::problems::{Counters, FrictionalLcp, FrictionalSolution, LcpError};
+use super::problems::{ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError};
 use super::scaled::Scaled;
 
 /// Stiffness that resists free unknowns in proximal steps, beside that of the contacts in the mean.
@@ -18,16 +17,31 @@ const FARTHER: f64 = 4.0;
 const STEPS: usize = 30;
 /// Contacts that an unstable body tips over to at most.
 const TIPS: usize = 4;
+/// Paths of Lemke's method that are tried.
+const PATHS: usize = 4;
+
+/// Solves a problem without free unknowns, of which something is known.
+type SolveResisted = fn(&FrictionalLcp, Option<Known>) -> Result<FrictionalSolution, LcpError>;
+
+/// The answer of the active set from some states.
+type FromStates =
+    fn(&FrictionalLcp, &Scaled, &[ContactState], &mut Counters) -> Option<FrictionalSolution>;
+
+/// What solves the problems on the way.
+pub(super) struct Solvers {
+    pub resisted: SolveResisted,
+    pub from_states: FromStates,
+}
 
 /// An answer by proximal steps, else from the states that Lemke's method finds with the free unknowns pivoted in.
 pub(super) fn search(
     problem: &FrictionalLcp,
     scaled: &Scaled,
     known: Option<Known>,
-    counters: &mut Counters,
+    (solvers, counters): (&Solvers, &mut Counters),
 ) -> Result<FrictionalSolution, LcpError> {
-    by_steps(problem, scaled, known, counters)
-        .or_else(|error| pivoted_in(problem, scaled, counters).ok_or(error))
+    by_steps(problem, scaled, known, (solvers, counters))
+        .or_else(|error| pivoted_in(problem, scaled, (solvers, counters)).ok_or(error))
 }
 
 /// The active set from the states of problems in which a part of E resists the free unknowns, whose answer moves on by
@@ -42,7 +56,7 @@ fn by_steps(
     problem: &FrictionalLcp,
     scaled: &Scaled,
     known: Option<Known>,
-    counters: &mut Counters,
+    (solvers, counters): (&Solvers, &mut Counters),
 ) -> Result<FrictionalSolution, LcpError> {
     let mut error = None;
     let mut last: Option<FrictionalSolution> = None;
@@ -59,10 +73,11 @@ fn by_steps(
             }),
             None => known,
         };
-        match solve_resisted(&problem.resisted(part, x), from, counters) {
+        match solve_resisted(&problem.resisted(part, x), from, (solvers, counters)) {
             Ok(found) => {
                 if states != Some(&found.state[..])
-                    && let Some(solution) = from_states(problem, scaled, &found.state, counters)
+                    && let Some(solution) =
+                        (solvers.from_states)(problem, scaled, &found.state, counters)
                 {
                     return Ok(solution);
                 }
@@ -85,10 +100,9 @@ fn by_steps(
 fn solve_resisted(
     problem: &FrictionalLcp,
     known: Option<Known>,
-    counters: &mut Counters,
+    (solvers, counters): (&Solvers, &mut Counters),
 ) -> Result<FrictionalSolution, LcpError> {
-    let kept = &mut KeptFactors::default();
-    let found = solve_similar(&problem.eliminated(), known, LcpMethod::Hybrid, kept)?;
+    let found = (solvers.resisted)(&problem.eliminated(), known)?;
     *counters += found.counters;
     let forces: Vec<f64> = found.pn.iter().chain(&found.pt).copied().collect();
     let free = problem.free.balanced(&forces);
@@ -100,7 +114,7 @@ fn solve_resisted(
 fn pivoted_in(
     problem: &FrictionalLcp,
     scaled: &Scaled,
-    counters: &mut Counters,
+    (solvers, counters): (&Solvers, &mut Counters),
 ) -> Option<FrictionalSolution> {
     let pivoted = Pivoted::new(scaled)?;
     let mut covering = vec![1.0; pivoted.size()];
@@ -108,7 +122,7 @@ fn pivoted_in(
         counters.lemke_calls += 1;
         if let Ok((states, pivots)) = pivoted.states(&covering) {
             counters.pivots += pivots;
-            let solution = from_states(problem, scaled, &states, counters);
+            let solution = (solvers.from_states)(problem, scaled, &states, counters);
             if solution.is_some() {
                 return solution;
             }
@@ -126,12 +140,12 @@ pub(super) fn tip_over(
     problem: &FrictionalLcp,
     scaled: &Scaled,
     (solution, mut motion): (&FrictionalSolution, DVector<f64>),
-    counters: &mut Counters,
+    (solvers, counters): (&Solvers, &mut Counters),
 ) -> Option<FrictionalSolution> {
     let mut last = None;
     for _ in 0..TIPS {
         let states = problem.tipped(last.as_ref().unwrap_or(solution), &motion)?;
-        let found = from_states(problem, scaled, &states, counters)?;
+        let found = (solvers.from_states)(problem, scaled, &states, counters)?;
         match problem.unstable_motion(&found.state) {
             None => return Some(found),
             Some(further) => motion = further,

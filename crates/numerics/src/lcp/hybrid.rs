@@ -7,9 +7,10 @@ use nalgebra::DVector;
 
 use super::basis::perturbation;
 use super::dense::{List, axpy, copy, filled, list, max_abs};
-use super::free_solution::{search, tip_over};
+use super::free_solution::{Solvers, search, tip_over};
 use super::joints::Joints;
 use super::kept::KeptFactors;
+use super::known::Known;
 use super::lemke::{LemkeSettings, lemke_forces};
 use super::problems::{
     ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError, Method, Spare, expect_size,
@@ -25,7 +26,7 @@ const SWEEPS: [usize; 3] = [10, 40, 160];
 const KEPT_BYTES: usize = 1 << 24;
 
 /// Paths of Lemke's method that are tried.
-pub(super) const PATHS: usize = 4;
+const PATHS: usize = 4;
 
 /// The method a caller asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -35,31 +36,6 @@ pub enum LcpMethod {
     Hybrid,
     /// Lemke's method from the start.
     Lemke,
-}
-
-/// What is known of a problem before its solution.
-#[derive(Clone, Copy)]
-pub struct Known<'k> {
-    /// States of a similar problem, from which the search begins.
-    pub states: &'k [ContactState],
-    /// The number of the joint of every contact: contacts between the same bodies, which change their states together. An
-    /// empty list leaves every contact by itself. It is asked for only where single contacts come to no end.
-    pub joints: &'k dyn Fn() -> Vec<usize>,
-    /// Whether the problem is a part of another one, which has an answer where the part has none: free unknowns that its
-    /// contacts do not hold are not searched for.
-    pub is_part: bool,
-}
-
-impl<'k> Known<'k> {
-    /// States alone.
-    pub fn of_states(states: &'k [ContactState]) -> Self {
-        let joints = &Vec::new;
-        Known {
-            states,
-            joints,
-            is_part: false,
-        }
-    }
 }
 
 /// Solves a frictional problem, from the states of a similar one when `warm` is given.
@@ -117,18 +93,32 @@ fn solve_in(
         Some(solution) => solution,
         None if problem.free.is_empty() => return lemke(problem, &scaled, &mut counters),
         None if is_part => return Err(not_held()),
-        None => search(problem, &scaled, known, &mut counters)?,
+        None => search(problem, &scaled, known, (&SOLVERS, &mut counters))?,
     };
     match problem.unstable_motion(&solution.state) {
         None => Ok(solution),
         // another contact may hold it
         Some(_) if is_part => Err(not_held()),
         Some(motion) => {
-            let stable = tip_over(problem, &scaled, (&solution, motion), &mut counters);
+            let stable = tip_over(
+                problem,
+                &scaled,
+                (&solution, motion),
+                (&SOLVERS, &mut counters),
+            );
             Ok(stable.unwrap_or(solution))
         }
     }
 }
+
+/// What solves problems of which free unknowns ask.
+const SOLVERS: Solvers = Solvers {
+    resisted: |problem, known| {
+        let kept = &mut KeptFactors::default();
+        solve_similar(problem, known, LcpMethod::Hybrid, kept)
+    },
+    from_states,
+};
 
 /// That contacts do not hold free unknowns.
 fn not_held() -> LcpError {
@@ -139,7 +129,7 @@ fn not_held() -> LcpError {
 }
 
 /// The answer of the active set from some states, with factors of its own.
-pub(super) fn from_states(
+fn from_states(
     problem: &FrictionalLcp,
     scaled: &Scaled,
     states: &[ContactState],
@@ -187,7 +177,7 @@ fn iterate(
                 let found = scaled.found(&states, &admissible(scaled, &states, &p));
                 let how = (Method::ActiveSet, *counters);
                 let solution = finish(problem, found, how, &mut kept.spare);
-                if solution.residual <= TOLERANCE {
+                if solution.residual <= TOLERANCE || problem.is_empty() {
                     return Some(solution);
                 }
                 p

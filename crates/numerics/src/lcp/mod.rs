@@ -22,6 +22,7 @@ mod free_solution;
 mod hybrid;
 mod joints;
 mod kept;
+mod known;
 mod lemke;
 mod pivoted;
 mod problems;
@@ -32,11 +33,12 @@ mod scaled;
 pub use anderson::{Acceleration, IterationStep};
 pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
-pub use free::FreeUnknowns;
-pub use hybrid::{Known, LcpMethod, solve_frictional, solve_similar};
+pub use hybrid::{LcpMethod, solve_frictional, solve_similar};
 pub use kept::KeptFactors;
+pub use known::Known;
 pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problems::{
-    ContactState, Counters, FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolution, Method,
+    ContactState, Counters, FreeUnknowns, FrictionalLcp, FrictionalSolution, Lcp, LcpError,
+    LcpSolution, Method,
 };
 pub use residual::residual;

@@ -16,7 +16,7 @@ const UNSEEN: f64 = 1e-7;
 ///
 /// ```text
 /// w_J = M_JJ z_J + D_J x + M_JR z_R + q_J
-/// 0   = -L^T z + (S + E) x - h              eq. (8.11)
+/// 0   = -L^T z + (S + E) x - h              eq. (8.10)
 /// ```
 ///
 /// solved for z_J and x. In it w_J and z_J have changed places.
@@ -109,7 +109,7 @@ fn rows_that_see(mut d: DMatrix<f64>) -> Vec<usize> {
     rows
 }
 
-/// M and q of eq. (8.11) with w_J and z_J in each other's place, J being `rows`, and the unknowns from `size` on solved for.
+/// M and q of eq. (8.10) with w_J and z_J in each other's place, J being `rows`, and the unknowns from `size` on solved for.
 fn transformed(
     whole: &DMatrix<f64>,
     q: &[f64],

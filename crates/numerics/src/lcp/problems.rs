@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
 use super::dense::add_product;
-use super::free::FreeUnknowns;
 use crate::linear::{SMALLEST, larger, largest};
 
 /// Find z >= 0 with w = M z + q >= 0 and z.w = 0, eq. (8.1).
@@ -169,6 +168,89 @@ pub struct FrictionalLcp {
     pub mu: DVector<f64>,
     /// Unknowns without a sign that gaps and slips depend on as well.
     pub free: FreeUnknowns,
+}
+
+/// Unknowns x without a sign, eq. (8.8), which add to gaps and slips and are in balance with the contact forces.
+///
+/// ```text
+/// (g, Dt) = Q P + D x + (gap, slip),   (S + E) x = L^T P + h
+/// ```
+///
+/// S may be singular; E bounds motions that no contact sees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeUnknowns {
+    /// D (2n x m): gaps, then slips, that they make (dimensionless).
+    pub motions: DMatrix<f64>,
+    /// L (2n x m): parts of the normal, then of the tangential forces in their balance (dimensionless).
+    pub works: DMatrix<f64>,
+    /// S (m x m): stiffness without contact (force/length).
+    pub stiffness: DMatrix<f64>,
+    /// E (m x m): stiffness that is small beside that of contacts (force/length).
+    pub regular: DMatrix<f64>,
+    /// h: forces without contact (length m, force).
+    pub force: DVector<f64>,
+}
+
+impl Default for FreeUnknowns {
+    /// None.
+    fn default() -> Self {
+        let none = || DMatrix::zeros(0, 0);
+        FreeUnknowns {
+            motions: none(),
+            works: none(),
+            stiffness: none(),
+            regular: none(),
+            force: DVector::zeros(0),
+        }
+    }
+}
+
+impl FreeUnknowns {
+    /// Number of unknowns m.
+    pub fn len(&self) -> usize {
+        self.force.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.force.is_empty()
+    }
+
+    /// Largest force that the balance (S + E) x = L^T P + h leaves over.
+    pub(crate) fn left_over(&self, x: &[f64], p: &[f64]) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let [x, p] = [x, p].map(DVector::from_column_slice);
+        let left = (&self.stiffness + &self.regular) * x - self.works.tr_mul(&p) - &self.force;
+        largest(left.as_slice())
+    }
+
+    /// x in balance with forces P.
+    pub(crate) fn balanced(&self, p: &[f64]) -> DVector<f64> {
+        let force = self.works.tr_mul(&DVector::from_column_slice(p)) + &self.force;
+        let x = (&self.stiffness + &self.regular).lu().solve(&force);
+        x.unwrap_or_else(|| DVector::zeros(self.len()))
+    }
+
+    /// Refuses wrong sizes, for n contacts, and numbers that are not finite.
+    pub(crate) fn check(&self, n: usize) -> Result<(), LcpError> {
+        let m = self.len();
+        if m == 0 {
+            return Ok(());
+        }
+        for (rows, matrix) in [
+            (2 * n, &self.motions),
+            (2 * n, &self.works),
+            (m, &self.stiffness),
+            (m, &self.regular),
+        ] {
+            expect_size("rows of free unknowns", rows, matrix.nrows())?;
+            expect_size("columns of free unknowns", m, matrix.ncols())?;
+            expect_finite(matrix.as_slice())?;
+        }
+        expect_finite(self.force.as_slice())
+    }
 }
 
 impl FrictionalLcp {

@@ -7,8 +7,7 @@ use bumpalo::Bump;
 use nalgebra::{DMatrix, DMatrixView};
 
 use super::dense::{List, add_product, copy, extend_scaled, filled, list};
-use super::free::FreeUnknowns;
-use super::problems::{ContactState, FrictionalLcp, LcpError, expect_finite};
+use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, LcpError, expect_finite};
 
 /// States, (Pn, Pt) and free unknowns in the units of a problem.
 pub(crate) type Found<'s, 'a> = (&'s [ContactState], [List<'a, f64>; 2], List<'a, f64>);

@@ -4,11 +4,12 @@
 use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;
 use super::contact_states::ContactStates;
+use super::corrections::SEARCHING_PASSES;
 use super::equal_forces::EqualForces;
 use super::linear_pass::{Vectors, close_hinges};
 use super::pass::{Iterate, PassStage};
 use super::passes::{Passes, SLOW_PASSES};
-use super::refactorization::{FactorRule, Refactorization, SEARCHING_PASSES};
+use super::refactorization::{FactorRule, Refactorization};
 use super::rigid_predictor::rigid_predictor;
 use super::rigid_velocity::carry_nodes;
 use super::solved::{Path, Solved};

@@ -1,6 +1,5 @@
 //! How the corrections of the passes become smaller: their rate, and whether they grow. Section 4 of docs/theory.md.
 
-use super::refactorization::SEARCHING_PASSES;
 use crate::dynamics::results::Cause;
 
 /// Correction of a pass beside the increment above which its iterate is no solution, whatever the forces
@@ -8,6 +7,8 @@ use crate::dynamics::results::Cause;
 const NEAR: f64 = 1e-4;
 /// Rate of corrections that become hardly smaller.
 const STAGNANT: f64 = 0.5;
+/// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
+pub(super) const SEARCHING_PASSES: usize = 4;
 /// Passes in a row that then grow the correction before an attempt is given up.
 const GROWING: usize = 3;
 

@@ -9,8 +9,6 @@ use crate::model::Factorization;
 const FRESH_RATE: f64 = 0.03;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 1.0;
-/// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
-pub(super) const SEARCHING_PASSES: usize = 4;
 
 /// Which factors an attempt uses.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -21,6 +21,9 @@ const LARGEST_ANGLE: f64 = 0.2;
 const FREE: f64 = 1e-10;
 /// Part of the size of its terms up to which an equation agrees with a rigid motion.
 const AGREES: f64 = 1e-9;
+/// Least stiffness of the pins of a rigid body, beside the largest force over its size: what moves them is to be little beside
+/// the body.
+const STIFF: f64 = 1e3;
 /// Round-off of the resultant of the forces of many nodes beside that of one of them.
 const RESULTANT: f64 = 10.0;
 
@@ -169,7 +172,7 @@ impl Pins {
 
     /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of its body, eq. (12.2). That of a
     /// rigid body, to which springs give them stiffness, is at least the mean over all unknowns where pairs touch it, and
-    /// always at least `force` over its size.
+    /// always at least 1e3 times `force` over its size.
     pub fn stiffnesses(
         &self,
         diagonal: &[f64],
@@ -194,7 +197,7 @@ impl Pins {
                 false => larger(own, of_all),
             };
             let a = match body.is_rigid {
-                true => larger(a, force / body.size),
+                true => larger(a, STIFF * force / body.size),
                 false => a,
             };
             // without stiffness and forces nothing moves
@@ -585,6 +588,12 @@ impl PinnedBody {
         }
         if angle.abs() > LARGEST_ANGLE {
             part = part.min(LARGEST_ANGLE / angle.abs());
+        }
+        // a rigid body whose places stay the same stays
+        let far = |node: &usize| at(*node).map(f64::abs).into_iter().fold(0.0, larger);
+        let extent = self.nodes.iter().map(far).fold(0.0, larger);
+        if self.is_rigid && most <= 4.0 * f64::EPSILON * extent {
+            part = 0.0;
         }
         if !part.is_finite() || (part == 1.0 && !turns) {
             return false;
