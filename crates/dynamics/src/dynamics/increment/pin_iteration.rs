@@ -145,7 +145,7 @@ impl PinIteration<'_, '_> {
     ) -> Result<(), Cause> {
         let (problem, workspace) = (self.problem, &mut *self.workspace);
         let skew = |motion: &[f64]| v.skew.product(motion);
-        let freed = workspace.free_pins(problem, (&v.u, unbalanced), (held, &skew));
+        let freed = workspace.free_pins(problem, (&v.u, unbalanced), held, &skew);
         freed.map_err(|error| problem.unsolvable(error))
     }
 

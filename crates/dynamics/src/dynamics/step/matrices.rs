@@ -495,7 +495,8 @@ impl<'a> System<'a> {
         &mut self,
         (pins, a, held): (&Pins, &[f64], DMatrix<f64>),
         (at, unbalanced): (&dyn Fn(usize) -> [f64; 2], &[f64]),
-        (skew, reach): (&dyn Fn(&[f64]) -> Vec<f64>, f64),
+        skew: &dyn Fn(&[f64]) -> Vec<f64>,
+        reach: f64,
     ) -> Result<(), LinearError> {
         self.matrix.free = None;
         self.hold()?;

@@ -67,7 +67,8 @@ impl<'m> Workspace<'m> {
         &mut self,
         problem: &StepProblem,
         (u, unbalanced): (&[f64], &[f64]),
-        (held, skew): (&HeldMotions, &dyn Fn(&[f64]) -> Vec<f64>),
+        held: &HeldMotions,
+        skew: &dyn Fn(&[f64]) -> Vec<f64>,
     ) -> Result<(), LinearError> {
         let Workspace {
             stiffness,
@@ -87,7 +88,8 @@ impl<'m> Workspace<'m> {
         System::new(k, meter).free_pins(
             (pins, a, held.projection(pins)),
             (&at, &at_unknowns),
-            (skew, reach),
+            skew,
+            reach,
         )
     }
 
