@@ -264,7 +264,7 @@ mod tests {
         Timings, Worst,
     };
     use crate::elements::{ElementResult, Strained};
-    use crate::lcp::{FrictionalLcp, LcpError};
+    use crate::lcp::{FreeUnknowns, FrictionalLcp, LcpError};
     use crate::materials::Law;
     use crate::model::{Element, ElementType, Increments, Mesh, Model, Set};
     use crate::output::ResultSummary;
@@ -437,6 +437,7 @@ mod tests {
             gap: DVector::from_vec(vec![-1.0]),
             slip: DVector::zeros(1),
             mu: DVector::zeros(1),
+            free: FreeUnknowns::default(),
         }
     }
 

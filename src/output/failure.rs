@@ -254,6 +254,12 @@ fn body_name(node: usize, model: &Model) -> String {
     }
 }
 
+/// Largest way of the middle of a body that turns about one of its nodes, or rolls, beside that of its farthest node, with room
+/// for the strain.
+const ABOUT_A_NODE: f64 = 1.5;
+/// Part of a direction that is round-off.
+const NO_PART: f64 = 1e-9;
+
 fn motion_text(unbalanced: &Unbalanced) -> String {
     let Unbalanced {
         motion: [x, y, angle],
@@ -261,14 +267,20 @@ fn motion_text(unbalanced: &Unbalanced) -> String {
         ..
     } = *unbalanced;
     let (way, turn) = (x.hypot(y), angle.abs() * size);
-    match turn > way {
+    match ABOUT_A_NODE * turn > way {
         true if angle > 0.0 => "turn to the left".to_owned(),
         true => "turn to the right".to_owned(),
-        false => format!(
-            "slide along ({}, {})",
-            general(x / way, 3),
-            general(y / way, 3)
-        ),
+        false => {
+            let part = |c: f64| match (c / way).abs() < NO_PART {
+                true => 0.0,
+                false => c / way,
+            };
+            format!(
+                "slide along ({}, {})",
+                general(part(x), 3),
+                general(part(y), 3)
+            )
+        }
     }
 }
 
@@ -630,7 +642,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use crate::dynamics::FailedLcp;
-    use crate::lcp::FrictionalLcp;
+    use crate::lcp::{FreeUnknowns, FrictionalLcp};
     use crate::model::{
         Element, ElementType, Incrementation, Increments, Load, Mesh, PointLoad, Set, Variation,
     };
@@ -807,6 +819,7 @@ mod tests {
                 gap: vec![-1.0].into(),
                 slip: vec![0.0].into(),
                 mu: vec![0.2].into(),
+                free: FreeUnknowns::default(),
             },
             pairs: vec![[0, 1, 2]],
         };
@@ -866,6 +879,7 @@ mod tests {
                 gap: vec![-1.0].into(),
                 slip: vec![0.0].into(),
                 mu: vec![mu].into(),
+                free: FreeUnknowns::default(),
             };
             let pairs = vec![[0, 1, 2]];
             let failed = FailedLcp {

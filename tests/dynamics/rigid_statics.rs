@@ -107,7 +107,11 @@ fn a_rigid_block_rests_on_an_elastic_one_before_and_after_a_dynamic_step() {
         assert!(rests.solver.passes <= 5, "{}", rests.solver.passes);
         for report in reports.iter().filter(|r| r.step < 3 && r.time > 0.9) {
             assert!((contact_force(report, 1) - 10.0).abs() < 1e-9);
-            assert!(report.energy.kinetic <= 1e-18 * report.energy.strain);
+            let e = &report.energy;
+            // places to 4 eps in an increment of 0.01, of the mass 1
+            let round_off = (4.0 * f64::EPSILON / 0.01).powi(2) / 2.0;
+            let most = 1e-18 * e.strain + round_off;
+            assert!(e.kinetic <= most, "{:e} {most:e}", e.kinetic);
         }
         let end = last(&reports);
         assert!((contact_force(end, 1) - 10.0).abs() < 1e-9);

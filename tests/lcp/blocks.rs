@@ -7,8 +7,8 @@ use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stickslip::lcp::{
-    BlockIteration, BlockSolution, BlockStart, FrictionalLcp, KeptFactors, LcpBlock, LcpMethod,
-    Progress, solve_frictional,
+    BlockIteration, BlockSolution, BlockStart, FreeUnknowns, FrictionalLcp, KeptFactors, LcpBlock,
+    LcpMethod, Progress, solve_frictional,
 };
 
 #[derive(Debug, Clone)]
@@ -85,6 +85,7 @@ fn block(problem: &FrictionalLcp, contacts: &[usize]) -> LcpBlock {
             gap: DVector::zeros(size),
             slip: DVector::zeros(size),
             mu: DVector::from_fn(size, |k, _| problem.mu[contacts[k]]),
+            free: FreeUnknowns::default(),
         },
         kept: KeptFactors::default(),
     }

@@ -6,8 +6,8 @@ use crate::random::Random;
 use nalgebra::{DMatrix, DVector};
 use stickslip::lcp::ContactState::{Open, SlipMinus, SlipPlus, Stick};
 use stickslip::lcp::{
-    FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, LemkeSettings, Method, covering_vector,
-    lemke, residual, solve_frictional,
+    FreeUnknowns, FrictionalLcp, FrictionalSolution, LcpError, LcpMethod, LemkeSettings, Method,
+    covering_vector, lemke, residual, solve_frictional,
 };
 
 const METHODS: [LcpMethod; 2] = [LcpMethod::Lemke, LcpMethod::Hybrid];
@@ -41,6 +41,7 @@ fn one(gap: f64, slip: f64, mu: f64) -> FrictionalLcp {
         gap: DVector::from_element(1, gap),
         slip: DVector::from_element(1, slip),
         mu: DVector::from_element(1, mu),
+        free: FreeUnknowns::default(),
     }
 }
 
@@ -72,6 +73,7 @@ fn nothing_to_do() {
             gap: DVector::zeros(0),
             slip: DVector::zeros(0),
             mu: DVector::zeros(0),
+            free: FreeUnknowns::default(),
         };
         assert_eq!(solve(&empty, method).method, Method::Trivial);
         let flat = solve(&one(0.0, 0.0, 0.3), method);
@@ -363,6 +365,7 @@ fn a_ray_names_the_conflicting_contacts() {
         gap: DVector::from_row_slice(&[-1.0, -1.0, -1.0]),
         slip: DVector::zeros(3),
         mu: DVector::from_element(3, 0.3),
+        free: FreeUnknowns::default(),
     };
     for method in METHODS {
         match solve_frictional(&problem, None, method) {
@@ -424,6 +427,7 @@ fn extreme_numbers_never_panic() {
             gap: DVector::from_fn(n, |_, _| draw()),
             slip: DVector::from_fn(n, |_, _| draw()),
             mu: DVector::from_fn(n, |_, _| draw().abs()),
+            free: FreeUnknowns::default(),
         };
         if case % 2 == 0 {
             problem.q.fill_lower_triangle_with_upper_triangle();

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 use stickslip::lcp::{
-    ContactState, Counters, FrictionalLcp, KeptFactors, Known, LcpMethod, solve_similar,
+    ContactState, Counters, FreeUnknowns, FrictionalLcp, KeptFactors, Known, LcpMethod,
+    solve_similar,
 };
 
 use crate::random::Random;
@@ -38,6 +39,7 @@ fn problem(random: &mut Random) -> (FrictionalLcp, Vec<usize>) {
         gap: random.vector(n, -1.0, 0.3),
         slip: random.vector(n, -1.0, 1.0),
         mu: DVector::from_element(n, mu),
+        free: FreeUnknowns::default(),
     };
     (problem, numbers)
 }

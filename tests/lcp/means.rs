@@ -7,7 +7,7 @@ use stickslip::contact::{
     ClosedPairs, Configurations, Constraint, RowForm, Rows, Search, SlaveChoice, contact_surfaces,
     find_targets,
 };
-use stickslip::lcp::{FrictionalLcp, LcpMethod, solve_frictional};
+use stickslip::lcp::{FreeUnknowns, FrictionalLcp, LcpMethod, solve_frictional};
 use stickslip::model::{ContactFormulation, Model};
 
 /// Two blocks of unlike segments that face each other, turned together, the upper one past an end of the lower; and the
@@ -99,6 +99,7 @@ fn none_of_300_problems_of_means_is_unsolved() {
             gap: random.vector(n, -2.0, 1.0),
             slip: random.vector(n, -1.0, 1.0),
             mu: random.vector(n, 0.0, 1.0),
+            free: FreeUnknowns::default(),
         };
         for method in [LcpMethod::Hybrid, LcpMethod::Lemke] {
             let solved = solve_frictional(&problem, None, method);

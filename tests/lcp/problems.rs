@@ -1,7 +1,7 @@
 //! Frictional problems built from a matrix Q.
 
 use nalgebra::{DMatrix, DVector};
-use stickslip::lcp::{ContactState, FrictionalLcp};
+use stickslip::lcp::{ContactState, FreeUnknowns, FrictionalLcp};
 
 use super::random::Random;
 
@@ -52,7 +52,16 @@ pub fn planted(
     }
     let free = motion - &q * &p;
     let (gap, slip) = (free.rows(0, n).into_owned(), free.rows(n, n).into_owned());
-    (FrictionalLcp { q, gap, slip, mu }, p)
+    (
+        FrictionalLcp {
+            q,
+            gap,
+            slip,
+            mu,
+            free: FreeUnknowns::default(),
+        },
+        p,
+    )
 }
 
 /// A random Q = B W B^T of few degrees of freedom. The first of these sees the sum of all Pn and no Pt, which excludes
@@ -84,6 +93,7 @@ pub fn drawn(random: &mut Random, q: DMatrix<f64>, mu: f64) -> FrictionalLcp {
         slip: random.vector(n, -1.0, 1.0) * size,
         mu: DVector::from_element(n, mu),
         q,
+        free: FreeUnknowns::default(),
     }
 }
 
@@ -97,6 +107,7 @@ pub fn duplicated(problem: &FrictionalLcp) -> FrictionalLcp {
         gap: twice(&problem.gap),
         slip: twice(&problem.slip),
         mu: twice(&problem.mu),
+        free: FreeUnknowns::default(),
     }
 }
 

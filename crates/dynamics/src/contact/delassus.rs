@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 use super::compliance::{Compliance, ConstraintGroup, GroupRows, Responses, UnknownEntry};
 use super::constraint::Constraint;
-use crate::lcp::FrictionalLcp;
+use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
 /// Memory of the Delassus operators of a matrix, used again by the next one.
 #[derive(Debug, Default)]
@@ -55,6 +55,7 @@ pub fn frictional_lcp(
             &mut constraints.iter().map(|constraint| constraint.friction()),
         ),
         q: delassus(constraints, compliance, scope, space),
+        free: FreeUnknowns::default(),
     }
 }
 

@@ -95,6 +95,9 @@ pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
 /// Overlap below which an open pair stays open once the passes have settled, so that a force does
 /// not alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
+/// Slip of a correction along a segment, in units of its length, in which rows and targets stay: the square of it is
+/// round-off.
+pub(crate) const SETTLED_SLIP: f64 = 1e-8;
 /// Gap of a closed pair, and slip of a sticking one, that is round-off: what positions and solves leave
 /// of it.
 pub(crate) const SOLVED_GAP: f64 = 1e-12;

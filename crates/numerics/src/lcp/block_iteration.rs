@@ -6,8 +6,9 @@
 
 use super::anderson::{Acceleration, IterationStep};
 use super::dense::{add_sizes, max_abs};
-use super::hybrid::{Known, LcpMethod, solve_similar};
+use super::hybrid::{LcpMethod, solve_similar};
 use super::kept::KeptFactors;
+use super::known::Known;
 use super::problems::{ContactState, Counters, FrictionalLcp, LcpError};
 use super::residual::{ROUNDING, TOLERANCE, law_residual};
 use crate::linear::largest;

@@ -244,6 +244,7 @@ fn unsolved(status: &'static str, message: String, pivots: usize) -> Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lcp::FreeUnknowns;
 
     fn answer(text: &str) -> serde_json::Value {
         serde_json::from_str(&solve_json(text).text).unwrap()
@@ -255,6 +256,7 @@ mod tests {
             gap: DVector::from_element(1, -1.0),
             slip: DVector::from_element(1, -0.75),
             mu: DVector::from_element(1, 0.5),
+            free: FreeUnknowns::default(),
         }
     }
 

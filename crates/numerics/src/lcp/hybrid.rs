@@ -3,11 +3,14 @@
 //! solved exactly with the forces of all others fixed. Section 8 of docs/theory.md.
 
 use bumpalo::Bump;
+use nalgebra::DVector;
 
 use super::basis::perturbation;
 use super::dense::{List, axpy, copy, filled, list, max_abs};
+use super::free_solution::{Solvers, search, tip_over};
 use super::joints::Joints;
 use super::kept::KeptFactors;
+use super::known::Known;
 use super::lemke::{LemkeSettings, lemke_forces};
 use super::problems::{
     ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError, Method, Spare, expect_size,
@@ -33,24 +36,6 @@ pub enum LcpMethod {
     Hybrid,
     /// Lemke's method from the start.
     Lemke,
-}
-
-/// What is known of a problem before its solution.
-#[derive(Clone, Copy)]
-pub struct Known<'k> {
-    /// States of a similar problem, from which the search begins.
-    pub states: &'k [ContactState],
-    /// The number of the joint of every contact: contacts between the same bodies, which change their states together. An
-    /// empty list leaves every contact by itself. It is asked for only where single contacts come to no end.
-    pub joints: &'k dyn Fn() -> Vec<usize>,
-}
-
-impl<'k> Known<'k> {
-    /// States alone.
-    pub fn of_states(states: &'k [ContactState]) -> Self {
-        let joints = &Vec::new;
-        Known { states, joints }
-    }
 }
 
 /// Solves a frictional problem, from the states of a similar one when `warm` is given.
@@ -91,20 +76,69 @@ fn solve_in(
     (kept, arena): (&mut KeptFactors, &Bump),
 ) -> Result<FrictionalSolution, LcpError> {
     let mut counters = Counters::default();
-    if !problem.penetrates() {
+    if !problem.penetrates() && problem.free.is_empty() {
         let states = filled(arena, ContactState::Open, problem.len());
         let forces = [(); 2].map(|()| filled(arena, 0.0, problem.len()));
-        let found = (&*states, forces);
+        let found = (&*states, forces, filled(arena, 0.0, 0));
         let spare = &mut kept.spare;
         return Ok(finish(problem, found, (Method::Trivial, counters), spare));
     }
     let scaled = Scaled::new(problem, arena)?;
-    if method == LcpMethod::Hybrid
-        && let Some(solution) = iterate(problem, &scaled, known, (kept, &mut counters))
-    {
-        return Ok(solution);
+    let warm = match method {
+        LcpMethod::Hybrid => iterate(problem, &scaled, known, (kept, &mut counters)),
+        LcpMethod::Lemke => None,
+    };
+    let solution = match warm {
+        Some(solution) => solution,
+        None if problem.free.is_empty() => return lemke(problem, &scaled, &mut counters),
+        None => search(problem, &scaled, known, (&SOLVERS, &mut counters))?,
+    };
+    match problem.unstable_motion(&solution.state) {
+        None => Ok(solution),
+        Some(motion) => {
+            let from = (&solution, motion);
+            let stable = tip_over(problem, &scaled, from, (&SOLVERS, &mut counters));
+            Ok(stable.unwrap_or(FrictionalSolution {
+                is_unstable: true,
+                ..solution
+            }))
+        }
     }
-    lemke(problem, &scaled, &mut counters)
+}
+
+/// What solves problems of which free unknowns ask.
+const SOLVERS: Solvers = Solvers {
+    resisted: |problem, known| {
+        let kept = &mut KeptFactors::default();
+        solve_similar(problem, known, LcpMethod::Hybrid, kept)
+    },
+    from_states,
+};
+
+/// The answer of the active set from some states, with factors of its own.
+fn from_states(
+    problem: &FrictionalLcp,
+    scaled: &Scaled,
+    states: &[ContactState],
+    counters: &mut Counters,
+) -> Option<FrictionalSolution> {
+    let states = closed_alike(scaled, states);
+    let no_joints = Joints::none();
+    let alone = Changes::Alone(&no_joints);
+    match active_set(
+        scaled,
+        states,
+        alone,
+        (&mut KeptFactors::default(), counters),
+    ) {
+        Outcome::Converged(states, p) => {
+            let found = scaled.found(&states, &admissible(scaled, &states, &p));
+            let how = (Method::ActiveSet, *counters);
+            let solution = finish(problem, found, how, &mut Spare::default());
+            (solution.residual <= TOLERANCE).then_some(solution)
+        }
+        Outcome::Failed(_) => None,
+    }
 }
 
 /// The active set from the warm states, contact by contact; where that does not end soon, from the same states with joints, and
@@ -127,10 +161,10 @@ fn iterate(
     loop {
         let mut p = match active_set(scaled, states.clone(), changes, (kept, counters)) {
             Outcome::Converged(states, p) => {
-                let forces = scaled.forces(&admissible(scaled, &states, &p));
-                let (found, how) = ((&*states, forces), (Method::ActiveSet, *counters));
+                let found = scaled.found(&states, &admissible(scaled, &states, &p));
+                let how = (Method::ActiveSet, *counters);
                 let solution = finish(problem, found, how, &mut kept.spare);
-                if solution.residual <= TOLERANCE {
+                if solution.residual <= TOLERANCE || problem.is_empty() {
                     return Some(solution);
                 }
                 p
@@ -146,6 +180,9 @@ fn iterate(
         if std::mem::take(&mut has_kept) {
             kept.forget();
             continue;
+        }
+        if scaled.free > 0 {
+            return None;
         }
         project(scaled, &mut p);
         states = gauss_seidel(scaled, &mut p, rounds.next()?, counters);
@@ -229,9 +266,13 @@ fn follow(
         candidates
             .chain([(own(), found_forces)])
             .map(|(states, p)| {
-                let forces = scaled.forces(&admissible(scaled, &states, &p));
-                let (found, how) = ((&*states, forces), (Method::Lemke, *counters));
-                finish(problem, found, how, &mut Spare::default())
+                let found = scaled.found(&states, &admissible(scaled, &states, &p));
+                finish(
+                    problem,
+                    found,
+                    (Method::Lemke, *counters),
+                    &mut Spare::default(),
+                )
             }),
     )
 }
@@ -276,11 +317,11 @@ fn admissible<'a>(scaled: &Scaled<'a>, states: &[ContactState], p: &[f64]) -> Li
 /// The solution with motion and residual recomputed from the problem.
 fn finish(
     problem: &FrictionalLcp,
-    (states, [pn, pt]): (&[ContactState], [List<f64>; 2]),
+    (states, [pn, pt], x): (&[ContactState], [List<f64>; 2], List<f64>),
     (method, counters): (Method, Counters),
     spare: &mut Spare,
 ) -> FrictionalSolution {
-    let (residual, motion) = frictional_residual(problem, [&pn, &pt], pn.bump());
+    let (residual, motion) = frictional_residual(problem, ([&pn, &pt], &x), pn.bump());
     let (gap, slip) = motion.split_at(problem.len());
     // Without friction the solution leaves the direction of slip open: take it from the slip.
     let states = (0..problem.len()).map(|i| match states[i] {
@@ -296,6 +337,8 @@ fn finish(
         pt: spare.vector(1, &pt),
         gap: spare.vector(2, gap),
         slip: spare.vector(3, slip),
+        free: DVector::from_column_slice(&x),
+        is_unstable: false,
         residual,
         method,
         counters,
@@ -316,6 +359,9 @@ const ALONE: usize = 5;
 /// A condition violated by less than this, relative to the largest force, does not change a state:
 /// round-off would otherwise change degenerate contacts for ever.
 const ACTIVE_SET_TOLERANCE: f64 = 1e-12;
+
+/// Round-off of gaps that free unknowns make, beside the largest of these.
+const FREE_ROUND_OFF: f64 = 1e-14;
 
 /// Result of a call.
 pub(crate) enum Outcome<'a> {
@@ -381,8 +427,16 @@ fn next_states<'a>(
     p: &[f64],
     v: &[f64],
 ) -> List<'a, ContactState> {
-    let tolerance = ACTIVE_SET_TOLERANCE * max_abs(p).max(1.0);
-    let next = (0..scaled.contacts).map(|i| next_state(scaled, states[i], i, p, v, tolerance));
+    let (forces, free) = p.split_at(scaled.free_places().start);
+    let of_forces = ACTIVE_SET_TOLERANCE * max_abs(forces).max(1.0);
+    let of_motion = of_forces + FREE_ROUND_OFF * max_abs(free);
+    let next = (0..scaled.contacts).map(|i| {
+        let tolerance = match states[i].is_closed() {
+            true => of_forces,
+            false => of_motion,
+        };
+        next_state(scaled, states[i], i, p, v, tolerance)
+    });
     list(scaled.arena, next)
 }
 
@@ -537,7 +591,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::FreeUnknowns;
 
     #[test]
     fn beyond_the_cone_a_sticking_contact_slides_on_either_side() {
@@ -546,6 +600,7 @@ mod tests {
             gap: vec![-1.0].into(),
             slip: vec![2.0].into(),
             mu: vec![0.5].into(),
+            free: FreeUnknowns::default(),
         };
         let arena = Bump::new();
         let scaled = Scaled::new(&problem, &arena).expect("finite");
@@ -566,7 +621,7 @@ mod gauss_seidel_tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::FreeUnknowns;
 
     /// Uncoupled contacts: one is open, one slides, one sticks.
     #[test]
@@ -576,6 +631,7 @@ mod gauss_seidel_tests {
             gap: vec![0.5, -1.0, -1.0].into(),
             slip: vec![2.0, 2.0, -0.25].into(),
             mu: vec![0.5; 3].into(),
+            free: FreeUnknowns::default(),
         };
         let arena = Bump::new();
         let scaled = Scaled::new(&problem, &arena).expect("finite");

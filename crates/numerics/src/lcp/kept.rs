@@ -21,6 +21,8 @@ pub struct KeptFactors {
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Kept {
     states: Vec<ContactState>,
+    /// Number of free unknowns.
+    free: usize,
     weights: Vec<f64>,
     compliance: f64,
     factors: Factors,
@@ -54,6 +56,7 @@ impl KeptFactors {
     pub(super) fn serving(&self, scaled: &Scaled, states: &[ContactState]) -> Option<&Factors> {
         let kept = self.kept.as_ref()?;
         let are_same = kept.states == states
+            && kept.free == scaled.free
             && *kept.weights == *scaled.weights
             && kept.compliance == scaled.compliance;
         are_same.then_some(&kept.factors)
@@ -63,6 +66,7 @@ impl KeptFactors {
     pub(super) fn keep(&mut self, scaled: &Scaled, states: &[ContactState], factors: Factors) {
         self.kept = Some(Kept {
             states: states.to_vec(),
+            free: scaled.free,
             weights: scaled.weights.to_vec(),
             compliance: scaled.compliance,
             factors,

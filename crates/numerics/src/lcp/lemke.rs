@@ -446,7 +446,7 @@ mod tests {
     use bumpalo::Bump;
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
     /// Three contacts with a Q that is not symmetric, the second without friction, the third slipping
     /// backwards.
@@ -458,6 +458,7 @@ mod tests {
             gap: vec![-1.0, -0.5, -2.0].into(),
             slip: vec![0.25, 0.5, -0.75].into(),
             mu: vec![0.5, 0.0, 0.25].into(),
+            free: FreeUnknowns::default(),
         };
         let arena = Bump::new();
         let scaled = Scaled::new(&problem, &arena).expect("finite");

@@ -17,9 +17,12 @@ mod basis;
 mod block_iteration;
 mod dense;
 mod exchange;
+mod free;
+mod free_solution;
 mod hybrid;
 mod joints;
 mod kept;
+mod known;
 mod lemke;
 mod problems;
 mod reduced;
@@ -29,10 +32,12 @@ mod scaled;
 pub use anderson::{Acceleration, IterationStep};
 pub use block_iteration::{BlockIteration, BlockSolution, BlockStart, LcpBlock, Progress};
 pub use exchange::{JsonAnswer, solve_json};
-pub use hybrid::{Known, LcpMethod, solve_frictional, solve_similar};
+pub use hybrid::{LcpMethod, solve_frictional, solve_similar};
 pub use kept::KeptFactors;
+pub use known::Known;
 pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problems::{
-    ContactState, Counters, FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolution, Method,
+    ContactState, Counters, FreeUnknowns, FrictionalLcp, FrictionalSolution, Lcp, LcpError,
+    LcpSolution, Method,
 };
 pub use residual::residual;

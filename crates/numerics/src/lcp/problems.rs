@@ -166,6 +166,91 @@ pub struct FrictionalLcp {
     pub slip: DVector<f64>,
     /// Friction coefficients (length n), zero or positive.
     pub mu: DVector<f64>,
+    /// Unknowns without a sign that gaps and slips depend on as well.
+    pub free: FreeUnknowns,
+}
+
+/// Unknowns x without a sign, eq. (8.8), which add to gaps and slips and are in balance with the contact forces.
+///
+/// ```text
+/// (g, Dt) = Q P + D x + (gap, slip),   (S + E) x = L^T P + h
+/// ```
+///
+/// S may be singular; E bounds motions that no contact sees.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FreeUnknowns {
+    /// D (2n x m): gaps, then slips, that they make (dimensionless).
+    pub motions: DMatrix<f64>,
+    /// L (2n x m): parts of the normal, then of the tangential forces in their balance (dimensionless).
+    pub works: DMatrix<f64>,
+    /// S (m x m): stiffness without contact (force/length).
+    pub stiffness: DMatrix<f64>,
+    /// E (m x m): stiffness that is small beside that of contacts (force/length).
+    pub regular: DMatrix<f64>,
+    /// h: forces without contact (length m, force).
+    pub force: DVector<f64>,
+}
+
+impl Default for FreeUnknowns {
+    /// None.
+    fn default() -> Self {
+        let none = || DMatrix::zeros(0, 0);
+        FreeUnknowns {
+            motions: none(),
+            works: none(),
+            stiffness: none(),
+            regular: none(),
+            force: DVector::zeros(0),
+        }
+    }
+}
+
+impl FreeUnknowns {
+    /// Number of unknowns m.
+    pub fn len(&self) -> usize {
+        self.force.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.force.is_empty()
+    }
+
+    /// Largest force that the balance (S + E) x = L^T P + h leaves over.
+    pub(crate) fn left_over(&self, x: &[f64], p: &[f64]) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        let [x, p] = [x, p].map(DVector::from_column_slice);
+        let left = (&self.stiffness + &self.regular) * x - self.works.tr_mul(&p) - &self.force;
+        largest(left.as_slice())
+    }
+
+    /// x in balance with forces P.
+    pub(crate) fn balanced(&self, p: &[f64]) -> DVector<f64> {
+        let force = self.works.tr_mul(&DVector::from_column_slice(p)) + &self.force;
+        let x = (&self.stiffness + &self.regular).lu().solve(&force);
+        x.unwrap_or_else(|| DVector::zeros(self.len()))
+    }
+
+    /// Refuses wrong sizes, for n contacts, and numbers that are not finite.
+    pub(crate) fn check(&self, n: usize) -> Result<(), LcpError> {
+        let m = self.len();
+        if m == 0 {
+            return Ok(());
+        }
+        for (rows, matrix) in [
+            (2 * n, &self.motions),
+            (2 * n, &self.works),
+            (m, &self.stiffness),
+            (m, &self.regular),
+        ] {
+            expect_size("rows of free unknowns", rows, matrix.nrows())?;
+            expect_size("columns of free unknowns", m, matrix.ncols())?;
+            expect_finite(matrix.as_slice())?;
+        }
+        expect_finite(self.force.as_slice())
+    }
 }
 
 impl FrictionalLcp {
@@ -212,10 +297,11 @@ impl FrictionalLcp {
             expect_finite(values)?;
         }
         expect_finite(self.mu.as_slice())?;
+        self.free.check(n)?;
         expect_non_negative("mu", self.mu.as_slice())
     }
 
-    /// Gaps and slips under the forces (pn, pt).
+    /// Gaps and slips under the forces (pn, pt), the free unknowns being zero.
     pub fn motion(&self, pn: &DVector<f64>, pt: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let n = self.len();
         let mut motion: Vec<f64> = self.gap.iter().chain(&self.slip).copied().collect();
@@ -235,7 +321,12 @@ impl FrictionalLcp {
     ///     [ Qtn - Qtt mu   2 Qtt   I ]          [ slip ]
     ///     [ mu             -I      0 ]          [ 0    ]
     /// ```
+    ///
+    /// Free unknowns are eliminated.
     pub fn to_lcp(&self) -> Lcp {
+        if !self.free.is_empty() {
+            return self.eliminated().to_lcp();
+        }
         let n = self.len();
         let mut m = DMatrix::zeros(3 * n, 3 * n);
         for j in 0..n {
@@ -273,6 +364,7 @@ impl FrictionalLcp {
             gap: lcp.q.rows(0, n).into_owned(),
             slip,
             mu: mu.clone(),
+            free: FreeUnknowns::default(),
         };
         let same = problem.to_lcp();
         let size = problem.q.amax() * (1.0 + mu.amax());
@@ -368,6 +460,10 @@ pub struct FrictionalSolution {
     pub slip: DVector<f64>,
     /// States of the contacts.
     pub state: Vec<ContactState>,
+    /// Free unknowns x.
+    pub free: DVector<f64>,
+    /// Whether contacts leave a motion of the free unknowns unstable, and tip over to none that would hold it.
+    pub is_unstable: bool,
     /// Scaled residual of the contact conditions.
     pub residual: f64,
     /// The method that found the states.
@@ -454,6 +550,7 @@ mod frictional_tests {
             gap: DVector::from_row_slice(&[-1.0, 0.5]),
             slip: DVector::from_row_slice(&[0.25, -0.5]),
             mu: DVector::from_row_slice(&[0.3, 0.0]),
+            free: FreeUnknowns::default(),
         }
     }
 

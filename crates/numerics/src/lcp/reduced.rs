@@ -75,7 +75,7 @@ pub(crate) fn forces<'a>(
     let matrix = || matrix(scaled, states, &unknowns);
     let nothing_slides = scaled.owners.iter().all(|i| states[*i].slip_sign() == 0.0);
     let values = matrix();
-    let regular = if nothing_slides && is_symmetric(&values, size) {
+    let regular = if nothing_slides && scaled.free == 0 && is_symmetric(&values, size) {
         Factors::cholesky(values, size)
     } else {
         Factors::lu(values, size)
@@ -109,20 +109,26 @@ fn from_kept<'a>(
     (error <= ACCURATE * terms(scaled, &p)).then_some((p, v))
 }
 
-/// Sum of the sizes of the diagonal terms of Q p.
+/// Sum of the sizes of the diagonal terms of Q p, and of what free unknowns add to gaps.
 fn terms(scaled: &Scaled, p: &[f64]) -> f64 {
     let q = scaled.q();
-    (0..p.len()).map(|k| (q[(k, k)] * p[k]).abs()).sum()
+    let own = |k: usize| (q[(k, k)] * p[k]).abs();
+    let free = scaled.free_places();
+    let of_forces: f64 = (0..free.start).map(own).sum();
+    of_forces + free.map(|k| p[k].abs()).sum::<f64>()
 }
 
-/// Positions in p of the unknowns, which are also the rows that must vanish.
+/// Positions in p of the unknowns, the free ones last, which are also the rows that must vanish.
 fn unknowns<'a>(scaled: &Scaled<'a>, states: &[ContactState]) -> List<'a, usize> {
     let closed = (0..scaled.contacts).filter(|i| states[*i].is_closed());
     let tangents = scaled.owners.iter().zip(scaled.contacts..);
     let stick = tangents
         .filter(|(i, _)| states[**i] == ContactState::Stick)
         .map(|(_, k)| k);
-    list(scaled.arena, closed.chain(stick))
+    list(
+        scaled.arena,
+        closed.chain(stick).chain(scaled.free_places()),
+    )
 }
 
 /// The matrix of the system by columns: Q on the unknowns; the column of a sliding Pn is
@@ -223,7 +229,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     use super::*;
-    use crate::lcp::problems::FrictionalLcp;
+    use crate::lcp::{FreeUnknowns, FrictionalLcp};
     use ContactState::{Open, SlipMinus, SlipPlus, Stick};
 
     const CONTACTS: usize = 40;
@@ -251,6 +257,7 @@ mod tests {
             gap: DVector::from_element(n, -1.0),
             slip: DVector::from_fn(n, |i, _| 0.1 * i as f64 - 0.5),
             mu: DVector::from_element(n, 0.3),
+            free: FreeUnknowns::default(),
         }
     }
 

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 use super::dense::{List, add_product_and_sizes, filled, list, max_abs};
 use super::problems::{FrictionalLcp, Lcp};
 use super::scaled::Equilibration;
-use crate::linear::{SMALLEST, larger};
+use crate::linear::{SMALLEST, larger, largest};
 
 /// Largest residual of a point that counts as a solution.
 pub(crate) const TOLERANCE: f64 = 1e-9;
@@ -39,15 +39,16 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
     relative(error, scale)
 }
 
-/// Residual of the forces (pn, pt) of a frictional problem, zero for a solution, and gaps and slips under them.
+/// Residual of the forces (pn, pt) and free unknowns x of a frictional problem, zero for a solution, and gaps and slips under
+/// them.
 ///
 /// The law of eq. (3.6) as r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)|
 /// with T+- = (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip; lengths in units
-/// of the deepest penetration plus 1e-6 of the terms of Q P, forces in that unit over mean diag
-/// Qnn.
+/// of the deepest penetration, or what forces on free unknowns make of it, plus 1e-6 of the terms of Q P, forces in that unit over mean diag
+/// Qnn, those that the balance of free unknowns leaves over too.
 pub(crate) fn frictional_residual<'a>(
     problem: &FrictionalLcp,
-    [pn, pt]: [&[f64]; 2],
+    ([pn, pt], x): ([&[f64]; 2], &[f64]),
     arena: &'a Bump,
 ) -> (f64, List<'a, f64>) {
     let n = problem.gap.len();
@@ -55,14 +56,19 @@ pub(crate) fn frictional_residual<'a>(
     let mut terms = filled(arena, 0.0, 2 * n);
     let forces = list(arena, pn.iter().chain(pt).copied());
     add_product_and_sizes(problem.q.as_slice(), &forces, &mut motion, &mut terms);
+    let moved = problem.free.motions.as_slice();
+    add_product_and_sizes(moved, x, &mut motion, &mut terms);
     let deepest = problem.gap.iter().fold(0.0_f64, |l, g| l.max(-g));
     let compliance = problem.compliance();
+    let of_forces = compliance * largest(problem.free.force.as_slice());
     let contact = |i: usize| ([motion[i], motion[n + i]], [pn[i], pt[i]], problem.mu[i]);
     let length = larger(
-        deepest + ROUNDING * max_abs(&terms),
+        larger(deepest, of_forces) + ROUNDING * max_abs(&terms),
         problem.smallest_length(),
     );
-    let residual = law_residual((0..n).map(contact), compliance, length);
+    let law = law_residual((0..n).map(contact), compliance, length);
+    let left = compliance * problem.free.left_over(x, &forces);
+    let residual = worse(law, relative(left, length));
     // what is so small has lost its digits, and is no error
     match residual * length <= problem.smallest_length() {
         true => (0.0, motion),
@@ -122,6 +128,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
+    use crate::lcp::FreeUnknowns;
 
     #[test]
     fn residual_is_zero_only_for_solutions() {
@@ -147,8 +154,9 @@ mod tests {
             gap: DVector::from_element(1, -1.0),
             slip: DVector::from_element(1, 2.0),
             mu: DVector::from_element(1, 0.5),
+            free: FreeUnknowns::default(),
         };
-        let residual_of = |forces| frictional_residual(&problem, forces, &Bump::new()).0;
+        let residual_of = |forces| frictional_residual(&problem, (forces, &[]), &Bump::new()).0;
         // Sliding: Pn = 1, Pt = -mu Pn, slip 1.5 > 0.
         assert_eq!(residual_of([&[1.0], &[-0.5]]), 0.0);
         assert!(

@@ -1,19 +1,25 @@
 //! The dimensionless form of the frictional problem that the methods solve, without the tangential unknowns of
 //! frictionless contacts. Scale factors are powers of two: multiplication by them is exact. Section 8 of docs/theory.md.
 
+use std::ops::Range;
+
 use bumpalo::Bump;
 use nalgebra::{DMatrix, DMatrixView};
 
 use super::dense::{List, add_product, copy, extend_scaled, filled, list};
-use super::problems::{FrictionalLcp, LcpError, expect_finite};
+use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, LcpError, expect_finite};
 
-/// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0).
+/// States, (Pn, Pt) and free unknowns in the units of a problem.
+pub(crate) type Found<'s, 'a> = (&'s [ContactState], [List<'a, f64>; 2], List<'a, f64>);
+
+/// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0, the f free unknowns x); the last rows of v are
+/// what the balance of the free unknowns lacks, (S + E) x - L^T P - h.
 ///
 /// With the weights w_i = root of Qnn_ii over its mean, the unit of length of contact i is
 /// w_i times the deepest penetration (over its weight), the unit of force is that length over
 /// Qnn_ii; both are rounded to powers of two. One weight for normal and tangent keeps the friction
 /// law. The penetration drives the forces: a gap or a slip many orders larger must not make a
-/// closed contact inaccurate.
+/// closed contact inaccurate. Free unknowns have the unit of length, and what forces without contact make of it counts too.
 pub(crate) struct Scaled<'a> {
     /// Where its lists lie, and those of its solution.
     pub arena: &'a Bump,
@@ -23,9 +29,11 @@ pub(crate) struct Scaled<'a> {
     pub owners: List<'a, usize>,
     /// Position in p of the tangential unknown of each contact, None without friction (length n).
     pub tangents: List<'a, Option<usize>>,
-    /// Q, (n + m) x (n + m), column by column.
+    /// Number of free unknowns f.
+    pub free: usize,
+    /// Q, (n + m + f) x (n + m + f), column by column.
     entries: List<'a, f64>,
-    /// Gaps and slips without forces (length n + m).
+    /// Gaps and slips without forces, and what the balance of the free unknowns lacks then (length n + m + f).
     pub b: List<'a, f64>,
     /// Friction coefficients (length n).
     pub mu: List<'a, f64>,
@@ -35,10 +43,12 @@ pub(crate) struct Scaled<'a> {
     pub compliance: f64,
     /// Unit of the forces of each contact (length n).
     units: List<'a, f64>,
+    /// Unit of length.
+    length: f64,
 }
 
 impl<'a> Scaled<'a> {
-    /// Scales a problem with at least one penetration.
+    /// Scales a problem with at least one penetration, or free unknowns.
     pub fn new(problem: &FrictionalLcp, arena: &'a Bump) -> Result<Self, LcpError> {
         let n = problem.len();
         let owners = list(arena, (0..n).filter(|i| problem.mu[*i] > 0.0));
@@ -46,11 +56,17 @@ impl<'a> Scaled<'a> {
         for (f, i) in owners.iter().enumerate() {
             tangents[*i] = Some(n + f);
         }
-        let compliance = power_of_two((0..n).map(|i| problem.q[(i, i)]).sum::<f64>() / n as f64);
-        let weight = |i: usize| power_of_two((problem.q[(i, i)] / compliance).max(0.0).sqrt());
+        let compliance = power_of_two(problem.compliance());
+        let weight = |i: usize| match problem.free.is_empty() {
+            true => power_of_two((problem.q[(i, i)] / compliance).max(0.0).sqrt()),
+            // what is held where free unknowns count from says nothing of a contact
+            false => 1.0,
+        };
         let weights = list(arena, (0..n).map(weight));
         let penetrations = problem.gap.iter().zip(&weights).map(|(g, w)| -g / w);
-        let length = power_of_two(penetrations.fold(0.0, f64::max));
+        let free = &problem.free;
+        let of_forces = free.force.iter().map(|h| compliance * h.abs());
+        let length = power_of_two(penetrations.chain(of_forces).fold(0.0, f64::max));
         // Reciprocals of powers of two are exact.
         let inverses = list(arena, weights.iter().map(|w| 1.0 / w));
         let gather = |column: &[f64], unit: f64, out: &mut List<f64>| {
@@ -66,15 +82,23 @@ impl<'a> Scaled<'a> {
                 ),
             }
         };
-        let size = n + owners.len();
+        let size = n + owners.len() + free.len();
         let mut entries = List::with_capacity_in(size * size, arena);
         for k in (0..n).chain(owners.iter().map(|i| n + i)) {
             let column = &problem.q.as_slice()[2 * n * k..2 * n * (k + 1)];
             gather(column, compliance * weights[k % n], &mut entries);
+            let works = (0..free.len()).map(|x| -free.works[(k, x)]);
+            entries.extend(works.map(|work| work * inverses[k % n]));
+        }
+        for x in 0..free.len() {
+            gather(free.motions.column(x).as_slice(), 1.0, &mut entries);
+            let own = |i| free.stiffness[(i, x)] + free.regular[(i, x)];
+            entries.extend((0..free.len()).map(|i| compliance * own(i)));
         }
         let motion = list(arena, problem.gap.iter().chain(&problem.slip).copied());
         let mut b = List::with_capacity_in(size, arena);
         gather(&motion, length, &mut b);
+        b.extend(free.force.iter().map(|h| -compliance * h / length));
 
         let units = list(arena, weights.iter().map(|w| length / compliance / w));
         for values in [&entries, &b, &units] {
@@ -86,12 +110,14 @@ impl<'a> Scaled<'a> {
             contacts: n,
             owners,
             tangents,
+            free: free.len(),
             entries,
             b,
             mu,
             weights,
             compliance,
             units,
+            length,
         })
     }
 
@@ -145,7 +171,24 @@ impl<'a> Scaled<'a> {
             gap: gap.to_vec().into(),
             slip: slip.to_vec().into(),
             mu: mu.into(),
+            free: FreeUnknowns::default(),
         }
+    }
+
+    /// Positions in p of the free unknowns.
+    pub fn free_places(&self) -> Range<usize> {
+        self.size() - self.free..self.size()
+    }
+
+    /// x in the units of the problem.
+    pub fn free_of(&self, p: &[f64]) -> List<'a, f64> {
+        let of_p = p[self.free_places()].iter();
+        list(self.arena, of_p.map(|x| x * self.length))
+    }
+
+    /// What p and the states of contacts are in the units of the problem.
+    pub fn found<'s>(&self, states: &'s [ContactState], p: &[f64]) -> Found<'s, 'a> {
+        (states, self.forces(p), self.free_of(p))
     }
 
     /// (Pn, Pt) of all contacts in the units of the problem.

@@ -28,6 +28,19 @@ pub struct Transformation {
 }
 
 impl Transformation {
+    /// T q of the derivatives: a motion of all dofs.
+    pub fn motion(&self, q: &[f64]) -> Vec<f64> {
+        let mut motion = vec![0.0; self.starts.len() - 1];
+        self.add(q, &mut motion);
+        motion
+    }
+
+    /// T q of the coefficients by which forces act: what forces at all dofs do.
+    pub fn work(&self, q: &[f64]) -> Vec<f64> {
+        let of_row = |row: &[(usize, f64)]| row.iter().map(|&(at, c)| c * q[at]).sum();
+        self.rows().map(of_row).collect()
+    }
+
     /// The map with the given rows (unknown, coefficient) of all dofs.
     pub fn new(unknowns: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
         let (mut starts, mut terms) = (vec![0], Vec::new());

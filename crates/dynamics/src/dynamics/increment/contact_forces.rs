@@ -5,10 +5,13 @@ use smallvec::SmallVec;
 
 use super::contact_system::{FEW, Guess, Response};
 use crate::contact::tolerances::{LIMIT_SLIP, SETTLED_OVERLAP, SOLVED_GAP};
-use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintKey};
+use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::System;
 use crate::linear::larger;
+
+/// Constraints by which a problem grows at least where a body is not held.
+const FEWEST: usize = 3;
 
 /// Constraints with the forces (or impulses) of those that are closed.
 #[derive(Debug, Clone, Default)]
@@ -82,11 +85,6 @@ impl ContactForces {
             .filter_map(|(constraint, pair)| Some((constraint, pair?)))
     }
 
-    /// Keys of the closed pairs.
-    pub fn keys(&self) -> Vec<ConstraintKey> {
-        self.closed.iter().map(|pair| pair.key).collect()
-    }
-
     /// Contact force Bn^T Pn + Bt^T Pt of eq. (3.1), over all dofs.
     pub fn resultant(&self, dofs: usize) -> Vec<f64> {
         let mut force = Vec::new();
@@ -138,19 +136,31 @@ impl ContactForces {
         // g + Gn y and Dt + Gt y, eq. (5.2)
         let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
         response.gaps_and_slips(system, self.constraints.iter(), free);
-        let mut entered = inside.contains(&true) || self.enter(inside, free, overlap);
+        response.show_pins(system);
+        let mut entered =
+            inside.contains(&true) || self.enter(inside, free, overlap) || system.free().is_some();
+        let mut may_tip = true;
         while entered {
             let constraints: SmallVec<[_; FEW]> = chosen(&self.constraints, inside).collect();
             terms.clear();
             terms.extend(chosen(free, inside));
             guess.take_over(&constraints, before, weight);
-            self.pivots += system.solve_contact(
+            let solved = system.solve_contact(
                 &constraints,
                 terms,
                 guess,
                 &mut self.closed,
                 Some(&mut response),
-            )?;
+            );
+            if let Some(free) = system.free()
+                && (solved.is_err()
+                    || free.goes_too_far()
+                    || (free.is_unstable() && std::mem::take(&mut may_tip)))
+                && self.enter_nearest(inside)
+            {
+                continue;
+            }
+            self.pivots += solved?;
             self.problem_size = constraints.len();
             let acting = self
                 .acting()
@@ -181,6 +191,18 @@ impl ContactForces {
                 slip.abs() > round_off
             })
         });
+    }
+
+    /// Lets as many constraints into the problem as are in it, those with the smallest gaps of the iterate; whether there were
+    /// any outside: bodies that those inside do not hold move on to the next ones.
+    fn enter_nearest(&self, inside: &mut [bool]) -> bool {
+        let count = inside.iter().filter(|inside| **inside).count().max(FEWEST);
+        let gap = |k: usize| self.constraints[k].gap / self.constraints[k].scale;
+        let mut outside: Vec<usize> = (0..inside.len()).filter(|&k| !inside[k]).collect();
+        outside.sort_by(|&i, &k| gap(i).total_cmp(&gap(k)));
+        outside.truncate(count);
+        outside.iter().for_each(|&k| inside[k] = true);
+        !outside.is_empty()
     }
 
     /// Lets constraints into the problem that would overlap, with the given gaps after the correction, by

@@ -14,7 +14,7 @@ use smallvec::SmallVec;
 use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintGroup};
 use crate::dynamics::results::{Cause, FailedLcp};
-use crate::dynamics::step::{ResponseVectors, System};
+use crate::dynamics::step::{FreeMotions, ResponseVectors, System};
 use crate::lcp::{
     BlockIteration, BlockStart, ContactState, FrictionalLcp, LcpBlock, LcpMethod, Progress,
 };
@@ -132,6 +132,9 @@ impl System<'_> {
         }
         match self.solve_lcp(&problem, constraints, &guess.states) {
             Ok(solution) => {
+                if let Some(free) = self.free_mut() {
+                    free.answer(&problem, &solution);
+                }
                 self.take_back(problem);
                 let forces = solution.pn.iter().zip(&solution.pt);
                 let forces = forces.map(|(&pn, &pt)| [pn, pt]);
@@ -231,7 +234,8 @@ impl System<'_> {
         &self,
         constraints: &[&Constraint],
     ) -> Option<BTreeMap<ConstraintGroup, Vec<usize>>> {
-        let may_be_parted = self.method() == LcpMethod::Hybrid && !self.couples_bodies();
+        let may_be_parted =
+            self.method() == LcpMethod::Hybrid && !self.couples_bodies() && self.free().is_none();
         if constraints.len() < LEAST || !may_be_parted {
             return None;
         }
@@ -375,7 +379,9 @@ impl<'a> Response<'a> {
             at_nodes,
             ..
         } = &mut vectors;
-        replace(nodes, constraints.iter().flat_map(Constraint::nodes));
+        let pinned = system.free().into_iter().flat_map(|free| &free.dofs);
+        let of_constraints = constraints.iter().flat_map(Constraint::nodes);
+        replace(nodes, of_constraints.chain(pinned.map(|dof| dof / 2)));
         let dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
         let terms = dofs.flat_map(|dof| system.map().row(dof));
         replace(unknowns, terms.map(|term| term.0));
@@ -419,7 +425,15 @@ impl<'a> Response<'a> {
         found.extend(constraints.map(after));
     }
 
-    /// Takes forces of the given constraints into the right-hand side, in place of those
+    /// Shows the free motions where their pins are without contact forces; gaps and slips must have been asked for.
+    pub fn show_pins(&self, system: &mut System) {
+        let at_nodes = &self.vectors.at_nodes;
+        if let Some(free) = system.free_mut() {
+            free.alone = free.dofs.iter().map(|&dof| at_nodes[dof]).collect();
+        }
+    }
+
+    /// Takes forces of the given constraints and those of the pins into the right-hand side, in place of those
     /// before; gaps and slips without them must have been asked for.
     pub fn set_forces<'c>(
         &mut self,
@@ -437,6 +451,10 @@ impl<'a> Response<'a> {
                     forces.extend(terms.map(|&(unknown, c)| (unknown, c * force)));
                 }
             }
+        }
+        for (dof, force) in system.free().into_iter().flat_map(FreeMotions::forces) {
+            let terms = system.map().row(dof).iter();
+            forces.extend(terms.map(|&(unknown, c)| (unknown, c * force)));
         }
         system.add(forces);
         forces.drain(..before);

@@ -4,7 +4,7 @@
 use smallvec::{SmallVec, smallvec};
 
 use super::contact_forces::ContactForces;
-use crate::contact::tolerances::{SETTLED_OVERLAP, SOLVED_GAP};
+use crate::contact::tolerances::{SETTLED_OVERLAP, SETTLED_SLIP, SOLVED_GAP};
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{PassReport, Worst};
 use crate::dynamics::step::{Hinges, Parts, PerBody, ROUND_OFF};
@@ -198,16 +198,15 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may
-    /// overlap. Where pairs contradict each other, the equal-force rule lets the forces grow in balance, and
-    /// gaps stay.
+    /// overlap, where its rows hold. Where pairs contradict each other, the equal-force rule lets the forces grow in
+    /// balance, and gaps stay. Where supports push a body along another under the same forces, the residual is all
+    /// round-off, but slave nodes come to other segments.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
+            let most = |part: f64| larger(self.closed_gap(constraint), part * constraint.scale);
             let gap = constraint.gap + constraint.gap_change(du);
-            let most = larger(
-                self.closed_gap(constraint),
-                SETTLED_OVERLAP * constraint.scale,
-            );
-            gap.abs() <= most
+            gap.abs() <= most(SETTLED_OVERLAP)
+                && constraint.slip_change(du).abs() <= most(SETTLED_SLIP)
         })
     }
 

@@ -69,15 +69,21 @@ impl SkewPart {
         load.iter_mut().zip(&self.force).for_each(|(r, f)| *r += f);
     }
 
-    /// Takes in another dU; whether N dU has become as good as it was, beside the other forces, or as round-off lets it.
-    pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
-        let mut force = vec![0.0; du.len()];
+    /// N x for a motion x of all dofs.
+    pub fn product(&self, x: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; x.len()];
         for (dofs, skew) in &self.parts {
             for (i, &row) in dofs.iter().enumerate() {
-                let products = dofs.iter().enumerate().map(|(j, &d)| skew[(i, j)] * du[d]);
+                let products = dofs.iter().enumerate().map(|(j, &d)| skew[(i, j)] * x[d]);
                 force[row] += products.sum::<f64>();
             }
         }
+        force
+    }
+
+    /// Takes in another dU; whether N dU has become as good as it was, beside the other forces, or as round-off lets it.
+    pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
+        let force = self.product(du);
         self.force.resize(du.len(), 0.0);
         let change = largest(&difference(&force, &self.force));
         self.force = force;

@@ -99,7 +99,7 @@ impl Hinges {
             columns[1].push(solve(&map.restrict_derivatives(&force))?);
         }
         let [of_forces, of_motions] = columns;
-        let v = UpdateColumns::motions(of_forces, (map, rotation), dofs);
+        let v = UpdateColumns::motions(of_forces, (map, rotation));
         let y = UpdateColumns::works(of_motions, (map, rotation));
         let gaps: Vec<Vec<f64>> = v.of_dofs.iter().map(|column| self.gaps(column)).collect();
         let m = self.rows.len();

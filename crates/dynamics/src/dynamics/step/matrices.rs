@@ -9,13 +9,14 @@ use std::collections::BTreeMap;
 use nalgebra::DMatrix;
 
 use super::bodies::BodyAngles;
+use super::free_motions::FreeMotions;
 use super::held_motions::HeldMotions;
 use super::hinges::Hinges;
 use super::loads::ForceChange;
 use super::mass::{Masses, unknown_mass};
 use super::meter::Meter;
-use super::pins::{Pins, SoftPins, pin_columns, soften};
-use super::rank_update::{RankUpdate, Updates};
+use super::pins::Pins;
+use super::rank_update::RankUpdate;
 use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::{
@@ -42,10 +43,12 @@ pub(crate) struct FactoredMatrix {
     pub space: DelassusSpace,
     /// Memory of its solves.
     pub vectors: SolveVectors,
-    /// What its inverse differs by from that of its factors.
-    updates: Updates,
+    /// What its inverse differs by from that of its factors, where its solutions keep hinges closed.
+    update: Option<RankUpdate>,
     /// Hinges that its solutions keep closed.
     hinges: Hinges,
+    /// Motions of pins that are unknowns of its complementarity problems.
+    free: Option<FreeMotions>,
     /// Solver of its complementarity problems.
     method: LcpMethod,
 }
@@ -89,8 +92,9 @@ impl FactoredMatrix {
             kept: BTreeMap::new(),
             space: DelassusSpace::default(),
             vectors: SolveVectors::default(),
-            updates: Updates::default(),
+            update: None,
             hinges: Hinges::default(),
+            free: None,
             method,
         }
     }
@@ -100,9 +104,15 @@ impl FactoredMatrix {
         self.compliance.map()
     }
 
+    /// Motions of pins that are free unknowns.
+    pub fn free(&self) -> Option<&FreeMotions> {
+        self.free.as_ref()
+    }
+
     /// Factorises the matrix again.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
-        self.updates = Updates::default();
+        self.update = None;
+        self.free = None;
         self.compliance.renew(self.solver.groups());
         self.solver.factorize()
     }
@@ -113,7 +123,8 @@ impl FactoredMatrix {
             solver,
             compliance,
             kept,
-            updates,
+            update,
+            free: _,
             space: _,
             vectors: _,
             hinges: _,
@@ -129,12 +140,12 @@ impl FactoredMatrix {
         for scope in scopes {
             kept.entry(scope).or_default().transfer(archive)?;
         }
-        archive.transfer(updates)
+        archive.transfer(update)
     }
 
     /// The rows of T of bodies that turn, which are to change.
     fn map_mut(&mut self) -> &mut Transformation {
-        self.updates.hinges = None;
+        self.update = None;
         self.compliance.map_mut()
     }
 
@@ -155,6 +166,10 @@ impl FactoredMatrix {
 /// equilibrium is asked: motions that nothing resists are neutral.
 const AS_RIGID: f64 = 1e3;
 const NEUTRAL: f64 = 1e-10;
+
+/// Changes of N Z at most, and the part of the stiffness of a pin up to which they are none.
+const MOST_CHANGES: usize = 20;
+const SMALL_CHANGE: f64 = 1e-14;
 
 /// What K* is made of besides inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -358,7 +373,7 @@ impl EffectiveStiffness {
     /// Turns the factors of K* with the bodies, to the configuration of a motion (docs/numerics.md, Turned factors).
     pub fn turn(&mut self, problem: &StepProblem, motion: Motion) {
         let angles = self.angles.since_assembly(problem, motion);
-        self.k.updates.hinges = None;
+        self.k.update = None;
         (self.k.compliance).turn(&angles, problem.parts.of_nodes());
     }
 
@@ -470,29 +485,74 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.factorization, || matrix.factorize())
     }
 
-    /// Softens the pins of a problem, `constraints` being some of the pairs, from the stiffness `a` that they have in
-    /// the factors; gives their stiffness a', the given part of that of eq. (12.3).
-    pub fn soften(
+    /// Makes the motions of pins of the stiffness `a`, of which a part is `held`, free unknowns of the complementarity
+    /// problems, at the positions `at`, with forces that are not balanced there. N are the changes of forces that the matrix leaves out, over all dofs, and the reach is how far nodes may go.
+    ///
+    /// ```text
+    /// Z = W (S a + N Z),   works W S a      eq. (12.3)
+    /// ```
+    pub fn free_pins(
         &mut self,
-        problem: &StepProblem,
-        pins: &Pins,
-        (a, part, held): (&[f64], f64, DMatrix<f64>),
-        constraints: &[&Constraint],
-    ) -> Result<SoftPins, LinearError> {
-        self.matrix.updates = Updates::default();
+        (pins, a, held): (&Pins, &[f64], DMatrix<f64>),
+        (at, unbalanced): (&dyn Fn(usize) -> [f64; 2], &[f64]),
+        skew: &dyn Fn(&[f64]) -> Vec<f64>,
+        reach: f64,
+    ) -> Result<(), LinearError> {
+        self.matrix.free = None;
+        self.hold()?;
         let map = self.matrix.map().clone();
-        let columns = pin_columns(pins, &map, |b| self.solve(b))?;
-        let none = vec![[0.0; 2]; constraints.len()];
-        let lcp = self.frictional_lcp(&ConstraintGroup::All, constraints, &none)?;
-        let numbered = constraints.iter().enumerate();
-        let compliances: Vec<_> = numbered.map(|(j, &c)| (c, lcp.q[(j, j)])).collect();
-        self.take_back(lcp);
-        let dofs = problem.model.dof_count();
-        let both = (&map, problem.parts);
-        let of_pins = (a, part, held);
-        let (update, stiffness) = soften(pins, both, of_pins, columns, &compliances, dofs);
-        self.matrix.updates = Updates::of_pins(update);
-        Ok(stiffness)
+        let (mut motions, mut works, mut loads) = (Vec::new(), Vec::new(), Vec::new());
+        for (dof, &a) in pins.dofs().zip(a) {
+            let mut load = vec![0.0; map.rows().count()];
+            load[dof] = a;
+            works.push(self.respond_transposed(&load)?);
+            let mut motion = self.respond(&load)?;
+            for _ in 0..MOST_CHANGES {
+                let change = skew(&motion);
+                let least = SMALL_CHANGE * a;
+                let is_small = |(k, change): (usize, &f64)| {
+                    let own = if k == dof { a } else { 0.0 };
+                    (own + change - load[k]).abs() <= least
+                };
+                if change.iter().enumerate().all(is_small) {
+                    break;
+                }
+                load = change;
+                load[dof] += a;
+                motion = self.respond(&load)?;
+            }
+            motions.push(motion);
+            loads.push(load);
+        }
+        let of_pins = (pins.dofs().collect(), a.to_vec());
+        let columns = [motions, works, loads];
+        let turning = pins.turning_stiffness(unbalanced, at);
+        let bodies = (pins.mean_square(at), turning, held);
+        let free = FreeMotions::new(of_pins, columns, bodies, (pins.round_off(a), reach));
+        self.matrix.free = Some(free);
+        Ok(())
+    }
+
+    /// T_m A^-T T_1^T f for the forces `f` over all dofs: what forces do, of a matrix whose bodies have not turned since it was
+    /// factorised.
+    fn respond_transposed(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
+        let map = self.matrix.map().clone();
+        let b = map.restrict_derivatives(f);
+        let solution = self.solve(&b)?;
+        Ok(match &self.matrix.update {
+            Some(update) => map.work(&update.transposed(&b, &solution)),
+            None => map.work(&solution),
+        })
+    }
+
+    /// The motions of pins that are free unknowns.
+    pub fn free(&self) -> Option<&FreeMotions> {
+        self.matrix.free.as_ref()
+    }
+
+    /// The same, to be changed.
+    pub fn free_mut(&mut self) -> &mut Option<FreeMotions> {
+        &mut self.matrix.free
     }
 
     /// Makes solutions keep the hinges closed, with T of the iterate.
@@ -501,7 +561,7 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             solver,
             compliance,
-            updates: Updates { pins, hinges: held },
+            update: held,
             hinges,
             ..
         } = &mut **matrix;
@@ -510,14 +570,7 @@ impl<'a> System<'a> {
         }
         let at = (compliance.map(), compliance.rotation());
         let dofs = at.0.rows().count();
-        let solve = |b: &[f64]| {
-            let solution = solver.solve(b)?;
-            Ok(match pins {
-                Some(pins) => pins.solution(b, &solution),
-                None => solution,
-            })
-        };
-        let columns = || hinges.hold(at, dofs, solve);
+        let columns = || hinges.hold(at, dofs, |b| solver.solve(b));
         *held = Some(meter.time(|t| &mut t.solve, columns)?);
         Ok(())
     }
@@ -530,13 +583,13 @@ impl<'a> System<'a> {
     /// Forces of the hinges, and the motion that they make over all dofs, by which the gaps `gaps` of the hinges close.
     pub fn close(&mut self, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
         self.hold()?;
-        let update = self.matrix.updates.hinges.as_ref();
+        let update = self.matrix.update.as_ref();
         Ok(update.map_or((Vec::new(), Vec::new()), |update| update.answer(gaps)))
     }
 
     /// Forces of the hinges in the last solve.
     pub fn hinge_forces(&self) -> Vec<f64> {
-        let update = self.matrix.updates.hinges.as_ref();
+        let update = self.matrix.update.as_ref();
         let parts = update.map_or(Vec::new(), RankUpdate::parts);
         parts.into_iter().map(|part| -part).collect()
     }
@@ -570,7 +623,7 @@ impl<'a> System<'a> {
             solver,
             compliance,
             vectors,
-            updates,
+            update,
             ..
         } = &mut **matrix;
         let SolveVectors { forces, .. } = vectors;
@@ -584,7 +637,7 @@ impl<'a> System<'a> {
                 rotation.turn_back(forces);
                 map.write_restricted(forces, b);
             }
-            updates.all_mut().for_each(|update| update.begin(b));
+            update.iter_mut().for_each(|update| update.begin(b));
         };
         meter.time(|t| &mut t.solve, || solver.begin(write))
     }
@@ -594,8 +647,8 @@ impl<'a> System<'a> {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
         matrix
-            .updates
-            .all()
+            .update
+            .iter()
             .for_each(|update| update.correct(unknowns, values));
     }
 
@@ -603,7 +656,7 @@ impl<'a> System<'a> {
     pub fn add(&mut self, b: &[(usize, f64)]) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.add(b));
-        matrix.updates.all_mut().for_each(|update| update.add(b));
+        matrix.update.iter_mut().for_each(|update| update.add(b));
     }
 
     /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
@@ -613,12 +666,12 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             solver,
             compliance,
-            updates,
+            update,
             ..
         } = &mut **matrix;
         let (map, rotation) = (compliance.map(), compliance.rotation());
         let write = |q: &[f64]| {
-            let corrected = updates.corrected(q);
+            let corrected = update.as_ref().map(|update| update.corrected(q));
             let q = corrected.as_deref().unwrap_or(q);
             if rotation.is_identity() {
                 map.write_sum(start, q, response);
@@ -688,16 +741,19 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             compliance,
             space,
-            updates,
+            update,
+            free,
             ..
         } = &mut **matrix;
         let pose = || {
             let all = (&*compliance, scope);
             let mut problem = frictional_lcp(constraints, all, constant_terms, space);
-            let q = &mut problem.q;
-            updates
-                .all()
-                .for_each(|update| update.change(constraints, q));
+            if let Some(update) = update {
+                update.change(constraints, &mut problem.q);
+            }
+            if let Some(free) = free {
+                problem.free = free.unknowns(constraints);
+            }
             problem
         };
         Ok(meter.time(|t| &mut t.contact, pose))

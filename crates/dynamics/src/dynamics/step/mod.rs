@@ -3,6 +3,7 @@
 
 mod bodies;
 mod fits;
+mod free_motions;
 mod friction;
 mod held_motions;
 mod hinges;
@@ -23,6 +24,7 @@ mod unknowns;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
+pub(crate) use free_motions::{FreeMotions, Loose};
 pub(crate) use friction::BeforeIterate;
 pub(crate) use held_motions::HeldMotions;
 pub(crate) use hinges::Hinges;
@@ -34,7 +36,6 @@ pub(crate) use matrices::{
 #[cfg(test)]
 pub(crate) use meter::Meter;
 pub(crate) use parts::{Parts, PerBody};
-pub(crate) use pins::{SoftPins, add_pin_forces};
 pub(crate) use seen::{ROUND_OFF, Seen};
 pub(crate) use slave_faces::SlaveFaces;
 pub(crate) use step_problem::{

@@ -1,16 +1,15 @@
-//! Pins of static steps: stiffness at a few dofs that holds the rigid motions which supports leave free, softened in
-//! the complementarity problems and iterated out. Section 4 of docs/theory.md, Static steps.
+//! Pins of static steps: stiffness at a few dofs that holds the rigid motions which supports leave free. Section 12 of
+//! docs/theory.md, Pins.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::bodies::{Hold, holds};
 use super::normals::{Normal, Normals, Vertices};
 use super::parts::Parts;
-use super::rank_update::{RankUpdate, UpdateColumns};
 use super::step_problem::StepProblem;
 use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::{Cause, Unbalanced};
-use crate::linear::{LinearError, Rotation, Transformation, larger, largest};
+use crate::linear::{Transformation, larger, largest};
 use crate::model::Equation;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -22,16 +21,11 @@ const LARGEST_ANGLE: f64 = 0.2;
 const FREE: f64 = 1e-10;
 /// Part of the size of its terms up to which an equation agrees with a rigid motion.
 const AGREES: f64 = 1e-9;
+/// Least stiffness of the pins of a rigid body, beside the largest force over its size: what moves them is to be little beside
+/// the body.
+const STIFF: f64 = 1e3;
 /// Round-off of the resultant of the forces of many nodes beside that of one of them.
 const RESULTANT: f64 = 10.0;
-/// Compliance of pins in the complementarity problems beside that of the pairs of their body: much softer ones leave
-/// problems with friction several solutions.
-const SOFT: f64 = 1e2;
-/// Compliance of pairs, beside that with the pins in K*, up to which it is round-off.
-const COMPLIANT: f64 = 1e-10;
-/// Least and largest stiffness of pins there, beside that in K*.
-const SOFTEST: f64 = 1e-6;
-const STIFFEST: f64 = 1e3;
 
 /// The pins of a step.
 #[derive(Default)]
@@ -178,7 +172,7 @@ impl Pins {
 
     /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of its body, eq. (12.2). That of a
     /// rigid body, to which springs give them stiffness, is at least the mean over all unknowns where pairs touch it, and
-    /// always at least `force` over its size.
+    /// always at least 1e3 times `force` over its size.
     pub fn stiffnesses(
         &self,
         diagonal: &[f64],
@@ -203,7 +197,7 @@ impl Pins {
                 false => larger(own, of_all),
             };
             let a = match body.is_rigid {
-                true => larger(a, force / body.size),
+                true => larger(a, STIFF * force / body.size),
                 false => a,
             };
             // without stiffness and forces nothing moves
@@ -249,10 +243,43 @@ impl Pins {
         places.collect()
     }
 
-    /// Body of every pinned dof.
-    fn bodies(&self) -> impl Iterator<Item = usize> + '_ {
-        let all = self.bodies.iter();
-        all.flat_map(|body| body.dofs.iter().map(move |_| body.body))
+    /// Mean square, over the nodes of every body at the positions `at`, of what its free motions are for the motions of its pins.
+    ///
+    /// ```text
+    /// E = Z_p^-T (sum_i Z_i^T Z_i/n) Z_p^-1      eq. (12.5)
+    /// ```
+    pub fn mean_square(&self, at: &dyn Fn(usize) -> [f64; 2]) -> DMatrix<f64> {
+        let of_bodies = self.of_bodies();
+        let m = of_bodies.last().map_or(0, |own| own.end);
+        let mut all = DMatrix::identity(m, m);
+        for (body, own) in self.bodies.iter().zip(of_bodies) {
+            if let Some(block) = body.mean_square(at) {
+                let size = (own.len(), own.len());
+                all.view_mut((own.start, own.start), size).copy_from(&block);
+            }
+        }
+        all
+    }
+
+    /// Stiffness against turns that forces over all dofs, which the iterate does not balance yet, will make once it does, where
+    /// they pull apart, over the motions of the pins at the positions `at`:
+    ///
+    /// ```text
+    /// Z_p^-T e max(sum_i x_i.r_i, 0) e^T Z_p^-1,   e the turn      eq. (12.14)
+    /// ```
+    pub fn turning_stiffness(&self, force: &[f64], at: &dyn Fn(usize) -> [f64; 2]) -> DMatrix<f64> {
+        let of_bodies = self.of_bodies();
+        let m = of_bodies.last().map_or(0, |own| own.end);
+        let mut all = DMatrix::zeros(m, m);
+        for (body, own) in self.bodies.iter().zip(of_bodies) {
+            if let Some(turn) = body.turn(at) {
+                let size = (own.len(), own.len());
+                let virial = larger(body.virial(force, at), 0.0);
+                all.view_mut((own.start, own.start), size)
+                    .copy_from(&(virial * &turn * turn.transpose()));
+            }
+        }
+        all
     }
 
     /// That bodies are not in balance with the forces `f` left at their pins, which make the correction `du` at the
@@ -309,6 +336,28 @@ impl Pins {
         acting: &[(&Constraint, &ClosedPair)],
     ) -> Normals {
         self.bodies[body].normals(&self.vertices, at, acting)
+    }
+
+    /// Force along a motion Z n of all dofs that facets may make, and stiffness against it, over the pairs without friction.
+    ///
+    /// ```text
+    /// f_e = sum_j Pn_j |Gt_j Z n| sin(beta_j)/2,   k_e = sum_j Pn_j (Gt_j Z n)² sin(beta_j)/l_j      eq. (12.12), eq. (12.13)
+    /// ```
+    pub fn facets(
+        &self,
+        acting: &[(&Constraint, &ClosedPair)],
+        at: &dyn Fn(usize) -> [f64; 2],
+        motion: &[f64],
+    ) -> [f64; 2] {
+        let (mut force, mut stiffness) = (0.0, 0.0);
+        for (constraint, pair) in acting.iter().filter(|(c, _)| c.mu == 0.0) {
+            let kinks = constraint.nodes().map(|node| self.vertices.kink(node, at));
+            let kink = kinks.fold(0.0, larger);
+            let slip = constraint.tangential_motion(motion);
+            force += pair.force[0] * slip.abs() * kink / 2.0;
+            stiffness += pair.force[0] * slip * slip * kink / constraint.scale;
+        }
+        [force, stiffness]
     }
 
     /// Makes the rigid part of a correction a finite motion of bodies that turn, and limits it to what the search
@@ -436,6 +485,41 @@ impl PinnedBody {
         Some(PinMotions { seen, inverse })
     }
 
+    /// Z_p^-T e: by how much a motion of its pins turns it, unless they do not see all of its motions (1/length).
+    fn turn(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DVector<f64>> {
+        let frame = self.frame(pole(self.hold, &self.nodes, at), at);
+        let inverse = self.motions_of_pins(&frame)?.inverse;
+        let turn = self.free.row(2).transpose() / self.size;
+        Some(inverse.tr_mul(&turn))
+    }
+
+    /// sum_i x_i.r_i of forces over all dofs at its nodes about its pole (force length).
+    fn virial(&self, force: &[f64], at: &dyn Fn(usize) -> [f64; 2]) -> f64 {
+        let [px, py] = pole(self.hold, &self.nodes, at);
+        let of_node = |&node: &usize| {
+            let [x, y] = at(node);
+            (x - px) * force[2 * node] + (y - py) * force[2 * node + 1]
+        };
+        self.nodes.iter().map(of_node).sum()
+    }
+
+    /// E of its pins, unless they do not see all of its motions.
+    fn mean_square(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DMatrix<f64>> {
+        let frame = self.frame(pole(self.hold, &self.nodes, at), at);
+        let inverse = self.motions_of_pins(&frame)?.inverse;
+        let mut sum = Matrix3::zeros();
+        for dof in self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]) {
+            sum += frame.row(dof) * frame.row(dof).transpose();
+        }
+        // a body of one node turns all the same
+        for &(spin, length) in &self.spins {
+            let turn = frame.row(spin) * (self.size / length);
+            sum += turn * turn.transpose();
+        }
+        let free = self.free.transpose() * sum * &self.free / self.nodes.len() as f64;
+        Some(inverse.transpose() * free * inverse)
+    }
+
     /// Rigid part of a correction: Z_p^-1 dU_p
     fn motion(
         &self,
@@ -504,6 +588,12 @@ impl PinnedBody {
         }
         if angle.abs() > LARGEST_ANGLE {
             part = part.min(LARGEST_ANGLE / angle.abs());
+        }
+        // a rigid body whose places stay the same stays
+        let far = |node: &usize| at(*node).map(f64::abs).into_iter().fold(0.0, larger);
+        let extent = self.nodes.iter().map(far).fold(0.0, larger);
+        if self.is_rigid && most <= 4.0 * f64::EPSILON * extent {
+            part = 0.0;
         }
         if !part.is_finite() || (part == 1.0 && !turns) {
             return false;
@@ -607,105 +697,4 @@ fn independent_dofs(
 
 fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])
-}
-
-/// Stiffness of the pins in K'.
-pub(crate) struct SoftPins {
-    /// a' of each along what is free.
-    pub soft: Vec<f64>,
-    /// A' of eq. (12.11).
-    all: DMatrix<f64>,
-}
-
-impl SoftPins {
-    /// A' x: forces of motions of the pins.
-    pub fn forces(&self, x: &[f64]) -> Vec<f64> {
-        let forces = &self.all * DVector::from_column_slice(x);
-        forces.as_slice().to_vec()
-    }
-}
-
-/// W = K'^-1 from the factors of K_r, of which K' differs by the stiffness of the pins, `a` of each in K_r, with the columns
-/// of V over the unknowns; and their stiffness a' in K', this part of that of eq. (12.3). `compliances` are Qnn of some pairs.
-///
-/// ```text
-/// W b = K_r^-1 b - V C V^T b,  V = K_r^-1 S,  C = (1 + B S^T V)^-1 B,  B = A' - a    eq. (12.4)
-/// q = max (Qnn_jj - a |(Gn V)_j|²),  z = max |a (Gn V)_j|²,  a' = z/(100 q)          eq. (12.3)
-/// ```
-pub(crate) fn soften(
-    pins: &Pins,
-    (map, parts): (&Transformation, &Parts),
-    (a, part, held): (&[f64], f64, DMatrix<f64>),
-    columns: Vec<Vec<f64>>,
-    compliances: &[(&Constraint, f64)],
-    dofs: usize,
-) -> (RankUpdate, SoftPins) {
-    let unturned = Rotation::default();
-    let works = UpdateColumns::works(columns.clone(), (map, &unturned));
-    let v = UpdateColumns::motions(columns, (map, &unturned), dofs);
-    let bodies: Vec<usize> = pins.bodies().collect();
-    let soft = |(&body, &a): (&usize, &f64)| {
-        let (mut q, mut z, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for (constraint, compliance) in compliances {
-            if constraint
-                .nodes()
-                .all(|node| parts.of_nodes()[node] != body)
-            {
-                continue;
-            }
-            let of_body = v
-                .of_dofs
-                .iter()
-                .zip(&bodies)
-                .filter(|(_, other)| **other == body);
-            let seen: f64 = of_body.map(|(v, _)| constraint.gap_change(v).powi(2)).sum();
-            q = q.max(compliance - a * seen);
-            most = most.max(*compliance);
-            z = z.max(a * a * seen);
-        }
-        match q > 0.0 {
-            // pairs between rigid bodies have no compliance
-            _ if z > 0.0 && q <= COMPLIANT * most => part * a,
-            true => (part * z / (SOFT * q)).clamp(SOFTEST * a, STIFFEST * a),
-            false => SOFTEST * a,
-        }
-    };
-    let soft: Vec<f64> = bodies.iter().zip(a).map(soft).collect();
-    let unknown = |dof: usize| map.row(dof).first().map_or(0, |term| term.0);
-    let unknowns: Vec<usize> = pins.dofs().map(unknown).collect();
-    let m = unknowns.len();
-    let g = DMatrix::from_fn(m, m, |i, k| v.of_unknowns[k][unknowns[i]]);
-    let diagonal = |of: &[f64]| DMatrix::from_diagonal(&DVector::from_column_slice(of));
-    let moves = DMatrix::identity(m, m) - &held;
-    // A' = (1 - P)^T a' (1 - P) + P^T a P, eq. (12.11)
-    let all = moves.tr_mul(&diagonal(&soft)) * &moves + held.tr_mul(&diagonal(a)) * &held;
-    let b = &all - diagonal(a);
-    let c = (DMatrix::identity(m, m) + &b * g).lu().solve(&b);
-    let c = c.unwrap_or_else(|| DMatrix::zeros(m, m));
-    let c = (&c + c.transpose()) / 2.0;
-    (RankUpdate::new([v, works], c), SoftPins { soft, all })
-}
-
-/// Adds forces at the pins to those of a pass.
-pub(crate) fn add_pin_forces(pins: &Pins, forces: &[f64], to: &mut [f64]) {
-    for (dof, force) in pins.dofs().zip(forces) {
-        to[dof] += force;
-    }
-}
-
-/// The columns V = K_r^-1 S.
-pub(crate) fn pin_columns(
-    pins: &Pins,
-    map: &Transformation,
-    mut solve: impl FnMut(&[f64]) -> Result<Vec<f64>, LinearError>,
-) -> Result<Vec<Vec<f64>>, LinearError> {
-    let mut columns = Vec::new();
-    for dof in pins.dofs() {
-        let mut b = vec![0.0; map.unknowns()];
-        for &(at, c) in map.row(dof) {
-            b[at] = c;
-        }
-        columns.push(solve(&b)?);
-    }
-    Ok(columns)
 }

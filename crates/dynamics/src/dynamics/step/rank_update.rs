@@ -1,49 +1,10 @@
-//! Inverses that differ from that of the factors of a matrix by few columns: K* with softened pins, section 4 of
-//! docs/theory.md, Static steps; matrices whose solutions keep hinges closed, section 11, Hinges.
+//! Inverses that differ from that of the factors of a matrix by few columns: those of matrices whose solutions keep hinges
+//! closed. Section 11 of docs/theory.md, Hinges.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::contact::Constraint;
 use crate::linear::{Rotation, Transformation};
-
-/// What an inverse differs by from that of the factors of its matrix.
-#[derive(Default, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Updates {
-    /// By softened pins.
-    pub pins: Option<RankUpdate>,
-    /// By hinges that are kept closed, beside the pins.
-    pub hinges: Option<RankUpdate>,
-}
-
-impl Updates {
-    /// By softened pins alone.
-    pub fn of_pins(pins: RankUpdate) -> Self {
-        Updates {
-            pins: Some(pins),
-            hinges: None,
-        }
-    }
-
-    /// All of them: W b is A^-1 b less the sum of their V C Y^T b.
-    pub fn all(&self) -> impl Iterator<Item = &RankUpdate> {
-        self.pins.iter().chain(&self.hinges)
-    }
-
-    /// All of them.
-    pub fn all_mut(&mut self) -> impl Iterator<Item = &mut RankUpdate> {
-        self.pins.iter_mut().chain(&mut self.hinges)
-    }
-
-    /// W b for A^-1 b over all unknowns, where it differs.
-    pub fn corrected(&self, solution: &[f64]) -> Option<Vec<f64>> {
-        let mut corrected = None;
-        for update in self.all() {
-            let of_last = corrected.as_deref().unwrap_or(solution);
-            corrected = Some(update.corrected(of_last));
-        }
-        corrected
-    }
-}
 
 /// W b = A^-1 b - V C Y^T b for the inverse A^-1 of the factors.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -70,18 +31,8 @@ impl UpdateColumns {
     pub fn motions(
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
-        dofs: usize,
     ) -> Self {
-        let expand = |column: &Vec<f64>| {
-            let mut all = vec![0.0; dofs];
-            map.add(column, &mut all);
-            rotation.turn(&mut all);
-            all
-        };
-        UpdateColumns {
-            of_dofs: of_unknowns.iter().map(expand).collect(),
-            of_unknowns,
-        }
+        UpdateColumns::turned(of_unknowns, |column| map.motion(column), rotation)
     }
 
     /// What forces over the dofs do: R T of columns over the unknowns, T of the force rows.
@@ -89,17 +40,43 @@ impl UpdateColumns {
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
     ) -> Self {
-        let expand = |column: &Vec<f64>| {
-            let value = |row: &[(usize, f64)]| row.iter().map(|&(at, c)| c * column[at]).sum();
-            let mut all: Vec<f64> = map.rows().map(value).collect();
+        UpdateColumns::turned(of_unknowns, |column| map.work(column), rotation)
+    }
+
+    fn turned(
+        of_unknowns: Vec<Vec<f64>>,
+        expand: impl Fn(&[f64]) -> Vec<f64>,
+        rotation: &Rotation,
+    ) -> Self {
+        let turned = |column: &Vec<f64>| {
+            let mut all = expand(column);
             rotation.turn(&mut all);
             all
         };
         UpdateColumns {
-            of_dofs: of_unknowns.iter().map(expand).collect(),
+            of_dofs: of_unknowns.iter().map(turned).collect(),
             of_unknowns,
         }
     }
+
+    /// Products of all columns with a vector over the unknowns.
+    fn products(&self, b: &[f64]) -> Vec<f64> {
+        let columns = self.of_unknowns.iter();
+        columns
+            .map(|column| column.iter().zip(b).map(|(y, b)| y * b).sum())
+            .collect()
+    }
+}
+
+/// A vector over the unknowns less parts of columns.
+fn less(vector: &[f64], columns: &UpdateColumns, parts: &[f64]) -> Vec<f64> {
+    let mut left = vector.to_vec();
+    for (part, column) in parts.iter().zip(&columns.of_unknowns) {
+        for (value, v) in left.iter_mut().zip(column) {
+            *value -= part * v;
+        }
+    }
+    left
 }
 
 impl RankUpdate {
@@ -114,9 +91,7 @@ impl RankUpdate {
 
     /// A right-hand side over the unknowns begins.
     pub fn begin(&mut self, b: &[f64]) {
-        for (projected, column) in self.projected.iter_mut().zip(&self.columns[1].of_unknowns) {
-            *projected = column.iter().zip(b).map(|(y, b)| y * b).sum();
-        }
+        self.projected = self.columns[1].products(b);
     }
 
     /// Adds to the right-hand side (unknown, value).
@@ -160,21 +135,17 @@ impl RankUpdate {
         }
     }
 
-    /// W b from b and A^-1 b over all unknowns.
-    pub fn solution(&mut self, b: &[f64], solution: &[f64]) -> Vec<f64> {
-        self.begin(b);
-        self.corrected(solution)
+    /// W^T b from b and A^-1 b over all unknowns, A being symmetric.
+    pub fn transposed(&self, b: &[f64], solution: &[f64]) -> Vec<f64> {
+        let [v, y] = self.columns.each_ref();
+        let products = v.products(b);
+        let parts = self.c.tr_mul(&DVector::from_vec(products));
+        less(solution, y, parts.as_slice())
     }
 
     /// W b for A^-1 b over all unknowns.
     pub fn corrected(&self, solution: &[f64]) -> Vec<f64> {
-        let mut solution = solution.to_vec();
-        for (part, column) in self.parts().iter().zip(&self.columns[0].of_unknowns) {
-            for (value, v) in solution.iter_mut().zip(column) {
-                *value -= part * v;
-            }
-        }
-        solution
+        less(solution, &self.columns[0], &self.parts())
     }
 
     /// Makes G A^-1 B^T of some constraints G W B^T.

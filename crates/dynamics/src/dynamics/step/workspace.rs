@@ -5,7 +5,7 @@ use super::held_motions::HeldMotions;
 use super::loads::TimePoint;
 use super::matrices::{ClosedConstraints, EffectiveStiffness, StiffnessForm, System};
 use super::meter::Meter;
-use super::pins::{Pins, SoftPins};
+use super::pins::Pins;
 use super::seen::Seen;
 use super::step_problem::{StepProblem, difference, sum};
 use crate::archive::{Archive, ArchiveError, transfer_fields};
@@ -61,23 +61,36 @@ impl<'m> Workspace<'m> {
         System::new(&mut self.stiffness.k, &mut self.meter)
     }
 
-    /// Softens the pins in K*^-1 by what some constraints see of them; gives their stiffness there, which is
-    /// the given part of that of eq. (12.3).
-    pub fn soften(
+    /// Makes the motions of the pins at the displacements `u` free unknowns of the complementarity problems, with forces that
+    /// are not balanced there, N being the changes of forces that K* leaves out.
+    pub fn free_pins(
         &mut self,
         problem: &StepProblem,
-        constraints: &[&Constraint],
-        (part, held): (f64, &HeldMotions),
-    ) -> Result<SoftPins, LinearError> {
+        (u, unbalanced): (&[f64], &[f64]),
+        held: &HeldMotions,
+        skew: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Result<(), LinearError> {
         let Workspace {
             stiffness,
             meter,
             pins,
+            search,
             ..
         } = self;
         let EffectiveStiffness { k, pins: a, .. } = stiffness;
-        let held = held.projection(pins);
-        System::new(k, meter).soften(problem, pins, (a, part, held), constraints)
+        let reach = search.reach();
+        // what equations and rigid bodies hand on is balanced within them
+        let mut at_unknowns = vec![0.0; unbalanced.len()];
+        let restricted = k.map().restrict(unbalanced);
+        let both = problem.unknowns.dof.iter().zip(restricted);
+        both.for_each(|(&dof, force)| at_unknowns[dof] = force);
+        let at = |node: usize| problem.position(u, node);
+        System::new(k, meter).free_pins(
+            (pins, a, held.projection(pins)),
+            (&at, &at_unknowns),
+            skew,
+            reach,
+        )
     }
 
     /// The mass M.

@@ -1,0 +1,88 @@
+//! How the corrections of the passes become smaller: their rate, and whether they grow. Section 4 of docs/theory.md.
+
+use crate::dynamics::results::Cause;
+
+/// Correction of a pass beside the increment above which its iterate is no solution, whatever the forces
+/// say.
+const NEAR: f64 = 1e-4;
+/// Rate of corrections that become hardly smaller.
+const STAGNANT: f64 = 0.5;
+/// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
+pub(super) const SEARCHING_PASSES: usize = 4;
+/// Passes in a row that then grow the correction before an attempt is given up.
+const GROWING: usize = 3;
+
+/// Corrections of the passes of an attempt.
+pub(super) struct Corrections {
+    /// Passes done.
+    passes: usize,
+    /// The last one, relative to the increment.
+    last: f64,
+    /// The last one over the one before.
+    rate: f64,
+    /// Passes in a row that have grown it.
+    growing: usize,
+}
+
+impl Corrections {
+    /// None yet.
+    pub fn new() -> Self {
+        Corrections {
+            passes: 0,
+            last: f64::INFINITY,
+            rate: 0.0,
+            growing: 0,
+        }
+    }
+
+    /// Whether the last correction was so small that the iterate may be the solution.
+    pub fn are_near(&self) -> bool {
+        self.last < NEAR
+    }
+
+    /// Last correction over the one before.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Whether the corrections become hardly smaller: where they are small, that is round-off.
+    pub fn stagnate(&self) -> bool {
+        self.rate > STAGNANT
+    }
+
+    /// Takes in the relative correction of a pass. That it grows is no divergence where it `may_grow`.
+    pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
+        let is_first = self.last == f64::INFINITY;
+        let rate = match correction {
+            0.0 => 0.0,
+            _ => correction / self.last,
+        };
+        self.passes += 1;
+        (self.last, self.rate) = (correction, rate);
+        if is_first {
+            return Ok(());
+        }
+        let grows = rate >= 1.0 && !may_grow && self.passes > SEARCHING_PASSES;
+        self.growing = if grows { self.growing + 1 } else { 0 };
+        match self.growing >= GROWING {
+            true => Err(Cause::Diverged),
+            false => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_in_a_row_is_divergence_unless_it_may_be() {
+        for may_grow in [false, true] {
+            let mut all = Corrections::new();
+            let corrections = [1.0, 1e-3, 1e-6, 1e-10, 6e-8, 2e-7, 3e-7];
+            let ends = corrections.map(|correction| all.take_in(correction, may_grow));
+            let diverged = ends.iter().any(|end| matches!(end, Err(Cause::Diverged)));
+            assert_eq!(diverged, !may_grow);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! A converged increment, and its motion as the path that another attempt begins with. Section 4 of docs/theory.md.
+
+use super::contact_states::ContactStates;
+use super::convergence::PartNoise;
+use super::pass::Pass;
+use super::returned::Returned;
+use crate::contact::ClosedPairs;
+use crate::dynamics::results::{PassReport, State};
+use crate::dynamics::step::{Equilibrium, HeldMotions, StepProblem, Workspace};
+
+/// A converged increment.
+#[derive(Default)]
+pub(crate) struct Solved {
+    /// Displacement increment d = U1 - U0.
+    pub d: Vec<f64>,
+    /// Velocity V0+ after the impulses.
+    pub v0p: Vec<f64>,
+    /// Forces in equilibrium.
+    pub equilibrium: Equilibrium,
+    /// Contact forces and impact impulses.
+    pub contact: ContactStates,
+    /// Motion at the end.
+    pub end: State,
+    /// Energy that the materials have dissipated.
+    pub material_dissipation: f64,
+    /// Displacement increment after the first pass, by the tangent of its start; where contact alone holds a body, after
+    /// the first one with closed pairs.
+    pub tangent: Vec<f64>,
+    /// Its passes.
+    pub passes: Vec<PassReport>,
+    /// What is given back once it has converged.
+    pub returned: Returned,
+    /// Motions that are held in it.
+    pub held: HeldMotions,
+    /// Whether K* held the closed pairs.
+    pub holds_pairs: bool,
+}
+
+/// The motion of a converged increment between its ends, which another attempt from the same start may begin
+/// with.
+#[derive(serde::Serialize, serde::Deserialize)]
+pub(crate) struct Path {
+    /// Velocity V0+.
+    pub v: Vec<f64>,
+    /// Acceleration A, at the supports too.
+    pub a: Vec<f64>,
+    /// The pairs closed at the end.
+    pub closed: ClosedPairs,
+    /// Motions that are held.
+    pub held: HeldMotions,
+    /// Whether K* held the closed pairs.
+    pub holds_pairs: bool,
+}
+
+impl Path {
+    /// t V0+ + t²/2 A, eq. (6.3).
+    pub fn displacement(&self, t: f64) -> Vec<f64> {
+        let both = self.v.iter().zip(&self.a);
+        both.map(|(v, a)| t * (v + t / 2.0 * a)).collect()
+    }
+}
+
+impl Solved {
+    /// The motion of a static increment of length `dt` at a constant rate, which the next one begins with.
+    pub fn static_path(&self, dt: f64) -> Path {
+        Path {
+            v: self.d.iter().map(|d| d / dt).collect(),
+            a: vec![0.0; self.d.len()],
+            closed: self.end.contact.clone(),
+            held: self.held.clone(),
+            holds_pairs: self.holds_pairs,
+        }
+    }
+
+    /// The motion of an increment of length `dt`, A = (2/dt²) (d - dt V0+), eq. (4.1).
+    pub fn path(&self, dt: f64) -> Path {
+        let both = self.d.iter().zip(&self.v0p);
+        let a = both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p));
+        Path {
+            a: a.collect(),
+            v: self.v0p.clone(),
+            closed: self.end.contact.clone(),
+            held: self.held.clone(),
+            holds_pairs: false,
+        }
+    }
+}
+
+impl Solved {
+    /// Round-off of the forces of every part in the increment.
+    pub fn noise(&self, problem: &StepProblem, workspace: &Workspace) -> Vec<PartNoise> {
+        let none = vec![0.0; self.d.len()];
+        let pass = Pass {
+            equilibrium: &self.equilibrium,
+            support_force: &none,
+            contact: &self.contact.forces,
+            displacements: [&self.end.u, &self.d, &none],
+        };
+        let scales = pass.scales(
+            problem,
+            workspace,
+            &self.contact.forces.resultant(none.len()),
+        );
+        let stiffness = &workspace.stiffness;
+        let diagonals = stiffness.stiffness.iter().zip(&stiffness.inertia);
+        scales.noise(diagonals.map(|(k, m)| k + m))
+    }
+}

@@ -1,0 +1,258 @@
+//! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact lets
+//! them. Section 12 of docs/theory.md.
+
+use super::acceleration::{CorrectionProgress, PassAcceleration};
+use super::contact_forces::ContactForces;
+use super::contact_states::ContactStates;
+use super::corrections::Corrections;
+use super::equal_forces::EqualForces;
+use super::linear_pass::{SkewPart, Vectors};
+use super::pass::{Iterate, PassStage};
+use super::passes::{Passes, SLOW_PASSES};
+use super::pin_iteration::{PinIteration, PinState};
+use super::rigid_predictor::rigid_predictor;
+use super::solved::{Path, Solved};
+use super::trace::{Failed, Trace};
+use crate::contact::{ClosedPair, Constraint, SlaveChoice};
+use crate::dynamics::results::Cause;
+use crate::dynamics::step::{ClosedConstraints, ForceChange, HeldMotions, StiffnessForm};
+
+/// Passes that are made in any case; further ones, once corrections are small, only while they will end within MAX PASSES: they
+/// converge quadratically.
+const PATIENCE: usize = 8;
+/// The same while corrections are large.
+const LARGE_PATIENCE: usize = 25;
+/// Passes after which slave nodes keep their targets.
+const SEARCHING_PASSES: usize = 3;
+/// Passes after which forces of pairs settle.
+const SETTLED_PASSES: usize = 4;
+
+/// An attempt at one static increment.
+pub(super) struct StaticAttempt<'a, 'm> {
+    pub passes: Passes<'a, 'm>,
+    /// What the passes start from, in place of the rigid motion of the bodies.
+    pub guess: Option<&'a Path>,
+}
+
+impl<'m> StaticAttempt<'_, 'm> {
+    /// Solves the increment: from the motion of the last one, then from rest; then with closed pairs held in K*, since K alone,
+    /// soft in bending, leaves the contact forces of slender bodies few digits.
+    pub fn solve(mut self) -> Result<Solved, Failed> {
+        let settings = &self.passes.problem.settings;
+        let mut trace = Trace::new(settings.max_passes);
+        let mut vectors = Vectors::default();
+        let mut failed = Cause::NotConverged;
+        for &are_held in self.orders() {
+            let may_be_digits = matches!(
+                failed,
+                Cause::NotConverged | Cause::Diverged | Cause::Lcp(_)
+            );
+            if are_held && !may_be_digits {
+                break;
+            }
+            trace.begin();
+            let v = self.guess.map_or(&self.passes.start.v, |path| &path.v);
+            self.passes.start_search(v);
+            match self.solve_with(are_held, &mut trace, &mut vectors) {
+                Ok(solved) => {
+                    return Ok(Solved {
+                        passes: trace.passes,
+                        holds_pairs: are_held,
+                        ..solved
+                    });
+                }
+                Err(cause) => failed = cause,
+            }
+            self.guess = None;
+        }
+        Err(trace.failed(failed, settings.tolerance))
+    }
+
+    /// Whether closed pairs are held in K*, in the order in which it is tried.
+    fn orders(&self) -> &'static [bool] {
+        match self.guess {
+            Some(path) if path.holds_pairs => &[true, false],
+            Some(_) => &[false, false, true],
+            None => &[false, true],
+        }
+    }
+
+    /// The passes, with closed pairs held in K* or not.
+    fn solve_with(
+        &mut self,
+        are_held: bool,
+        trace: &mut Trace,
+        v: &mut Vectors,
+    ) -> Result<Solved, Cause> {
+        let (problem, start) = (self.passes.problem, self.passes.start);
+        let interval = self.passes.interval;
+        let settings = &problem.settings;
+        let closed = self.guess.map_or(&start.contact, |path| &path.closed);
+        let mut contact = ContactStates::new(closed, self.passes.set, SlaveChoice::All);
+        let mut equal_forces = EqualForces::new(settings.tolerance);
+        let mut acceleration = PassAcceleration::new();
+        let mut corrections = Corrections::new();
+        let held = self.guess.map(|path| path.held.clone());
+        let mut pins = PinState::new(held.unwrap_or_default());
+        let mut has_no_pairs = true;
+        v.equilibrium.hinges.clear();
+        let all = self.passes.workspace.pins.dofs();
+        let forces = pins.held.forces(&self.passes.workspace.pins);
+        v.equilibrium.held = all.zip(forces).collect();
+        // the passes start from the rigid motion of the bodies, or from a motion that is known
+        let mut d = match self.guess {
+            Some(path) => path.displacement(interval.dt),
+            None => rigid_predictor(problem, start, interval),
+        };
+        for number in 0..settings.max_passes {
+            let patience = match corrections.are_near() {
+                true => PATIENCE,
+                false => LARGE_PATIENCE,
+            };
+            if number >= patience && !trace.will_end(settings) {
+                break;
+            }
+            // g, Dt, their rows and r in the iterate U = U0 + d
+            let settled = number >= SETTLED_PASSES;
+            self.passes
+                .evaluate((number, SEARCHING_PASSES), &mut d, &mut contact, v)?;
+            let map = self.passes.workspace.stiffness.k.map();
+            trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
+
+            // the forces at hand may balance r and close the gaps of the iterate
+            contact.relinearize();
+            let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
+            let stage = PassStage {
+                settled,
+                stagnates: corrections.stagnate(),
+            };
+            if corrections.are_near()
+                && let Some(residual) = self.passes.residual(&iterate, stage, &mut v.residual)?
+                && self.passes.complete(&mut contact, &v.u, None)
+            {
+                trace.solved(residual);
+                self.pins().check_held(&contact.forces, &pins, v)?;
+                return self.finish(&d, contact, pins.held, v, true);
+            }
+
+            // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, which takes the force K d_p
+            self.factorize(are_held, v, &contact.forces, trace.correction())?;
+            self.passes.supports(number, v);
+
+            // Pn, Pt and p of the complementarity problem, dU of eq. (12.3)
+            let weight = equal_forces.weight(settled);
+            let hinge_forces = self
+                .pins()
+                .iterate(&mut contact.forces, weight, &mut pins, v)?;
+            // the last equilibrium shows facets as they are
+            if number == 0 && self.guess.is_none() {
+                self.pins().check_held(&contact.forces, &pins, v)?;
+            }
+            self.passes.take_hinge_forces(hinge_forces, v);
+
+            // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
+            let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
+            let pass = iterate.pass(&v.support_force, &v.du);
+            let ends = self.passes.measure(&pass, &mut v.residual, trace)?
+                && self.passes.complete(&mut contact, &v.u, Some(&v.du));
+            self.pins().move_finitely(v);
+            if !ends {
+                let correction = trace.correction();
+                equal_forces.take_in(correction, settled);
+                // friction that falls with the slip rate moves away from that at rest
+                let may_grow = equal_forces.moves_more() || contact.friction_moves;
+                corrections.take_in(correction, may_grow)?;
+                if number >= SLOW_PASSES {
+                    let progress = CorrectionProgress {
+                        correction,
+                        rate: corrections.rate(),
+                        tolerance: settings.tolerance,
+                        same_pairs: contact.forces.are_of_same_pairs(),
+                    };
+                    acceleration.improve(problem.parts, &d, progress, &mut v.du);
+                }
+            }
+            // d <- d + dU, eq. (4.7)
+            d.iter_mut().zip(&v.du).for_each(|(d, du)| *d += du);
+            if number == 0 || (has_no_pairs && !self.passes.workspace.pins.are_none()) {
+                v.tangent.clone_from(&d);
+            }
+            has_no_pairs &= contact.forces.closed.is_empty();
+            if ends {
+                self.pins().check_held(&contact.forces, &pins, v)?;
+                return self.finish(&d, contact, pins.held, v, false);
+            }
+        }
+        Err(Cause::NotConverged)
+    }
+
+    /// The motions of bodies that no support holds.
+    fn pins(&mut self) -> PinIteration<'_, 'm> {
+        PinIteration {
+            problem: self.passes.problem,
+            workspace: self.passes.workspace,
+        }
+    }
+
+    /// Factorises K - (C + C^T)/2 of the iterate, and takes its skew part N.
+    fn factorize(
+        &mut self,
+        are_held: bool,
+        v: &mut Vectors,
+        contact: &ContactForces,
+        correction: f64,
+    ) -> Result<(), Cause> {
+        let Passes {
+            problem,
+            start,
+            interval,
+            ..
+        } = self.passes;
+        let Vectors {
+            u,
+            equilibrium,
+            skew,
+            ..
+        } = v;
+        let motion = (problem.integration).motion(start, u, &equilibrium.u_theta);
+        let at = problem.configurations(&start.u, u);
+        let mut changes = (problem.loads).changes(problem.elements, interval.end, u);
+        let closed = ClosedConstraints {
+            acting: contact.acting().collect(),
+            at,
+            are_held,
+            followers: &changes,
+            out_of_balance: &equilibrium.out_of_balance,
+            held: &HeldMotions::default(),
+        };
+        let workspace = &mut *self.passes.workspace;
+        let factorized = workspace.factorize(problem, interval.dt, motion, &closed);
+        factorized.map_err(|error| problem.unsolvable(error))?;
+        let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| ForceChange {
+            dofs: constraint.dofs.to_vec(),
+            matrix: constraint.change(pair.force, &at),
+        };
+        changes.extend(contact.acting().map(of_pair));
+        *skew = match workspace.stiffness.form {
+            StiffnessForm::Positive => SkewPart::default(),
+            _ => SkewPart::new(&changes, correction),
+        };
+        Ok(())
+    }
+
+    /// The end of the increment, at rest.
+    fn finish(
+        &mut self,
+        d: &[f64],
+        contact: ContactStates,
+        held: HeldMotions,
+        v: &mut Vectors,
+        is_balanced: bool,
+    ) -> Result<Solved, Cause> {
+        let mut solved = self.passes.finish(d, contact, v, is_balanced)?;
+        solved.held = held;
+        solved.end.v.fill(0.0);
+        solved.end.check_finite()?;
+        Ok(solved)
+    }
+}

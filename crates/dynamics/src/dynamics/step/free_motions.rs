@@ -1,0 +1,277 @@
+//! Motions of the pins as free unknowns of the complementarity problems of a static step. Section 12 of docs/theory.md,
+//! Pins.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use crate::contact::Constraint;
+use crate::lcp::{FreeUnknowns, FrictionalLcp, FrictionalSolution};
+use crate::linear::{larger, largest};
+
+/// eps of eq. (12.5) beside the stiffness of the pins in the mean.
+const REGULAR: f64 = 1e-11;
+/// Stiffness against a motion that nothing resists, in units of E.
+const UNRESISTED: f64 = 10.0;
+/// Force, beside the others, that is round-off.
+const NO_FORCE: f64 = 1e-12;
+
+/// Places p of the far ends of the pins as unknowns: with pins of the stiffness a that end there,
+///
+/// ```text
+/// dU = y + W B^T P + Z p,   f = a S^T (y + W B^T P) - S_p p,   S_p = a - a S^T Z    eq. (12.3)
+/// ```
+///
+/// W being the inverse with the pins, Z = W (S a + N Z), y = d_p + W r and f what the pins carry.
+pub(crate) struct FreeMotions {
+    /// The pinned dofs.
+    pub dofs: Vec<usize>,
+    /// Stiffness a of every pin (force/length).
+    a: Vec<f64>,
+    /// Z as motions of all dofs, column by column (dimensionless).
+    motions: Vec<Vec<f64>>,
+    /// W S a as what forces at all dofs do.
+    works: Vec<Vec<f64>>,
+    /// S a + N Z (dof, force/length).
+    loads: Vec<Vec<(usize, f64)>>,
+    /// S_p (force/length).
+    stiffness: DMatrix<f64>,
+    /// Mean square motion of every body, over the motions of its pins.
+    mean_square: DMatrix<f64>,
+    /// P of eq. (12.11): the part of the motions of the pins that is held.
+    held: DMatrix<f64>,
+    /// Round-off of forces at the pins.
+    round_off: f64,
+    /// How far nodes may go in a pass (length).
+    reach: f64,
+    /// S^T y: motions of the pins without contact forces and with p = 0.
+    pub alone: Vec<f64>,
+    /// The last answer.
+    answer: Option<Answer>,
+}
+
+/// Answer of a complementarity problem.
+struct Answer {
+    p: DVector<f64>,
+    /// Stiffness against p under the closed pairs, eq. (12.6).
+    under_contact: DMatrix<f64>,
+    /// E is this part of the mean square motion (force/length).
+    regular: f64,
+    is_unstable: bool,
+}
+
+/// A motion that contact hardly resists.
+pub(crate) struct Loose {
+    /// Motions of the pins, of the mean square 1.
+    pub pins: DVector<f64>,
+    /// Force along it that nothing balances at the start of the pass.
+    pub force: f64,
+    /// Whether it is as good as zero.
+    pub is_unresisted: bool,
+}
+
+impl FreeMotions {
+    /// Those of pins of the stiffness `a` at some dofs, from Z, W S a and S a + N Z over all dofs; and the mean square
+    /// motion of the bodies, the stiffness of forces that are not balanced yet and the held part of the motions.
+    pub fn new(
+        (dofs, a): (Vec<usize>, Vec<f64>),
+        [motions, works, loads]: [Vec<Vec<f64>>; 3],
+        (mean_square, turning, held): (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>),
+        (round_off, reach): (f64, f64),
+    ) -> Self {
+        let m = dofs.len();
+        let stiffness = DMatrix::from_fn(m, m, |i, k| {
+            let own = if i == k { a[i] } else { 0.0 };
+            own - a[i] * motions[k][dofs[i]]
+        });
+        let sparse = |load: Vec<f64>| {
+            let all = load.into_iter().enumerate();
+            all.filter(|(_, force)| *force != 0.0).collect()
+        };
+        FreeMotions {
+            dofs,
+            a,
+            motions,
+            works,
+            loads: loads.into_iter().map(sparse).collect(),
+            stiffness: stiffness + turning,
+            mean_square,
+            held,
+            round_off,
+            reach,
+            alone: vec![0.0; m],
+            answer: None,
+        }
+    }
+
+    /// Free unknowns of the complementarity problem of some constraints. The balance of what is held is that the pins stay
+    /// there:
+    ///
+    /// ```text
+    /// H f + P^T a P S^T dU = 0,   H = (1 - P)^T - P^T P    eq. (12.11)
+    /// ```
+    pub fn unknowns(&self, constraints: &[&Constraint]) -> FreeUnknowns {
+        let (n, m) = (constraints.len(), self.dofs.len());
+        let of_constraints = |of: &dyn Fn(&Constraint, usize) -> [f64; 2]| {
+            DMatrix::from_fn(2 * n, m, |i, k| of(constraints[i % n], k)[i / n])
+        };
+        let motions = of_constraints(&|c, k| {
+            let z = &self.motions[k];
+            [c.gap_change(z), c.slip_change(z)]
+        });
+        let works = of_constraints(&|c, k| {
+            let z = &self.works[k];
+            [c.normal_motion(z), c.tangential_motion(z)]
+        });
+        let held = &self.held;
+        let a = DMatrix::from_diagonal(&DVector::from_column_slice(&self.a));
+        let kept = held.tr_mul(held);
+        let h = DMatrix::identity(m, m) - held.transpose() - &kept;
+        let alone = DVector::from_column_slice(&self.alone);
+        FreeUnknowns {
+            motions,
+            works: works * h.transpose(),
+            stiffness: &h * &self.stiffness + kept * &a,
+            regular: &self.mean_square * self.regular(),
+            force: h * a * alone,
+        }
+    }
+
+    /// Part of the mean square motion in E (force/length).
+    fn regular(&self) -> f64 {
+        let mean = self.a.iter().sum::<f64>() / self.a.len() as f64;
+        REGULAR * mean
+    }
+
+    /// Takes the answer p of a problem. Motions that nothing resists and that round-off of the other forces drives are
+    /// none.
+    pub fn answer(&mut self, problem: &FrictionalLcp, solution: &FrictionalSolution) {
+        self.answer = Some(Answer {
+            p: solution.free.clone(),
+            under_contact: problem.stiffness_under_contact(&solution.state),
+            regular: self.regular(),
+            is_unstable: solution.is_unstable,
+        });
+        let of_pairs = solution.pn.iter().copied().fold(0.0, larger);
+        let none = self.none_beside(larger(self.largest_force(), of_pairs));
+        let mut p = solution.free.clone();
+        for loose in self.loose(&|_| 0.0) {
+            if loose.is_unresisted && loose.force.abs() <= none {
+                let part = loose.pins.dot(&(&self.mean_square * &p));
+                p -= loose.pins * part;
+            }
+        }
+        if let Some(answer) = &mut self.answer {
+            answer.p = p;
+        }
+    }
+
+    /// p of the last answer.
+    pub fn p(&self) -> Vec<f64> {
+        match &self.answer {
+            Some(answer) => answer.p.as_slice().to_vec(),
+            None => vec![0.0; self.dofs.len()],
+        }
+    }
+
+    /// Forces (S a + N Z) p that move the bodies (dof, force).
+    pub fn forces(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let of_pins = self.p().into_iter().zip(&self.loads);
+        of_pins.flat_map(|(p, load)| load.iter().map(move |&(dof, force)| (dof, p * force)))
+    }
+
+    /// What the pins carry along what is held, for a correction of all dofs: P^T f, f = a (S^T dU - p).
+    pub fn carried(&self, du: &[f64]) -> Vec<f64> {
+        let p = self.p();
+        let force = |k: usize| self.a[k] * (du[self.dofs[k]] - p[k]);
+        let force = DVector::from_fn(self.dofs.len(), |k, _| force(k));
+        self.held.tr_mul(&force).as_slice().to_vec()
+    }
+
+    /// Motions n of the mean square 1 with a stiffness of at most that of E and of facets, `of_facets`, under the closed pairs
+    /// of the last answer: right singular vectors of S_e beside the mean square motion, since a pair that slides resists with
+    /// its friction what it does not feel.
+    pub fn loose(&self, of_facets: &dyn Fn(&[f64]) -> f64) -> Vec<Loose> {
+        let Some(Answer {
+            p,
+            under_contact,
+            regular,
+            ..
+        }) = &self.answer
+        else {
+            return Vec::new();
+        };
+        let Some(root) = Cholesky::new(self.mean_square.clone()) else {
+            return Vec::new();
+        };
+        let root = root.l();
+        let Some(half) = root.solve_lower_triangular(under_contact) else {
+            return Vec::new();
+        };
+        let Some(scaled) = root.solve_lower_triangular(&half.transpose()) else {
+            return Vec::new();
+        };
+        let scaled = scaled.transpose();
+        let Some(v_t) = scaled.svd(false, true).v_t else {
+            return Vec::new();
+        };
+        let mut all = Vec::new();
+        for direction in v_t.row_iter() {
+            let Some(pins) = root.tr_solve_lower_triangular(&direction.transpose()) else {
+                continue;
+            };
+            // |S_e n| and n^T S_e n, n being of the mean square 1
+            let resisted = root.solve_lower_triangular(&(under_contact * &pins));
+            let resisted = resisted.map_or(f64::INFINITY, |force| force.norm());
+            let stiffness = pins.dot(&(under_contact * &pins));
+            let is_unresisted = resisted <= UNRESISTED * regular;
+            let of_facets = of_facets(&self.motion(pins.as_slice()));
+            if is_unresisted || resisted <= of_facets {
+                let way = pins.dot(&(&self.mean_square * p));
+                all.push(Loose {
+                    force: (stiffness + regular) * way,
+                    pins,
+                    is_unresisted,
+                });
+            }
+        }
+        all
+    }
+
+    /// Motion Z n of all dofs.
+    pub fn motion(&self, n: &[f64]) -> Vec<f64> {
+        let mut motion = vec![0.0; self.motions.first().map_or(0, Vec::len)];
+        for (part, column) in n.iter().zip(&self.motions) {
+            let both = motion.iter_mut().zip(column);
+            both.for_each(|(m, z)| *m += part * z);
+        }
+        motion
+    }
+
+    /// Forces at the pins with the given work on the motion of the pins n and none on those beside it.
+    pub fn force_along(&self, Loose { pins, force, .. }: &Loose) -> Vec<f64> {
+        let along = &self.mean_square * pins * *force;
+        along.as_slice().to_vec()
+    }
+
+    /// Whether the last answer leaves a motion unstable.
+    pub fn is_unstable(&self) -> bool {
+        self.answer
+            .as_ref()
+            .is_some_and(|answer| answer.is_unstable)
+    }
+
+    /// Whether the last answer moves a node farther than it may go.
+    pub fn goes_too_far(&self) -> bool {
+        largest(&self.motion(&self.p())) > self.reach
+    }
+
+    /// A force along a motion that is round-off beside others of the given size.
+    pub fn none_beside(&self, others: f64) -> f64 {
+        larger(NO_FORCE * others, self.round_off)
+    }
+
+    /// The largest force in the balance of the pins.
+    fn largest_force(&self) -> f64 {
+        let force = |(y, a): (&f64, &f64)| (a * y).abs();
+        self.alone.iter().zip(&self.a).map(force).fold(0.0, larger)
+    }
+}
