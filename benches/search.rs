@@ -96,7 +96,7 @@ fn main() {
                         start: Positions::new(&x, &u),
                         now: Positions::new(&x, black_box(&u)),
                         slave,
-                        held_by: &[],
+                        closed_on: &[],
                         allowed: [0.0; 2],
                     };
                     node.targets(all_segments(surfaces)).len()

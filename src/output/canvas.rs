@@ -203,13 +203,13 @@ impl Canvas {
     }
 
     /// An arrow from `from` by `way`.
-    pub fn arrow(&mut self, from: Pixels, way: Pixels, pen: Pen) {
-        let length = way[0].hypot(way[1]);
+    pub fn arrow(&mut self, from: Pixels, direction: Pixels, pen: Pen) {
+        let length = direction[0].hypot(direction[1]);
         if !(length > 0.0 && length.is_finite()) {
             return;
         }
-        let to = [from[0] + way[0], from[1] + way[1]];
-        let e = way.map(|x| x / length);
+        let to = [from[0] + direction[0], from[1] + direction[1]];
+        let e = direction.map(|x| x / length);
         let head = (3.0 + 2.0 * pen.1).min(0.6 * length);
         let base = [to[0] - head * e[0], to[1] - head * e[1]];
         let [x0, y0] = from;

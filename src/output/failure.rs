@@ -266,14 +266,14 @@ fn motion_text(unbalanced: &Unbalanced) -> String {
         size,
         ..
     } = *unbalanced;
-    let (way, turn) = (x.hypot(y), angle.abs() * size);
-    match ABOUT_A_NODE * turn > way {
+    let (travel, turn) = (x.hypot(y), angle.abs() * size);
+    match ABOUT_A_NODE * turn > travel {
         true if angle > 0.0 => "turn to the left".to_owned(),
         true => "turn to the right".to_owned(),
         false => {
-            let part = |c: f64| match (c / way).abs() < NO_PART {
+            let part = |c: f64| match (c / travel).abs() < NO_PART {
                 true => 0.0,
-                false => c / way,
+                false => c / travel,
             };
             format!(
                 "slide along ({}, {})",

@@ -223,9 +223,9 @@ impl Picture<'_> {
         let supports = self.model.steps.iter().flat_map(|step| &step.supports);
         for support in supports.filter(|support| support.dof / 2 < self.x.len()) {
             let largest = &mut held.entry(support.dof / 2).or_default()[support.dof % 2];
-            let (way, before) = (way(support, self.model), largest.unwrap_or(0.0));
-            *largest = Some(if way.abs() > before.abs() {
-                way
+            let (direction, before) = (direction(support, self.model), largest.unwrap_or(0.0));
+            *largest = Some(if direction.abs() > before.abs() {
+                direction
             } else {
                 before
             });
@@ -234,11 +234,11 @@ impl Picture<'_> {
         let rigid: HashSet<usize> = self.model.rigid_segments().into_iter().flatten().collect();
         let (mut spacing, mut moving) = (Spacing::new(8.0), Vec::new());
         for (node, directions) in held.into_iter().filter(|(node, _)| !rigid.contains(node)) {
-            let way = directions.map(|way| way.unwrap_or(0.0));
-            if way != [0.0; 2] {
-                moving.push((self.x[node], way));
+            let direction = directions.map(|direction| direction.unwrap_or(0.0));
+            if direction != [0.0; 2] {
+                moving.push((self.x[node], direction));
             } else if let Some(at) = self.canvas.room(self.x[node], &mut spacing) {
-                self.support(at, directions.map(|way| way.is_some()));
+                self.support(at, directions.map(|direction| direction.is_some()));
             }
         }
         self.arrows(&moving, MOTION, "prescribed motion");
@@ -276,9 +276,12 @@ impl Picture<'_> {
         for (place, load) in loads.into_iter().filter(|(_, load)| *load != [0.0; 2]) {
             if let Some(at) = self.canvas.room(place, &mut spacing) {
                 let size = load[0].hypot(load[1]);
-                let way = [load[0] / size, -load[1] / size].map(|e| 0.5 * ARROW * e);
-                self.canvas
-                    .arrow([at[0] - way[0], at[1] - way[1]], way, LOAD);
+                let direction = [load[0] / size, -load[1] / size].map(|e| 0.5 * ARROW * e);
+                self.canvas.arrow(
+                    [at[0] - direction[0], at[1] - direction[1]],
+                    direction,
+                    LOAD,
+                );
             }
             self.canvas
                 .explain(Symbol::Arrow(LOAD), "pressure or traction");
@@ -354,7 +357,7 @@ fn role(index: usize, model: &Model) -> (Pen, &'static str, bool) {
 }
 
 /// Displacement of a support in the first step, the largest of its amplitude's points where it follows one.
-fn way(support: &Support, model: &Model) -> f64 {
+fn direction(support: &Support, model: &Model) -> f64 {
     match support.motion {
         SupportMotion::Ramp { to } => to,
         SupportMotion::Amplitude { value, amplitude } => {

@@ -47,7 +47,7 @@ fn finds_all(search: &Search, surfaces: &ContactSurfaces, x: &[[f64; 2]], [u0, u
             start: Positions::new(x, u0),
             now: Positions::new(x, u),
             slave,
-            held_by: &[],
+            closed_on: &[],
             allowed: [0.0; 2],
         };
         assert_eq!(

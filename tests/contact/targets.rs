@@ -43,7 +43,7 @@ fn targets_of(
         start: Positions::new(start, &still),
         now: Positions::new(now, &still),
         slave: 0,
-        held_by: &[],
+        closed_on: &[],
         allowed: [0.0; 2],
     };
     node.targets(all_segments(surfaces)).into_vec()
@@ -121,13 +121,13 @@ fn a_corner_that_slides_over_a_corner_is_held_by_the_face_that_its_surface_lies_
     start.extend([[0.2, 1.0], [1.01, 1.0], [1.01, 2.0]]);
     let mut now = start.clone();
     now[5][1] = 0.99;
-    let held_by = |own: &[[usize; 2]]| {
+    let closed_on = |own: &[[usize; 2]]| {
         let surfaces = ContactSurfaces::new(vec![5], own, segments.clone());
         self::segments(&targets_of(&surfaces, &start, &now))
     };
-    assert_eq!(held_by(&[[4, 5], [5, 6]]), [2]);
+    assert_eq!(closed_on(&[[4, 5], [5, 6]]), [2]);
     assert_eq!(
-        held_by(&[]),
+        closed_on(&[]),
         [1],
         "a node without a surface falls along the side"
     );

@@ -307,11 +307,15 @@ fn adjust(row: &TieRow, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Cont
     let before = mesh.coordinates.clone();
     let (mut count, mut most) = (0, (0.0, 0));
     for &(node, segment) in &faced.near {
-        let (foot, way) = nearest_of(before[node], segment.map(|node| before[node]));
-        if TiedNode::new(node, segment, &before).eta != 0.0 || way > 0.0 {
+        let (foot, travel) = nearest_of(before[node], segment.map(|node| before[node]));
+        if TiedNode::new(node, segment, &before).eta != 0.0 || travel > 0.0 {
             mesh.coordinates[node] = foot;
-            count += usize::from(way > 0.0);
-            most = if way > most.0 { (way, node) } else { most };
+            count += usize::from(travel > 0.0);
+            most = if travel > most.0 {
+                (travel, node)
+            } else {
+                most
+            };
         }
     }
     let after = &mesh.coordinates;

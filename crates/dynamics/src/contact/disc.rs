@@ -298,11 +298,12 @@ impl DiscContact {
             feature.gap(centre, |node| at.start([node])[0]) + pair.allowed[0]
         };
         let [gap, before] = [start(&self.feature), start(from)];
-        let way = rows.of_centre[0].dot(&self.displacements(pair, at));
+        let travel = rows.of_centre[0].dot(&self.displacements(pair, at));
         let rise = rise((gap, rows.scale), before, centre);
         // a force that leans too far is left as it is: what it gains is cut back
-        match way.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * way.abs() {
-            true => rise / way,
+        match travel.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * travel.abs()
+        {
+            true => rise / travel,
             false => 0.0,
         }
     }
@@ -361,8 +362,8 @@ impl DiscContact {
         if rows.kappa != 0.0 {
             // dkappa = -kappa/s times the derivative of the way s
             let [force, slope] = rows.of_centre;
-            let way = force.dot(&self.displacements(pair, at));
-            k -= force * slope.transpose() * (leaning / way);
+            let travel = force.dot(&self.displacements(pair, at));
+            k -= force * slope.transpose() * (leaning / travel);
         }
         DMatrix::from_column_slice(8, 8, k.as_slice())
     }
@@ -476,8 +477,8 @@ fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
     let slope = J * r0 / own.m - dm * (r0.perp(&r1) / (own.m * own.m));
     let force = to_r * along - couples(s.force, e.force);
     let derivative = to_r * (slope - dm * own.turn()) - couples(s.derivative, e.derivative);
-    let way = to_r * along - to_e * e.force * own.m;
-    let change_of_way = to_r * (slope - dm * e.value) - to_e * e.derivative * own.m;
+    let travel = to_r * along - to_e * e.force * own.m;
+    let change_of_travel = to_r * (slope - dm * e.value) - to_e * e.derivative * own.m;
     DiscRows {
         force: RowPair {
             normal: (to_r * normal * own.sign).into(),
@@ -490,7 +491,7 @@ fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
         gap: own.sign * l1 - arc.radius,
         scale: radius + arc.radius.abs(),
         kappa: 0.0,
-        of_centre: [way * own.sign, change_of_way * own.sign],
+        of_centre: [travel * own.sign, change_of_travel * own.sign],
     }
 }
 
@@ -657,8 +658,17 @@ mod tests {
         // from (0, 1) by the angle t along the floor, which runs from right to left
         let x = [[0.0, 1.0], [5.0, 0.0], [-5.0, 0.0], [0.0, 2.0]];
         let t = 0.3_f64;
-        let way = 2.0 * (t / 2.0).tan();
-        let u = [way, 0.0, 0.0, 0.0, 0.0, 0.0, way + t.sin(), t.cos() - 1.0];
+        let travel = 2.0 * (t / 2.0).tan();
+        let u = [
+            travel,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            travel + t.sin(),
+            t.cos() - 1.0,
+        ];
         let (mut pair, disc) = disc(1.0, None);
         pair.allowed = [-1.0; 2];
         let at = Configurations {

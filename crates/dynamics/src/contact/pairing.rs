@@ -43,7 +43,7 @@ impl SlaveChoice {
 
 /// Writes the pairs of the chosen slave nodes of all contacts between the displacements `u0` of the start of an increment and `u`
 /// of an iterate, which the search covers, with increasing keys, as the constraints `before`,
-/// of the last pass. `held` are the pairs closed at the start.
+/// of the last pass. `closed_at_start` are the pairs closed at the start.
 /// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
 /// node now: passes that go to and fro across a corner come to rest with it.
 ///
@@ -55,7 +55,7 @@ pub fn find_targets(
     search: &Search,
     [u0, u]: [&[f64]; 2],
     before: &[Constraint],
-    (held, kept): (&ClosedPairs, Option<f64>),
+    (closed_at_start, kept): (&ClosedPairs, Option<f64>),
     (form, choice): (RowForm, SlaveChoice),
     pairs: &mut Vec<PairTarget>,
 ) {
@@ -67,11 +67,11 @@ pub fn find_targets(
     pairs.clear();
     let mut corners = Corners::new();
     for listed in search.slaves() {
-        let held_by = held.of_slave(listed.key);
+        let closed_on = closed_at_start.of_slave(listed.key);
         while (before.next_if(|source| source.pair.key.slave < listed.key)).is_some() {}
         let is_own = |source: &&PairTarget| source.pair.key.slave == listed.key;
         let has_pair = before.peek().is_some_and(is_own);
-        let is_chosen = choice.takes(&listed, now, has_pair || !held_by.is_empty());
+        let is_chosen = choice.takes(&listed, now, has_pair || !closed_on.is_empty());
         if listed.surfaces.slave_segments.is_some() {
             if listed.number == 0 && is_chosen {
                 find_points(listed.territory(), [start, now], form, pairs);
@@ -86,7 +86,7 @@ pub fn find_targets(
             continue;
         }
         let selected = |source: &PairTarget| source.target.selected();
-        let held_by: ContactTargets = (held_by.iter())
+        let closed_on: ContactTargets = (closed_on.iter())
             .filter_map(|pair| selected(&pair.source))
             .collect();
         let node = SlaveNode {
@@ -94,7 +94,7 @@ pub fn find_targets(
             start,
             now,
             slave: listed.number,
-            held_by: &held_by,
+            closed_on: &closed_on,
             allowed: listed.allowed(),
         };
         let found = node.targets(listed.candidates());
@@ -107,7 +107,7 @@ pub fn find_targets(
             keep(&node, &found, kept.unwrap_or(KEPT_BEYOND_ENDS), &mut own);
         }
         for &target in if keeps { &own } else { &found } {
-            let pair = pair_target(&listed, target, (start, form), held);
+            let pair = pair_target(&listed, target, (start, form), closed_at_start);
             if node.meets_corner(&target) {
                 corners.extend(pair.at_corner());
             }
@@ -158,12 +158,12 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
 
 /// The pair of a slave node and a target. From surface to surface what a corner overlaps at the start stays, as that of
 /// means does: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex was behind the line of its new
-/// segment there, and overlaps what the segment that held it was in.
+/// segment there, and overlaps what the segment that it was closed on was in.
 fn pair_target(
     listed: &ListedSlave,
     target: ContactTarget,
     (start, form): (Positions, RowForm),
-    held: &ClosedPairs,
+    closed_at_start: &ClosedPairs,
 ) -> PairTarget {
     let surfaces = listed.surfaces;
     let segment = |number: usize| Segment {
@@ -174,10 +174,10 @@ fn pair_target(
     let before = segment(target.segment);
     let mut allowed = listed.allowed();
     if listed.is_corner() && form == RowForm::DiscreteGradient {
-        allowed = listed.allowed_where(|node| held.means_have(node));
-        let held_by = target.from.unwrap_or(target.segment);
-        let place = surfaces.bulges[held_by]
-            .below(start.place(listed.at(held_by).nodes))
+        allowed = listed.allowed_where(|node| closed_at_start.means_have(node));
+        let closed_on = target.from.unwrap_or(target.segment);
+        let place = surfaces.bulges[closed_on]
+            .below(start.place(listed.at(closed_on).nodes))
             .raised(allowed[0]);
         if place.gap < -CLOSED_GAP * place.length {
             allowed = allowed.map(|overlap| overlap - place.gap);
@@ -236,10 +236,17 @@ mod tests {
         let (u, form) = ([0.0; 12], RowForm::DiscreteGradient);
         let mut search = Search::new(&contacts, &x);
         search.cover(&u);
-        let held = (&ClosedPairs::default(), None);
+        let closed_at_start = (&ClosedPairs::default(), None);
         let pairs_of = |search: &Search, before: &[Constraint], choice: SlaveChoice| {
             let mut pairs = Vec::new();
-            find_targets(search, [&u, &u], before, held, (form, choice), &mut pairs);
+            find_targets(
+                search,
+                [&u, &u],
+                before,
+                closed_at_start,
+                (form, choice),
+                &mut pairs,
+            );
             pairs
         };
         let slaves = |search: &Search, before: &[Constraint], choice: SlaveChoice| {
@@ -284,10 +291,10 @@ mod tests {
             let u = [0.0; 12];
             let mut search = Search::new(&contacts, &x);
             search.cover(&u);
-            let held = (&ClosedPairs::default(), None);
+            let closed_at_start = (&ClosedPairs::default(), None);
             let how = (RowForm::End, SlaveChoice::All);
             let mut pairs = Vec::new();
-            find_targets(&search, [&u, &u], &[], held, how, &mut pairs);
+            find_targets(&search, [&u, &u], &[], closed_at_start, how, &mut pairs);
             pairs
         };
         for (rise, count) in [(0.0, 2), (4e-4, 2), (4e-3, 1), (0.5, 1)] {

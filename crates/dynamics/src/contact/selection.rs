@@ -215,11 +215,11 @@ impl SlaveNode<'_> {
         };
         let was_behind = || run.iter().all(|&j| !self.was_in_front(j));
         let came = || was_behind().then(|| self.came_from(run)).flatten();
-        // a node that a corner held may be on either of its segments, in front of which it was
-        let is_left = |held: &&ContactTarget| {
-            !(held.segments()).any(|i| is_within(i) && self.was_in_front(i))
+        // a node that was closed on a corner may be on either of its segments, in front of which it was
+        let is_left = |target: &&ContactTarget| {
+            !(target.segments()).any(|i| is_within(i) && self.was_in_front(i))
         };
-        let left = self.held_by.iter().filter(is_left);
+        let left = self.closed_on.iter().filter(is_left);
         left.flat_map(ContactTarget::segments)
             .find_map(slid_from)
             .or_else(|| came().and_then(slid_from))
@@ -278,9 +278,9 @@ impl SlaveNode<'_> {
         let after = self.surfaces.next[i]
             .filter(|&j| (1.0 - p.xi) * p.length <= near && self.corner_sine(i, j) > STRAIGHT_SINE);
         let constrains = |&j: &usize| {
-            let mut held = self.held_by.iter().flat_map(ContactTarget::segments);
+            let mut closed_on = self.closed_on.iter().flat_map(ContactTarget::segments);
             let is_faced = self.is_opposite(j) == Some(true)
-                || (held.any(|held| held == j)
+                || (closed_on.any(|own| own == j)
                     && self.faced_at_start(j) > self.faced_at_start(i) + STRAIGHT_SINE);
             let near = near.min(self.corner_reach(j, &self.project(j)));
             is_faced && self.was_over(j, near) && self.was_in_front(j) && !self.is_own(j)

@@ -25,7 +25,7 @@ pub struct SlaveNode<'a> {
     /// Index of the slave node in its contact.
     pub slave: usize,
     /// Targets of the pairs of the node that were closed at the start.
-    pub held_by: &'a [ContactTarget],
+    pub closed_on: &'a [ContactTarget],
     /// Overlap that a fit allows it at the start and in the iterate (length): what its gaps are larger by, eq. (3.15).
     pub allowed: [f64; 2],
 }
@@ -276,7 +276,7 @@ mod tests {
                 start: at,
                 now: at,
                 slave: 0,
-                held_by: &[],
+                closed_on: &[],
                 allowed: [0.0; 2],
             };
             node.was_in_front(0)

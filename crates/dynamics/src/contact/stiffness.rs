@@ -110,14 +110,14 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, places: &[usize; 6]) {
 impl Constraint {
     /// Gn^T Gn, and Gt^T Gt where the constraint `sticks`, eq. (4.13), over its dofs
     /// (dimensionless).
-    pub fn hold(&self, sticks: bool) -> DMatrix<f64> {
+    pub fn stiffening(&self, sticks: bool) -> DMatrix<f64> {
         let rows = self.derivative_rows();
         let normal = DVector::from_column_slice(&rows.normal);
         let tangential = DVector::from_column_slice(&rows.tangential);
-        let held = &normal * normal.transpose();
+        let stiffening = &normal * normal.transpose();
         match sticks {
-            true => held + &tangential * tangential.transpose(),
-            false => held,
+            true => stiffening + &tangential * tangential.transpose(),
+            false => stiffening,
         }
     }
 }
@@ -370,13 +370,13 @@ mod tests {
     }
 
     #[test]
-    fn held_constraints_resist_gap_and_slip() {
+    fn stiffening_resists_gap_and_slip() {
         let at = between(FORMS[1], &U1);
         let constraint = Constraint::new(testing::face(), &at);
         let v: [f64; 6] = [0.3, -0.2, 0.5, 0.1, -0.4, 0.7];
         let (gap, slip) = (constraint.gap_change(&v), constraint.slip_change(&v));
         let v = DVector::from_column_slice(&v);
-        let resisted = |sticks: bool| v.dot(&(constraint.hold(sticks) * &v));
+        let resisted = |sticks: bool| v.dot(&(constraint.stiffening(sticks) * &v));
         assert!((resisted(false) - gap * gap).abs() < 1e-14);
         assert!((resisted(true) - gap * gap - slip * slip).abs() < 1e-14);
     }

@@ -63,7 +63,7 @@ pub struct Segment {
 pub struct SegmentContact {
     /// The segment.
     pub segment: Segment,
-    /// The segment that held the node at the start, if the node has slid on from there to this one.
+    /// The segment that the node was closed on at the start, if it has slid on from there to this one.
     pub from: Option<Segment>,
 }
 
@@ -153,7 +153,7 @@ impl Pair {
 }
 
 impl PairTarget {
-    /// The pair at the start of the increment, with what held the slave node there.
+    /// The pair at the start of the increment, with the target that the slave node was closed on there.
     pub(super) fn at_start(self) -> Self {
         PairTarget {
             pair: self.pair.in_one(0),
@@ -161,7 +161,7 @@ impl PairTarget {
         }
     }
 
-    /// The pair at the end of the increment, as one that its target has held since the start.
+    /// The pair at the end of the increment, as one closed on its target since the start.
     pub(super) fn at_end(self) -> Self {
         PairTarget {
             pair: self.pair.in_one(1),
@@ -204,7 +204,7 @@ impl PairTarget {
 }
 
 impl Target {
-    /// The same target, whatever held the slave node at the start.
+    /// The same target, whatever the slave node was closed on at the start.
     pub(super) fn untilted(self) -> Self {
         match self {
             Target::Segment(contact) => Target::Segment(SegmentContact::new(contact.segment)),
@@ -214,7 +214,7 @@ impl Target {
         }
     }
 
-    /// What held the slave node at the start.
+    /// What the slave node was closed on at the start.
     fn at_start(self) -> Self {
         match self {
             // the key of the constraint has the number, which stays
@@ -281,7 +281,7 @@ impl Target {
 }
 
 impl SegmentContact {
-    /// A segment that has held its node since the start.
+    /// A segment that its node has been closed on since the start.
     pub fn new(segment: Segment) -> Self {
         SegmentContact {
             segment,
@@ -370,7 +370,7 @@ pub struct ContactTarget {
     pub segment: usize,
     /// The corner at the segment's end b, if the node meets the corner.
     pub corner: Option<Corner>,
-    /// The segment that held the node at the start, if the node has slid on from there to this one.
+    /// The segment that the node was closed on at the start, if it has slid on from there to this one.
     pub from: Option<usize>,
 }
 

@@ -92,13 +92,13 @@ struct NodePath<'a> {
 
 impl NodePath<'_> {
     /// Whether the node was in contact before the increment, or is a corner of a face in whose means it was.
-    fn was_held(&self) -> bool {
+    fn was_closed(&self) -> bool {
         let before = self.closed[0];
         !before.of_slave(self.key).is_empty() || self.is_corner && before.means_have(self.slave)
     }
 
-    /// Segments that hold the node at the end.
-    fn held_by(&self) -> impl Iterator<Item = usize> {
+    /// Segments that the node is closed on at the end.
+    fn closed_on(&self) -> impl Iterator<Item = usize> {
         let pairs = self.closed[1].of_slave(self.key).iter();
         pairs.flat_map(|pair| pair.source.target.segments())
     }
@@ -173,8 +173,8 @@ impl NodePath<'_> {
             let p = self.project(j, 0.0);
             self.is_round_off(j, -p.gap, p.length) && self.are_near(i, j)
         };
-        let is_held = self.held_by().any(|held| held == i);
-        (is_nearest && !is_held && others.clone().any(was_outside)).then_some(i)
+        let is_closed_on = self.closed_on().any(|own| own == i);
+        (is_nearest && !is_closed_on && others.clone().any(was_outside)).then_some(i)
     }
 
     /// Whether the node is clearly in front of a segment at the end, where no fit lets it overlap.
@@ -210,8 +210,8 @@ impl NodePath<'_> {
         let (p, q) = (self.project(i, middle), self.project(j, middle));
         let depth = (-p.gap).min(-q.gap);
         let slides = || {
-            let is_held = |k| self.are_near(i, k);
-            self.was_held() || self.held_by().any(is_held)
+            let is_closed_on = |k| self.are_near(i, k);
+            self.was_closed() || self.closed_on().any(is_closed_on)
         };
         self.is_round_off(i, depth, p.length)
             || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
@@ -222,14 +222,14 @@ impl NodePath<'_> {
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.project(i, 1.0);
         if self.is_round_off(i, -p.gap, p.length)
-            || self.held_by().any(|held| held == i)
+            || self.closed_on().any(|own| own == i)
             || self.is_outside_corner(i, xi, &p)
         {
             return true;
         }
         let is_on = |j: usize| (0.0..=1.0).contains(&self.project(j, 1.0).xi);
-        self.held_by().any(|j| is_on(j) && self.are_near(i, j))
-            || (self.was_held() && self.has_slid_off(i, &p))
+        self.closed_on().any(|j| is_on(j) && self.are_near(i, j))
+            || (self.was_closed() && self.has_slid_off(i, &p))
     }
 
     /// Whether a depth behind segment `i` of the given length is within the tolerance of the

@@ -77,8 +77,8 @@ struct FreeMotion<'a> {
 impl FreeMotion<'_> {
     /// U0 + t V + t²/2 A at the end.
     fn displacement(&self, u0: &[f64]) -> Vec<f64> {
-        let way = self.path.displacement(self.duration);
-        u0.iter().zip(&way).map(|(u, d)| u + d).collect()
+        let travel = self.path.displacement(self.duration);
+        u0.iter().zip(&travel).map(|(u, d)| u + d).collect()
     }
 
     /// Whether the nodes move far enough relative to each other to meet: a node that meets a segment at xi
@@ -87,13 +87,13 @@ impl FreeMotion<'_> {
         let Path {
             v, a: acceleration, ..
         } = self.path;
-        let way = |end: usize| {
+        let travel = |end: usize| {
             let size = |x: &[f64]| (x[2 * s] - x[2 * end]).hypot(x[2 * s + 1] - x[2 * end + 1]);
             self.duration * (size(v) + self.duration / 2.0 * size(acceleration))
         };
         let round_off = CROSSING_BEYOND_ENDS * start.length;
         let beyond = (start.xi - start.xi.clamp(0.0, 1.0)) * start.length;
-        beyond.hypot(start.gap) <= way(a).max(way(b)) + round_off
+        beyond.hypot(start.gap) <= travel(a).max(travel(b)) + round_off
     }
 
     /// Motions of a node that counts as higher over a segment, and of the ends of the segment. What a bulge lowers it by is that of
@@ -280,7 +280,7 @@ impl<'m> Subincrements<'_, 'm> {
             a: self.start.a.clone(),
             closed: ClosedPairs::default(),
             held: HeldMotions::default(),
-            holds_pairs: false,
+            pairs_stiffen: false,
         };
         loop {
             let entries = self.entries(active, &path, rest, None);

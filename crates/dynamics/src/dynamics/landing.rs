@@ -101,9 +101,9 @@ fn landing(
     pair: &ClosedPair,
 ) -> Option<(LandedPair, ReturnLoad)> {
     let [pn, pt] = pair.force;
-    let way = -constraint.normal_motion(&solved.d);
-    let energy = pn * way;
-    if way <= CLOSED_GAP * constraint.scale || energy <= 0.0 {
+    let travel = -constraint.normal_motion(&solved.d);
+    let energy = pn * travel;
+    if travel <= CLOSED_GAP * constraint.scale || energy <= 0.0 {
         return None;
     }
     let u1 = &solved.end.u;
@@ -163,7 +163,7 @@ pub(super) fn factorize_anew(
     let closed = ClosedConstraints {
         acting: solved.contact.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),
-        are_held: false,
+        pairs_stiffen: false,
         followers: &[],
         out_of_balance: &[],
         held: &HeldMotions::default(),

@@ -83,10 +83,10 @@ impl Releasing<'_, '_> {
         for _ in 0..MOST_STEPS {
             let du = self.newton_step(&u)?;
             u = sum(&u, &du);
-            let (step, way) = (largest(&du), largest(&difference(&u, &self.end.u)));
+            let (step, travel) = (largest(&du), largest(&difference(&u, &self.end.u)));
             let of_bodies = self.problem.parts.largest_of_bodies(&u);
             let seen = largest(&self.workspace.seen.displacements(of_bodies));
-            if step <= larger(LAST_STEP * way, SUM_ROUND_OFF * seen) {
+            if step <= larger(LAST_STEP * travel, SUM_ROUND_OFF * seen) {
                 let overlaps = |c: &Constraint| c.gap < -OVERLAP_ROUND_OFF * c.scale;
                 return (!self.constraints(&u).iter().any(overlaps)).then_some(u);
             }
@@ -118,10 +118,10 @@ impl Releasing<'_, '_> {
     /// last pass, without friction, their gaps above what they may be.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;
-        let (way, mut found) = ([start.as_slice(), u], Vec::new());
+        let (increment, mut found) = ([start.as_slice(), u], Vec::new());
         (self.workspace).constraints(
             self.problem,
-            way,
+            increment,
             &[],
             (&self.end.contact, None),
             SlaveChoice::All,

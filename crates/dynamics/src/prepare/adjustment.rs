@@ -148,7 +148,7 @@ fn adjusted_of(
     let ways = slaves
         .iter()
         .map(|&node| (distance(before[node], after[node]), node));
-    let moved: Vec<(f64, usize)> = ways.filter(|(way, _)| *way > 0.0).collect();
+    let moved: Vec<(f64, usize)> = ways.filter(|(travel, _)| *travel > 0.0).collect();
     let &(largest, node) = (moved.iter()).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
     let is_spoiled = |element: &Element| element.is_spoiled(before, after);
     Some(Adjusted {

@@ -315,12 +315,12 @@ impl Gradient {
 
     /// The strains of F - G and of F + G, G being half of the way.
     #[inline(always)]
-    pub fn strain_change<const HOOP: bool>(&self, way: &Gradient) -> StrainChange<Lanes> {
-        let (mean, half) = strain_change(&self.h, &way.h);
+    pub fn strain_change<const HOOP: bool>(&self, direction: &Gradient) -> StrainChange<Lanes> {
+        let (mean, half) = strain_change(&self.h, &direction.h);
         if !HOOP {
             return StrainChange::about(mean, half);
         }
-        let (h, g) = (self.around, way.around);
+        let (h, g) = (self.around, direction.around);
         StrainChange::about(
             SymmetricLanes {
                 z: h + (h * h + g * g) * 0.5,

@@ -469,9 +469,9 @@ mod tests {
         [6.0, 9.0],
     ];
 
-    fn joint(way: Vector4<f64>, [e, y]: [f64; 2]) -> Joint<2> {
+    fn joint(direction: Vector4<f64>, [e, y]: [f64; 2]) -> Joint<2> {
         Joint {
-            e: way * (e * 1e-3),
+            e: direction * (e * 1e-3),
             y: BENT * y,
         }
     }
@@ -493,9 +493,9 @@ mod tests {
             (Plane::Strain, PLANE),
             (Plane::Stress, PLANE),
         ];
-        let all = ways.map(|(plane, way)| {
+        let all = ways.map(|(plane, direction)| {
             [(0.0, [0.0; 2]), (40.0, [0.002, -0.003])]
-                .map(|(kinematic, flown)| (law(kinematic).in_plane(plane), flown, way))
+                .map(|(kinematic, flown)| (law(kinematic).in_plane(plane), flown, direction))
         });
         all.into_iter().flatten().collect()
     }
@@ -533,8 +533,8 @@ mod tests {
     }
 
     /// Components of strain and amplitudes that are free: not the strain across the plane.
-    fn numbers(way: &Vector4<f64>) -> Vec<usize> {
-        (0..6).filter(|&j| j != 2 || way.z != 0.0).collect()
+    fn numbers(direction: &Vector4<f64>) -> Vec<usize> {
+        (0..6).filter(|&j| j != 2 || direction.z != 0.0).collect()
     }
 
     /// Derivatives of the whole potential, of strain and modes.
@@ -545,11 +545,11 @@ mod tests {
         (stress, tangent)
     }
 
-    fn check_potential(bent: &BentMetal<2>, way: Vector4<f64>) {
-        let start = joint(way, [0.0; 2]);
-        for at in SHARES.map(|share| joint(way, share)) {
+    fn check_potential(bent: &BentMetal<2>, direction: Vector4<f64>) {
+        let start = joint(direction, [0.0; 2]);
+        for at in SHARES.map(|share| joint(direction, share)) {
             let (stress, tangent) = whole(bent, &at);
-            for j in numbers(&way) {
+            for j in numbers(&direction) {
                 let (unit, h) = (unit(j), step(j));
                 let [ahead, behind] = [h, -h].map(|h| at.combined(1.0, &unit, h));
                 let change = bent.change(&start, &ahead) - bent.change(&start, &behind);
@@ -574,8 +574,8 @@ mod tests {
         }
     }
 
-    fn check_increments(bent: &BentMetal<2>, way: Vector4<f64>) {
-        let joints = SHARES.map(|share| joint(way, share));
+    fn check_increments(bent: &BentMetal<2>, direction: Vector4<f64>) {
+        let joints = SHARES.map(|share| joint(direction, share));
         for (start, end) in joints
             .iter()
             .flat_map(|a| joints.iter().map(move |b| (a, b)))
@@ -602,7 +602,7 @@ mod tests {
                     of(h).combined(1.0 / h, &of(-h), -1.0 / h)
                 })
                 .collect();
-            let numbers = numbers(&way);
+            let numbers = numbers(&direction);
             for (i, j) in numbers
                 .iter()
                 .flat_map(|&i| numbers.iter().map(move |&j| (i, j)))
@@ -619,15 +619,15 @@ mod tests {
 
     #[test]
     fn strain_and_modes_of_a_metal_have_one_convex_potential() {
-        for (law, flown, way) in metals(1.0) {
-            check_potential(&bent(&law, &flown, 1.0), way);
+        for (law, flown, direction) in metals(1.0) {
+            check_potential(&bent(&law, &flown, 1.0), direction);
         }
     }
 
     #[test]
     fn the_stress_of_an_increment_does_the_work_of_the_potential() {
-        for (law, flown, way) in metals(1.0) {
-            check_increments(&bent(&law, &flown, 1.0), way);
+        for (law, flown, direction) in metals(1.0) {
+            check_increments(&bent(&law, &flown, 1.0), direction);
         }
     }
 
@@ -635,11 +635,11 @@ mod tests {
     fn units_that_differ_by_a_power_of_two_change_no_bit() {
         let stresses = |units: f64| {
             let mut all = Vec::new();
-            for (law, flown, way) in metals(units) {
+            for (law, flown, direction) in metals(units) {
                 let bent = bent(&law, &flown, units);
                 for share in SHARES {
-                    let start = joint(way, [0.7, 0.2]);
-                    let s = bent.stress(&JointPath::Between(start, joint(way, share)));
+                    let start = joint(direction, [0.7, 0.2]);
+                    let s = bent.stress(&JointPath::Between(start, joint(direction, share)));
                     all.extend(s.e.iter().chain(&s.y).map(|s| s / units));
                 }
             }

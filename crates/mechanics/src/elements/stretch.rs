@@ -264,7 +264,7 @@ mod tests {
     type Components = [f64; 4];
     const MEAN: Components = [0.3, -0.1, 0.05, 0.1];
     const LINEAR: Components = [0.35, -0.2, 0.1, 0.14];
-    const WAY: Components = [0.3, 0.1, -0.4, -0.2];
+    const DIRECTION: Components = [0.3, 0.1, -0.4, -0.2];
     const OF_MEAN: Components = [0.1, -0.2, 0.2, 0.3];
     const STRESS: Components = [2.0, -1.0, 1.3, 0.7];
 
@@ -289,11 +289,12 @@ mod tests {
 
     #[test]
     fn derivatives_are_those_of_the_strain() {
-        let added = |t: f64| mean(moved(MEAN, t, OF_MEAN)).add::<true>(&moved(LINEAR, t, WAY));
+        let added =
+            |t: f64| mean(moved(MEAN, t, OF_MEAN)).add::<true>(&moved(LINEAR, t, DIRECTION));
         let at = |t: f64| added(t).strain::<true>();
         let start = added(0.0);
         let by = |size: f64| Variation {
-            at_point: lanes(WAY.map(|e| e * size)),
+            at_point: lanes(DIRECTION.map(|e| e * size)),
             of_mean: lanes(OF_MEAN.map(|e| e * size)),
         };
         let ((first, b), h) = (start.variation::<true>(&by(1.0)), 1e-4);
@@ -301,7 +302,8 @@ mod tests {
         assert!(size(&(first - quotient)) < 1e-7);
         let stress = lanes(STRESS);
         let [on_all, on_mean] = start.conjugate::<true>(&stress);
-        let work = on_all.contract::<true>(&lanes(WAY)) - on_mean.contract::<true>(&lanes(OF_MEAN));
+        let work =
+            on_all.contract::<true>(&lanes(DIRECTION)) - on_mean.contract::<true>(&lanes(OF_MEAN));
         let exact = stress.contract::<true>(&first);
         assert!((work - exact).0[0].abs() < 1e-14);
         let second = (at(h) - at(0.0).map(|e| e * 2.0) + at(-h)).map(|e| e / (Lanes::all(h * h)));

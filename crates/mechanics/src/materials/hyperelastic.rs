@@ -216,20 +216,26 @@ mod tests {
     };
 
     /// A strain and a way, without components 33 in plane stress.
-    fn start_and_way(name: &str) -> (Symmetric, Symmetric) {
-        let way = Symmetric::new(-0.4, 0.3, 0.5, 0.2);
+    fn start_and_direction(name: &str) -> (Symmetric, Symmetric) {
+        let direction = Symmetric::new(-0.4, 0.3, 0.5, 0.2);
         match name.contains("stress") {
-            true => (Symmetric { z: 0.0, ..E0 }, Symmetric { z: 0.0, ..way }),
-            false => (E0, way),
+            true => (
+                Symmetric { z: 0.0, ..E0 },
+                Symmetric {
+                    z: 0.0,
+                    ..direction
+                },
+            ),
+            false => (E0, direction),
         }
     }
 
     #[test]
     fn the_work_of_the_stress_is_the_change_of_energy() {
         for (name, law) in laws() {
-            let (e0, way) = start_and_way(name);
+            let (e0, direction) = start_and_direction(name);
             for size in [0.5, 1e-3, 1e-6, 1e-9, 1e-12] {
-                let half = way * (size / 2.0);
+                let half = direction * (size / 2.0);
                 let change = StrainChange::about(e0 + half, half);
                 let (s, de) = (law.mean_stress(&change), change.change());
                 let energy = law.energy_change(&change);
@@ -243,8 +249,8 @@ mod tests {
                 let bound = size * size * 10.0 + 1e-13;
                 assert!((energy / mean - 1.0).abs() < bound, "{name} {size}");
             }
-            let [w0, w1] = [e0, e0 + way].map(|e| law.energy(&e));
-            let found = law.energy_change(&StrainChange::between(&e0, &(e0 + way)));
+            let [w0, w1] = [e0, e0 + direction].map(|e| law.energy(&e));
+            let found = law.energy_change(&StrainChange::between(&e0, &(e0 + direction)));
             assert!((found - (w1 - w0)).abs() < 1e-13 * (w0 + w1), "{name}");
         }
     }
@@ -253,8 +259,8 @@ mod tests {
     fn stress_and_tangents_are_derivatives() {
         let h = 1e-6;
         for (name, law) in laws() {
-            let (e0, way) = start_and_way(name);
-            let e1 = e0 + way * 0.4;
+            let (e0, direction) = start_and_direction(name);
+            let e1 = e0 + direction * 0.4;
             let scale = law.tangent(&e1).matrix().norm();
             let between = |e: Symmetric| law.mean_stress(&StrainChange::between(&e0, &e));
             let slope = |of: &dyn Fn(Symmetric) -> Symmetric, unit: &Symmetric| {
@@ -290,9 +296,9 @@ mod tests {
     #[test]
     fn of_a_quadratic_energy_it_is_the_mean_stress() {
         let (name, law) = &laws()[0];
-        let (e0, way) = start_and_way(name);
-        let mean = (law.stress(&e0) + law.stress(&(e0 + way))) / 2.0;
-        let found = law.mean_stress(&StrainChange::between(&e0, &(e0 + way)));
+        let (e0, direction) = start_and_direction(name);
+        let mean = (law.stress(&e0) + law.stress(&(e0 + direction))) / 2.0;
+        let found = law.mean_stress(&StrainChange::between(&e0, &(e0 + direction)));
         assert!((found - mean).norm() < 1e-15 * mean.norm());
     }
 
@@ -300,9 +306,9 @@ mod tests {
     fn there_is_no_noise_where_the_strain_hardly_changes() {
         // S - S(E_m) is of second order in dE
         for (name, law) in laws() {
-            let (mean, way) = start_and_way(name);
+            let (mean, direction) = start_and_direction(name);
             for size in [1e-8, 1e-10, 1e-13, 1e-15, 0.0] {
-                let change = StrainChange::about(mean, way * size);
+                let change = StrainChange::about(mean, direction * size);
                 let s = law.stress(&mean);
                 let difference = (law.mean_stress(&change) - s).norm();
                 assert!(difference < 2e-14 * s.norm(), "{name} {size}: {difference}");

@@ -137,10 +137,10 @@ impl Ogden {
 /// Changes of the principal values (mean +- radius, 33) of a tensor.
 fn principal_change(from: &Symmetric, by: &Symmetric) -> [f64; 3] {
     let half = |a: &Symmetric| [(a.x - a.y) / 2.0, a.w];
-    let (start, way) = (half(from), half(by));
-    let end = [start[0] + way[0], start[1] + way[1]];
+    let (start, direction) = (half(from), half(by));
+    let end = [start[0] + direction[0], start[1] + direction[1]];
     let both = start[0].hypot(start[1]) + end[0].hypot(end[1]);
-    let along = (start[0] + end[0]) * way[0] + (start[1] + end[1]) * way[1];
+    let along = (start[0] + end[0]) * direction[0] + (start[1] + end[1]) * direction[1];
     let radius = if both > 0.0 { along / both } else { 0.0 };
     let mean = (by.x + by.y) / 2.0;
     [mean + radius, mean - radius, by.z]
@@ -201,10 +201,10 @@ impl Hyperelastic for Ogden {
         let ([x, y, z], of_volume) = self.slopes(&at);
         let spectrum = &at.spectrum;
         let t = spectrum.back(&Symmetric::new(x, y, z, 0.0));
-        Tangent::of_columns(|way| {
-            let strain = spectrum.to(&spectrum.log_derivative(way));
+        Tangent::of_columns(|direction| {
+            let strain = spectrum.to(&spectrum.log_derivative(direction));
             let change = spectrum.back(&self.stress_change(&at, of_volume, &strain));
-            spectrum.log_derivative(&change) + spectrum.second_derivative(&t, way) * 2.0
+            spectrum.log_derivative(&change) + spectrum.second_derivative(&t, direction) * 2.0
         })
     }
 }
@@ -289,22 +289,22 @@ mod tests {
                 (ahead - behind) / (2.0 * h)
             });
             assert!((found.matrix() - c).norm() < 1e-8 * c.norm(), "{e:?}");
-            let way = Symmetric::new(0.3, -0.2, 0.4, 0.5);
-            let change = StrainChange::about(e, way * h);
+            let direction = Symmetric::new(0.3, -0.2, 0.4, 0.5);
+            let change = StrainChange::about(e, direction * h);
             let slope = OGDEN.energy_change(&change) / (2.0 * h);
-            let work = OGDEN.stress(&e).contract::<true>(&way);
+            let work = OGDEN.stress(&e).contract::<true>(&direction);
             assert!((slope - work).abs() < 1e-9 * c.norm(), "{slope} {work}");
         }
     }
 
     #[test]
     fn changes_of_energy_keep_their_digits() {
-        let (e0, way) = (
+        let (e0, direction) = (
             Symmetric::new(0.2, -0.1, 0.3, 0.15),
             Symmetric::new(-0.4, 0.3, 0.5, 0.2),
         );
         for size in [0.5, 1e-3, 1e-6, 1e-9, 1e-12] {
-            let half = way * (size / 2.0);
+            let half = direction * (size / 2.0);
             let change = StrainChange::about(e0 + half, half);
             let exact = OGDEN
                 .stress(&change.mean)

@@ -607,12 +607,12 @@ impl Hyperelastic for Potential<'_> {
         let flow = self.flow(&trial);
         let stress = self.law.elastic(&(trial.strain - flow.strain));
         Tangent::of_columns(|unit| {
-            let way = between(&trial.v, unit);
+            let direction = between(&trial.v, unit);
             // dE_h = D ln : dX/2, dX = 2 V dE V
-            let strain = trial.spectrum.log_derivative(&way);
+            let strain = trial.spectrum.log_derivative(&direction);
             let change = self.law.stress_change(&strain, &flow);
             let column = trial.spectrum.log_derivative(&change)
-                + trial.spectrum.second_derivative(&stress, &way) * 2.0;
+                + trial.spectrum.second_derivative(&stress, &direction) * 2.0;
             between(&trial.v, &column)
         })
     }
@@ -805,7 +805,7 @@ mod tests {
         }
     }
 
-    const WAY: Symmetric = Symmetric {
+    const DIRECTION: Symmetric = Symmetric {
         x: 0.03,
         y: -0.02,
         z: 0.008,
@@ -814,7 +814,7 @@ mod tests {
 
     fn states(law: &Plastic) -> Vec<PlasticState> {
         // some flow along one way and another
-        let first = law.updated(&(WAY * 3.0), &PlasticState::default(), 0.0);
+        let first = law.updated(&(DIRECTION * 3.0), &PlasticState::default(), 0.0);
         let turned = Symmetric::new(-0.02, 0.04, 0.01, -0.05);
         vec![
             PlasticState::default(),
@@ -830,8 +830,8 @@ mod tests {
         for law in &[0.0, 50.0].map(metal) {
             for state in states(law) {
                 let potential = Potential::new(law, state);
-                let strains =
-                    [0.0, 0.03, 0.7, 1.5].map(|part| WAY * part + across * (0.1 * part * part));
+                let strains = [0.0, 0.03, 0.7, 1.5]
+                    .map(|part| DIRECTION * part + across * (0.1 * part * part));
                 for (e0, e1) in strains
                     .iter()
                     .flat_map(|a| strains.iter().map(move |b| (a, b)))
@@ -846,7 +846,7 @@ mod tests {
                 }
                 // digits of a small change, both ends of which flow: S(E_m):dE
                 for size in [1e-4, 1e-7, 1e-10] {
-                    let (e0, e1) = (WAY * 2.0, WAY * 2.0 + across * size);
+                    let (e0, e1) = (DIRECTION * 2.0, DIRECTION * 2.0 + across * size);
                     let change = StrainChange::between(&e0, &e1);
                     let middle = potential.stress(&change.mean);
                     let work = contract(&middle, &change.change());
@@ -864,7 +864,7 @@ mod tests {
         for law in [metal(0.0), metal(30.0)] {
             for state in states(&law) {
                 for size in [1e-3, 0.4, 3.5] {
-                    let (e, potential) = (WAY * size, Potential::new(&law, state));
+                    let (e, potential) = (DIRECTION * size, Potential::new(&law, state));
                     let (s, c) = (potential.stress(&e), potential.tangent(&e).matrix());
                     let units = [
                         Symmetric::new(1.0, 0.0, 0.0, 0.0),
@@ -925,7 +925,7 @@ mod tests {
                     c.m12,
                 ) / 2.0;
                 for size in [1e-9, 1e-4, 0.05, 1.0, 3.0] {
-                    let e1 = e0 + WAY * size;
+                    let e1 = e0 + DIRECTION * size;
                     let (mut z1, strains) = (z0.clone(), Strains::between(&e0, &e1));
                     let s = Flow::stress(&metal, &strains, &z0);
                     Flow::update(&metal, &strains, &z0, &mut z1);

@@ -240,14 +240,14 @@ mod tests {
             young: 1000.0,
             poisson: 0.3,
         };
-        let (e0, way) = (
+        let (e0, direction) = (
             Symmetric::new(0.2, -0.1, 0.3, 0.15),
             Symmetric::new(-0.4, 0.3, 0.5, 0.2),
         );
         let v = Viscosity::new(BETA, moduli, Plane::Revolution);
         for size in [0.5, -0.3, 1e-3] {
-            let s = stress(v, &[e0, e0 + way * size]);
-            assert!(s.contract::<true>(&(way * size)) > 0.0);
+            let s = stress(v, &[e0, e0 + direction * size]);
+            assert!(s.contract::<true>(&(direction * size)) > 0.0);
         }
         // near E = 0 it is beta C dE
         let linear: &dyn Hyperelastic = &SaintVenantKirchhoff {
@@ -255,7 +255,7 @@ mod tests {
             poisson: 0.3,
         }
         .in_plane(Plane::Revolution);
-        let de = way * 1e-8;
+        let de = direction * 1e-8;
         let found = stress(v, &[de * -0.5, de * 0.5]);
         let exact = linear.stress(&de) * BETA;
         assert!((found - exact).norm() < 1e-12 * exact.norm());

@@ -88,12 +88,12 @@ impl FrictionalLcp {
             terms.sum()
         };
         // n goes on by -gap/rate
-        let way = |i: usize| -solution.gap[i].max(0.0) / rate(i);
-        let first = open.min_by(|&i, &k| way(i).abs().total_cmp(&way(k).abs()))?;
-        if !way(first).is_finite() {
+        let travel = |i: usize| -solution.gap[i].max(0.0) / rate(i);
+        let first = open.min_by(|&i, &k| travel(i).abs().total_cmp(&travel(k).abs()))?;
+        if !travel(first).is_finite() {
             return None;
         }
-        let slip = solution.slip[first] + way(first) * rate(self.len() + first);
+        let slip = solution.slip[first] + travel(first) * rate(self.len() + first);
         let mut tipped = states.clone();
         tipped[first] = ContactState::sliding(slip);
         Some(tipped)

@@ -223,7 +223,7 @@ impl Displacements {
                     value,
                     amplitude,
                 } => {
-                    let way = match amplitude {
+                    let travel = match amplitude {
                         None => step.increments.period,
                         Some(index) => {
                             let amplitude = model.amplitudes.get(index)?;
@@ -232,7 +232,7 @@ impl Displacements {
                             to - from
                         }
                     };
-                    self.of(dof)? + value * way
+                    self.of(dof)? + value * travel
                 }
                 SupportMotion::Rate {
                     rate: Rate::Acceleration,

@@ -246,7 +246,7 @@ impl DynamicAttempt<'_, '_> {
         let closed = ClosedConstraints {
             acting: contact.acting().collect(),
             at: problem.configurations(&start.u, u),
-            are_held: false,
+            pairs_stiffen: false,
             followers: &[],
             out_of_balance: &equilibrium.out_of_balance,
             held: &HeldMotions::default(),

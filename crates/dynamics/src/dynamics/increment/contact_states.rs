@@ -50,9 +50,9 @@ impl ContactStates {
         u: &[f64],
         (set, kept): (ConstraintSet, Option<f64>),
     ) {
-        let (last, held) = (&self.forces.constraints, (&start.contact, kept));
-        let (way, choice) = ([&start.u[..], u], self.choice);
-        workspace.constraints(problem, way, last, held, choice, &mut self.found);
+        let (last, closed) = (&self.forces.constraints, (&start.contact, kept));
+        let (increment, choice) = ([&start.u[..], u], self.choice);
+        workspace.constraints(problem, increment, last, closed, choice, &mut self.found);
         let has_start_rate = begins && problem.integration.has_rates;
         let before = BeforeIterate {
             u0: &start.u,
@@ -87,9 +87,9 @@ impl ContactStates {
         if self.choice == SlaveChoice::All {
             return true;
         }
-        let (near, held) = (&self.forces.constraints, (&start.contact, None));
-        let (way, far) = ([&start.u[..], u], &mut self.found);
-        workspace.constraints(problem, way, near, held, SlaveChoice::Far, far);
+        let (near, closed) = (&self.forces.constraints, (&start.contact, None));
+        let (increment, far) = ([&start.u[..], u], &mut self.found);
+        workspace.constraints(problem, increment, near, closed, SlaveChoice::Far, far);
         let before = BeforeIterate {
             u0: &start.u,
             interval,

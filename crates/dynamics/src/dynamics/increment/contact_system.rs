@@ -204,7 +204,7 @@ struct GapsAndSlips<'r, 'a> {
     response: &'r mut Response<'a>,
     constraints: &'r [&'r Constraint],
     /// eps Q_kk of eq. (5.3), zero without a weight.
-    held: Vec<[f64; 2]>,
+    proximal: Vec<[f64; 2]>,
     /// P^0 of eq. (5.3).
     near: Vec<[f64; 2]>,
 }
@@ -218,7 +218,7 @@ impl GapsAndSlips<'_, '_> {
         let mut all = Vec::new();
         self.response.gaps_and_slips(system, constraints, &mut all);
         for (k, at) in all.iter_mut().enumerate() {
-            *at = [0, 1].map(|i| at[i] + self.held[k][i] * (forces[k][i] - self.near[k][i]));
+            *at = [0, 1].map(|i| at[i] + self.proximal[k][i] * (forces[k][i] - self.near[k][i]));
         }
         all
     }
@@ -272,13 +272,13 @@ impl System<'_> {
         };
         let count = constraints.len();
         let near = (guess.forces.clone()).unwrap_or_else(|| vec![[0.0; 2]; count]);
-        let Some((blocks, held)) = self.blocks(constraints, &by_bodies, guess)? else {
+        let Some((blocks, proximal)) = self.blocks(constraints, &by_bodies, guess)? else {
             return Ok(None);
         };
         let mut motion = GapsAndSlips {
             response,
             constraints,
-            held,
+            proximal,
             near: near.clone(),
         };
         let start = BlockStart {
@@ -318,7 +318,7 @@ impl System<'_> {
         by_bodies: &BTreeMap<ConstraintGroup, Vec<usize>>,
         guess: &Guess,
     ) -> Result<Option<ProblemBlocks>, LinearError> {
-        let mut held = vec![[0.0; 2]; all.len()];
+        let mut proximal = vec![[0.0; 2]; all.len()];
         let mut blocks = Vec::with_capacity(by_bodies.len());
         for (scope, contacts) in by_bodies {
             let constraints: Vec<&Constraint> = contacts.iter().map(|&k| all[k]).collect();
@@ -329,7 +329,7 @@ impl System<'_> {
                 return Ok(None);
             }
             for (k, &contact) in contacts.iter().enumerate() {
-                held[contact] = [k, k + n].map(|i| {
+                proximal[contact] = [k, k + n].map(|i| {
                     let part = guess.weight.unwrap_or(0.0) * problem.q[(i, i)];
                     problem.q[(i, i)] += part;
                     part
@@ -342,7 +342,7 @@ impl System<'_> {
                 kept,
             });
         }
-        Ok(Some((blocks, held)))
+        Ok(Some((blocks, proximal)))
     }
 }
 

@@ -126,8 +126,8 @@ impl Impulses {
             before,
             v0,
         };
-        let held = self.held(problem, v0, dt);
-        let pairs = self.of_iterate.iter().zip(&held);
+        let standing = self.standing(problem, v0, dt);
+        let pairs = self.of_iterate.iter().zip(&standing);
         let pairs = pairs.filter(|(_, impulse)| **impulse > 0.0);
         let pairs: Vec<ConstraintKey> = pairs.map(|(constraint, _)| constraint.key).collect();
         let part = match pairs.is_empty() && self.lent.is_empty() {
@@ -141,7 +141,7 @@ impl Impulses {
         let system = workspace.m();
         let states = (self.of_iterate.iter()).map(|c| self.state(c, v0, dt));
         let states = states.collect();
-        let closed = held_impulses(&self.of_iterate, held, states, v0, dt, system)?;
+        let closed = standing_impulses(&self.of_iterate, standing, states, v0, dt, system)?;
         self.forces.relinearize(&mut self.of_iterate);
         self.forces.closed = closed;
         match self.forces.closed.is_empty() {
@@ -183,7 +183,7 @@ impl Impulses {
 
     /// Impulses P0 = dt Pn of the constraints of bodies that turn that did not slip in the last pass and neither land nor open,
     /// zero of all others, eq. (11.7); none where no body turns.
-    fn held(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
+    fn standing(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
         let turning = &problem.unknowns.turning;
         let of_pair = |constraint: &Constraint| {
             let stuck = (self.sticking).binary_search_by_key(&constraint.key, |stuck| stuck.0);
@@ -369,28 +369,28 @@ fn impulses(
     Ok(closed)
 }
 
-/// The impulses of constraints of which some hold P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.7): V0 - M^-1 Bn^T P0 is
-/// the velocity without them. Where one would pull with all of P0 its pair holds nothing.
-fn held_impulses(
+/// The impulses of constraints of which some have the standing impulse P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.7): V0 - M^-1 Bn^T P0 is
+/// the velocity without them. Where one would pull with all of P0 its pair has none.
+fn standing_impulses(
     constraints: &[Constraint],
-    mut held: Vec<f64>,
+    mut standing: Vec<f64>,
     states: Vec<ContactState>,
     v0: &[f64],
     dt: f64,
     mut system: System,
 ) -> Result<ClosedPairs, Cause> {
-    while held.iter().any(|impulse| *impulse > 0.0) {
+    while standing.iter().any(|impulse| *impulse > 0.0) {
         if !system.is_factorized() {
             system.factorize()?;
         }
         let mut taken = vec![0.0; v0.len()];
-        for (constraint, impulse) in constraints.iter().zip(&held) {
+        for (constraint, impulse) in constraints.iter().zip(&standing) {
             constraint.add_force([-impulse, 0.0], &mut taken);
         }
         let v = system.respond_from(v0, &taken)?;
         let closed = impulses(constraints, states.clone(), &v, dt, &mut system)?;
         let mut all_push = true;
-        for (constraint, impulse) in constraints.iter().zip(&mut held) {
+        for (constraint, impulse) in constraints.iter().zip(&mut standing) {
             if *impulse > 0.0 && closed.keys().all(|key| key != constraint.key) {
                 (*impulse, all_push) = (0.0, false);
             }
@@ -399,7 +399,7 @@ fn held_impulses(
             let less = closed.iter().map(|pair| {
                 let at = constraints.iter().position(|c| c.key == pair.key);
                 let mut less = pair.clone();
-                less.force[0] -= at.map_or(0.0, |at| held[at]);
+                less.force[0] -= at.map_or(0.0, |at| standing[at]);
                 less
             });
             return Ok(less.collect());
@@ -602,7 +602,7 @@ mod tests {
         let contact = ClosedConstraints {
             acting: vec![],
             at: problem.configurations(&still, &still),
-            are_held: false,
+            pairs_stiffen: false,
             followers: &[],
             out_of_balance: &[],
             held: &HeldMotions::default(),

@@ -280,7 +280,7 @@ impl Passes<'_, '_> {
             passes: Vec::new(),
             returned: Returned::default(),
             held: HeldMotions::default(),
-            holds_pairs: false,
+            pairs_stiffen: false,
         })
     }
 }

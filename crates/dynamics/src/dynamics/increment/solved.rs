@@ -32,8 +32,8 @@ pub(crate) struct Solved {
     pub returned: Returned,
     /// Motions that are held in it.
     pub held: HeldMotions,
-    /// Whether K* held the closed pairs.
-    pub holds_pairs: bool,
+    /// Whether closed pairs stiffened K*.
+    pub pairs_stiffen: bool,
 }
 
 /// The motion of a converged increment between its ends, which another attempt from the same start may begin
@@ -48,8 +48,8 @@ pub(crate) struct Path {
     pub closed: ClosedPairs,
     /// Motions that are held.
     pub held: HeldMotions,
-    /// Whether K* held the closed pairs.
-    pub holds_pairs: bool,
+    /// Whether closed pairs stiffened K*.
+    pub pairs_stiffen: bool,
 }
 
 impl Path {
@@ -68,7 +68,7 @@ impl Solved {
             a: vec![0.0; self.d.len()],
             closed: self.end.contact.clone(),
             held: self.held.clone(),
-            holds_pairs: self.holds_pairs,
+            pairs_stiffen: self.pairs_stiffen,
         }
     }
 
@@ -81,7 +81,7 @@ impl Solved {
             v: self.v0p.clone(),
             closed: self.end.contact.clone(),
             held: self.held.clone(),
-            holds_pairs: false,
+            pairs_stiffen: false,
         }
     }
 }

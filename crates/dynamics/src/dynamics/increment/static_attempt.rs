@@ -35,29 +35,29 @@ pub(super) struct StaticAttempt<'a, 'm> {
 }
 
 impl<'m> StaticAttempt<'_, 'm> {
-    /// Solves the increment: from the motion of the last one, then from rest; then with closed pairs held in K*, since K alone,
+    /// Solves the increment: from the motion of the last one, then from rest; then with K* stiffened by closed pairs, since K alone,
     /// soft in bending, leaves the contact forces of slender bodies few digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
         let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
-        for &are_held in self.orders() {
+        for &pairs_stiffen in self.orders() {
             let may_be_digits = matches!(
                 failed,
                 Cause::NotConverged | Cause::Diverged | Cause::Lcp(_)
             );
-            if are_held && !may_be_digits {
+            if pairs_stiffen && !may_be_digits {
                 break;
             }
             trace.begin();
             let v = self.guess.map_or(&self.passes.start.v, |path| &path.v);
             self.passes.start_search(v);
-            match self.solve_with(are_held, &mut trace, &mut vectors) {
+            match self.solve_with(pairs_stiffen, &mut trace, &mut vectors) {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
-                        holds_pairs: are_held,
+                        pairs_stiffen,
                         ..solved
                     });
                 }
@@ -68,19 +68,19 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Whether closed pairs are held in K*, in the order in which it is tried.
+    /// Whether closed pairs stiffen K*, in the order in which it is tried.
     fn orders(&self) -> &'static [bool] {
         match self.guess {
-            Some(path) if path.holds_pairs => &[true, false],
+            Some(path) if path.pairs_stiffen => &[true, false],
             Some(_) => &[false, false, true],
             None => &[false, true],
         }
     }
 
-    /// The passes, with closed pairs held in K* or not.
+    /// The passes, with K* stiffened by closed pairs or not.
     fn solve_with(
         &mut self,
-        are_held: bool,
+        pairs_stiffen: bool,
         trace: &mut Trace,
         v: &mut Vectors,
     ) -> Result<Solved, Cause> {
@@ -136,7 +136,7 @@ impl<'m> StaticAttempt<'_, 'm> {
             }
 
             // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, which takes the force K d_p
-            self.factorize(are_held, v, &contact.forces, trace.correction())?;
+            self.factorize(pairs_stiffen, v, &contact.forces, trace.correction())?;
             self.passes.supports(number, v);
 
             // Pn, Pt and p of the complementarity problem, dU of eq. (12.3)
@@ -197,7 +197,7 @@ impl<'m> StaticAttempt<'_, 'm> {
     /// Factorises K - (C + C^T)/2 of the iterate, and takes its skew part N.
     fn factorize(
         &mut self,
-        are_held: bool,
+        pairs_stiffen: bool,
         v: &mut Vectors,
         contact: &ContactForces,
         correction: f64,
@@ -220,7 +220,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         let closed = ClosedConstraints {
             acting: contact.acting().collect(),
             at,
-            are_held,
+            pairs_stiffen,
             followers: &changes,
             out_of_balance: &equilibrium.out_of_balance,
             held: &HeldMotions::default(),

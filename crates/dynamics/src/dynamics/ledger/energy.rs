@@ -316,15 +316,15 @@ impl Ledger {
         end.reactions = end.of_supports(problem, [&solved.end.u, d]);
         let at_start = before.of_supports(problem, [&start.u, d]);
         let turning = &problem.unknowns.turning;
-        let way = turning.way(d);
+        let travel = turning.travel(d);
         let e = &mut self.energy;
         // d.(R0 + R1)/2, and at supports d_p (f0 + f1)_p/2, f = F - R - B^T P, eq. (12.7); what is left is the work of the
         // forces within rigid bodies on the chords of their nodes
-        let of_loads = EndForces::trapezoid(&way, [&before.load, &end.load]);
-        let mut of_supports = static_support_work(&way, [&at_start, &end.reactions]);
+        let of_loads = EndForces::trapezoid(&travel, [&before.load, &end.load]);
+        let mut of_supports = static_support_work(&travel, [&at_start, &end.reactions]);
         if !turning.is_empty() {
             for (forces, reactions) in [(&before, &at_start), (&end, &end.reactions)] {
-                let within = work_within(&way, &forces.missing(d.len()), reactions);
+                let within = work_within(&travel, &forces.missing(d.len()), reactions);
                 e.numerical_dissipation -= within / 2.0;
             }
         }
@@ -343,7 +343,7 @@ impl Ledger {
         // d.(F0 + F1)/2 - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;
-        e.numerical_dissipation += EndForces::trapezoid(&way, [&before.internal, &end.internal])
+        e.numerical_dissipation += EndForces::trapezoid(&travel, [&before.internal, &end.internal])
             - (e.strain - strain0)
             - dissipated
             - kept;

@@ -169,16 +169,16 @@ pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
 /// ```text
 /// sum over supports p of d_p (f0 + f1)_p/2      eq. (12.7)
 /// ```
-pub(super) fn static_support_work(way: &[f64], reactions: [&[(usize, f64)]; 2]) -> f64 {
+pub(super) fn static_support_work(travel: &[f64], reactions: [&[(usize, f64)]; 2]) -> f64 {
     let all = reactions.into_iter().flatten();
-    all.fold(0.0, |sum, &(p, reaction)| sum + way[p] * reaction / 2.0)
+    all.fold(0.0, |sum, &(p, reaction)| sum + travel[p] * reaction / 2.0)
 }
 
 /// Work of the forces that are missing from equilibrium (force) on a way, less that of the supports (energy): what rigid bodies
 /// hold within on the chords of their nodes.
-pub(super) fn work_within(way: &[f64], missing: &[f64], reactions: &[(usize, f64)]) -> f64 {
-    let of_supports = |left: f64, &(p, reaction): &(usize, f64)| left - way[p] * reaction;
-    reactions.iter().fold(dot(way, missing), of_supports)
+pub(super) fn work_within(travel: &[f64], missing: &[f64], reactions: &[(usize, f64)]) -> f64 {
+    let of_supports = |left: f64, &(p, reaction): &(usize, f64)| left - travel[p] * reaction;
+    reactions.iter().fold(dot(travel, missing), of_supports)
 }
 
 /// The balance of all energies, `start` being T + W at the start of the analysis:
@@ -406,20 +406,20 @@ mod tests {
     /// Two supports stretch a spring k from u to u + d, at its two ends: their work is the change of k u²/2.
     #[test]
     fn static_supports_stretch_a_linear_spring() {
-        let (k, u, way): (f64, f64, [f64; 3]) = (6.0, 0.5, [-0.125, 9.0, 0.25]);
-        let stretch = way[2] - way[0];
+        let (k, u, travel): (f64, f64, [f64; 3]) = (6.0, 0.5, [-0.125, 9.0, 0.25]);
+        let stretch = travel[2] - travel[0];
         let [before, after] = [k * u, k * (u + stretch)].map(|force| [(0, -force), (2, force)]);
         let expected = k * ((u + stretch).powi(2) - u * u) / 2.0;
-        near(static_support_work(&way, [&before, &after]), expected);
+        near(static_support_work(&travel, [&before, &after]), expected);
     }
 
     /// A rod between a support and a node that a force pulls: on the chord of the node the force does work that no support has
     /// done. A support of the node does all of it.
     #[test]
     fn rigid_bodies_hold_work_on_the_chords_of_their_nodes() {
-        let (way, missing) = ([0.0, 0.0, 0.5, 0.25], [-4.0, 0.0, 4.0, 2.0]);
-        near(work_within(&way, &missing, &[(0, -4.0), (1, 0.0)]), 2.5);
-        near(work_within(&way, &missing, &[(2, 4.0), (3, 2.0)]), 0.0);
+        let (travel, missing) = ([0.0, 0.0, 0.5, 0.25], [-4.0, 0.0, 4.0, 2.0]);
+        near(work_within(&travel, &missing, &[(0, -4.0), (1, 0.0)]), 2.5);
+        near(work_within(&travel, &missing, &[(2, 4.0), (3, 2.0)]), 0.0);
     }
 
     /// Every energy has its own sign in the balance.

@@ -184,9 +184,9 @@ impl TouchUnderWay {
         let closed: BTreeSet<SlaveKey> = pairs.iter().map(|(c, _)| c.key.slave()).collect();
         self.opened += self.closed.difference(&closed).count();
         let landing = |(constraint, pair): &(&Constraint, &ClosedPair)| {
-            let (slave, way) = (constraint.key.slave(), constraint.normal_motion(d));
-            let lands = -way > CLOSED_GAP * constraint.scale && !self.closed.contains(&slave);
-            lands.then(|| (slave, pair.force[0] * way))
+            let (slave, travel) = (constraint.key.slave(), constraint.normal_motion(d));
+            let lands = -travel > CLOSED_GAP * constraint.scale && !self.closed.contains(&slave);
+            lands.then(|| (slave, pair.force[0] * travel))
         };
         let mut landings: Vec<(SlaveKey, f64)> = pairs.iter().filter_map(landing).collect();
         let handed_over = self.opened.min(landings.len());

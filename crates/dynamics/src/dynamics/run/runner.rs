@@ -369,7 +369,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                     end: place.time_point(place.end()),
                     dt: place.end(),
                 };
-                let parted = problem.fits.way(whole);
+                let parted = problem.fits.travel(whole);
                 Some(TruncationError::new([u, a], parted, tolerance))
             }
             _ => None,
@@ -582,7 +582,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         let contact = ClosedConstraints {
             acting: solved.contact.forces.acting().collect(),
             at: problem.configurations(&self.state.u, &end.u),
-            are_held: false,
+            pairs_stiffen: false,
             followers: &followers,
             out_of_balance: &solved.equilibrium.out_of_balance,
             held: &solved.held,

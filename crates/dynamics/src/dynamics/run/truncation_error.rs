@@ -11,7 +11,7 @@ pub(crate) struct TruncationError {
     /// Displacement at the start of the step.
     start: Vec<f64>,
     /// The largest displacement from there so far, at least the way by which fits part surfaces in the step (length).
-    way: f64,
+    travel: f64,
     /// Error that the step allows.
     tolerance: f64,
     /// The last two increments, the later one last; at first the start, of no length.
@@ -49,7 +49,7 @@ impl TruncationError {
     pub fn new([u, a]: [&[f64]; 2], parted: f64, tolerance: f64) -> Self {
         TruncationError {
             start: u.to_vec(),
-            way: parted,
+            travel: parted,
             tolerance,
             last: vec![Past {
                 acceleration: a.to_vec(),
@@ -114,13 +114,13 @@ impl TruncationError {
             of_bodies[body][0] += dot(&e[dofs.clone()], &m_e[dofs]);
             of_bodies[body][1] += mass.shares[node];
         }
-        let way = larger(self.way, self.way_to(ends.u1));
+        let travel = larger(self.travel, self.travel_to(ends.u1));
         let unresolved = seen.unresolved(problem, ends.u1);
         let of_body = |([e_m_e, m], unresolved): (&[f64; 2], &f64)| {
             let error = if *m > 0.0 { (e_m_e / m).sqrt() } else { 0.0 };
-            match larger(way, unresolved / self.tolerance) {
+            match larger(travel, unresolved / self.tolerance) {
                 0.0 => 0.0,
-                way => error / way,
+                travel => error / travel,
             }
         };
         let all = of_bodies.iter().zip(&unresolved);
@@ -129,7 +129,7 @@ impl TruncationError {
 
     /// Goes on from an accepted increment.
     pub fn accept(&mut self, ends: &Ends) {
-        self.way = larger(self.way, self.way_to(ends.u1));
+        self.travel = larger(self.travel, self.travel_to(ends.u1));
         if self.last.len() == 2 {
             self.last.remove(0);
         }
@@ -140,7 +140,7 @@ impl TruncationError {
     }
 
     /// Largest displacement from the start of the step.
-    fn way_to(&self, u: &[f64]) -> f64 {
+    fn travel_to(&self, u: &[f64]) -> f64 {
         let of_node = |dofs: (&[f64], &[f64])| match dofs {
             ([x, y], [x0, y0]) => distance([*x0, *y0], [*x, *y]),
             _ => 0.0,

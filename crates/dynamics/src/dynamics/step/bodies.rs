@@ -240,7 +240,7 @@ mod tests {
         let contact = ClosedConstraints {
             acting: vec![],
             at: problem.configurations(&u0, &u1),
-            are_held: false,
+            pairs_stiffen: false,
             followers: &[],
             out_of_balance: &[],
             held: &HeldMotions::default(),

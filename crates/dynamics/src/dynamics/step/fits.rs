@@ -60,7 +60,7 @@ impl<'m> Fits<'m> {
     }
 
     /// The largest way by which they part surfaces in an interval (length).
-    pub fn way(&self, interval: Interval) -> f64 {
+    pub fn travel(&self, interval: Interval) -> f64 {
         let allowed = self.allowed(interval);
         let ways = allowed.iter().flatten().map(|[a0, a1]| (a0 - a1).abs());
         ways.fold(0.0, larger)

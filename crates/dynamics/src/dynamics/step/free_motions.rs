@@ -225,9 +225,9 @@ impl FreeMotions {
             let is_unresisted = resisted <= UNRESISTED * regular;
             let of_facets = of_facets(&self.motion(pins.as_slice()));
             if is_unresisted || resisted <= of_facets {
-                let way = pins.dot(&(&self.mean_square * p));
+                let travel = pins.dot(&(&self.mean_square * p));
                 all.push(Loose {
-                    force: (stiffness + regular) * way,
+                    force: (stiffness + regular) * travel,
                     pins,
                     is_unresisted,
                 });

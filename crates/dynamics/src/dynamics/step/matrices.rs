@@ -176,29 +176,29 @@ const SMALL_CHANGE: f64 = 1e-14;
 pub(crate) enum StiffnessForm {
     /// Tangents of the elements and contact stiffness.
     Tangent,
-    /// Tangents of the elements, in a static step with contact stiffness, and the closed constraints held.
-    Held,
-    /// Positive parts of the tangents, with the closed constraints held.
+    /// Tangents of the elements, in a static step with contact stiffness, stiffened by the closed constraints.
+    Stiffened,
+    /// Positive parts of the tangents, stiffened by the closed constraints.
     Positive,
-    /// Tangents of the elements and contact stiffness, with the closed constraints held as good as rigidly: definite
+    /// Tangents of the elements and contact stiffness, stiffened by the closed constraints as good as rigidly: definite
     /// where a static equilibrium is stable.
     Stability,
 }
 
 impl StiffnessForm {
-    /// All, from the one with which passes converge fastest to the one that is never indefinite; those that hold closed
-    /// constraints where these `are_held`.
-    pub fn forms(are_held: bool) -> &'static [Self] {
-        match are_held {
-            false => &[Self::Tangent, Self::Held, Self::Positive],
-            true => &[Self::Held, Self::Positive],
+    /// All, from the one with which passes converge fastest to the one that is never indefinite; those that closed
+    /// constraints stiffen where these `pairs_stiffen`.
+    pub fn forms(pairs_stiffen: bool) -> &'static [Self] {
+        match pairs_stiffen {
+            false => &[Self::Tangent, Self::Stiffened, Self::Positive],
+            true => &[Self::Stiffened, Self::Positive],
         }
     }
 
     /// Part of the tangents of the elements.
     fn part(self) -> TangentPart {
         match self {
-            Self::Tangent | Self::Held | Self::Stability => TangentPart::Whole,
+            Self::Tangent | Self::Stiffened | Self::Stability => TangentPart::Whole,
             Self::Positive => TangentPart::Positive,
         }
     }
@@ -209,8 +209,8 @@ pub(crate) struct ClosedConstraints<'a> {
     pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
     /// Configurations that they are linearised between.
     pub at: Configurations<'a>,
-    /// Whether K* holds them though it is definite without.
-    pub are_held: bool,
+    /// Whether they stiffen K* though it is definite without.
+    pub pairs_stiffen: bool,
     /// Changes of the loads that follow the iterate, in a static step.
     pub followers: &'a [ForceChange],
     /// Load less internal force, over all dofs, in a static step.
@@ -403,7 +403,7 @@ impl EffectiveStiffness {
                 // K* <- K* - Kc, eq. (4.12)
                 StiffnessForm::Tangent => -constraint.stiffness(pair.force, &contact.at),
                 // K* <- K* + gamma (Gn^T Gn + Gt^T Gt), gamma the largest K*_ii, eq. (4.13)
-                StiffnessForm::Held | StiffnessForm::Positive | StiffnessForm::Stability => {
+                StiffnessForm::Stiffened | StiffnessForm::Positive | StiffnessForm::Stability => {
                     let unknowns = constraint.dofs.iter().flat_map(|&dof| map.row(dof));
                     let gamma = unknowns.map(|term| diagonal[term.0]).fold(0.0, larger);
                     let rigid = match form {
@@ -413,10 +413,10 @@ impl EffectiveStiffness {
                     // a pair that slides one way holds the other way
                     let sticks = pair.state == ContactState::Stick
                         || (form == StiffnessForm::Stability && constraint.mu > 0.0);
-                    let held = constraint.hold(sticks) * (rigid * gamma);
+                    let stiffening = constraint.stiffening(sticks) * (rigid * gamma);
                     match form != StiffnessForm::Positive && !problem.integration.has_rates {
-                        true => held - constraint.stiffness(pair.force, &contact.at),
-                        false => held,
+                        true => stiffening - constraint.stiffness(pair.force, &contact.at),
+                        false => stiffening,
                     }
                 }
             };
@@ -561,17 +561,17 @@ impl<'a> System<'a> {
         let FactoredMatrix {
             solver,
             compliance,
-            update: held,
+            update,
             hinges,
             ..
         } = &mut **matrix;
-        if hinges.are_none() || held.is_some() {
+        if hinges.are_none() || update.is_some() {
             return Ok(());
         }
         let at = (compliance.map(), compliance.rotation());
         let dofs = at.0.rows().count();
         let columns = || hinges.hold(at, dofs, |b| solver.solve(b));
-        *held = Some(meter.time(|t| &mut t.solve, columns)?);
+        *update = Some(meter.time(|t| &mut t.solve, columns)?);
         Ok(())
     }
 

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Largest motion of a node, and angle (rad), by which a pass moves a body as a rigid one: of the reach of the search.
-const LARGEST_WAY: f64 = 0.8;
+const LARGEST_TRAVEL: f64 = 0.8;
 const LARGEST_ANGLE: f64 = 0.2;
 /// Part of the largest eigenvalue up to which a rigid motion is free.
 const FREE: f64 = 1e-10;
@@ -579,12 +579,12 @@ impl PinnedBody {
             let [x, y] = arm(node);
             [tx - angle * y, ty + angle * x]
         };
-        let way = |node: &usize| linear(*node)[0].hypot(linear(*node)[1]);
-        let most = self.nodes.iter().map(way).fold(0.0, larger);
+        let travel = |node: &usize| linear(*node)[0].hypot(linear(*node)[1]);
+        let most = self.nodes.iter().map(travel).fold(0.0, larger);
         let turns = self.hold != Hold::Held;
         let mut part = 1.0_f64;
-        if most > LARGEST_WAY * reach {
-            part = LARGEST_WAY * reach / most;
+        if most > LARGEST_TRAVEL * reach {
+            part = LARGEST_TRAVEL * reach / most;
         }
         if angle.abs() > LARGEST_ANGLE {
             part = part.min(LARGEST_ANGLE / angle.abs());

@@ -346,13 +346,13 @@ impl<'m> Turning<'m> {
     }
 
     /// The increment `d` with the differences L (theta_1 - theta_0) of the angles in place of s = L c.
-    pub fn way(&self, d: &[f64]) -> Vec<f64> {
-        let mut way = d.to_vec();
+    pub fn travel(&self, d: &[f64]) -> Vec<f64> {
+        let mut travel = d.to_vec();
         for body in self.bodies {
             let half = d[body.spin] / body.length / 2.0;
-            way[body.spin] = body.length * (2.0 * half.atan());
+            travel[body.spin] = body.length * (2.0 * half.atan());
         }
-        way
+        travel
     }
 
     /// Increments s = L c of the angles in place of their differences L (theta_1 - theta_0): c = 2 tan(dtheta/2).

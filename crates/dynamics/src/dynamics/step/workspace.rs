@@ -111,7 +111,7 @@ impl<'m> Workspace<'m> {
         contact: &ClosedConstraints,
     ) -> Result<(), LinearError> {
         let mut result = Ok(());
-        for &form in StiffnessForm::forms(contact.are_held) {
+        for &form in StiffnessForm::forms(contact.pairs_stiffen) {
             result = self.factorize_form(problem, (dt, form), motion, contact);
             if !matches!(result, Err(LinearError::NotPositiveDefinite { .. })) {
                 break;
@@ -120,7 +120,7 @@ impl<'m> Workspace<'m> {
         result
     }
 
-    /// Checks that an equilibrium is stable where the last K* does not say so: without pins, and closed pairs held.
+    /// Checks that an equilibrium is stable where the last K* does not say so: without pins, and not stiffened by closed pairs.
     ///
     /// # Errors
     /// That K* is not positive definite.
@@ -190,14 +190,14 @@ impl<'m> Workspace<'m> {
     }
 
     /// Writes the constraints of the chosen slave nodes between the displacements `u0` and `u` of an increment, `before` being those of
-    /// the last pass and `held` the pairs closed at the start. With `kept`, slave
+    /// the last pass and `closed_at_start` the pairs closed at the start. With `kept`, slave
     /// nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
         increment: [&[f64]; 2],
         before: &[Constraint],
-        (held, kept): (&ClosedPairs, Option<f64>),
+        (closed_at_start, kept): (&ClosedPairs, Option<f64>),
         choice: SlaveChoice,
         constraints: &mut Vec<Constraint>,
     ) {
@@ -210,7 +210,14 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.search, || search.cover(increment[1]));
         let write = || {
             let form = (problem.integration.row_form(), choice);
-            find_targets(search, increment, before, (held, kept), form, pairs);
+            find_targets(
+                search,
+                increment,
+                before,
+                (closed_at_start, kept),
+                form,
+                pairs,
+            );
             problem.constraints(pairs, increment, constraints);
         };
         meter.time(|t| &mut t.contact, write);
