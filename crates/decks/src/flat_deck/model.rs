@@ -164,7 +164,7 @@ fn point_elements(model: &Model, lines: &mut DeckWriter) {
 pub(super) struct Interactions(Vec<Interaction>);
 
 impl Interactions {
-    /// Those of the contacts.
+    /// The interactions of the contacts.
     pub fn new(contacts: &[Contact]) -> Self {
         let mut all = Vec::new();
         for contact in contacts {

@@ -357,7 +357,7 @@ pub(crate) struct InitialVelocity {
     pub values: Vec<f64>,
     /// Rows that give them, by the dof.
     pub places: BTreeMap<usize, Span>,
-    /// Those of nodes without element.
+    /// Actions on nodes without element.
     pub actions: Actions,
 }
 

@@ -20,7 +20,7 @@ pub struct Bulge {
 }
 
 impl Bulge {
-    /// That of a straight face.
+    /// The bulge of a straight face.
     pub const FLAT: Bulge = Bulge {
         coefficients: [0.0; 4],
         goes_straight_on: false,

@@ -23,7 +23,7 @@ use crate::vectors::{cross, difference, dot, length};
 pub struct JoinedNodes(HashMap<usize, Vec<usize>>);
 
 impl JoinedNodes {
-    /// Those of a model.
+    /// The joined nodes of a model.
     pub fn new(model: &Model) -> Self {
         let mut others: HashMap<usize, Vec<usize>> = HashMap::new();
         for [a, b] in model.joined_nodes() {

@@ -73,12 +73,12 @@ impl SlaveSegments {
         &self.bulges[self.ends.len() + segment]
     }
 
-    /// That of a slave face among the edges.
+    /// The edge of a slave face.
     pub fn edge_of_face<'e>(&self, edges: &'e [Edge], face: usize) -> &'e Edge {
         &edges[face]
     }
 
-    /// That of a master segment among the edges.
+    /// The edge of a master segment.
     pub fn edge_of_segment<'e>(&self, edges: &'e [Edge], segment: usize) -> &'e Edge {
         &edges[self.ends.len() + segment]
     }

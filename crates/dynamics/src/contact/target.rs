@@ -109,7 +109,7 @@ entries!(SurfacePoint, (usize, SurfacePoint));
 /// The master segment that a point was over at the start of the increment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum StartSegment {
-    /// The same.
+    /// The same segment as at the end.
     Same,
     /// Another one, with these ends and this bulge.
     Other([Vertex; 2], Bulge),

@@ -258,7 +258,7 @@ pub fn smaller(a: f64, b: f64) -> f64 {
 }
 
 impl Deformation {
-    /// That of one configuration.
+    /// The deformation of one configuration.
     #[inline(always)]
     pub fn at<const HOOP: bool>(gradient: Gradient, positive: &mut Positive) -> Self {
         *positive = gradient.is_positive::<HOOP>(*positive);

@@ -228,7 +228,7 @@ where
         })
     }
 
-    /// Those of its points.
+    /// Variables of the points of a block.
     #[inline(always)]
     fn of_points<'a>(&self, all: &'a [f64], block: usize) -> [&'a [f64]; LANES] {
         let all = self.variables_of(all, block);

@@ -748,7 +748,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         })
     }
 
-    /// That of the stress that does work on the strains of the displacements.
+    /// Work of the stress on the strains of the displacements.
     fn work<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
         law: &AnyLaw<HOOP>,

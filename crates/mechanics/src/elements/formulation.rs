@@ -76,7 +76,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         0
     }
 
-    /// That of a block.
+    /// Reference data of a block.
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference;
 
     /// Visits every point p with its deformation and stress: the one evaluation of the material, from which all else

@@ -376,7 +376,7 @@ pub(crate) enum Outcome<'a> {
 pub(crate) enum Changes<'j, 'k> {
     /// None; where joints could, the iteration ends early.
     Alone(&'j Joints<'k>),
-    /// Those of a joint.
+    /// The contacts of a joint.
     Together(&'j Joints<'k>),
 }
 

@@ -32,7 +32,7 @@ pub(super) struct CorrectionProgress {
 pub(super) struct PassAcceleration(Acceleration<1>);
 
 impl PassAcceleration {
-    /// That of the first pass.
+    /// The acceleration of a first pass, which has no earlier ones.
     pub fn new() -> Self {
         PassAcceleration(Acceleration::new(MEMORY, DEPENDENT))
     }

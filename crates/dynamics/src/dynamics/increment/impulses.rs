@@ -33,7 +33,7 @@ pub(crate) struct Impulses {
     at_rest: bool,
     /// The constraints that the impulses are for, with Phi, Psi.
     forces: ContactForces,
-    /// Those of the iterate.
+    /// Constraints of the iterate.
     of_iterate: Vec<Constraint>,
     /// The pairs that have the impulse of their force at their disposal for them, eq. (11.7); increasing.
     lent: Vec<ConstraintKey>,

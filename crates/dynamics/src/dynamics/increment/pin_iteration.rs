@@ -34,7 +34,7 @@ pub(super) struct PinState {
 }
 
 impl PinState {
-    /// That of an increment whose passes start with motions that are held.
+    /// The state of an increment whose passes start with held motions.
     pub fn new(held: HeldMotions) -> Self {
         PinState {
             held,

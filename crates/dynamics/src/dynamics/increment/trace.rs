@@ -184,7 +184,7 @@ struct Touch {
 /// Closed pairs after each of the last passes.
 #[derive(Debug, Default)]
 pub(super) struct PassContacts {
-    /// Those of one pass after the other.
+    /// The touches of all passes, in their order.
     touches: Vec<Touch>,
     /// Their number in every pass.
     counts: VecDeque<usize>,

@@ -13,9 +13,9 @@ use crate::elements::Motion;
 pub(crate) struct PairWork {
     /// The pair.
     pub key: ConstraintKey,
-    /// That of the normal force, without what follows.
+    /// Work of the normal force, without the parts below.
     pub normal: f64,
-    /// That of the normal force as it parts the surfaces of a fit.
+    /// Work of the normal force as it parts the surfaces of a fit.
     pub fit: f64,
     /// Energy that friction dissipates.
     pub friction: f64,

@@ -108,7 +108,7 @@ impl FrictionOfContact<'_> {
 }
 
 impl<'m> Frictions<'m> {
-    /// That of a model in a step.
+    /// Friction of the contacts of a model in a step.
     pub fn new(model: &'m Model, step: &'m Step) -> Self {
         let own = model.contacts.iter().map(|contact| FrictionOfContact {
             friction: &contact.interaction.friction,

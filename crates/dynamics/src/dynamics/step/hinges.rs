@@ -24,7 +24,7 @@ struct Row {
 }
 
 impl Hinges {
-    /// Those of a model in a step.
+    /// The hinges of a model in a step.
     pub fn new(model: &Model, step: &Step) -> Self {
         let row = |nodes: [usize; 2], axis: usize| Row {
             dofs: nodes.map(|node| 2 * node + axis),

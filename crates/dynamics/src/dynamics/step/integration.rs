@@ -22,7 +22,7 @@ pub(crate) struct Integration {
 }
 
 impl Integration {
-    /// That of a step.
+    /// The integration that a step asks for.
     pub fn new(step: &Step) -> Self {
         match (step.procedure, step.settings.scheme) {
             (Procedure::Static, _) => Integration {

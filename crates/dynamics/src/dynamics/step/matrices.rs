@@ -58,7 +58,7 @@ pub(crate) struct FactoredMatrix {
 pub(crate) struct SolveVectors {
     /// Forces turned back, over all dofs.
     pub forces: Vec<f64>,
-    /// Those of the response at the nodes of constraints.
+    /// Vectors of the response at the nodes of constraints.
     pub response: ResponseVectors,
 }
 

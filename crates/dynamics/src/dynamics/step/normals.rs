@@ -93,7 +93,7 @@ impl Normals {
 pub(super) struct Vertices(HashMap<usize, [Option<usize>; 2]>);
 
 impl Vertices {
-    /// Those of the contacts of a model.
+    /// Normals at the nodes of the contacts of a model.
     pub fn new(model: &Model) -> Self {
         let mut all: HashMap<usize, [Option<usize>; 2]> = HashMap::new();
         for contact in &model.contacts {

@@ -20,7 +20,7 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
-    /// That of a run before its first increment.
+    /// Nothing seen yet, before the first increment of a run.
     pub fn new(parts: &Parts) -> Self {
         let none = |count: usize| std::iter::repeat_n(0.0, count).collect();
         Seen {

@@ -344,7 +344,7 @@ impl Assembly {
 }
 
 impl UpdateStack {
-    /// Those of a limb.
+    /// Stack of the updates of a limb.
     pub fn new(limb: &LimbFactor) -> Self {
         let (mut updates, mut stack) =
             (UpdateStack::default(), Vec::<(Option<usize>, usize)>::new());
