@@ -37,8 +37,8 @@ class Run:
     """The deck's name within the folder of the decks."""
     scheme: str = "deck"
     """The deck's, or "default": without its STICKSLIP card."""
-    impact_time: str = "deck"
-    """The deck's, or the value of IMPACT TIME on the only setting of all steps."""
+    settings: dict[str, str] = field(default_factory=dict)
+    """The only settings of all steps (STICKSLIP), in place of the deck's."""
     formulation: str = "deck"
     """The deck's, or the discretisation of all contacts, as TYPE of CONTACT PAIR."""
     refine: int = 1
@@ -76,8 +76,8 @@ class Run:
         deck = Deck.read((made if generated else decks) / self.deck)
         if self.scheme == "default":
             deck.set_settings()
-        if self.impact_time != "deck":
-            deck.set_settings(IMPACT_TIME=self.impact_time)
+        if self.settings:
+            deck.set_settings(**self.settings)
         if self.formulation != "deck":
             deck.set_formulation(self.formulation)
         if self.divide != 1.0 or self.until is not None:

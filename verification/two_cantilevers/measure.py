@@ -139,6 +139,10 @@ def measure(study: runner.Study) -> None:
     """Checks, tabulates and draws what the runs give."""
     for case in study.runs:
         study.check_run(case.name, 0.5 / case.refine)
+    for case, results in study.group("otherwise"):
+        reference = study.results["default_A_mu04"]
+        part = deviation(results, reference) / float(np.abs(tip(reference)).max())
+        study.check("path solved otherwise: deviation / largest displacement", case.name, part)
     tabulate(study)
     if any(study.group("paper_dt")):
         draw_displacement(study, "UPPER_TIP", "the upper tip")
