@@ -95,6 +95,9 @@ def measure(study: runner.Study) -> None:
         if run.name == "brake":
             study.check("pressing force / pressure", run.name, found["pressing force"] / 20.0)
             study.check("friction force / pressure", run.name, found["friction force"] / (0.5 * 20.0))
+        if run.name == "tyre":
+            rolled = np.abs([frame["U"][result.node_set("TYRE"), 0].mean() for frame in result.frames])
+            study.check("way along the road, tyre / edge", run.name, rolled.max() / result.edge_length)
         if run.name + DYNAMIC not in results:
             continue
         twin = results[run.name + DYNAMIC]

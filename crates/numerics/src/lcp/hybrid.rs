@@ -13,7 +13,8 @@ use super::kept::KeptFactors;
 use super::known::Known;
 use super::lemke::{LemkeSettings, lemke_forces};
 use super::problems::{
-    ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError, Method, Spare, expect_size,
+    ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError, Method, Spare, Stability,
+    expect_size,
 };
 use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
@@ -97,11 +98,12 @@ fn solve_in(
         None => Ok(solution),
         Some(motion) => {
             let from = (&solution, motion);
-            let stable = tip_over(problem, &scaled, from, (&SOLVERS, &mut counters));
-            Ok(stable.unwrap_or(FrictionalSolution {
-                is_unstable: true,
-                ..solution
-            }))
+            let (found, stability) =
+                match tip_over(problem, &scaled, from, (&SOLVERS, &mut counters)) {
+                    Some(stable) => (stable, Stability::Tipped),
+                    None => (solution, Stability::Unstable),
+                };
+            Ok(FrictionalSolution { stability, ..found })
         }
     }
 }
@@ -338,7 +340,7 @@ fn finish(
         gap: spare.vector(2, gap),
         slip: spare.vector(3, slip),
         free: DVector::from_column_slice(&x),
-        is_unstable: false,
+        stability: Stability::default(),
         residual,
         method,
         counters,

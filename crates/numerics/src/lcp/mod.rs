@@ -38,6 +38,6 @@ pub use known::Known;
 pub use lemke::{LemkeSettings, covering_vector, lemke};
 pub use problems::{
     ContactState, Counters, FreeUnknowns, FrictionalLcp, FrictionalSolution, Lcp, LcpError,
-    LcpSolution, Method,
+    LcpSolution, Method, Stability,
 };
 pub use residual::residual;

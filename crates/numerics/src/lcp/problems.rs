@@ -462,14 +462,26 @@ pub struct FrictionalSolution {
     pub state: Vec<ContactState>,
     /// Free unknowns x.
     pub free: DVector<f64>,
-    /// Whether contacts leave a motion of the free unknowns unstable, and tip over to none that would hold it.
-    pub is_unstable: bool,
+    /// What contacts do against the free unknowns.
+    pub stability: Stability,
     /// Scaled residual of the contact conditions.
     pub residual: f64,
     /// The method that found the states.
     pub method: Method,
     /// Work done, by all methods tried.
     pub counters: Counters,
+}
+
+/// What contacts do against the free unknowns in a solution.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Stability {
+    /// They resist all motions that are resisted at all.
+    #[default]
+    Stable,
+    /// They resist since a body has tipped over to another contact.
+    Tipped,
+    /// A motion is unstable, and tips over to no contact that would hold it.
+    Unstable,
 }
 
 /// Memory of a solution that is not needed any more, for the next one.

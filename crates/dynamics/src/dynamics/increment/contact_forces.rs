@@ -8,6 +8,7 @@ use crate::contact::tolerances::{LIMIT_SLIP, SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::System;
+use crate::lcp::Stability;
 use crate::linear::larger;
 
 /// Constraints by which a problem grows at least where a body is not held.
@@ -155,7 +156,7 @@ impl ContactForces {
             if let Some(free) = system.free()
                 && (solved.is_err()
                     || free.goes_too_far()
-                    || (free.is_unstable() && std::mem::take(&mut may_tip)))
+                    || (free.stability() == Stability::Unstable && std::mem::take(&mut may_tip)))
                 && self.enter_nearest(inside)
             {
                 continue;

@@ -281,6 +281,7 @@ impl Passes<'_, '_> {
             returned: Returned::default(),
             held: HeldMotions::default(),
             pairs_stiffen: false,
+            has_tipped: false,
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{
     Equilibrium, HeldMotions, Loose, StepProblem, Workspace, difference, sum,
 };
+use crate::lcp::Stability;
 use crate::linear::{larger, largest};
 
 /// Force along a motion that nothing resists, beside the other forces, that is let be where the motion cannot be held.
@@ -31,6 +32,8 @@ pub(super) struct PinState {
     before: Option<Unbalance>,
     /// Motions that are held.
     pub held: HeldMotions,
+    /// Whether a body has tipped over from one contact to another.
+    pub has_tipped: bool,
 }
 
 impl PinState {
@@ -71,6 +74,7 @@ impl PinIteration<'_, '_> {
         loop {
             self.free_pins(&unbalanced, &state.held, v)?;
             let closing = self.balance(contact, weight, v)?;
+            state.has_tipped |= self.tips();
             self.take_held(&mut state.held, v);
             // in balance other pairs may be closed
             if self.follow_held(contact, &mut state.held, v) {
@@ -134,6 +138,12 @@ impl PinIteration<'_, '_> {
                 return Ok(closing);
             }
         }
+    }
+
+    /// Whether a body has tipped over, or is about to.
+    fn tips(&self) -> bool {
+        let free = self.workspace.stiffness.k.free();
+        free.is_some_and(|free| free.stability() != Stability::Stable)
     }
 
     /// Makes the rigid motions of the bodies that are not held unknowns.

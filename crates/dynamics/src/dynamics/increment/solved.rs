@@ -34,6 +34,8 @@ pub(crate) struct Solved {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
+    /// Whether a body has tipped over, of which the next increment knows nothing.
+    pub has_tipped: bool,
 }
 
 /// The motion of a converged increment between its ends, which another attempt from the same start may begin
@@ -61,10 +63,12 @@ impl Path {
 }
 
 impl Solved {
-    /// The motion of a static increment of length `dt` at a constant rate, which the next one begins with.
+    /// The motion of a static increment of length `dt` at a constant rate, which the next one begins with: none where a body has
+    /// tipped over to another contact, on which it stays.
     pub fn static_path(&self, dt: f64) -> Path {
+        let rate = |d: &f64| if self.has_tipped { 0.0 } else { d / dt };
         Path {
-            v: self.d.iter().map(|d| d / dt).collect(),
+            v: self.d.iter().map(rate).collect(),
             a: vec![0.0; self.d.len()],
             closed: self.end.contact.clone(),
             held: self.held.clone(),

@@ -132,7 +132,7 @@ impl<'m> StaticAttempt<'_, 'm> {
             {
                 trace.solved(residual);
                 self.pins().check_held(&contact.forces, &pins, v)?;
-                return self.finish(&d, contact, pins.held, v, true);
+                return self.finish(&d, contact, pins, v, true);
             }
 
             // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, which takes the force K d_p
@@ -180,7 +180,7 @@ impl<'m> StaticAttempt<'_, 'm> {
             has_no_pairs &= contact.forces.closed.is_empty();
             if ends {
                 self.pins().check_held(&contact.forces, &pins, v)?;
-                return self.finish(&d, contact, pins.held, v, false);
+                return self.finish(&d, contact, pins, v, false);
             }
         }
         Err(Cause::NotConverged)
@@ -245,12 +245,12 @@ impl<'m> StaticAttempt<'_, 'm> {
         &mut self,
         d: &[f64],
         contact: ContactStates,
-        held: HeldMotions,
+        pins: PinState,
         v: &mut Vectors,
         is_balanced: bool,
     ) -> Result<Solved, Cause> {
         let mut solved = self.passes.finish(d, contact, v, is_balanced)?;
-        solved.held = held;
+        (solved.held, solved.has_tipped) = (pins.held, pins.has_tipped);
         solved.end.v.fill(0.0);
         solved.end.check_finite()?;
         Ok(solved)

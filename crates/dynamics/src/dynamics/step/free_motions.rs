@@ -4,7 +4,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use crate::contact::Constraint;
-use crate::lcp::{FreeUnknowns, FrictionalLcp, FrictionalSolution};
+use crate::lcp::{FreeUnknowns, FrictionalLcp, FrictionalSolution, Stability};
 use crate::linear::{larger, largest};
 
 /// eps of eq. (12.5) beside the stiffness of the pins in the mean.
@@ -55,7 +55,7 @@ struct Answer {
     under_contact: DMatrix<f64>,
     /// E is this part of the mean square motion (force/length).
     regular: f64,
-    is_unstable: bool,
+    stability: Stability,
 }
 
 /// A motion that contact hardly resists.
@@ -148,7 +148,7 @@ impl FreeMotions {
             p: solution.free.clone(),
             under_contact: problem.stiffness_under_contact(&solution.state),
             regular: self.regular(),
-            is_unstable: solution.is_unstable,
+            stability: solution.stability,
         });
         let of_pairs = solution.pn.iter().copied().fold(0.0, larger);
         let none = self.none_beside(larger(self.largest_force(), of_pairs));
@@ -252,11 +252,11 @@ impl FreeMotions {
         along.as_slice().to_vec()
     }
 
-    /// Whether the last answer leaves a motion unstable.
-    pub fn is_unstable(&self) -> bool {
+    /// What contact does against the motions in the last answer.
+    pub fn stability(&self) -> Stability {
         self.answer
             .as_ref()
-            .is_some_and(|answer| answer.is_unstable)
+            .map_or(Stability::default(), |answer| answer.stability)
     }
 
     /// Whether the last answer moves a node farther than it may go.
