@@ -27,6 +27,15 @@ EXAMPLES = (
     "shapes_in_a_box/shapes_five",
     "snap_fit/snap_fit_damped",
 )
+STATICS = (
+    "bumper/bumper",
+    "disc_spring/disc_spring_mu014",
+    "o_ring/o_ring_groove",
+    "press_fit/press_fit_mu01",
+    "roller/roller_free",
+)
+"""Examples with static steps."""
+
 SHORT = 300
 """Increments of an example at most, but for the first one, which has 1000."""
 
@@ -69,6 +78,11 @@ def example(name: str) -> Bench:
     return Bench(name, text, ())
 
 
+def whole(name: str) -> Bench:
+    """A deck of input/ as it stands."""
+    return Bench(name, lambda: Deck.read(ROOT / "input" / f"{name}.inp").text(), ())
+
+
 def two_blocks(size: int, scheme: str, passes: int = 1) -> Bench:
     """Two blocks of size x size/2 elements each, pressed and sheared, friction 0.3: nodes of one on segments of the
     other, or pairs in both orders whose discretisation the program chooses."""
@@ -79,6 +93,30 @@ def two_blocks(size: int, scheme: str, passes: int = 1) -> Bench:
 
     sides = "_two_sided" if passes == 2 else ""
     return Bench(f"two_blocks_{size}{sides}", text, size=size if passes == 1 else 0)
+
+
+def waves(size: int) -> Bench:
+    """Two blocks whose increments are so short that their waves are resolved."""
+
+    def text() -> str:
+        deck = Deck.parse(elastic_blocks.two_blocks(size, 0.3, passes=1))
+        deck.set_increments(2e-4, 1000)
+        return deck.text()
+
+    return Bench(f"two_blocks_{size}_waves", text)
+
+
+def static_blocks(size: int, friction: float) -> Bench:
+    """Two blocks pressed and sheared in a static step of 20 increments, surface to surface."""
+
+    def text() -> str:
+        kind = ", TYPE=SURFACE TO SURFACE"
+        deck = Deck.parse(elastic_blocks.two_blocks(size, friction, passes=1, kind=kind))
+        (card_of_step,) = deck.find("DYNAMIC")
+        card_of_step.keyword, card_of_step.head = "STATIC", "*STATIC, DIRECT"
+        return deck.text()
+
+    return Bench(f"two_blocks_{size}_static_mu{round(10 * friction):02}", text)
 
 
 def dense_decks(scheme: str) -> list[Bench]:
@@ -182,8 +220,11 @@ def group(name: str, scheme: str, sizes: tuple[int, ...]) -> list[Bench]:
             strip_and_blocks(1, 1999),
         ],
         "dense": lambda: dense_decks(scheme),
+        "waves": lambda: [waves(size) for size in (32, 64)],
+        "static": lambda: [whole(name) for name in STATICS]
+        + [static_blocks(size, friction) for friction in (0.0, 0.3) for size in (32, 64, 128)],
     }
     return groups[name]()
 
 
-GROUPS = ("examples", "blocks", "scale", "many", "dense")
+GROUPS = ("examples", "blocks", "scale", "many", "dense", "waves", "static")
