@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from stickslip import program
-from stickslip.decks import Grid, card, disc, dry, elastic
+from stickslip.decks import Grid, card, disc, dry, elastic, outline
 from stickslip.program import RunStopped
 from stickslip.result import Result
 
@@ -330,3 +330,51 @@ def test_a_part_may_be_moved_before_it_touches_anything(tmp_path: Path, way: flo
     result = program.run(deck, tmp_path, "--threads", "1")
     moved = result.frame(result.history.time[-1])["U"]
     assert np.abs(moved[:, :2] - [way, 0.0]).max() < 1e-12
+
+
+ROUND_GENERAL = card("CONTACT") + card("CONTACT INCLUSIONS, ALL EXTERIOR") + card(
+    "CONTACT PROPERTY ASSIGNMENT", ("", "", "DRY")
+)
+
+
+def of_pair(kind: str) -> str:
+    """A pair of the skins of a disc and its floor."""
+    pair = card(f"CONTACT PAIR, INTERACTION=DRY, TYPE={kind}", ("ROUND", "FLOOR"))
+    return outline("ROUND", "FLOOR") + pair
+
+
+@pytest.mark.parametrize("young", [1e4, 1e7])
+@pytest.mark.parametrize("mu", [0.0, 0.5])
+@pytest.mark.parametrize(
+    "contact", [of_pair("NODE TO SURFACE"), of_pair("SURFACE TO SURFACE"), ROUND_GENERAL]
+)
+def test_a_disc_on_a_vertex_tips_over_once(
+    contact: str, mu: float, young: float, tmp_path: Path
+) -> None:
+    sides, radius = 16, 0.5
+    floor = block("FLOOR", (20, 2), (2.0, 0.2), x=-1.0, y=-0.2)
+    labels = floor.next_node, floor.next_element
+    middle = (0.01, radius + 1e-3)
+    round_body = disc("ROUND", middle, radius, 0.0, sides // 4, 2, *labels)
+    steps = [static(card("DLOAD", ("ROUND", "GRAV", 10.0, 0.0, -1.0)), dt=0.2), static(dt=0.2)]
+    deck = tmp_path / "deck.inp"
+    cards = [
+        floor.mesh("CPE4"),
+        round_body.mesh("CPE4"),
+        floor.side_nodes("BASE", "bottom"),
+        elastic(young, 0.3, 1.0, "FLOOR", "ROUND"),
+        dry(mu),
+        contact,
+        card("BOUNDARY", ("BASE", 1, 2)),
+        *steps,
+    ]
+    deck.write_text("".join(cards))
+    result = program.run(deck, tmp_path, "--threads", "1")
+    energy = result.history.energy
+    assert (np.abs(energy.balance) <= 1e-8 * energy.scale).all()
+    nodes = result.node_labels >= floor.next_node
+    travel = np.array([np.nanmean(frame["U"][nodes, 0]) for frame in result.frames])
+    face = 2.0 * radius * sin(pi / sides)
+    assert np.abs(travel).max() < face
+    # half a face, then it stays
+    assert np.ptp(travel[1:]) < 0.1 * face

@@ -144,7 +144,7 @@ impl FrictionalLcp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lcp::{LcpMethod, Method, solve_frictional};
+    use crate::lcp::{LcpMethod, Method, Stability, solve_frictional};
 
     const WEIGHT: f64 = 3.0;
 
@@ -223,6 +223,25 @@ mod tests {
         // about the second point, by the moment 0.5 W, which the small stiffness takes
         assert_eq!(found.pn[0], 0.0);
         assert!(found.free[2] < -1e8 && found.gap[0] > 1e8, "{}", found.free);
+    }
+
+    #[test]
+    fn a_block_that_stands_on_one_point_tips_over_to_the_other() {
+        // its weight is over the second point, and turns it on; the first one is open
+        let on_a_point = |resists: f64| {
+            let mut problem = block(1.0, 0.0, 0.0, 0.3);
+            problem.gap[0] = 10.0;
+            problem.free.stiffness[(2, 2)] = resists;
+            let warm = [ContactState::Open, ContactState::Stick];
+            solve_frictional(&problem, Some(&warm), LcpMethod::Hybrid).expect("solved")
+        };
+        let stands = on_a_point(1e2);
+        assert_eq!(stands.stability, Stability::Stable);
+        assert_eq!(stands.pn[0], 0.0);
+        let tips = on_a_point(-0.5);
+        assert_eq!(tips.stability, Stability::Tipped);
+        assert!(tips.pn.iter().all(|pn| *pn > 0.0), "{}", tips.pn);
+        assert!((tips.pn.sum() - WEIGHT).abs() < 1e-7);
     }
 
     #[test]

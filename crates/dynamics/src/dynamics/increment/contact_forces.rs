@@ -13,6 +13,8 @@ use crate::linear::larger;
 
 /// Constraints by which a problem grows at least where a body is not held.
 const FEWEST: usize = 3;
+/// How often it grows where the body is unstable on those in it.
+const TIPS: usize = 3;
 
 /// Constraints with the forces (or impulses) of those that are closed.
 #[derive(Debug, Clone, Default)]
@@ -140,7 +142,7 @@ impl ContactForces {
         response.show_pins(system);
         let mut entered =
             inside.contains(&true) || self.enter(inside, free, overlap) || system.free().is_some();
-        let mut may_tip = true;
+        let mut tips = 0..TIPS;
         while entered {
             let constraints: SmallVec<[_; FEW]> = chosen(&self.constraints, inside).collect();
             terms.clear();
@@ -156,7 +158,7 @@ impl ContactForces {
             if let Some(free) = system.free()
                 && (solved.is_err()
                     || free.goes_too_far()
-                    || (free.stability() == Stability::Unstable && std::mem::take(&mut may_tip)))
+                    || (free.stability() == Stability::Unstable && tips.next().is_some()))
                 && self.enter_nearest(inside)
             {
                 continue;

@@ -369,8 +369,8 @@ fn impulses(
     Ok(closed)
 }
 
-/// The impulses of constraints of which some have the standing impulse P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.7): V0 - M^-1 Bn^T P0 is
-/// the velocity without them. Where one would pull with all of P0 its pair has none.
+/// The impulses of constraints of which some have the standing impulse P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.7).
+/// V0 - M^-1 Bn^T P0 is the velocity without them. Where one would pull with all of P0 its pair has none.
 fn standing_impulses(
     constraints: &[Constraint],
     mut standing: Vec<f64>,

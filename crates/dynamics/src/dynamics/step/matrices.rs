@@ -485,8 +485,9 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.factorization, || matrix.factorize())
     }
 
-    /// Makes the motions of pins of the stiffness `a`, of which a part is `held`, free unknowns of the complementarity
-    /// problems, at the positions `at`, with forces that are not balanced there. N are the changes of forces that the matrix leaves out, over all dofs, and the reach is how far nodes may go.
+    /// Makes the motions of pins of the stiffness `a`, of which a part is `held`, free unknowns of the complementarity problems.
+    /// The bodies are at the positions `at`, with forces that are not balanced there. N are the changes of forces that the
+    /// matrix leaves out, over all dofs. The reach is how far nodes may go.
     ///
     /// ```text
     /// Z = W (S a + N Z),   works W S a      eq. (12.3)
