@@ -2,9 +2,9 @@
 //! by their row sums.
 
 use rayon::prelude::*;
-use sprs::CsMatView;
 
 use super::assembled::{BlockSum, united};
+use super::symmetric::SymmetricMatrix;
 use super::{AddedBlocks, Assembled, LinearError, LinearSolver, SMALLEST, larger, largest};
 use crate::archive::{Archive, ArchiveError};
 
@@ -109,13 +109,19 @@ impl CheckedSolver {
             ..
         } = self;
         let sum = sum.as_ref().filter(|_| *has_blocks);
-        let whole = sum.map_or(matrix.matrix(), BlockSum::view);
-        if whole.data().iter().any(|value| !value.is_finite()) {
+        let whole = sum.map_or(matrix.matrix(), BlockSum::matrix);
+        if whole.values.iter().any(|value| !value.is_finite()) {
             return Err(LinearError::NotFinite("the matrix"));
         }
         solver.factorize(whole)?;
         self.factorized = true;
         Ok(())
+    }
+
+    /// Gives up the factors.
+    pub fn give_up_factors(&mut self) {
+        self.factorized = false;
+        self.solver.give_up_factors();
     }
 
     /// Whether the factors are those of the matrix.
@@ -142,8 +148,8 @@ impl CheckedSolver {
     }
 
     /// The matrix with the added blocks.
-    fn whole(&self) -> CsMatView<'_, f64> {
-        self.sum().map_or(self.matrix.matrix(), BlockSum::view)
+    fn whole(&self) -> &SymmetricMatrix {
+        self.sum().map_or(self.matrix.matrix(), BlockSum::matrix)
     }
 
     /// The solution for the right-hand side `b`.
@@ -289,7 +295,7 @@ const ROWS: usize = 16_384;
 
 /// max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, b0 being what the solve began with, 0 where numbers are so small
 /// that they have lost digits; the rows of the symmetric A are its columns.
-fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, b0]: [&[f64]; 2]) -> f64 {
+fn relative_residual(a: &SymmetricMatrix, x: &[f64], [b, b0]: [&[f64]; 2]) -> f64 {
     let of_rows =
         |(k, (b, b0)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, b0));
     let both =
@@ -304,23 +310,22 @@ fn relative_residual(a: CsMatView<'_, f64>, x: &[f64], [b, b0]: [&[f64]; 2]) -> 
 
 /// The largest |b - A x| and |b0| + |A| |x| in the rows from `first` on, which `b` and `b0` are of.
 fn residual_and_size(
-    a: CsMatView<'_, f64>,
+    a: &SymmetricMatrix,
     x: &[f64],
     (first, b, b0): (usize, &[f64], &[f64]),
 ) -> [f64; 2] {
-    let (starts, rows, values) = (a.indptr(), a.indices(), a.data());
-    let starts = &starts.raw_storage()[first..];
+    let (starts, rows) = (&a.pattern.starts()[first..], a.pattern.all_rows());
     let (mut error, mut scale) = (0.0, 0.0);
     for (ends, (b, b0)) in starts.windows(2).zip(b.iter().zip(b0)) {
-        let entries = ends[0]..ends[1];
+        let entries = ends[0] as usize..ends[1] as usize;
         let (mut residual, mut size) = ([*b, 0.0], [b0.abs(), 0.0]);
-        let mut take = |side: usize, value: f64, row: usize| {
-            let term = value * x[row];
+        let mut take = |side: usize, value: f64, row: u32| {
+            let term = value * x[row as usize];
             residual[side] -= term;
             size[side] += term.abs();
         };
         // the terms of x and y side by side
-        let (twos, rest) = values[entries.clone()].as_chunks::<2>();
+        let (twos, rest) = a.values[entries.clone()].as_chunks::<2>();
         let (rows_of_twos, rows_of_rest) = rows[entries].as_chunks::<2>();
         for ([p, q], [i, j]) in twos.iter().zip(rows_of_twos) {
             take(0, *p, *i);

@@ -8,6 +8,7 @@ mod multifrontal;
 mod nodal_matrix;
 mod solver;
 mod sprs_ldl;
+mod symmetric;
 mod transformation;
 
 pub use assembled::{AddedBlocks, Assembled};
@@ -17,6 +18,7 @@ pub use multifrontal::{MultifrontalLdl, factor_entries};
 pub use nodal_matrix::NodalMatrix;
 pub use solver::{LinearError, LinearSolver};
 pub use sprs_ldl::SprsLdl;
+pub use symmetric::{Pattern, SymmetricMatrix};
 pub use transformation::{Rotation, Transformation};
 
 /// Sparse factorisation.

@@ -3,7 +3,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
-use sprs::CsMatView;
+
+use super::symmetric::SymmetricMatrix;
 
 /// Rows side by side.
 const ROWS: usize = 2;
@@ -30,15 +31,14 @@ pub struct NodalMatrix {
 
 impl NodalMatrix {
     /// A symmetric matrix.
-    pub fn new(matrix: CsMatView<'_, f64>) -> Self {
+    pub fn new(matrix: &SymmetricMatrix) -> Self {
         let (mut starts, mut runs) = (vec![0], Vec::<ConsecutiveNodes>::new());
         let mut entries = Vec::new();
-        for first_row in (0..matrix.cols()).step_by(ROWS) {
+        for first_row in (0..matrix.size()).step_by(ROWS) {
             entries.clear();
-            for row in first_row..(first_row + ROWS).min(matrix.cols()) {
-                let of_row = matrix.outer_view(row);
-                let of_row = of_row.iter().flat_map(|row| row.iter());
-                entries.extend(of_row.map(|(node, value)| (node, row - first_row, *value)));
+            for row in first_row..(first_row + ROWS).min(matrix.size()) {
+                let of_row = matrix.column(row);
+                entries.extend(of_row.map(|(node, value)| (node, row - first_row, value)));
             }
             entries.retain(|entry| entry.2 != 0.0);
             entries.sort_unstable_by_key(|entry| entry.0);
@@ -146,9 +146,10 @@ mod tests {
         elements.extend((10..n - 8).step_by(2).map(|i| vec![i, i + 2, i + 3]));
         let (matrix, v) = (matrix(n, &elements), |dof: usize| (0.3 * dof as f64).sin());
         let mut expected = vec![0.0; 2 * n];
-        for (column, rows) in matrix.matrix().outer_iterator().enumerate() {
+        for column in 0..n {
             for i in 0..2 {
-                let terms = rows.iter().map(|(row, m)| m * v(2 * row + i));
+                let terms = matrix.matrix().column(column);
+                let terms = terms.map(|(row, m)| m * v(2 * row + i));
                 expected[2 * column + i] = terms.fold(0.0, |sum, term| sum + term);
             }
         }

@@ -1,6 +1,6 @@
 //! Interface of the direct solvers, and their errors.
 
-use sprs::CsMatView;
+use super::symmetric::SymmetricMatrix;
 
 /// Why a factorisation or a solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -43,11 +43,14 @@ pub enum LinearError {
 ///
 /// A matrix with the pattern of the last one needs no symbolic analysis.
 pub trait LinearSolver: Send {
-    /// Factorises `a` (both triangles, by columns).
+    /// Factorises `a`.
     ///
     /// # Errors
     /// A pivot that is not positive, or a failure of the library.
-    fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError>;
+    fn factorize(&mut self, a: &SymmetricMatrix) -> Result<(), LinearError>;
+
+    /// Gives up the factors with their memory.
+    fn give_up_factors(&mut self);
 
     /// Begins a solve with the right-hand side `b`. Must follow a successful `factorize`.
     fn begin(&mut self, b: &[f64]);

@@ -1,11 +1,12 @@
 //! Binding of the sprs-ldl library, a simplicial factorisation that shares nothing with the multifrontal one; parts of
 //! the inverse come from unit right-hand sides.
 
-use sprs::{CsMatView, PermOwned, SymmetryCheck};
+use sprs::{CsMat, PermOwned, SymmetryCheck};
 use sprs_ldl::{LdlNumeric, LdlSymbolic};
 
-use super::multifrontal::{Pattern, minimum_degree};
+use super::multifrontal::minimum_degree;
 use super::solver::{LinearError, LinearSolver, check_pivots};
+use super::symmetric::{Pattern, SymmetricMatrix};
 
 /// Up-looking LDL^T of sprs-ldl with an approximate minimum degree order: the reference
 /// implementation beside the multifrontal one.
@@ -23,28 +24,33 @@ pub struct SprsLdl {
 }
 
 impl LinearSolver for SprsLdl {
-    fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
-        if a.cols() < 2 {
-            self.single = a.data().first().copied();
+    fn factorize(&mut self, a: &SymmetricMatrix) -> Result<(), LinearError> {
+        if a.size() < 2 {
+            self.single = a.values.first().copied();
             return check_pivots(self.single.into_iter().map(|pivot| (0, pivot)));
         }
         let library = |error| LinearError::Library(format!("{error}"));
-        let pattern = Pattern::of(a);
+        let matrix = of_library(a);
+        let matrix = matrix.view();
         match &mut self.factor {
-            Some(factor) if self.pattern == pattern => factor.update(a).map_err(library)?,
+            Some(factor) if self.pattern == a.pattern => factor.update(matrix).map_err(library)?,
             _ => {
-                self.order = minimum_degree(&pattern)?;
+                self.order = minimum_degree(&a.pattern)?;
                 let permutation = PermOwned::new(self.order.clone());
                 let check = SymmetryCheck::DontCheckSymmetry;
-                let symbolic = LdlSymbolic::new_perm(a, permutation, check);
-                self.factor = Some(symbolic.factor(a).map_err(library)?);
-                self.pattern = pattern;
+                let symbolic = LdlSymbolic::new_perm(matrix, permutation, check);
+                self.factor = Some(symbolic.factor(matrix).map_err(library)?);
+                self.pattern = a.pattern.clone();
             }
         }
         let Some(factor) = &self.factor else {
             return Ok(());
         };
         check_pivots(self.order.iter().copied().zip(factor.d().iter().copied()))
+    }
+
+    fn give_up_factors(&mut self) {
+        *self = SprsLdl::default();
     }
 
     fn begin(&mut self, b: &[f64]) {
@@ -69,6 +75,14 @@ impl LinearSolver for SprsLdl {
     fn end(&mut self, x: &mut [f64]) {
         x.copy_from_slice(&self.solution());
     }
+}
+
+/// A matrix in the form of the library.
+fn of_library(a: &SymmetricMatrix) -> CsMat<f64> {
+    let of_library = |all: &[u32]| all.iter().map(|&index| index as usize).collect();
+    let starts = of_library(a.pattern.starts());
+    let rows = of_library(a.pattern.all_rows());
+    CsMat::new_csc((a.size(), a.size()), starts, rows, a.values.clone())
 }
 
 impl SprsLdl {

@@ -181,10 +181,13 @@ mod tests {
         let model = block([10, 9], is_triangular, has);
         let (elements, nodes) = (Elements::new(&model), model.mesh.node_count());
         let masses = [Redistribution::default(), redistribution(&model)].map(|redistribution| {
-            let dense = nodal_mass((&elements, &[]), &redistribution, nodes)
-                .matrix()
-                .to_dense();
-            DMatrix::from_fn(nodes, nodes, |i, j| dense[[i, j]])
+            let mass = nodal_mass((&elements, &[]), &redistribution, nodes);
+            let mut dense = DMatrix::zeros(nodes, nodes);
+            for k in 0..nodes {
+                let column = mass.matrix().column(k);
+                column.for_each(|(row, value)| dense[(row, k)] = value);
+            }
+            dense
         });
         (masses, model.mesh.coordinates)
     }

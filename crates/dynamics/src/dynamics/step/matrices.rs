@@ -242,7 +242,8 @@ fn masses(problem: &StepProblem) -> Masses {
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M, factorised when an impulse first needs it, then with a diagonal at nodes without mass.
+    /// M, factorised for the acceleration at the start, and anew when an impulse first needs it, with a diagonal at nodes
+    /// without mass.
     pub m: FactoredMatrix,
     /// Angles of the bodies in K*.
     angles: BodyAngles,

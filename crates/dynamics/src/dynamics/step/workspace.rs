@@ -291,6 +291,7 @@ impl<'m> Workspace<'m> {
             a = acceleration;
             problem.follow_donors(&mut a);
         }
+        self.stiffness.m.solver.give_up_factors();
         a
     }
 

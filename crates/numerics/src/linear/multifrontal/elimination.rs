@@ -2,13 +2,15 @@
 //! branches side by side; what is added up in the fronts: entries of the matrix, and what eliminating the supernodes
 //! below has left. docs/numerics.md, Factorisation.
 
+use std::sync::{Mutex, PoisonError};
+
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
-use sprs::CsMatView;
 
 use super::factor::{Entries, Factor, LimbFactor, PivotPlace};
 use super::front::Front;
 use super::supernodes::Layout;
+use crate::linear::symmetric::Pattern;
 
 /// A limb with its part of L.
 type OwnFactor<'a> = (&'a mut LimbFactor, &'a mut [f64]);
@@ -17,26 +19,36 @@ type OwnFactor<'a> = (&'a mut LimbFactor, &'a mut [f64]);
 #[derive(Debug, Default)]
 pub struct Elimination {
     assemblies: Vec<Assembly>,
-    fronts: Vec<Fronts>,
 }
 
-/// Space for the fronts of a limb.
+/// Memory of factorisations, one after the other.
 #[derive(Debug, Default)]
-pub struct Fronts {
-    front: Front,
-    /// What eliminating supernodes has left in the rows below, for their parents: the lower triangles, column by
-    /// column, at the places of [`UpdateStack`].
-    stack: Entries,
+pub struct FrontSpace {
+    /// Fronts that no thread uses at present.
+    fronts: Mutex<Vec<Front>>,
+    /// Of every limb what eliminating supernodes has left in the rows below, for their parents: the lower triangles,
+    /// column by column, at the places of [`UpdateStack`].
+    stacks: Vec<Entries>,
+}
+
+impl FrontSpace {
+    /// Does something with a front.
+    fn with_front(fronts: &Mutex<Vec<Front>>, action: impl FnOnce(&mut Front)) {
+        let all = || fronts.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = all().pop();
+        let mut front = own.unwrap_or_default();
+        action(&mut front);
+        all().push(front);
+    }
 }
 
 impl Elimination {
-    /// For a factor of matrices with the pattern of `a`.
-    pub fn new(factor: &Factor, a: CsMatView<'_, f64>) -> Self {
+    /// For a factor of matrices with a pattern.
+    pub fn new(factor: &Factor, pattern: &Pattern) -> Self {
         let limbs = 0..factor.limbs.len();
         let stacks: Vec<UpdateStack> = factor.limbs.iter().map(UpdateStack::new).collect();
-        let assembly = |limb| Assembly::new(factor, limb, a, &stacks);
+        let assembly = |limb| Assembly::new(factor, limb, pattern, &stacks);
         Elimination {
-            fronts: Vec::new(),
             assemblies: match factor.is_factorised_on_threads() {
                 true => limbs.into_par_iter().map(assembly).collect(),
                 false => limbs.map(assembly).collect(),
@@ -44,76 +56,72 @@ impl Elimination {
         }
     }
 
-    /// The memory of its fronts.
-    pub fn into_fronts(self) -> Vec<Fronts> {
-        self.fronts
-    }
-
-    /// Uses the memory of former fronts, as far as it is enough.
-    pub fn use_fronts(&mut self, fronts: Vec<Fronts>) {
-        self.fronts = fronts;
-    }
-
-    /// Makes room for the fronts of all limbs.
-    fn make_room(&mut self, factor: &Factor) {
-        (self.fronts).resize_with(factor.limbs.len(), Fronts::default);
-        let of_limbs = factor.limbs.iter().zip(&self.assemblies);
-        for (fronts, (limb, assembly)) in self.fronts.iter_mut().zip(of_limbs) {
-            fronts.front.make_room(limb.longest);
-            fronts.stack.make_room(assembly.stack_height());
-        }
-    }
-
-    /// The same with memory of its own.
-    pub fn again(&self) -> Self {
-        Elimination {
-            assemblies: self.assemblies.clone(),
-            fronts: Vec::new(),
-        }
-    }
-
     /// Writes the factors of a matrix of the pattern with the given entries.
-    pub fn eliminate(&mut self, a: &[f64], factor: &mut Factor) {
-        self.make_room(factor);
+    pub fn eliminate(&self, a: &[f64], factor: &mut Factor, space: &mut FrontSpace) {
+        let FrontSpace { fronts, stacks } = space;
+        stacks.resize_with(factor.limbs.len(), Entries::default);
+        for (stack, assembly) in stacks.iter_mut().zip(&self.assemblies) {
+            stack.make_room(assembly.stack_height());
+        }
         let (threads, branches) = (factor.is_factorised_on_threads(), factor.branches);
-        let (of_branches, of_trunks) = self.fronts.split_at_mut(branches);
+        let (of_branches, of_trunks) = stacks.split_at_mut(branches);
         let mut limbs = factor.limbs_mut();
         let (branch, trunk) = limbs.split_at_mut(branches);
         let (for_branches, for_trunks) = self.assemblies.split_at(branches);
-        eliminate(threads, (branch, for_branches, of_branches), (&[], a));
-        for fronts in &mut *of_trunks {
-            fronts.front.on_threads = threads;
-        }
-        eliminate(threads, (trunk, for_trunks, of_trunks), (of_branches, a));
+        let mut with = Common {
+            fronts,
+            on_threads: false,
+            below: &[],
+            a,
+        };
+        eliminate(threads, (branch, for_branches, of_branches), &with);
+        (with.on_threads, with.below) = (threads, of_branches);
+        eliminate(threads, (trunk, for_trunks, of_trunks), &with);
     }
 }
 
-/// Factorises some limbs, on threads if it is worth them; `below` are the fronts of the branches.
+/// What the factorisations of limbs have in common.
+struct Common<'a> {
+    fronts: &'a Mutex<Vec<Front>>,
+    /// Whether columns of a front may change on several threads.
+    on_threads: bool,
+    /// Stacks of the branches, for trunks.
+    below: &'a [Entries],
+    /// Entries of the matrix.
+    a: &'a [f64],
+}
+
+/// Factorises some limbs, on threads if it is worth them.
 fn eliminate(
     threads: bool,
-    (limbs, assemblies, fronts): (&mut [OwnFactor], &[Assembly], &mut [Fronts]),
-    (below, a): (&[Fronts], &[f64]),
+    (limbs, assemblies, stacks): (&mut [OwnFactor], &[Assembly], &mut [Entries]),
+    with: &Common,
 ) {
-    let of_limb = |((own, assembly), fronts): ((&mut OwnFactor, &Assembly), &mut Fronts)| {
+    let of_limb = |((own, assembly), stack): ((&mut OwnFactor, &Assembly), &mut Entries)| {
         let (limb, l) = own;
-        Arch::new().dispatch(OfLimb {
-            limb,
-            l,
-            assembly,
-            fronts,
-            below,
-            a,
+        FrontSpace::with_front(with.fronts, |front| {
+            front.make_room(limb.longest);
+            front.on_threads = with.on_threads;
+            Arch::new().dispatch(OfLimb {
+                limb,
+                l,
+                assembly,
+                front,
+                stack,
+                below: with.below,
+                a: with.a,
+            });
         });
     };
     if threads {
-        let all = limbs.par_iter_mut().zip(assemblies).zip(fronts);
+        let all = limbs.par_iter_mut().zip(assemblies).zip(stacks);
         all.with_max_len(1).for_each(of_limb);
         return;
     }
     limbs
         .iter_mut()
         .zip(assemblies)
-        .zip(fronts)
+        .zip(stacks)
         .for_each(of_limb);
 }
 
@@ -123,9 +131,10 @@ struct OfLimb<'a> {
     /// L of the limb.
     l: &'a mut [f64],
     assembly: &'a Assembly,
-    fronts: &'a mut Fronts,
-    /// Those of the branches, for a trunk.
-    below: &'a [Fronts],
+    front: &'a mut Front,
+    stack: &'a mut [f64],
+    /// Stacks of the branches, for a trunk.
+    below: &'a [Entries],
     /// Entries of the matrix.
     a: &'a [f64],
 }
@@ -139,7 +148,8 @@ impl WithSimd for OfLimb<'_> {
             limb,
             l,
             assembly,
-            fronts,
+            front,
+            stack,
             below,
             a,
         } = self;
@@ -148,19 +158,17 @@ impl WithSimd for OfLimb<'_> {
         };
         for s in 0..limb.supernodes() {
             let (size, length) = (limb.supernode(s).size, limb.supernode(s).length());
-            fronts.front.clear(layout, length);
+            front.clear(layout, length);
             for &[entry, place] in assembly.entries(s) {
-                fronts.front.values[place as usize] = a[entry as usize];
+                front.values[place as usize] = a[entry as usize];
             }
             for (child, runs) in assembly.children(s) {
-                let stack = below.get(child.limb).map_or(&fronts.stack, |f| &f.stack);
-                fronts.front.add(&stack[child.update..], runs);
+                let stack = below.get(child.limb).map_or(&*stack, |stack| stack);
+                front.add(&stack[child.update..], runs);
             }
             let [values, pivots] = limb.columns_mut(s, l);
-            fronts.front.eliminate(simd, size, values, pivots);
-            fronts
-                .front
-                .store_update(size, &mut fronts.stack[assembly.update(s)..]);
+            front.eliminate(simd, size, values, pivots);
+            front.store_update(size, &mut stack[assembly.update(s)..]);
         }
     }
 }
@@ -198,7 +206,7 @@ impl Front {
 }
 
 /// What goes into the fronts of the supernodes of a limb.
-#[derive(Debug, Default, Clone)]
+#[derive(Debug, Default)]
 pub struct Assembly {
     /// Of every entry of the matrix its place there and that in the front; supernode by supernode.
     entries: Vec<[u32; 2]>,
@@ -241,13 +249,8 @@ pub struct ConsecutiveRows {
 }
 
 impl Assembly {
-    /// For a limb of a factor of matrices with the pattern of `a`; `stacks` are those of all limbs.
-    pub fn new(
-        factor: &Factor,
-        number: usize,
-        a: CsMatView<'_, f64>,
-        stacks: &[UpdateStack],
-    ) -> Self {
+    /// For a limb of a factor of matrices with a pattern; `stacks` are those of all limbs.
+    pub fn new(factor: &Factor, number: usize, pattern: &Pattern, stacks: &[UpdateStack]) -> Self {
         let limb = &factor.limbs[number];
         let layout = Layout::of_processor();
         let mut assembly = Assembly {
@@ -255,11 +258,6 @@ impl Assembly {
             ..Assembly::default()
         };
         let mut at = vec![None; limb.length];
-        let columns = limb
-            .unknowns
-            .iter()
-            .map(|&unknown| a.indptr().nnz_in_outer_sz(unknown));
-        assembly.entries.reserve(columns.sum());
         for (s, children) in children(factor, number).into_iter().enumerate() {
             let node = limb.supernode(s);
             let rows: Vec<usize> = node.columns().chain(node.rows_below()).collect();
@@ -268,8 +266,8 @@ impl Assembly {
                 .for_each(|(&row, place)| at[row] = Some(place));
             let stride = layout.stride(rows.len());
             for (column, &unknown) in limb.unknowns[node.columns()].iter().enumerate() {
-                for entry in a.indptr().outer_inds_sz(unknown) {
-                    let place = factor.places[a.indices()[entry]];
+                for (entry, &row) in pattern.column(unknown).zip(pattern.rows(unknown)) {
+                    let place = factor.places[row as usize];
                     if let Some(row) = limb.row(number, place)
                         && let Some(row) = at[row].filter(|&row| row >= column)
                     {
@@ -286,6 +284,8 @@ impl Assembly {
             assembly.child_ends.push(assembly.children.len());
             rows.iter().for_each(|&row| at[row] = None);
         }
+        assembly.entries.shrink_to_fit();
+        assembly.runs.shrink_to_fit();
         assembly
     }
 

@@ -36,7 +36,7 @@ struct Spot {
 }
 
 /// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
-#[derive(Debug, Default, Clone)]
+#[derive(Debug, Default)]
 pub struct LimbFactor {
     /// Unknowns of its own rows.
     pub unknowns: Vec<usize>,
@@ -109,16 +109,6 @@ impl Factor {
         factor
     }
 
-    /// The same without L and its memory.
-    pub fn without_values(&self) -> Self {
-        Factor {
-            limbs: self.limbs.clone(),
-            places: self.places.clone(),
-            values: Entries::default(),
-            ..*self
-        }
-    }
-
     /// Takes memory for L: that of former factors, as far as it is enough.
     pub fn make_room(&mut self, memory: Entries) {
         let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
@@ -126,9 +116,9 @@ impl Factor {
         self.values.make_room(self.limbs.iter().map(of_limb).sum());
     }
 
-    /// The memory of L.
-    pub fn into_memory(self) -> Entries {
-        self.values
+    /// The memory of L, which is then without.
+    pub fn take_memory(&mut self) -> Entries {
+        std::mem::take(&mut self.values)
     }
 
     /// L of all limbs, for their supernodes.

@@ -16,7 +16,7 @@ mod supernodes;
 mod tests;
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use faer::Side;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -27,12 +27,12 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::linalg::{SupernodalThreshold, SymbolicSupernodalParams, amd};
 use rayon::prelude::*;
-use sprs::CsMatView;
 
 use super::solver::{LinearError, LinearSolver, check_pivots};
-pub use elimination::Elimination;
+use super::symmetric::{Pattern, SymmetricMatrix};
+pub use elimination::{Elimination, FrontSpace};
 pub use factor::Factor;
-pub use partial_inverse::{InverseSpace, inverse_at};
+pub use partial_inverse::inverse_at;
 pub use substitution::Substitution;
 pub use supernodes::Supernodes;
 
@@ -45,30 +45,23 @@ struct Analysis {
     elimination: Elimination,
 }
 
-impl Analysis {
-    /// The same, as yet without factors.
-    fn again(&self) -> Self {
-        Analysis {
-            pattern: self.pattern.clone(),
-            factor: self.factor.without_values(),
-            elimination: self.elimination.again(),
-        }
-    }
+/// What two solvers share.
+#[derive(Default)]
+struct Shared {
+    /// Memory of their factorisations.
+    space: FrontSpace,
+    /// The analysis of factors that one of them has given up.
+    left: Option<Analysis>,
 }
-
-/// Place where the first of two solvers that analyses a pattern leaves the analysis for the other.
-type Handover = Arc<Mutex<Option<Analysis>>>;
 
 /// Multifrontal LDL^T with an approximate minimum degree order and the supernodes of faer's analysis.
 #[derive(Default)]
 pub struct MultifrontalLdl {
     analysis: Analysis,
-    /// Where one of two solvers leaves its analysis for the other; none once this solver has analysed a pattern.
-    handover: Option<Handover>,
+    shared: Arc<Mutex<Shared>>,
     substitution: Substitution,
     /// Unknowns of the paths of the substitution.
     watched: Vec<usize>,
-    inverse_space: InverseSpace,
 }
 
 fn library(error: impl std::fmt::Debug) -> LinearError {
@@ -104,7 +97,7 @@ fn analyse(pattern: &Pattern) -> Result<(Supernodes, Vec<usize>), LinearError> {
     }
     let order = PermRef::new_checked(&pivots, &positions, pivots.len());
     let order = SymmetricOrdering::Custom(order);
-    let pattern = groups.pattern.symbolic();
+    let pattern = groups.quotient.symbolic();
     let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, parameters);
     let symbolic = symbolic.map_err(library)?;
     match (symbolic.raw(), symbolic.perm()) {
@@ -130,70 +123,74 @@ pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
 
 impl Analysis {
     /// Analyses the pattern of a matrix; the room for its factors has no memory yet.
-    fn new(a: CsMatView<'_, f64>) -> Result<Self, LinearError> {
-        let pattern = Pattern::of(a);
-        let (supernodes, unknowns) = analyse(&pattern)?;
+    fn new(pattern: &Pattern) -> Result<Self, LinearError> {
+        let (supernodes, unknowns) = analyse(pattern)?;
         let factor = Factor::new(&supernodes, &unknowns);
+        drop(supernodes);
         Ok(Analysis {
-            elimination: Elimination::new(&factor, a),
+            elimination: Elimination::new(&factor, pattern),
             factor,
-            pattern,
+            pattern: pattern.clone(),
         })
     }
 }
 
 impl MultifrontalLdl {
-    /// Two solvers, one of which takes over the analysis of the other where both begin with the same pattern.
+    /// Two solvers that share memory. One takes over the analysis of the other, with the same pattern, when that gives up
+    /// its factors.
     pub fn two() -> [Self; 2] {
-        let handover = Handover::default();
+        let shared = Arc::default();
         [(); 2].map(|()| MultifrontalLdl {
-            handover: Some(Arc::clone(&handover)),
+            shared: Arc::clone(&shared),
             ..MultifrontalLdl::default()
         })
     }
 
-    /// Analyses the pattern of a matrix.
-    fn analyse(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
+    /// Analyses a pattern.
+    fn analyse(&mut self, pattern: &Pattern) -> Result<(), LinearError> {
         // The factors of another pattern go first, but for their memory.
-        let former = std::mem::take(&mut self.analysis);
-        let (memory, fronts) = (
-            former.factor.into_memory(),
-            former.elimination.into_fronts(),
-        );
-        self.analysis = match self.handover.take() {
-            None => Analysis::new(a)?,
-            Some(handover) => {
-                let mut left = handover.lock().unwrap_or_else(PoisonError::into_inner);
-                match left.take().filter(|left| left.pattern.is_of(a)) {
-                    Some(left) => left,
-                    None => {
-                        let analysis = Analysis::new(a)?;
-                        let is_awaited = Arc::strong_count(&handover) > 1;
-                        *left = is_awaited.then(|| analysis.again());
-                        analysis
-                    }
-                }
-            }
+        let memory = std::mem::take(&mut self.analysis).factor.take_memory();
+        let left = locked(&self.shared).left.take();
+        self.analysis = match left.filter(|left| left.pattern == *pattern) {
+            Some(left) => left,
+            None => Analysis::new(pattern)?,
         };
         self.analysis.factor.make_room(memory);
-        self.analysis.elimination.use_fronts(fronts);
         Ok(())
     }
 }
 
+/// What solvers share, for one of them.
+fn locked(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 impl LinearSolver for MultifrontalLdl {
-    fn factorize(&mut self, a: CsMatView<'_, f64>) -> Result<(), LinearError> {
-        if !self.analysis.pattern.is_of(a) {
-            self.analyse(a)?;
+    fn factorize(&mut self, a: &SymmetricMatrix) -> Result<(), LinearError> {
+        if self.analysis.pattern != a.pattern {
+            self.analyse(&a.pattern)?;
         }
         let Analysis {
             factor,
             elimination,
             ..
         } = &mut self.analysis;
-        elimination.eliminate(a.data(), factor);
+        elimination.eliminate(&a.values, factor, &mut locked(&self.shared).space);
         self.substitution.adapt(factor);
         check_pivots(factor.pivots())
+    }
+
+    fn give_up_factors(&mut self) {
+        let Self {
+            mut analysis,
+            shared,
+            ..
+        } = std::mem::take(self);
+        if Arc::strong_count(&shared) > 1 {
+            drop(analysis.factor.take_memory());
+            locked(&shared).left = Some(analysis);
+        }
+        self.shared = shared;
     }
 
     fn begin(&mut self, b: &[f64]) {
@@ -230,99 +227,11 @@ impl LinearSolver for MultifrontalLdl {
     }
 
     fn inverse_at(&mut self, unknowns: &[&[usize]], _n: usize) -> Vec<Vec<f64>> {
-        let (factor, space) = (&self.analysis.factor, &mut self.inverse_space);
-        if unknowns.len() > 1 && factor.is_factorised_on_threads() {
-            let of_list = |list: &&[usize]| inverse_at(factor, list, &mut InverseSpace::default());
-            return unknowns.par_iter().map(of_list).collect();
-        }
-        let lists = unknowns.iter();
-        lists.map(|list| inverse_at(factor, list, space)).collect()
-    }
-}
-
-/// Where a matrix has entries.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Pattern {
-    /// First entry of every column, and the number of entries.
-    pub starts: Vec<usize>,
-    /// Rows of the entries, column after column, increasing.
-    pub rows: Vec<usize>,
-}
-
-impl Pattern {
-    /// The pattern of a matrix by columns.
-    pub fn of(a: CsMatView<'_, f64>) -> Self {
-        Pattern {
-            starts: a.indptr().to_proper().to_vec(),
-            rows: a.indices().to_vec(),
-        }
-    }
-
-    /// Whether it is that of a matrix.
-    pub fn is_of(&self, a: CsMatView<'_, f64>) -> bool {
-        self.starts == a.indptr().raw_storage() && self.rows == a.indices()
-    }
-
-    /// The pattern whose column k has entries in the rows `neighbours[k]`, in increasing order.
-    pub fn of_graph(neighbours: &[Vec<usize>]) -> Self {
-        let mut starts = vec![0];
-        for rows in neighbours {
-            starts.push(starts[starts.len() - 1] + rows.len());
-        }
-        let rows = neighbours.concat();
-        Pattern { starts, rows }
-    }
-
-    /// Number of unknowns.
-    pub fn size(&self) -> usize {
-        self.starts.len().max(1) - 1
-    }
-
-    /// Rows of the entries of a column.
-    fn column(&self, k: usize) -> &[usize] {
-        &self.rows[self.starts[k]..self.starts[k + 1]]
-    }
-
-    /// First unknown of every group of unknowns next to each other with the same entries, and their number.
-    fn starts_of_groups(&self) -> Vec<usize> {
-        let begins = |&k: &usize| k == 0 || self.column(k) != self.column(k - 1);
-        let mut starts: Vec<usize> = (0..self.size()).filter(begins).collect();
-        starts.push(self.size());
-        starts
-    }
-
-    /// The pattern between groups of unknowns, given by the first unknown of each, and their number.
-    fn quotient(&self, groups: &[usize]) -> Pattern {
-        let mut group_of = vec![0; self.size()];
-        for (group, ends) in groups.windows(2).enumerate() {
-            group_of[ends[0]..ends[1]].fill(group);
-        }
-        let mut quotient = Pattern {
-            starts: vec![0],
-            rows: Vec::new(),
-        };
-        for &first in &groups[..groups.len() - 1] {
-            let column = self.column(first).iter().map(|&row| group_of[row]);
-            let mut last = None;
-            quotient
-                .rows
-                .extend(column.filter(|&group| last.replace(group) != Some(group)));
-            quotient.starts.push(quotient.rows.len());
-        }
-        quotient
-    }
-
-    /// The pattern in faer's form.
-    pub fn symbolic(&self) -> SymbolicSparseColMatRef<'_, usize> {
-        let n = self.size();
-        SymbolicSparseColMatRef::new_checked(n, n, self.starts(), None, &self.rows)
-    }
-
-    /// Starts of the columns, and the end of the last one.
-    fn starts(&self) -> &[usize] {
-        match self.starts.is_empty() {
-            true => &[0],
-            false => &self.starts,
+        let factor = &self.analysis.factor;
+        let of_list = |list: &&[usize]| inverse_at(factor, list);
+        match unknowns.len() > 1 && factor.is_factorised_on_threads() {
+            true => unknowns.par_iter().map(of_list).collect(),
+            false => unknowns.iter().map(of_list).collect(),
         }
     }
 }
@@ -332,15 +241,57 @@ pub(super) struct Groups {
     /// First unknown of every group, and the number of unknowns.
     starts: Vec<usize>,
     /// The pattern between them.
-    pub pattern: Pattern,
+    quotient: Quotient,
+}
+
+/// A pattern between groups of unknowns, in the form of faer.
+struct Quotient {
+    /// First entry of every column, and the number of entries.
+    starts: Vec<usize>,
+    /// Rows of the entries, column after column, increasing.
+    rows: Vec<usize>,
+}
+
+impl Quotient {
+    /// The pattern between groups, given by the first unknown of each, and their number.
+    fn new(pattern: &Pattern, groups: &[usize]) -> Self {
+        let mut group_of = vec![0; pattern.size()];
+        for (group, ends) in groups.windows(2).enumerate() {
+            group_of[ends[0]..ends[1]].fill(group);
+        }
+        let mut quotient = Quotient {
+            starts: vec![0],
+            rows: Vec::new(),
+        };
+        for &first in &groups[..groups.len() - 1] {
+            let column = pattern
+                .rows(first)
+                .iter()
+                .map(|&row| group_of[row as usize]);
+            let mut last = None;
+            quotient
+                .rows
+                .extend(column.filter(|&group| last.replace(group) != Some(group)));
+            quotient.starts.push(quotient.rows.len());
+        }
+        quotient
+    }
+
+    /// The same for the library.
+    fn symbolic(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let n = self.starts.len() - 1;
+        SymbolicSparseColMatRef::new_checked(n, n, &self.starts, None, &self.rows)
+    }
 }
 
 impl Groups {
     /// The groups of a pattern.
     pub fn of(pattern: &Pattern) -> Self {
-        let starts = pattern.starts_of_groups();
+        let begins = |&k: &usize| k == 0 || pattern.rows(k) != pattern.rows(k - 1);
+        let mut starts: Vec<usize> = (0..pattern.size()).filter(begins).collect();
+        starts.push(pattern.size());
         Groups {
-            pattern: pattern.quotient(&starts),
+            quotient: Quotient::new(pattern, &starts),
             starts,
         }
     }
@@ -349,11 +300,11 @@ impl Groups {
     pub fn minimum_degree(&self) -> Result<Vec<usize>, LinearError> {
         let count = self.starts.len() - 1;
         let (mut order, mut inverse) = (vec![0; count], vec![0; count]);
-        let scratch = amd::order_scratch::<usize>(count, self.pattern.rows.len());
+        let scratch = amd::order_scratch::<usize>(count, self.quotient.rows.len());
         amd::order(
             &mut order,
             &mut inverse,
-            self.pattern.symbolic(),
+            self.quotient.symbolic(),
             amd::Control::default(),
             MemStack::new(&mut MemBuffer::new(scratch)),
         )

@@ -42,66 +42,41 @@ struct Finished {
     y: Vec<f64>,
     /// D of the rows.
     pivots: Vec<f64>,
-    /// D^-1 Y
-    scaled: Vec<f64>,
 }
 
-/// Memory in which inverses are computed, used again by the next.
-#[derive(Default)]
-pub struct InverseSpace {
-    /// Place of every column in a front.
-    places: Vec<usize>,
-    /// Values of former fronts.
-    spare: Vec<Vec<f64>>,
-}
-
-impl InverseSpace {
-    /// Room for so many values, whatever they are: the smallest that is enough.
-    fn room(&mut self, count: usize) -> Vec<f64> {
-        let spare = self.spare.iter().enumerate();
-        let enough = spare.filter(|(_, values)| values.capacity() >= count);
-        let mut values = match enough.min_by_key(|(_, values)| values.capacity()) {
-            Some((at, _)) => self.spare.swap_remove(at),
-            None => Vec::with_capacity(count),
+/// Adds up fronts on the given rows: their columns, and the values column by column. `places` has room for the place of
+/// every column in a front.
+fn assemble(
+    all: &[usize],
+    fronts: Vec<Contributions>,
+    places: &mut [usize],
+) -> (Vec<usize>, Vec<f64>) {
+    let of_fronts = fronts.iter().flat_map(|front| &front.columns);
+    let mut columns: Vec<usize> = of_fronts.map(|column| column[0]).collect();
+    if fronts.len() > 1 {
+        columns.sort_unstable();
+        columns.dedup();
+    }
+    let mut values = vec![0.0; all.len() * columns.len()];
+    for (place, &column) in columns.iter().enumerate() {
+        places[column] = place;
+    }
+    for front in fronts {
+        // the rows of the supernode hold those of the front; both increase
+        let mut next = 0;
+        let place = |row: &usize| {
+            next += all[next..].partition_point(|r| r < row);
+            next
         };
-        values.resize(count, 0.0);
-        values
+        let at: Vec<usize> = front.rows.iter().map(place).collect();
+        for &[column, of_front] in &front.columns {
+            let to = &mut values[places[column] * all.len()..][..all.len()];
+            let end = (of_front + 1) * front.stride;
+            let from = &front.values[end - at.len()..end];
+            at.iter().zip(from).for_each(|(&i, value)| to[i] += value);
+        }
     }
-
-    /// Adds up fronts on the given rows: their columns, and the values column by column.
-    fn assemble(&mut self, all: &[usize], fronts: Vec<Contributions>) -> (Vec<usize>, Vec<f64>) {
-        let of_fronts = fronts.iter().flat_map(|front| &front.columns);
-        let mut columns: Vec<usize> = of_fronts.map(|column| column[0]).collect();
-        if fronts.len() > 1 {
-            columns.sort_unstable();
-            columns.dedup();
-        }
-        let mut values = self.room(all.len() * columns.len());
-        let of_columns = values.chunks_exact_mut(all.len());
-        for (place, (&column, values)) in columns.iter().zip(of_columns).enumerate() {
-            self.places[column] = place;
-            values.fill(0.0);
-        }
-        for front in fronts {
-            // the rows of the supernode hold those of the front; both increase
-            let mut next = 0;
-            let place = |row: &usize| {
-                next += all[next..].partition_point(|r| r < row);
-                next
-            };
-            let at: Vec<usize> = front.rows.iter().map(place).collect();
-            for &[column, of_front] in &front.columns {
-                let to = &mut values[self.places[column] * all.len()..][..all.len()];
-                let end = (of_front + 1) * front.stride;
-                let from = &front.values[end - at.len()..end];
-                at.iter().zip(from).for_each(|(&i, value)| to[i] += value);
-            }
-            // there is one of a single value for every unknown
-            self.spare
-                .extend((front.stride > 1).then_some(front.values));
-        }
-        (columns, values)
-    }
+    (columns, values)
 }
 
 /// The inverse of P^T L D L^T P at m `unknowns`, m x m column by column:
@@ -113,10 +88,9 @@ impl InverseSpace {
 ///
 /// Column j of Y is nonzero only on the path from its unknown to the root of the elimination tree,
 /// so that the supernodes off these paths are never visited, nor those where it has died away.
-pub fn inverse_at(factor: &Factor, unknowns: &[usize], space: &mut InverseSpace) -> Vec<f64> {
+pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
     let m = unknowns.len();
-    let mut inverse = vec![0.0; m * m];
-    space.places.resize(m, 0);
+    let (mut inverse, mut places) = (vec![0.0; m * m], vec![0; m]);
     let (mut finished, mut l) = (Finished::default(), Vec::new());
     let mut waiting = units(factor, unknowns);
     // Children come before their parents in their limb, and branches before the trunks.
@@ -124,7 +98,7 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize], space: &mut InverseSpace)
         let limb = &factor.limbs[number];
         let node = limb.supernode(s);
         let all: Vec<usize> = node.columns().chain(node.rows_below()).collect();
-        let (columns, mut values) = space.assemble(&all, fronts);
+        let (columns, mut values) = assemble(&all, fronts, &mut places);
 
         node.write_to(factor.values(), &mut l);
         let l = &l[..all.len() * node.size];
@@ -133,28 +107,27 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize], space: &mut InverseSpace)
             eliminate(l, [node.size, all.len()], chunk)
         });
         if finished.columns != columns {
-            finished.add_to(&mut inverse, m, space);
+            finished.add_to(&mut inverse, m);
             finished.begin(&columns);
         }
         let pivots = &limb.pivots[node.columns()];
         finished.push(&values, all.len(), pivots);
 
         let kept = without_negligible(&columns, &values, [node.size, all.len()]);
-        match above(limb, number, node.rows_below().collect()) {
-            Some((place, rows)) if !kept.is_empty() => {
-                let s = factor.limbs[place.limb].supernode_of(place.row);
-                let fronts = waiting.entry((place.limb, s)).or_default();
-                fronts.push(Contributions {
-                    columns: kept,
-                    rows,
-                    values,
-                    stride: all.len(),
-                });
-            }
-            _ => space.spare.push(values),
+        if let Some((place, rows)) = above(limb, number, node.rows_below().collect())
+            && !kept.is_empty()
+        {
+            let s = factor.limbs[place.limb].supernode_of(place.row);
+            let fronts = waiting.entry((place.limb, s)).or_default();
+            fronts.push(Contributions {
+                columns: kept,
+                rows,
+                values,
+                stride: all.len(),
+            });
         }
     }
-    finished.add_to(&mut inverse, m, space);
+    finished.add_to(&mut inverse, m);
     for j in 0..m {
         for i in j + 1..m {
             inverse[i * m + j] = inverse[j * m + i];
@@ -236,7 +209,6 @@ struct ColumnGroup<'a> {
     /// The columns of the inverse from that of the part before on, and the first of them.
     inverse: &'a mut [f64],
     start: usize,
-    product: Vec<f64>,
 }
 
 impl Finished {
@@ -258,23 +230,12 @@ impl Finished {
     }
 
     /// Adds the lower triangle of Y^T D^-1 Y of these rows to the inverse at m unknowns.
-    fn add_to(&mut self, inverse: &mut [f64], m: usize, space: &mut InverseSpace) {
-        let Self {
-            columns,
-            y,
-            pivots,
-            scaled,
-        } = self;
+    fn add_to(&self, inverse: &mut [f64], m: usize) {
+        let Self { columns, y, pivots } = self;
         let n = columns.len();
         if n == 0 {
             return;
         }
-        scaled.clear();
-        for (row, pivot) in y.chunks_exact(n).zip(&*pivots) {
-            scaled.extend(row.iter().map(|y| y / pivot));
-        }
-        let [y, scaled] =
-            [y, scaled].map(|all| MatRef::from_column_major_slice(all, n, pivots.len()));
         let (mut parts, mut rest, mut start) = (Vec::new(), inverse, 0);
         for (columns, first) in columns.chunks(CHUNK).zip((0..).step_by(CHUNK)) {
             let end = columns.last().map_or(start, |last| last + 1);
@@ -285,27 +246,30 @@ impl Finished {
                 columns,
                 inverse: own,
                 start,
-                product: space.room((n - first) * columns.len()),
             });
             start = end;
         }
         for_chunks(&mut parts, |part| {
             let (rows, count) = (n - part.first, part.columns.len());
-            let product = MatMut::from_column_major_slice_mut(&mut part.product, rows, count);
-            let left = y.subrows(part.first, rows);
-            let right = scaled.subrows(part.first, count).transpose();
-            matmul(product, Accum::Replace, left, right, 1.0, Par::Seq);
+            // D^-1 Y in these columns
+            let mut scaled = Vec::with_capacity(count * pivots.len());
+            for (row, pivot) in y.chunks_exact(n).zip(pivots) {
+                scaled.extend(row[part.first..][..count].iter().map(|y| y / pivot));
+            }
+            let mut product = vec![0.0; rows * count];
+            let to = MatMut::from_column_major_slice_mut(&mut product, rows, count);
+            let left = MatRef::from_column_major_slice(y, n, pivots.len());
+            let left = left.subrows(part.first, rows);
+            let right = MatRef::from_column_major_slice(&scaled, count, pivots.len());
+            matmul(to, Accum::Replace, left, right.transpose(), 1.0, Par::Seq);
             for (j, &column) in part.columns.iter().enumerate() {
                 let to = &mut part.inverse[(column - part.start) * m..][..m];
-                let from = &part.product[j * rows + j..(j + 1) * rows];
+                let from = &product[j * rows + j..(j + 1) * rows];
                 for (&row, value) in columns[part.first + j..].iter().zip(from) {
                     to[row] += value;
                 }
             }
         });
-        space
-            .spare
-            .extend(parts.into_iter().map(|part| part.product));
     }
 }
 
