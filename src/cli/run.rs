@@ -108,6 +108,10 @@ pub(super) fn run(
     for line in header(args, &files, &loaded, &record, &model) {
         writer.line(&line)?;
     }
+    // texts of the deck, which the run does not need
+    drop(record);
+    let plain_messages = std::mem::take(&mut loaded.plain_messages);
+    drop(loaded);
     for note in &notes {
         writer.line(note)?;
     }
@@ -123,8 +127,8 @@ pub(super) fn run(
         ))?;
         writer.begin_at(old_job)?;
     }
-    if !loaded.plain_messages.is_empty() {
-        writer.detail(loaded.plain_messages.trim_end())?;
+    if !plain_messages.is_empty() {
+        writer.detail(plain_messages.trim_end())?;
     }
     writer.line("")?;
     let exit = solve(

@@ -160,7 +160,7 @@ impl Releasing<'_, '_> {
         }))
         .variables;
         let after = elements.evaluate(u, &internal);
-        let both = before.iter().zip(&after);
+        let both = before.iter().zip(&*after);
         let of_springs = elements.spring_energy(&self.end.u) - elements.spring_energy(u);
         let taken = both.map(|(b, a)| b.energy - a.energy).sum::<f64>() + of_springs;
         let strain: f64 = before.iter().map(|element| element.energy).sum();

@@ -3,7 +3,7 @@
 //! docs/theory.md.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
@@ -294,23 +294,23 @@ impl Elements {
 
     /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
     /// internal variables there.
-    pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
-        let chunks: Vec<_> = match self.is_worth_threads() {
-            true => self
-                .chunks
-                .par_iter()
-                .map(|chunk| chunk.evaluate(u, variables))
-                .collect(),
-            false => {
-                let all = self.chunks.iter();
-                all.map(|chunk| chunk.evaluate(u, variables)).collect()
+    pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Arc<[ElementResult]> {
+        let mut results: Arc<[_]> = vec![ElementResult::default(); self.len()].into();
+        let all = Arc::make_mut(&mut results);
+        let mut write = |chunk: &dyn Chunk, of_chunk: Vec<ElementResult>| {
+            for (&element, result) in chunk.elements().iter().zip(of_chunk) {
+                all[element] = result;
             }
         };
-        let mut results = vec![ElementResult::default(); self.len()];
-        for (chunk, of_chunk) in self.chunks.iter().zip(chunks) {
-            for (&element, result) in chunk.elements().iter().zip(of_chunk) {
-                results[element] = result;
-            }
+        let evaluate = |chunk: &Box<dyn Chunk>| chunk.evaluate(u, variables);
+        if self.is_worth_threads() {
+            let of_chunks: Vec<_> = self.chunks.par_iter().map(evaluate).collect();
+            let both = self.chunks.iter().zip(of_chunks);
+            both.for_each(|(chunk, of_chunk)| write(&**chunk, of_chunk));
+        } else {
+            self.chunks
+                .iter()
+                .for_each(|chunk| write(&**chunk, evaluate(chunk)));
         }
         results
     }

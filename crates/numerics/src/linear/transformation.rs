@@ -2,6 +2,7 @@
 //! and rotations of bodies as block diagonal matrices over the dofs (section 4, Turned factors).
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use smallvec::SmallVec;
 
@@ -17,10 +18,10 @@ use crate::archive::{Archive, ArchiveError};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,
-    /// Start of each row in `terms`.
-    starts: Vec<usize>,
-    /// Unknown and coefficient of every term, row by row.
-    terms: Vec<(usize, f64)>,
+    /// Start of each row in `terms`; copies share it.
+    starts: Arc<[usize]>,
+    /// Unknown and coefficient of every term, row by row; copies share them until they change.
+    terms: Arc<[(usize, f64)]>,
     /// Coefficients of the derivatives, where they are others than those of the terms.
     derivatives: Option<Vec<f64>>,
     /// Dofs of the unknowns one after the other, where all rows are empty or of the identity.
@@ -50,8 +51,8 @@ impl Transformation {
         }
         let mut map = Transformation {
             unknowns,
-            starts,
-            terms,
+            starts: starts.into(),
+            terms: terms.into(),
             derivatives: None,
             selected: None,
         };
@@ -114,7 +115,7 @@ impl Transformation {
         };
         let own = || self.terms.iter().map(|term| term.1).collect();
         self.derivatives.get_or_insert_with(own)[last] = derivative;
-        self.terms[last].1 = force;
+        Arc::make_mut(&mut self.terms)[last].1 = force;
     }
 
     /// Transfers the coefficients, which bodies that turn change.
@@ -125,7 +126,7 @@ impl Transformation {
         archive.transfer(&mut self.derivatives)?;
         match &self.derivatives {
             Some(derivatives) if derivatives.len() != self.terms.len() => Err(ArchiveError::Size),
-            Some(_) => archive.transfer_values(&mut self.terms),
+            Some(_) => archive.transfer_values(Arc::make_mut(&mut self.terms)),
             None => Ok(()),
         }
     }

@@ -108,7 +108,7 @@ impl Ledger {
             ..Ledger::default()
         };
         ledger.enter_bodies(problem, start, &elements);
-        ledger.elements = elements.into();
+        ledger.elements = elements;
         ledger
     }
 
@@ -213,7 +213,7 @@ impl Ledger {
         let elements = problem.elements.evaluate(&end.u, &end.internal);
         problem.mass.write_product(&end.v, &mut self.momentum);
         self.enter_bodies(problem, end, &elements);
-        self.elements = elements.into();
+        self.elements = elements;
         let e = &mut self.energy;
         e.strain = strain_energy(problem, end, &self.elements);
         e.hourglass = self.elements.iter().map(|e| e.hourglass_energy).sum();
