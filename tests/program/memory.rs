@@ -96,7 +96,7 @@ fn a_limit_of_the_process_ends_the_run_with_a_message() {
     assert!(err.starts_with("error: out of memory: "), "{err}");
     assert_eq!(err.lines().count(), 1, "{err}");
     // between what the estimate lets pass and what is enough
-    let (code, err) = limited(200, 420_000);
+    let (code, err) = limited(200, 320_000);
     assert_eq!(code, Some(4), "{err}");
     assert!(err.contains("the run needs about "), "{err}");
 }

@@ -8,21 +8,23 @@ use crate::linear::factor_entries;
 use crate::model::{Bodies, Mesh};
 
 /// Bytes of the program before it has read a model.
-const PROGRAM: usize = 20 << 20;
+const PROGRAM: usize = 30 << 20;
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
 
 /// Vectors over the dofs that a run holds: deck, states, results, frames, iterates.
-const VECTORS: usize = 60;
+const VECTORS: usize = 70;
 
-/// Matrices of the pattern of the mesh, each with values and indices: K*, M, the sums with contact
-/// stiffness, and the patterns of their factors.
-const MATRICES: usize = 5;
+/// Words for each entry of the pattern of the mesh: values of K* and M, indices of half a word for the pattern and for the
+/// places of the entries in the fronts. With contacts also the sum with contact stiffness, and the places for M.
+const MATRICES: usize = 3;
+const CONTACT_MATRICES: usize = 2;
 
-/// Factors: of K* and of M, and the lists, fronts and rests that their factorisations go through, which
-/// take as much as one of them.
-const FACTORS: usize = 3;
+/// Factors: that of K*, and the lists, fronts and rests that factorisations go through, which take as much. With contacts
+/// that of M, for impulses.
+const FACTORS: usize = 2;
+const CONTACT_FACTORS: usize = 1;
 
 /// Dense matrices over the unknowns of the pairs: the compliance of K* and that of M, while they are
 /// computed.
@@ -50,13 +52,17 @@ impl MemoryNeed {
         // 2 x 2 entries for each pair of nodes
         let entries = 4 * neighbours.iter().map(Vec::len).sum::<usize>();
         let factor = 4 * factor_entries(&neighbours);
+        let (matrices, factors) = match prepared.model.contacts.is_empty() {
+            true => (MATRICES, FACTORS),
+            false => (MATRICES + CONTACT_MATRICES, FACTORS + CONTACT_FACTORS),
+        };
         let elements: usize = (mesh.elements.iter())
             .map(|element| (2 * element.nodes.len()).pow(2))
             .sum();
         MemoryNeed {
             mesh: (PROGRAM + VECTORS * dofs * WORD) as u64,
-            matrices: ((2 * MATRICES * entries + 2 * elements) * WORD) as u64,
-            factors: (FACTORS * factor * WORD) as u64,
+            matrices: ((matrices * entries + elements) * WORD) as u64,
+            factors: (factors * factor * WORD) as u64,
             contact: contact(prepared),
         }
     }
