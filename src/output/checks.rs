@@ -4,7 +4,7 @@
 use hdf5::Group;
 
 use super::balance::Balance;
-use super::column::{GrowingColumns, Layout, Mostly, group, set_attribute};
+use super::column::{GrowingColumns, Layout, Mostly, group, new_attribute};
 use super::format::{scientific, wrap};
 use super::warnings::BALANCE;
 use crate::dynamics::{ContactResultant, IncrementReport};
@@ -171,7 +171,7 @@ pub(crate) fn create<'m>(
             },
         )?;
         let dataset = at.dataset(check.name)?;
-        set_attribute(&dataset, "bound", check.bound)?;
+        new_attribute(&dataset, "bound", check.bound)?;
     }
     Ok(columns)
 }

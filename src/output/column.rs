@@ -21,18 +21,19 @@ pub(crate) fn group(parent: &Group, name: &str) -> hdf5::Result<Group> {
     builder.obj_track_times(false).create(name)
 }
 
-/// Writes the text attribute `name`; a NUL, which HDF5 cannot hold, becomes U+FFFD.
-pub(crate) fn text_attribute(at: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+/// A text in the form of HDF5; a NUL, which that cannot hold, becomes U+FFFD.
+pub(crate) fn hdf5_text(text: &str) -> hdf5::Result<VarLenUnicode> {
     let clean = text.replace('\0', "\u{fffd}").parse::<VarLenUnicode>();
-    let clean = clean.map_err(|_| hdf5::Error::from("text with a NUL character"))?;
-    set_attribute(at, name, clean)
+    clean.map_err(|_| hdf5::Error::from("text with a NUL character"))
 }
 
-/// Writes the scalar attribute `name`, a new one or over the old value.
-pub(crate) fn set_attribute<T: H5Type>(at: &Location, name: &str, value: T) -> hdf5::Result<()> {
-    if let Ok(attribute) = at.attr(name) {
-        return attribute.write_scalar(&value);
-    }
+/// Writes the new text attribute `name`.
+pub(crate) fn text_attribute(at: &Location, name: &str, text: &str) -> hdf5::Result<()> {
+    new_attribute(at, name, hdf5_text(text)?)
+}
+
+/// Writes the new scalar attribute `name`.
+pub(crate) fn new_attribute<T: H5Type>(at: &Location, name: &str, value: T) -> hdf5::Result<()> {
     at.new_attr::<T>().create(name)?.write_scalar(&value)
 }
 
@@ -219,7 +220,9 @@ impl Layout {
             .empty::<T>()
             .shape(Extents::simple(extents))
             .create(name)?;
-        dataset.resize(rows_of(0, &self.row))?;
+        if is_late {
+            dataset.resize(rows_of(0, &self.row))?;
+        }
         describe(&dataset, meaning)?;
         Ok(dataset)
     }

@@ -8,7 +8,7 @@ use hdf5::Group;
 use hdf5::types::FixedAscii;
 
 use super::column::{
-    GrowingColumns, Layout, Meaning, Mostly, Number, constant, group, set_attribute,
+    GrowingColumns, Layout, Meaning, Mostly, Number, constant, group, new_attribute,
 };
 use super::frames::{Frame, expected_frames};
 use super::local::Local;
@@ -289,7 +289,7 @@ fn write_type(grid: &Group) -> hdf5::Result<()> {
     version.write_raw(&[2i64, 3])?;
     let name = FixedAscii::<16>::from_ascii("UnstructuredGrid")
         .map_err(|error| hdf5::Error::from(error.to_string()))?;
-    set_attribute(grid, "Type", name)
+    new_attribute(grid, "Type", name)
 }
 
 /// The reference mesh, and lines between its nodes as the last cells.

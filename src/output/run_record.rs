@@ -7,7 +7,7 @@ use hdf5::types::VarLenUnicode;
 use hdf5::{File, Group};
 use sha2::{Digest, Sha256};
 
-use super::column::{group, set_attribute, text_attribute};
+use super::column::{group, hdf5_text, new_attribute, text_attribute};
 use super::memory::peak_memory;
 use crate::dynamics::{RunSummary, Timings};
 
@@ -62,9 +62,9 @@ impl RecordWriter {
         text("command", &record.command)?;
         text("started", &utc_now())?;
         text("finished", "")?;
-        set_attribute(&at, "exit_status", UNFINISHED)?;
-        set_attribute(&at, "threads", record.threads as i64)?;
-        set_attribute(&at, "memory_need", record.memory_need as i64)?;
+        new_attribute(&at, "exit_status", UNFINISHED)?;
+        new_attribute(&at, "threads", record.threads as i64)?;
+        new_attribute(&at, "memory_need", record.memory_need as i64)?;
         Ok(RecordWriter { at })
     }
 
@@ -77,24 +77,26 @@ impl RecordWriter {
         total: f64,
     ) -> hdf5::Result<()> {
         for (name, seconds) in phases(&summary.timings) {
-            set_attribute(&self.at, &format!("seconds_{name}"), seconds)?;
+            new_attribute(&self.at, &format!("seconds_{name}"), seconds)?;
         }
-        set_attribute(&self.at, "seconds_output", output)?;
-        set_attribute(&self.at, "seconds_total", total)?;
-        set_attribute(&self.at, "increments", summary.increments as i64)?;
-        set_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
-        set_attribute(&self.at, "rejections", summary.rejections as i64)?;
-        set_attribute(&self.at, "events", summary.events as i64)?;
+        new_attribute(&self.at, "seconds_output", output)?;
+        new_attribute(&self.at, "seconds_total", total)?;
+        new_attribute(&self.at, "increments", summary.increments as i64)?;
+        new_attribute(&self.at, "cutbacks", summary.cutbacks as i64)?;
+        new_attribute(&self.at, "rejections", summary.rejections as i64)?;
+        new_attribute(&self.at, "events", summary.events as i64)?;
         if let Some(peak) = peak_memory() {
-            set_attribute(&self.at, "peak_memory", peak as i64)?;
+            new_attribute(&self.at, "peak_memory", peak as i64)?;
         }
         self.close(exit_status)
     }
 
     /// Marks the end of the run.
     pub fn close(&self, exit_status: u8) -> hdf5::Result<()> {
-        text_attribute(&self.at, "finished", &utc_now())?;
-        set_attribute(&self.at, "exit_status", i64::from(exit_status))
+        let finished = hdf5_text(&utc_now())?;
+        self.at.attr("finished")?.write_scalar(&finished)?;
+        let exit_status = i64::from(exit_status);
+        self.at.attr("exit_status")?.write_scalar(&exit_status)
     }
 }
 
