@@ -302,15 +302,16 @@ impl Elements {
                 all[element] = result;
             }
         };
-        let evaluate = |chunk: &Box<dyn Chunk>| chunk.evaluate(u, variables);
+        let evaluate = |chunk: &dyn Chunk| chunk.evaluate(u, variables);
         if self.is_worth_threads() {
-            let of_chunks: Vec<_> = self.chunks.par_iter().map(evaluate).collect();
+            let all_chunks = self.chunks.par_iter();
+            let of_chunks: Vec<_> = all_chunks.map(|chunk| evaluate(&**chunk)).collect();
             let both = self.chunks.iter().zip(of_chunks);
             both.for_each(|(chunk, of_chunk)| write(&**chunk, of_chunk));
         } else {
             self.chunks
                 .iter()
-                .for_each(|chunk| write(&**chunk, evaluate(chunk)));
+                .for_each(|chunk| write(&**chunk, evaluate(&**chunk)));
         }
         results
     }
