@@ -251,8 +251,10 @@ impl System<'_> {
         };
         let by_bodies = blocks_by(&|constraint| self.scope_of(constraint));
         by_bodies.or_else(|| {
-            let parts = blocks_by(&|constraint| self.part_of(constraint, PART));
-            parts.filter(|_| constraints.len() >= LEAST_PARTED)
+            if constraints.len() < LEAST_PARTED || are_in_both_orders(constraints) {
+                return None;
+            }
+            blocks_by(&|constraint| self.part_of(constraint, PART))
         })
     }
 
@@ -344,6 +346,21 @@ impl System<'_> {
         }
         Ok(Some((blocks, proximal)))
     }
+}
+
+/// Whether a slave node of one contact is a target of another: pairs in both orders that face each other are as good as one, and
+/// no parts of surfaces keep them together.
+fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
+    let mut contacts = BTreeMap::new();
+    for constraint in constraints {
+        let contact = constraint.key.slave().contact();
+        contacts.extend(constraint.nodes().take(1).map(|node| (node, contact)));
+    }
+    constraints.iter().any(|constraint| {
+        let own = constraint.key.slave().contact();
+        let is_of_other = |node: usize| contacts.get(&node).is_some_and(|&other| other != own);
+        constraint.nodes().skip(1).any(is_of_other)
+    })
 }
 
 /// Whether the first contact of a part is coupled strongly to all others, so that the part is to those beside it.
