@@ -2,7 +2,7 @@
 //! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
 
 use super::impact_search::{EventTrial, ImpactSearch};
-use super::increment::{Attempt, Failed, Path, Solved};
+use super::increment::{Attempt, Failed, Path, Solved, StaticRates};
 use super::ledger::node_path;
 use super::results::State;
 use super::step::{HeldMotions, Interval, StepProblem, TimePoint, Workspace};
@@ -281,6 +281,7 @@ impl<'m> Subincrements<'_, 'm> {
             closed: ClosedPairs::default(),
             held: HeldMotions::default(),
             pairs_stiffen: false,
+            rates: StaticRates::default(),
         };
         loop {
             let entries = self.entries(active, &path, rest, None);

@@ -19,6 +19,7 @@ mod rigid_predictor;
 mod rigid_velocity;
 mod solved;
 mod static_attempt;
+mod static_factors;
 mod trace;
 
 pub(crate) use attempt::Attempt;
@@ -26,4 +27,5 @@ pub(crate) use contact_forces::ContactForces;
 pub(crate) use convergence::PartNoise;
 pub(crate) use returned::{PairReturn, Release, Returned};
 pub(crate) use solved::{Path, Solved};
+pub(crate) use static_factors::StaticRates;
 pub(crate) use trace::Failed;

@@ -8,6 +8,7 @@ use super::linear_pass::Vectors;
 use super::pass::{Iterate, Pass, PassStage, Residual};
 use super::returned::Returned;
 use super::solved::Solved;
+use super::static_factors::StaticRates;
 use super::trace::Trace;
 use crate::contact::ConstraintSet;
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
@@ -281,6 +282,8 @@ impl Passes<'_, '_> {
             returned: Returned::default(),
             held: HeldMotions::default(),
             pairs_stiffen: false,
+            rates: StaticRates::default(),
+            tells_stability: false,
             has_tipped: false,
         })
     }

@@ -4,6 +4,7 @@ use super::contact_states::ContactStates;
 use super::convergence::PartNoise;
 use super::pass::Pass;
 use super::returned::Returned;
+use super::static_factors::StaticRates;
 use crate::contact::ClosedPairs;
 use crate::dynamics::results::{PassReport, State};
 use crate::dynamics::step::{Equilibrium, HeldMotions, StepProblem, Workspace};
@@ -34,6 +35,10 @@ pub(crate) struct Solved {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
+    /// What a static increment has measured of its factors.
+    pub rates: StaticRates,
+    /// Whether the last factors of a static increment tell the stability of its end.
+    pub tells_stability: bool,
     /// Whether a body has tipped over, of which the next increment knows nothing.
     pub has_tipped: bool,
 }
@@ -52,6 +57,8 @@ pub(crate) struct Path {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
+    /// What static increments have measured of their factors.
+    pub rates: StaticRates,
 }
 
 impl Path {
@@ -73,6 +80,7 @@ impl Solved {
             closed: self.end.contact.clone(),
             held: self.held.clone(),
             pairs_stiffen: self.pairs_stiffen,
+            rates: self.rates,
         }
     }
 
@@ -86,6 +94,7 @@ impl Solved {
             closed: self.end.contact.clone(),
             held: self.held.clone(),
             pairs_stiffen: false,
+            rates: StaticRates::default(),
         }
     }
 }

@@ -10,12 +10,15 @@ use super::linear_pass::{SkewPart, Vectors};
 use super::pass::{Iterate, PassStage};
 use super::passes::{Passes, SLOW_PASSES};
 use super::pin_iteration::{PinIteration, PinState};
+use super::refactorization::FactorRule;
 use super::rigid_predictor::rigid_predictor;
 use super::solved::{Path, Solved};
+use super::static_factors::{StaticFactors, StaticRates};
 use super::trace::{Failed, Trace};
 use crate::contact::{ClosedPair, Constraint, SlaveChoice};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::{ClosedConstraints, ForceChange, HeldMotions, StiffnessForm};
+use crate::model::Factorization;
 
 /// Passes that are made in any case; further ones, once corrections are small, only while they will end within MAX PASSES: they
 /// converge quadratically.
@@ -35,14 +38,16 @@ pub(super) struct StaticAttempt<'a, 'm> {
 }
 
 impl<'m> StaticAttempt<'_, 'm> {
-    /// Solves the increment: from the motion of the last one, then from rest; then with K* stiffened by closed pairs, since K alone,
-    /// soft in bending, leaves the contact forces of slender bodies few digits.
+    /// Solves the increment: from the motion of the last one, with factors that are kept as long as they pay, then with new ones in
+    /// every pass; then from rest; then with K* stiffened by closed pairs, since K alone, soft in bending, leaves the contact forces
+    /// of slender bodies few digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
         let mut vectors = Vectors::default();
         let mut failed = Cause::NotConverged;
-        for &pairs_stiffen in self.orders() {
+        let mut rates = self.guess.map_or(StaticRates::default(), |path| path.rates);
+        for &(pairs_stiffen, rule) in self.orders() {
             let may_be_digits = matches!(
                 failed,
                 Cause::NotConverged | Cause::Diverged | Cause::Lcp(_)
@@ -53,34 +58,52 @@ impl<'m> StaticAttempt<'_, 'm> {
             trace.begin();
             let v = self.guess.map_or(&self.passes.start.v, |path| &path.v);
             self.passes.start_search(v);
-            match self.solve_with(pairs_stiffen, &mut trace, &mut vectors) {
+            let mut factors = StaticFactors::new(rates, rule, settings.tolerance);
+            let solved = self.solve_with(pairs_stiffen, &mut factors, &mut trace, &mut vectors);
+            rates = factors.rates();
+            match solved {
                 Ok(solved) => {
                     return Ok(Solved {
                         passes: trace.passes,
                         pairs_stiffen,
+                        rates,
+                        tells_stability: factors.are_near(),
                         ..solved
                     });
                 }
                 Err(cause) => failed = cause,
             }
-            self.guess = None;
+            if !factors.have_been_kept() {
+                self.guess = None;
+            }
         }
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Whether closed pairs stiffen K*, in the order in which it is tried.
-    fn orders(&self) -> &'static [bool] {
+    /// Whether closed pairs stiffen K*, and which factors the passes have, in the order in which it is tried.
+    fn orders(&self) -> &'static [(bool, FactorRule)] {
+        use FactorRule::{EveryPass, Kept};
+        let may_keep = self.passes.problem.settings.factorization == Factorization::Keep;
         match self.guess {
-            Some(path) if path.pairs_stiffen => &[true, false],
-            Some(_) => &[false, false, true],
-            None => &[false, true],
+            Some(path) if path.pairs_stiffen => &[(true, EveryPass), (false, EveryPass)],
+            // what facets make shows with exact tangents
+            Some(path) if may_keep && path.held.are_none() => &[
+                (false, Kept),
+                (false, EveryPass),
+                (false, EveryPass),
+                (true, EveryPass),
+            ],
+            Some(_) => &[(false, EveryPass), (false, EveryPass), (true, EveryPass)],
+            None if may_keep => &[(false, Kept), (false, EveryPass), (true, EveryPass)],
+            None => &[(false, EveryPass), (true, EveryPass)],
         }
     }
 
-    /// The passes, with K* stiffened by closed pairs or not.
+    /// The passes, with K* stiffened by closed pairs or not, and factors that may be kept.
     fn solve_with(
         &mut self,
         pairs_stiffen: bool,
+        factors: &mut StaticFactors,
         trace: &mut Trace,
         v: &mut Vectors,
     ) -> Result<Solved, Cause> {
@@ -136,7 +159,11 @@ impl<'m> StaticAttempt<'_, 'm> {
             }
 
             // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, which takes the force K d_p
-            self.factorize(pairs_stiffen, v, &contact.forces, trace.correction())?;
+            let is_first = number == 0 && self.guess.is_none();
+            let is_new = is_first || !self.fits(pairs_stiffen) || factors.are_worn();
+            factors.begin(is_new);
+            let changes = self.tangent((pairs_stiffen, is_new), v, &contact.forces)?;
+            v.skew = self.skew_part(changes, trace.correction());
             self.passes.supports(number, v);
 
             // Pn, Pt and p of the complementarity problem, dU of eq. (12.3)
@@ -162,6 +189,7 @@ impl<'m> StaticAttempt<'_, 'm> {
                 // friction that falls with the slip rate moves away from that at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 corrections.take_in(correction, may_grow)?;
+                factors.take_in(correction);
                 if number >= SLOW_PASSES {
                     let progress = CorrectionProgress {
                         correction,
@@ -194,50 +222,57 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Factorises K - (C + C^T)/2 of the iterate, and takes its skew part N.
-    fn factorize(
+    /// Whether the factors at hand are of a K* of the same kind as the next one.
+    fn fits(&self, pairs_stiffen: bool) -> bool {
+        let stiffness = &self.passes.workspace.stiffness;
+        let is_tangent = stiffness.form == StiffnessForm::Tangent && !pairs_stiffen;
+        is_tangent && stiffness.k.solver.is_factorized()
+    }
+
+    /// C of loads and pairs at the iterate, and K - (C + C^T)/2, factorised where it `is_new`.
+    fn tangent(
         &mut self,
-        pairs_stiffen: bool,
-        v: &mut Vectors,
+        (pairs_stiffen, is_new): (bool, bool),
+        v: &Vectors,
         contact: &ContactForces,
-        correction: f64,
-    ) -> Result<(), Cause> {
+    ) -> Result<Vec<ForceChange>, Cause> {
         let Passes {
             problem,
             start,
             interval,
             ..
         } = self.passes;
-        let Vectors {
-            u,
-            equilibrium,
-            skew,
-            ..
-        } = v;
-        let motion = (problem.integration).motion(start, u, &equilibrium.u_theta);
+        let Vectors { u, equilibrium, .. } = v;
         let at = problem.configurations(&start.u, u);
         let mut changes = (problem.loads).changes(problem.elements, interval.end, u);
-        let closed = ClosedConstraints {
-            acting: contact.acting().collect(),
-            at,
-            pairs_stiffen,
-            followers: &changes,
-            out_of_balance: &equilibrium.out_of_balance,
-            held: &HeldMotions::default(),
-        };
-        let workspace = &mut *self.passes.workspace;
-        let factorized = workspace.factorize(problem, interval.dt, motion, &closed);
-        factorized.map_err(|error| problem.unsolvable(error))?;
+        if is_new {
+            let motion = (problem.integration).motion(start, u, &equilibrium.u_theta);
+            let closed = ClosedConstraints {
+                acting: contact.acting().collect(),
+                at,
+                pairs_stiffen,
+                followers: &changes,
+                out_of_balance: &equilibrium.out_of_balance,
+                held: &HeldMotions::default(),
+            };
+            let workspace = &mut *self.passes.workspace;
+            let factorized = workspace.factorize(problem, interval.dt, motion, &closed);
+            factorized.map_err(|error| problem.unsolvable(error))?;
+        }
         let of_pair = |(constraint, pair): (&Constraint, &ClosedPair)| ForceChange {
             dofs: constraint.dofs.to_vec(),
             matrix: constraint.change(pair.force, &at),
         };
         changes.extend(contact.acting().map(of_pair));
-        *skew = match workspace.stiffness.form {
+        Ok(changes)
+    }
+
+    /// What K* leaves out of the changes C: N.
+    fn skew_part(&self, changes: Vec<ForceChange>, correction: f64) -> SkewPart {
+        match self.passes.workspace.stiffness.form {
             StiffnessForm::Positive => SkewPart::default(),
             _ => SkewPart::new(&changes, correction),
-        };
-        Ok(())
+        }
     }
 
     /// The end of the increment, at rest.

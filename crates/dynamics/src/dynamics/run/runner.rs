@@ -588,7 +588,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             held: &solved.held,
         };
         let motion = Motion::at(&end.u, &end.internal);
-        let stable = workspace.check_stability(problem, motion, &contact);
+        let stable = workspace.check_stability(problem, motion, &contact, solved.tells_stability);
         stable.map_err(|error| match problem.unsolvable(error) {
             Cause::Indefinite { node } => Cause::Unstable { node },
             other => other,

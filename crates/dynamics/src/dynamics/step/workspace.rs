@@ -8,6 +8,7 @@ use super::meter::Meter;
 use super::pins::Pins;
 use super::seen::Seen;
 use super::step_problem::{StepProblem, difference, sum};
+use super::wear::Wear;
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, SlaveChoice, find_means,
@@ -15,6 +16,7 @@ use crate::contact::{
 };
 use crate::dynamics::results::State;
 use crate::elements::Motion;
+use crate::lcp::Stability;
 use crate::linear::LinearError;
 
 /// Matrices, contact search and meter of a step.
@@ -26,6 +28,8 @@ pub(crate) struct Workspace<'m> {
     pub pins: Pins,
     /// What the run has seen so far.
     pub seen: Seen,
+    /// How the factors of K* wear in dynamic increments.
+    pub wear: Wear,
     /// The pairs of the last pass.
     pairs: Vec<PairTarget>,
 }
@@ -47,13 +51,14 @@ impl<'m> Workspace<'m> {
             meter: Meter::default(),
             pins: Pins::new(problem),
             seen,
+            wear: Wear::default(),
             pairs: Vec::new(),
         }
     }
 
     /// Transfers what the increments of the step hand on.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        transfer_fields!(archive, self => Self { [stiffness, search, seen]; meter, pins, pairs })
+        transfer_fields!(archive, self => Self { [stiffness, search, seen] wear; meter, pins, pairs })
     }
 
     /// The effective stiffness K*.
@@ -120,7 +125,8 @@ impl<'m> Workspace<'m> {
         result
     }
 
-    /// Checks that an equilibrium is stable where the last K* does not say so: without pins, and not stiffened by closed pairs.
+    /// Checks that an equilibrium is stable, unless the last factors are near to it and tell: with pins, which the last
+    /// complementarity problem has freed, and not stiffened by closed pairs.
     ///
     /// # Errors
     /// That K* is not positive definite.
@@ -129,11 +135,18 @@ impl<'m> Workspace<'m> {
         problem: &StepProblem,
         motion: Motion,
         contact: &ClosedConstraints,
+        are_near: bool,
     ) -> Result<(), LinearError> {
-        if self.pins.are_none() && self.stiffness.form == StiffnessForm::Tangent {
+        let EffectiveStiffness { k, form, .. } = &self.stiffness;
+        let is_tangent = *form == StiffnessForm::Tangent;
+        let tips = (k.free()).is_some_and(|free| free.stability() == Stability::Unstable);
+        if is_tangent && are_near && !tips {
             return Ok(());
         }
-        let form = StiffnessForm::Stability;
+        let form = match self.pins.are_none() && is_tangent {
+            true => StiffnessForm::Tangent,
+            false => StiffnessForm::Stability,
+        };
         self.factorize_form(problem, (self.stiffness.dt(), form), motion, contact)
     }
 

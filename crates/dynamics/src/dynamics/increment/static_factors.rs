@@ -1,0 +1,229 @@
+//! When K is factorised anew in static increments: by the measured rates of kept factors and of new ones.
+//! docs/numerics.md, Kept factors of static steps.
+
+use serde::{Deserialize, Serialize};
+
+use super::refactorization::FactorRule;
+
+/// Rate of the corrections from which on kept factors never pay.
+const POOR: f64 = 0.3;
+/// Rate that kept factors are expected to have, until it has been measured.
+const EXPECTED: f64 = 0.03;
+/// Rate of new factors in the first pass up to which kept ones are tried again.
+const SMOOTH: f64 = 0.01;
+/// Least rate that new factors are expected to have.
+const LEAST: f64 = 1e-4;
+/// Cost of a factorisation, in passes.
+const COST: f64 = 2.0;
+/// Error of an iterate, beside the increment, up to which its factors tell the stability of the equilibrium.
+const NEAR: f64 = 1e-3;
+/// What the increments of a static step have measured.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StaticRates {
+    /// Rate in an increment of the factors that it began with.
+    kept: f64,
+    /// Rate of new factors over the error of the iterate that they are of.
+    growth: f64,
+    /// Correction of the first pass.
+    first: f64,
+}
+
+impl Default for StaticRates {
+    fn default() -> Self {
+        StaticRates {
+            kept: EXPECTED,
+            growth: POOR,
+            first: 1.0,
+        }
+    }
+}
+
+/// The factors of the passes of an attempt.
+pub(super) struct StaticFactors {
+    rates: StaticRates,
+    /// Whether factors may serve in more than one pass.
+    may_be_kept: bool,
+    tolerance: f64,
+    /// Whether the factors of the last pass were made in this attempt, and those of the pass before.
+    are_own: [bool; 2],
+    /// Passes so far.
+    passes: usize,
+    /// Passes since the last factorisation.
+    age: usize,
+    /// Error of the iterate that the factors are of, beside the increment.
+    made_at: f64,
+    /// Expected rate of the factors.
+    rate: f64,
+    /// Correction of the last pass.
+    last: Option<f64>,
+    /// Whether it was smaller than that of the pass before: where it is not, contact looks for its states.
+    falls: bool,
+    /// Whether a pass was made with the factors of another.
+    have_been_kept: bool,
+}
+
+impl StaticFactors {
+    /// Those of an attempt, which may begin with factors at hand.
+    pub fn new(rates: StaticRates, rule: FactorRule, tolerance: f64) -> Self {
+        StaticFactors {
+            rates,
+            may_be_kept: rule == FactorRule::Kept,
+            tolerance,
+            are_own: [false; 2],
+            passes: 0,
+            age: 0,
+            made_at: 1.0,
+            rate: rates.kept,
+            last: None,
+            falls: true,
+            have_been_kept: false,
+        }
+    }
+
+    /// Expected error of the next iterate, beside the increment.
+    fn error(&self) -> f64 {
+        self.last
+            .map_or(self.rates.first, |last| last * self.rate.min(1.0))
+    }
+
+    /// Whether K is to be factorised before the next pass.
+    ///
+    /// ```text
+    /// n(theta) = ln(e/tolerance)/(-ln theta)
+    /// n(theta) + s > COST + n(growth e) + s_new
+    /// ```
+    ///
+    /// e is the error of the iterate, and s what the stability of the end costs: nothing with factors of an iterate
+    /// near to it, else another factorisation.
+    pub fn are_worn(&self) -> bool {
+        if !self.may_be_kept || !self.falls || self.rate >= POOR {
+            return true;
+        }
+        let error = self.error();
+        let left = |rate: f64| ((error / self.tolerance).ln() / -rate.ln()).max(0.0);
+        let of_stability = |made_at: f64| if made_at <= NEAR { 0.0 } else { COST };
+        let new = (self.rates.growth * error).clamp(LEAST, POOR);
+        left(self.rate) + of_stability(self.made_at) > COST + left(new) + of_stability(error)
+    }
+
+    /// The next pass has factors that are new, or those of the pass before.
+    pub fn begin(&mut self, is_new: bool) {
+        self.are_own = [self.are_own[1], self.are_own[1] || is_new];
+        if is_new {
+            self.age = 0;
+        } else {
+            self.have_been_kept = true;
+        }
+    }
+
+    /// Takes in the relative correction of a pass.
+    pub fn take_in(&mut self, correction: f64) {
+        self.age += 1;
+        let of_last = self.are_own[0];
+        match self.last {
+            None => self.rates.first = correction,
+            Some(last) => {
+                let rate = if correction == 0.0 {
+                    0.0
+                } else {
+                    correction / last
+                };
+                self.falls = rate < POOR;
+                let is_first = self.passes == 1;
+                if !of_last {
+                    self.rates.kept = rate;
+                } else if is_first && rate <= SMOOTH && self.rates.kept >= POOR {
+                    self.rates.kept = EXPECTED;
+                }
+                if self.age > 1 {
+                    self.rate = rate;
+                }
+                if self.age == 2 && self.are_own[1] {
+                    self.rates.growth = rate / last;
+                }
+            }
+        }
+        if self.age == 1 && self.are_own[1] {
+            self.made_at = correction;
+            self.rate = self.rates.growth * correction;
+        }
+        self.passes += 1;
+        self.last = Some(correction);
+    }
+
+    /// Whether a pass was made with the factors of another.
+    pub fn have_been_kept(&self) -> bool {
+        self.have_been_kept
+    }
+
+    /// Whether they tell the stability of the equilibrium.
+    pub fn are_near(&self) -> bool {
+        self.made_at <= NEAR
+    }
+
+    /// What the attempt has measured.
+    pub fn rates(&self) -> StaticRates {
+        self.rates
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TOLERANCE: f64 = 1e-11;
+
+    /// Passes and factorisations of an increment whose iterates have errors that fall by `growth` times the error of the
+    /// iterate that the factors are of; the first error is `first`, and factors of the increment before have the rate `kept`.
+    fn solve(rates: &mut StaticRates, growth: f64, [first, kept]: [f64; 2]) -> [usize; 2] {
+        let mut factors = StaticFactors::new(*rates, FactorRule::Kept, TOLERANCE);
+        let (mut error, mut rate, mut count) = (first, kept, [0; 2]);
+        while error > TOLERANCE {
+            let is_new = factors.are_worn();
+            factors.begin(is_new);
+            if is_new {
+                rate = growth * error;
+                count[1] += 1;
+            }
+            factors.take_in(error);
+            count[0] += 1;
+            error *= rate;
+        }
+        *rates = factors.rates();
+        count
+    }
+
+    #[test]
+    fn smooth_increments_have_one_factorisation_near_their_end() {
+        let mut rates = StaticRates::default();
+        for increment in 0..10 {
+            let [passes, factorizations] = solve(&mut rates, 0.3, [0.01, 3e-3]);
+            let most = if increment == 0 { 2 } else { 1 };
+            assert!(factorizations <= most, "{increment}: {factorizations}");
+            assert!(passes <= 6, "{increment}: {passes}");
+        }
+    }
+
+    #[test]
+    fn kept_factors_that_do_not_pay_are_tried_again_where_motions_are_smooth() {
+        let mut rates = StaticRates::default();
+        let tried = solve(&mut rates, 0.3, [0.5, 0.9]);
+        let best = solve(&mut rates, 0.3, [0.5, 0.9]);
+        assert_eq!(tried[0], best[0] + 1, "a try costs a pass");
+        assert!(rates.kept >= POOR);
+        solve(&mut rates, 0.3, [0.02, 0.9]);
+        assert_eq!(rates.kept, EXPECTED);
+    }
+
+    #[test]
+    fn every_pass_has_new_factors_by_the_other_rule() {
+        let mut factors =
+            StaticFactors::new(StaticRates::default(), FactorRule::EveryPass, TOLERANCE);
+        for error in [1.0, 1e-3, 1e-7] {
+            assert!(factors.are_worn());
+            factors.begin(true);
+            factors.take_in(error);
+        }
+        assert!(!factors.have_been_kept());
+    }
+}
