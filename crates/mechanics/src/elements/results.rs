@@ -293,7 +293,7 @@ mod tests {
     }
 
     fn evaluate(model: &Model, u: &[f64]) -> Vec<ElementResult> {
-        Elements::new(model).evaluate(u, &[])
+        Elements::new(model).evaluate(u, &[]).to_vec()
     }
 
     #[test]
