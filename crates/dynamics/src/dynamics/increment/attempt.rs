@@ -87,14 +87,10 @@ impl DynamicAttempt<'_, '_> {
         for &rule in FactorRule::order(settings.factorization) {
             trace.begin();
             self.passes.start_search(&self.passes.start.v);
-            let are_due = self.passes.workspace.wear.is_due();
-            let mut factors = Refactorization::new(rule, are_due, settings.tolerance);
+            let mut factors = Refactorization::new(rule, settings.tolerance);
             let choice = self.choice(rule);
             match self.solve_with(choice, &mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
-                    if rule == FactorRule::Kept && factors.are_of_all_passes() {
-                        self.passes.workspace.wear.take_in(trace.passes.len());
-                    }
                     return Ok(Solved {
                         passes: trace.passes,
                         ..solved
@@ -247,7 +243,6 @@ impl DynamicAttempt<'_, '_> {
             return Ok(());
         }
         factors.renew();
-        workspace.wear.renew();
         let closed = ClosedConstraints {
             acting: contact.acting().collect(),
             at: problem.configurations(&start.u, u),

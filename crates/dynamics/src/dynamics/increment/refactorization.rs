@@ -36,8 +36,6 @@ pub(super) struct Refactorization {
     corrections: Corrections,
     /// Whether the factors are of this attempt.
     own: bool,
-    /// Passes so far.
-    passes: usize,
     /// Passes since the last factorisation.
     age: usize,
     worn: bool,
@@ -46,16 +44,14 @@ pub(super) struct Refactorization {
 }
 
 impl Refactorization {
-    /// Those of an attempt, which begins with new ones where these are due.
-    pub fn new(rule: FactorRule, are_due: bool, tolerance: f64) -> Self {
+    pub fn new(rule: FactorRule, tolerance: f64) -> Self {
         Refactorization {
             rule,
             tolerance,
             corrections: Corrections::new(),
             own: false,
-            passes: 0,
             age: 0,
-            worn: are_due || rule != FactorRule::Kept,
+            worn: rule != FactorRule::Kept,
             fresh_rate: FRESH_RATE,
         }
     }
@@ -70,11 +66,6 @@ impl Refactorization {
         self.worn
     }
 
-    /// Whether all passes so far had the same ones.
-    pub fn are_of_all_passes(&self) -> bool {
-        !self.own || self.age == self.passes
-    }
-
     /// K* is factorised.
     pub fn renew(&mut self) {
         (self.own, self.age) = (true, 0);
@@ -87,7 +78,6 @@ impl Refactorization {
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         self.corrections.take_in(correction, may_grow)?;
         self.age += 1;
-        self.passes += 1;
         let rate = self.corrections.rate();
         if self.own && self.age == 2 {
             self.fresh_rate = rate.clamp(FRESH_RATE, 0.5);

@@ -189,7 +189,7 @@ impl<'m> StaticAttempt<'_, 'm> {
                 // friction that falls with the slip rate moves away from that at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 corrections.take_in(correction, may_grow)?;
-                factors.take_in(correction);
+                factors.take_in(correction)?;
                 if number >= SLOW_PASSES {
                     let progress = CorrectionProgress {
                         correction,

@@ -21,7 +21,6 @@ mod slave_faces;
 mod step_problem;
 mod turning;
 mod unknowns;
-mod wear;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};

@@ -8,7 +8,6 @@ use super::meter::Meter;
 use super::pins::Pins;
 use super::seen::Seen;
 use super::step_problem::{StepProblem, difference, sum};
-use super::wear::Wear;
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, SlaveChoice, find_means,
@@ -28,8 +27,6 @@ pub(crate) struct Workspace<'m> {
     pub pins: Pins,
     /// What the run has seen so far.
     pub seen: Seen,
-    /// How the factors of K* wear in dynamic increments.
-    pub wear: Wear,
     /// The pairs of the last pass.
     pairs: Vec<PairTarget>,
 }
@@ -51,14 +48,13 @@ impl<'m> Workspace<'m> {
             meter: Meter::default(),
             pins: Pins::new(problem),
             seen,
-            wear: Wear::default(),
             pairs: Vec::new(),
         }
     }
 
     /// Transfers what the increments of the step hand on.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        transfer_fields!(archive, self => Self { [stiffness, search, seen] wear; meter, pins, pairs })
+        transfer_fields!(archive, self => Self { [stiffness, search, seen]; meter, pins, pairs })
     }
 
     /// The effective stiffness K*.
