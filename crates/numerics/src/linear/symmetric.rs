@@ -1,5 +1,6 @@
 //! Symmetric sparse matrices by columns, both triangles, whose copies share their pattern; where two of them have the
-//! same pattern.
+//! same pattern. `sprs` stores them with indices of 8 bytes and does not hand out the storage of its pattern, so that each
+//! solver had a copy of it.
 
 use std::ops::Range;
 use std::sync::Arc;

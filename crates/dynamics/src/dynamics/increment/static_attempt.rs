@@ -183,8 +183,10 @@ impl<'m> StaticAttempt<'_, 'm> {
             let ends = self.passes.measure(&pass, &mut v.residual, trace)?
                 && self.passes.complete(&mut contact, &v.u, Some(&v.du));
             self.pins().move_finitely(v);
-            if !ends {
-                let correction = trace.correction();
+            let correction = trace.correction();
+            if ends {
+                factors.end(correction);
+            } else {
                 equal_forces.take_in(correction, settled);
                 // friction that falls with the slip rate moves away from that at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;

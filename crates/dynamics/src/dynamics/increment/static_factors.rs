@@ -127,10 +127,9 @@ impl StaticFactors {
         match self.last {
             None => self.rates.first = correction,
             Some(last) => {
-                let rate = if correction == 0.0 {
-                    0.0
-                } else {
-                    correction / last
+                let rate = match correction {
+                    0.0 => 0.0,
+                    _ => correction / last,
                 };
                 self.falls = rate < POOR;
                 let is_first = self.passes == 1;
@@ -145,7 +144,7 @@ impl StaticFactors {
                 if self.age > 1 {
                     self.rate = rate;
                 }
-                if self.age == 2 && self.are_own[1] {
+                if self.age == 2 && self.are_own[1] && last > 0.0 {
                     self.rates.growth = rate / last;
                 }
             }
@@ -157,6 +156,13 @@ impl StaticFactors {
         self.passes += 1;
         self.last = Some(correction);
         Ok(())
+    }
+
+    /// Takes in the relative correction of the pass that ends the attempt.
+    pub fn end(&mut self, correction: f64) {
+        if self.age == 0 && self.are_own[1] {
+            self.made_at = correction;
+        }
     }
 
     /// Whether a pass was made with the factors of another.
@@ -221,6 +227,16 @@ mod tests {
         assert!(rates.kept >= POOR);
         solve(&mut rates, 0.3, [0.02, 0.9]);
         assert_eq!(rates.kept, EXPECTED);
+    }
+
+    #[test]
+    fn new_factors_of_a_pass_that_ends_tell_the_stability() {
+        let rates = StaticRates::default();
+        let mut factors = StaticFactors::new(rates, FactorRule::Kept, TOLERANCE);
+        factors.begin(true);
+        assert!(!factors.are_near());
+        factors.end(1e-12);
+        assert!(factors.are_near());
     }
 
     #[test]
