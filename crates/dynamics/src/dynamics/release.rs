@@ -99,7 +99,7 @@ impl Releasing<'_, '_> {
         let (problem, end) = (self.problem, self.interval.end);
         let motion = Motion::at(u, &self.end.internal);
         let internal = problem.elements.internal_force(motion).ok()?;
-        let load = (problem.loads).at(problem.elements, end, u);
+        let load = (problem.loads).at(end, u);
         let mut constraints = self.constraints(u);
         let (free, meter) = (&self.free, &mut self.workspace.meter);
         let mut stiffness = meter.time(|t| &mut t.assembly, || free.stiffness(problem, motion));
@@ -164,7 +164,7 @@ impl Releasing<'_, '_> {
         let of_springs = elements.spring_energy(&self.end.u) - elements.spring_energy(u);
         let taken = both.map(|(b, a)| b.energy - a.energy).sum::<f64>() + of_springs;
         let strain: f64 = before.iter().map(|element| element.energy).sum();
-        let load = (self.problem.loads).at(elements, end, u);
+        let load = (self.problem.loads).at(end, u);
         let load_work = dot(&load, &difference(u, &self.end.u));
         let loss = taken + load_work;
         let release = Release {

@@ -93,12 +93,12 @@ impl Redistribution {
         }
     }
 
-    /// Adds a force that acts on the mass of a node to forces on all dofs.
-    pub fn add_force(&self, node: usize, force: [f64; 2], all: &mut [f64]) {
+    /// Calls `add(dof, force)` with the parts of a force that acts on the mass of a node.
+    pub fn hand_out(&self, node: usize, force: [f64; 2], mut add: impl FnMut(usize, f64)) {
         let own = [(node, 1.0)];
         for (j, w) in self.donors(node).unwrap_or(&own) {
-            all[2 * j] += w * force[0];
-            all[2 * j + 1] += w * force[1];
+            add(2 * j, w * force[0]);
+            add(2 * j + 1, w * force[1]);
         }
     }
 

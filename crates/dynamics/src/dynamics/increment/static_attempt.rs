@@ -246,7 +246,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         } = self.passes;
         let Vectors { u, equilibrium, .. } = v;
         let at = problem.configurations(&start.u, u);
-        let mut changes = (problem.loads).changes(problem.elements, interval.end, u);
+        let mut changes = (problem.loads).changes(interval.end, u);
         if is_new {
             let motion = (problem.integration).motion(start, u, &equilibrium.u_theta);
             let closed = ClosedConstraints {

@@ -578,7 +578,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         now: TimePoint,
     ) -> Result<(), Cause> {
         let end = &solved.end;
-        let followers = (problem.loads).changes(problem.elements, now, &end.u);
+        let followers = (problem.loads).changes(now, &end.u);
         let contact = ClosedConstraints {
             acting: solved.contact.forces.acting().collect(),
             at: problem.configurations(&self.state.u, &end.u),

@@ -3,10 +3,12 @@
 //!
 //! Place of a step among the times of the analysis.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::elements::Elements;
-use crate::model::{Load, Model, Pressure, Step, Thickness, TimeBase, Variation};
+use crate::model::{CentrifugalForce, Load, Model, Pressure, Step, Thickness, TimeBase, Variation};
 use crate::prepare::Redistribution;
 use crate::vectors::difference;
 
@@ -97,20 +99,116 @@ impl ForceChange {
     }
 }
 
+/// Dead loads of one magnitude: body forces, and tractions over the reference faces.
+struct DeadLoad {
+    load: Load<()>,
+    /// Forces of a unit of the magnitude (dof, force), in the order of the dofs.
+    forces: Vec<(usize, f64)>,
+}
+
+/// Centrifugal forces of an element with its consistent mass per direction, n x n (mass).
+struct SpinningMass {
+    load: Load<CentrifugalForce>,
+    mass: Vec<f64>,
+}
+
 /// Loads of one step.
 pub(crate) struct Loads<'m> {
     model: &'m Model,
     step: &'m Step,
+    elements: &'m Elements,
     redistribution: &'m Redistribution,
+    dead: Vec<DeadLoad>,
+    spinning: Vec<SpinningMass>,
     /// Forces of supports that the step has not any more (dof, force), which fade over it.
     released: Vec<(usize, f64)>,
 }
 
+/// Nodal forces of a unit of a load's magnitude, by their dofs (force).
+type UnitForces = BTreeMap<usize, f64>;
+
+/// Those of a load, which loads of the same magnitude behind it share.
+fn unit_forces<'d, T>(
+    all: &'d mut Vec<(Load<()>, UnitForces)>,
+    &Load {
+        magnitude,
+        variation,
+        ..
+    }: &Load<T>,
+) -> &'d mut UnitForces {
+    let load = Load {
+        at: (),
+        magnitude,
+        variation,
+    };
+    let place = match all.last() {
+        Some((last, _)) if *last == load => all.len() - 1,
+        _ => {
+            all.push((load, UnitForces::new()));
+            all.len() - 1
+        }
+    };
+    &mut all[place].1
+}
+
+/// Body forces int N^T f^B dOmega, f^B uniform in the element, on the nodes that carry the mass, and tractions
+/// int N^T f^S dGamma over the reference face.
+fn dead_loads(
+    model: &Model,
+    step: &Step,
+    elements: &Elements,
+    redistribution: &Redistribution,
+) -> Vec<DeadLoad> {
+    let mut all = Vec::new();
+    for load in &step.body_forces {
+        let (element, forces) = (load.at.element, unit_forces(&mut all, load));
+        let density = match load.at.per_mass {
+            true => elements.density(element),
+            false => 1.0,
+        };
+        let volumes = elements.nodal_volumes(element);
+        for (&node, volume) in elements.nodes(element).iter().zip(volumes) {
+            let force = load.at.direction.map(|e| density * volume * e);
+            redistribution.hand_out(node, force, |dof, force| {
+                *forces.entry(dof).or_default() += force;
+            });
+        }
+    }
+    for load in &step.tractions {
+        let forces = unit_forces(&mut all, load);
+        let side = load.at.face.of(&model.mesh);
+        let (x, first) = (&model.mesh.coordinates, side.nodes()[0]);
+        let across = (elements.thickness(load.at.face.element), x[first][0]);
+        for (node, area) in side.areas(|node| difference(x[first], x[node]), across) {
+            for (i, e) in load.at.direction.into_iter().enumerate() {
+                *forces.entry(2 * node + i).or_default() += area * e;
+            }
+        }
+    }
+    let dead = |(load, forces): (_, UnitForces)| DeadLoad {
+        load,
+        forces: forces.into_iter().collect(),
+    };
+    all.into_iter().map(dead).collect()
+}
+
 impl<'m> Loads<'m> {
-    pub fn new(model: &'m Model, step: &'m Step, redistribution: &'m Redistribution) -> Self {
+    pub fn new(
+        model: &'m Model,
+        step: &'m Step,
+        elements: &'m Elements,
+        redistribution: &'m Redistribution,
+    ) -> Self {
+        let spinning = |&load: &Load<CentrifugalForce>| SpinningMass {
+            load,
+            mass: elements.mass(load.at.element),
+        };
         Loads {
+            dead: dead_loads(model, step, elements, redistribution),
+            spinning: step.centrifugal_forces.iter().map(spinning).collect(),
             model,
             step,
+            elements,
             redistribution,
             released: Vec::new(),
         }
@@ -123,56 +221,40 @@ impl<'m> Loads<'m> {
 
     /// Whether the step has no loads.
     pub fn are_none(&self) -> bool {
-        let Step {
-            point_loads,
-            body_forces,
-            centrifugal_forces,
-            tractions,
-            pressures,
-            ..
-        } = self.step;
-        point_loads.is_empty()
-            && body_forces.is_empty()
-            && centrifugal_forces.is_empty()
-            && tractions.is_empty()
-            && pressures.is_empty()
+        self.step.point_loads.is_empty()
+            && self.dead.is_empty()
+            && self.spinning.is_empty()
+            && self.step.pressures.is_empty()
             && self.released.is_empty()
     }
 
     /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
     /// configuration of displacements `u` (2 N entries, force).
-    pub fn write_weighted(
-        &self,
-        elements: &Elements,
-        theta1: f64,
-        interval: Interval,
-        u: &[f64],
-        r: &mut [f64],
-    ) {
+    pub fn write_weighted(&self, theta1: f64, interval: Interval, u: &[f64], r: &mut [f64]) {
         r.fill(0.0);
-        self.add(elements, 1.0 - theta1, interval.start, u, r);
-        self.add(elements, theta1, interval.end, u, r);
+        self.add(1.0 - theta1, interval.start, u, r);
+        self.add(theta1, interval.end, u, r);
     }
 
     /// External load R at a time, pressures as in [`Self::write_weighted`].
-    pub fn at(&self, elements: &Elements, now: TimePoint, u: &[f64]) -> Vec<f64> {
+    pub fn at(&self, now: TimePoint, u: &[f64]) -> Vec<f64> {
         let mut r = vec![0.0; u.len()];
-        self.add(elements, 1.0, now, u, &mut r);
+        self.add(1.0, now, u, &mut r);
         r
     }
 
     /// Changes of the loads at a time that follow the displacements `u`: those of pressures and centrifugal forces.
-    pub fn changes(&self, elements: &Elements, now: TimePoint, u: &[f64]) -> Vec<ForceChange> {
+    pub fn changes(&self, now: TimePoint, u: &[f64]) -> Vec<ForceChange> {
         let of_pressure = |load: &Load<Pressure>| {
             let p = now.magnitude(self.model, load);
-            self.change_of_pressure(elements, load, p, u)
+            self.change_of_pressure(load, p, u)
         };
         let of_pressures = self.step.pressures.iter().map(of_pressure);
-        let of_centrifugal = self.step.centrifugal_forces.iter().map(|load| {
+        let of_centrifugal = self.spinning.iter().map(|SpinningMass { load, mass }| {
             let (element, factor) = (load.at.element, now.magnitude(self.model, load));
-            let is_ring = elements.thickness(element) == Thickness::Around;
-            let nodes = elements.nodes(element);
-            let mass = DMatrix::from_vec(nodes.len(), nodes.len(), elements.mass(element));
+            let is_ring = self.elements.thickness(element) == Thickness::Around;
+            let nodes = self.elements.nodes(element);
+            let mass = DMatrix::from_column_slice(nodes.len(), nodes.len(), mass);
             let directions = if is_ring { [1.0, 0.0] } else { [1.0; 2] };
             let both = DMatrix::from_diagonal(&DVector::from_column_slice(&directions));
             ForceChange {
@@ -209,39 +291,22 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// int N^T f^B dOmega, f^B uniform in the element, on the nodes that carry the mass.
-    fn add_body_forces(&self, elements: &Elements, weight: f64, at: TimePoint, r: &mut [f64]) {
-        for load in &self.step.body_forces {
-            let element = load.at.element;
-            let density = if load.at.per_mass {
-                elements.density(element)
-            } else {
-                1.0
-            };
-            let f = weight * density * at.magnitude(self.model, load);
-            let volumes = elements.nodal_volumes(element);
-            for (&node, volume) in elements.nodes(element).iter().zip(volumes) {
-                let force = load.at.direction.map(|e| f * volume * e);
-                self.redistribution.add_force(node, force, r);
-            }
+    /// The part of the dead loads.
+    fn add_dead_loads(&self, weight: f64, at: TimePoint, r: &mut [f64]) {
+        for DeadLoad { load, forces } in &self.dead {
+            let f = weight * at.magnitude(self.model, load);
+            forces.iter().for_each(|(dof, force)| r[*dof] += f * force);
         }
     }
 
     /// omega² int rho N^T N (x - x_axis) dOmega, the arm in the configuration of displacements `u`, on the nodes that carry
     /// the mass, eq. (4.28).
-    fn add_centrifugal_forces(
-        &self,
-        elements: &Elements,
-        weight: f64,
-        at: TimePoint,
-        u: &[f64],
-        r: &mut [f64],
-    ) {
-        for load in &self.step.centrifugal_forces {
+    fn add_centrifugal_forces(&self, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
+        for SpinningMass { load, mass } in &self.spinning {
             let (element, axis) = (load.at.element, load.at.axis);
             let factor = weight * at.magnitude(self.model, load);
-            let is_ring = elements.thickness(element) == Thickness::Around;
-            let (nodes, mass) = (elements.nodes(element), elements.mass(element));
+            let is_ring = self.elements.thickness(element) == Thickness::Around;
+            let nodes = self.elements.nodes(element);
             for (&node, masses) in nodes.iter().zip(mass.chunks(nodes.len())) {
                 let mut force = [0.0; 2];
                 for (&other, m) in nodes.iter().zip(masses) {
@@ -251,54 +316,31 @@ impl<'m> Loads<'m> {
                         force[1] += factor * m * (x[1] + u[2 * other + 1] - axis[1]);
                     }
                 }
-                self.redistribution.add_force(node, force, r);
+                self.redistribution
+                    .hand_out(node, force, |dof, force| r[dof] += force);
             }
         }
     }
 
-    fn add(&self, elements: &Elements, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
+    fn add(&self, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
         if weight == 0.0 {
             return;
         }
         self.add_concentrated(weight, at, r);
-        self.add_body_forces(elements, weight, at, r);
-        self.add_centrifugal_forces(elements, weight, at, u, r);
-        for load in &self.step.tractions {
-            // int N^T f^S dGamma over the reference face
-            let side = load.at.face.of(&self.model.mesh);
-            let (x, first) = (&self.model.mesh.coordinates, side.nodes()[0]);
-            let across = (elements.thickness(load.at.face.element), x[first][0]);
-            let f = weight * at.magnitude(self.model, load);
-            for (node, area) in side.areas(|node| difference(x[first], x[node]), across) {
-                let force = f * area;
-                r[2 * node] += force * load.at.direction[0];
-                r[2 * node + 1] += force * load.at.direction[1];
-            }
-        }
+        self.add_dead_loads(weight, at, r);
+        self.add_centrifugal_forces(weight, at, u, r);
         for load in &self.step.pressures {
-            self.add_pressure(
-                elements,
-                load,
-                weight * at.magnitude(self.model, load),
-                u,
-                r,
-            );
+            self.add_pressure(load, weight * at.magnitude(self.model, load), u, r);
         }
     }
 
     /// Pressure p on the current face: -p int N^T n t dl, n the outward normal, t the thickness or 2 pi r.
-    fn add_pressure(
-        &self,
-        elements: &Elements,
-        load: &Load<Pressure>,
-        p: f64,
-        u: &[f64],
-        r: &mut [f64],
-    ) {
+    fn add_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64], r: &mut [f64]) {
         let side = load.at.face.of(&self.model.mesh);
         let (x, a) = (&self.model.mesh.coordinates, side.nodes()[0]);
         let from_first = |b: usize| [0, 1].map(|i| x[b][i] + u[2 * b + i] - x[a][i] - u[2 * a + i]);
-        let across = (elements.thickness(load.at.face.element), x[a][0] + u[2 * a]);
+        let thickness = self.elements.thickness(load.at.face.element);
+        let across = (thickness, x[a][0] + u[2 * a]);
         for (node, thrust) in side.thrusts(from_first, across) {
             r[2 * node] -= p * thrust[0];
             r[2 * node + 1] -= p * thrust[1];
@@ -312,15 +354,9 @@ impl<'m> Loads<'m> {
 
     /// Change of the pressure p on a face. Its forces are polynomials of at most degree 2 of the positions, whose
     /// derivatives are central differences of any step; it is the length of the face.
-    fn change_of_pressure(
-        &self,
-        elements: &Elements,
-        load: &Load<Pressure>,
-        p: f64,
-        u: &[f64],
-    ) -> ForceChange {
+    fn change_of_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64]) -> ForceChange {
         let side = load.at.face.of(&self.model.mesh);
-        let thickness = elements.thickness(load.at.face.element);
+        let thickness = self.elements.thickness(load.at.face.element);
         let [a, b] = side.ends().map(|node| self.position(u, node));
         let step = difference(a, b)
             .map(f64::abs)

@@ -130,7 +130,7 @@ impl<'m> StepProblem<'m> {
             parts_of_unknowns: parts.of_unknowns(&unknowns.dof),
             unknowns,
             hinges: Hinges::new(model, step),
-            loads: Loads::new(model, step, redistribution),
+            loads: Loads::new(model, step, elements, redistribution),
             fits: Fits::new(model, step, overlaps, |contact| {
                 discretization.contacts[contact].slaves.len()
             }),
@@ -323,7 +323,7 @@ impl StepProblem<'_> {
         // without loads it is zero as it was made
         if !self.loads.are_none() {
             let theta1 = self.integration.theta1;
-            (self.loads).write_weighted(self.elements, theta1, interval, u_theta, load);
+            (self.loads).write_weighted(theta1, interval, u_theta, load);
             self.unknowns.turning.scale_moments(d, load);
         } else if !self.hinges.are_none() || !held.is_empty() {
             load.fill(0.0);

@@ -288,7 +288,7 @@ impl<'m> Workspace<'m> {
         let Ok(internal) = problem.elements.internal_force(motion) else {
             return a;
         };
-        let load = (problem.loads).at(problem.elements, now, &start.u);
+        let load = (problem.loads).at(now, &start.u);
         let mut load = load;
         problem.unknowns.turning.scale_moments(&a, &mut load);
         let mut r = sum(&difference(&load, &internal), contact);
