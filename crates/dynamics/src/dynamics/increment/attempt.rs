@@ -17,7 +17,9 @@ use super::static_attempt::StaticAttempt;
 use super::trace::{Failed, Trace};
 use crate::contact::{ConstraintSet, SlaveChoice};
 use crate::dynamics::results::{Cause, State};
-use crate::dynamics::step::{ClosedConstraints, HeldMotions, Interval, StepProblem, Workspace};
+use crate::dynamics::step::{
+    ClosedConstraints, FactoredState, HeldMotions, Interval, StepProblem, Workspace,
+};
 
 /// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
 const PATIENCE: usize = 25;
@@ -87,10 +89,14 @@ impl DynamicAttempt<'_, '_> {
         for &rule in FactorRule::order(settings.factorization) {
             trace.begin();
             self.passes.start_search(&self.passes.start.v);
-            let mut factors = Refactorization::new(rule, settings.tolerance);
+            let are_due = self.passes.workspace.wear.is_due();
+            let mut factors = Refactorization::new(rule, are_due, settings.tolerance);
             let choice = self.choice(rule);
             match self.solve_with(choice, &mut factors, &mut trace, &mut vectors) {
                 Ok(solved) => {
+                    if rule == FactorRule::Kept && factors.are_of_all_passes() {
+                        self.passes.workspace.wear.take_in(trace.passes.len());
+                    }
                     return Ok(Solved {
                         passes: trace.passes,
                         ..solved
@@ -242,16 +248,28 @@ impl DynamicAttempt<'_, '_> {
             workspace.turn(problem, motion);
             return Ok(());
         }
+        let state = match fits && factors.may_be_kept() {
+            true => workspace.wear.renew(factors.are_first()),
+            false => workspace.wear.begin(),
+        };
         factors.renew();
-        let closed = ClosedConstraints {
-            acting: contact.acting().collect(),
+        let mut closed = ClosedConstraints {
+            acting: Vec::new(),
             at: problem.configurations(&start.u, u),
             pairs_stiffen: false,
             followers: &[],
             out_of_balance: &equilibrium.out_of_balance,
             held: &HeldMotions::default(),
         };
-        let factorized = workspace.factorize(problem, interval.dt, motion, &closed);
+        let factorized = match state {
+            FactoredState::Iterate => {
+                closed.acting = contact.acting().collect();
+                workspace.factorize(problem, interval.dt, motion, &closed)
+            }
+            FactoredState::Unstrained => {
+                workspace.factorize_unstrained(problem, interval.dt, motion, &closed)
+            }
+        };
         factorized.map_err(|error| problem.unsolvable(error))
     }
 

@@ -36,6 +36,8 @@ pub(super) struct Refactorization {
     corrections: Corrections,
     /// Whether the factors are of this attempt.
     own: bool,
+    /// Passes so far.
+    passes: usize,
     /// Passes since the last factorisation.
     age: usize,
     worn: bool,
@@ -44,14 +46,16 @@ pub(super) struct Refactorization {
 }
 
 impl Refactorization {
-    pub fn new(rule: FactorRule, tolerance: f64) -> Self {
+    /// Those of an attempt, which begins with new ones where these are due.
+    pub fn new(rule: FactorRule, are_due: bool, tolerance: f64) -> Self {
         Refactorization {
             rule,
             tolerance,
             corrections: Corrections::new(),
             own: false,
+            passes: 0,
             age: 0,
-            worn: rule != FactorRule::Kept,
+            worn: are_due || rule != FactorRule::Kept,
             fresh_rate: FRESH_RATE,
         }
     }
@@ -61,9 +65,24 @@ impl Refactorization {
         &self.corrections
     }
 
+    /// Whether they may serve in more than one pass.
+    pub fn may_be_kept(&self) -> bool {
+        self.rule == FactorRule::Kept
+    }
+
     /// Whether K* is to be factorised before the next pass.
     pub fn are_worn(&self) -> bool {
         self.worn
+    }
+
+    /// Whether all passes so far had the same ones.
+    pub fn are_of_all_passes(&self) -> bool {
+        !self.own || self.age == self.passes
+    }
+
+    /// Whether no pass was made yet.
+    pub fn are_first(&self) -> bool {
+        self.passes == 0
     }
 
     /// K* is factorised.
@@ -78,6 +97,7 @@ impl Refactorization {
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         self.corrections.take_in(correction, may_grow)?;
         self.age += 1;
+        self.passes += 1;
         let rate = self.corrections.rate();
         if self.own && self.age == 2 {
             self.fresh_rate = rate.clamp(FRESH_RATE, 0.5);

@@ -21,6 +21,7 @@ mod slave_faces;
 mod step_problem;
 mod turning;
 mod unknowns;
+mod wear;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
@@ -43,4 +44,5 @@ pub(crate) use step_problem::{
     write_difference, write_sum,
 };
 pub use turning::{TurningBody, rigid_inertia};
+pub(crate) use wear::FactoredState;
 pub(crate) use workspace::Workspace;

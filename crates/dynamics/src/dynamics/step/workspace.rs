@@ -8,6 +8,7 @@ use super::meter::Meter;
 use super::pins::Pins;
 use super::seen::Seen;
 use super::step_problem::{StepProblem, difference, sum};
+use super::wear::Wear;
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::contact::{
     ClosedPairs, Constraint, NodeAtSegment, PairTarget, Search, SlaveChoice, find_means,
@@ -27,6 +28,8 @@ pub(crate) struct Workspace<'m> {
     pub pins: Pins,
     /// What the run has seen so far.
     pub seen: Seen,
+    /// How the factors of K* wear in dynamic increments.
+    pub wear: Wear,
     /// The pairs of the last pass.
     pairs: Vec<PairTarget>,
 }
@@ -48,13 +51,14 @@ impl<'m> Workspace<'m> {
             meter: Meter::default(),
             pins: Pins::new(problem),
             seen,
+            wear: Wear::default(),
             pairs: Vec::new(),
         }
     }
 
     /// Transfers what the increments of the step hand on.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
-        transfer_fields!(archive, self => Self { [stiffness, search, seen]; meter, pins, pairs })
+        transfer_fields!(archive, self => Self { [stiffness, search, seen] wear; meter, pins, pairs })
     }
 
     /// The effective stiffness K*.
@@ -119,6 +123,27 @@ impl<'m> Workspace<'m> {
             }
         }
         result
+    }
+
+    /// Assembles and factorises K* of the bodies as they are without displacements and internal variables, and turns the
+    /// factors with the bodies to the configuration of a motion.
+    pub fn factorize_unstrained(
+        &mut self,
+        problem: &StepProblem,
+        dt: f64,
+        motion: Motion,
+        contact: &ClosedConstraints,
+    ) -> Result<(), LinearError> {
+        let at_rest = vec![0.0; motion.end.len()];
+        let variables = problem.elements.initial_variables();
+        let unstrained = Motion {
+            start: motion.start.and(Some(&at_rest)),
+            increment: motion.increment.and(Some([&at_rest; 2])),
+            ..Motion::at(&at_rest, &variables)
+        };
+        self.factorize(problem, dt, unstrained, contact)?;
+        self.turn(problem, motion);
+        Ok(())
     }
 
     /// Checks that an equilibrium is stable, unless the last factors are near to it and tell: with pins, which the last

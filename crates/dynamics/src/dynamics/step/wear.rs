@@ -1,0 +1,206 @@
+//! How kept factors of K* wear over the increments of a dynamic step, when new ones pay, and what K* they are of.
+//! docs/numerics.md, Kept factors of the stiffness.
+
+use serde::{Deserialize, Serialize};
+
+/// Increments whose mean number of passes is that of new factors.
+const NEW: u32 = 5;
+/// Part of the least such mean that passes may have beyond it.
+const SLACK: f64 = 0.05;
+/// Cost of a factorisation, with the compliance of the contacts, in passes.
+const COST: f64 = 10.0;
+/// Part by which new factors must lower the passes to have paid.
+const GAIN: f64 = 0.1;
+/// Part of the last number in the mean of the latest ones.
+const LATEST: f64 = 0.2;
+/// Multiple of its cost from which on the next factorisation pays, beside that of one that has not.
+const RARER: f64 = 4.0;
+/// Largest such multiple.
+const MOST: f64 = 256.0;
+
+/// What K* new factors are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum FactoredState {
+    /// That of the iterate.
+    Iterate,
+    /// That of the bodies as they are without displacements, turned.
+    Unstrained,
+}
+
+/// Passes of the increments with the factors at hand.
+///
+/// Factors of K* are rented: every pass beyond those that new ones have needed is rent, and once it comes to the price of new
+/// ones, they are bought. If passes grow evenly with the age of the factors, that is the best age. What is bought is on
+/// trial: strains that have changed by the next increments make it worse than factors of the unstrained bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Wear {
+    /// Increments since the last factorisation.
+    increments: u32,
+    /// Mean number of passes of the first of them.
+    new: f64,
+    /// Least such mean of the step.
+    least: f64,
+    /// Mean number of passes of the latest.
+    latest: f64,
+    /// The same before the factors on trial were bought.
+    before: Option<f64>,
+    /// Whether factors on trial have not paid.
+    has_failed: bool,
+    /// Passes beyond the least mean.
+    excess: f64,
+    /// Multiple of its cost from which on a factorisation pays.
+    bound: f64,
+}
+
+impl Default for Wear {
+    fn default() -> Self {
+        Wear {
+            increments: 0,
+            new: 0.0,
+            least: f64::INFINITY,
+            latest: 0.0,
+            before: None,
+            has_failed: false,
+            excess: 0.0,
+            bound: 1.0,
+        }
+    }
+}
+
+impl Wear {
+    /// Whether new factors pay from the start of an increment on.
+    pub fn is_due(&self) -> bool {
+        self.has_failed || self.excess > self.bound * COST
+    }
+
+    /// K* is factorised for other increments, or for one pass; gives what it is of.
+    pub fn begin(&mut self) -> FactoredState {
+        *self = Wear {
+            bound: self.bound,
+            ..Wear::default()
+        };
+        FactoredState::Iterate
+    }
+
+    /// K* is factorised: at the `start` of an increment, or since the factors have worn in its passes; gives what it is of.
+    pub fn renew(&mut self, at_start: bool) -> FactoredState {
+        if !at_start && self.before.is_some() {
+            self.fail();
+        }
+        let state = match self.has_failed {
+            true => FactoredState::Unstrained,
+            false => FactoredState::Iterate,
+        };
+        let is_bought = at_start && !self.has_failed && self.is_due();
+        *self = Wear {
+            before: is_bought.then_some(self.latest),
+            bound: self.bound,
+            least: self.least,
+            ..Wear::default()
+        };
+        state
+    }
+
+    /// The factors on trial have not paid.
+    fn fail(&mut self) {
+        self.has_failed = true;
+        self.bound = (RARER * self.bound).min(MOST);
+    }
+
+    /// Sees what the passes of new factors are, and whether these have paid.
+    fn judge(&mut self) {
+        if let Some(before) = self.before.take() {
+            match self.new < (1.0 - GAIN) * before {
+                true => self.bound = 1.0,
+                false => self.fail(),
+            }
+        }
+        self.least = self.least.min(self.new);
+    }
+
+    /// Takes in the passes of an increment with the factors at hand.
+    pub fn take_in(&mut self, passes: usize) {
+        let passes = passes as f64;
+        self.increments += 1;
+        if self.increments <= NEW {
+            self.new += (passes - self.new) / f64::from(self.increments);
+            self.latest = self.new;
+            if self.increments == NEW {
+                self.judge();
+            }
+        } else {
+            self.latest += LATEST * (passes - self.latest);
+            self.excess = (self.excess + passes - (1.0 + SLACK) * self.least).max(0.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ages at which factors are renewed, in so many increments with the passes of an age.
+    fn ages(increments: u32, passes: impl Fn(u32) -> usize) -> Vec<u32> {
+        let mut wear = Wear::default();
+        let (mut age, mut ages) = (0, Vec::new());
+        for _ in 0..increments {
+            if wear.is_due() {
+                assert_eq!(wear.renew(true), FactoredState::Iterate);
+                ages.push(std::mem::take(&mut age));
+            }
+            wear.take_in(passes(age));
+            age += 1;
+        }
+        ages
+    }
+
+    #[test]
+    fn rent_and_price_of_factors_are_alike_where_passes_grow_evenly() {
+        let passes = |age: u32| 4 + age as usize / 5;
+        let ages = ages(1000, passes);
+        assert!(ages.len() > 50);
+        let rent = |age: u32| (0..age).map(|age| passes(age) - 4).sum::<usize>() as f64;
+        let is_priced = |&age: &u32| (rent(age) - COST).abs() <= 3.0;
+        assert!(ages.iter().all(is_priced), "{ages:?}");
+    }
+
+    #[test]
+    fn factors_that_do_not_age_stay() {
+        assert!(ages(10_000, |_| 6).is_empty());
+    }
+
+    #[test]
+    fn factors_that_have_not_paid_give_way_and_come_more_rarely() {
+        let mut wear = Wear::default();
+        let mut renewed: Vec<(u32, FactoredState)> = Vec::new();
+        for increment in 0..10_000_u32 {
+            if wear.is_due() {
+                renewed.push((increment, wear.renew(true)));
+            }
+            wear.take_in(if increment < 10 { 4 } else { 8 });
+        }
+        let (trials, others): (Vec<&(u32, FactoredState)>, Vec<_>) =
+            (renewed.iter()).partition(|(_, state)| *state == FactoredState::Iterate);
+        assert_eq!(trials.len(), others.len());
+        let since: Vec<u32> = trials
+            .windows(2)
+            .map(|ends| ends[1].0 - ends[0].0)
+            .collect();
+        assert!(since.is_sorted(), "{since:?}");
+        assert!(since.last() > Some(&(20 * since[0])), "{since:?}");
+    }
+
+    #[test]
+    fn factors_on_trial_that_wear_in_the_passes_have_failed() {
+        let mut wear = Wear::default();
+        for increment in 0..20 {
+            wear.take_in(if increment < NEW { 4 } else { 8 });
+        }
+        assert!(wear.is_due());
+        assert_eq!(wear.renew(true), FactoredState::Iterate);
+        assert_eq!(wear.renew(false), FactoredState::Unstrained);
+        assert!(!wear.is_due());
+        assert_eq!(wear.renew(false), FactoredState::Iterate, "no trial");
+        assert_eq!(wear.bound, RARER);
+    }
+}
