@@ -31,6 +31,8 @@ pub(crate) struct Accounts {
     consistent: Option<Mass>,
     /// Momentum that mass-proportional damping has taken.
     damped: Momentum,
+    /// Largest normal force of contact on a node so far (force).
+    largest_normal: f64,
 }
 
 impl Accounts {
@@ -60,13 +62,14 @@ impl Accounts {
             consistent: (!redistribution.is_empty()).then(consistent),
             faces,
             damped: Momentum::default(),
+            largest_normal: 0.0,
         }
     }
 
     /// Transfers the sums over the run.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self {
-            [contacts, touches, surface_work] damped; bodies, faces, consistent
+            [contacts, touches, surface_work] damped, largest_normal; bodies, faces, consistent
         })
     }
 
@@ -138,7 +141,8 @@ impl Accounts {
         let mut nodal = nodal_results(problem, solved);
         let (theta1, Interval { start, end, .. }) = (problem.integration.theta1, interval);
         nodal.concentrated = problem.loads.concentrated(theta1, start, end, u.len());
-        nodal.pressure = contact_pressure(&self.faces, problem, u, &solved.contact.forces);
+        let (forces, most) = (&solved.contact.forces, &mut self.largest_normal);
+        nodal.pressure = contact_pressure(&self.faces, problem, u, forces, most);
         nodal.slip.clone_from(&self.contacts.slip);
         (self.surface_work).enter(problem, &self.faces, solved, &ledger.works);
         report.surface_work_difference = self.surface_work.difference(&self.contacts);

@@ -20,7 +20,7 @@ use crate::dynamics::results::{
 use crate::dynamics::step::{Equilibrium, Interval, SlaveFaces, StepProblem};
 use crate::linear::larger;
 use crate::model::{Bodies, ContactMass, Model};
-use crate::vectors::cross;
+use crate::vectors::{cross, length};
 
 /// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is
 /// an impact.
@@ -402,22 +402,30 @@ fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
 /// N = sum Bn^T Pn,  p = |N|/A    eq. (9.8)
 /// ```
 ///
-/// The sum of N runs over all pairs of the node.
+/// The sum of N runs over all pairs of the node. What the tolerance of the passes leaves of the `largest` |N| of the run so
+/// far, which this grows with, is no force.
 pub(crate) fn contact_pressure(
     faces: &SlaveFaces,
     problem: &StepProblem,
     u: &[f64],
     forces: &ContactForces,
+    largest: &mut f64,
 ) -> Vec<f64> {
     let mut normal = vec![0.0; u.len()];
     for (constraint, pair) in forces.acting() {
         constraint.add_force([pair.force[0], 0.0], &mut normal);
     }
+    let force_of = |node: usize| [normal[2 * node], normal[2 * node + 1]];
+    let nodes = 0..faces.start.len();
+    *largest = nodes
+        .map(|node| length(force_of(node)))
+        .fold(*largest, larger);
+    let least = problem.settings.tolerance * *largest;
     let mut pressure = faces.start.clone();
     for (node, pressure) in pressure.iter_mut().enumerate() {
-        let force = [normal[2 * node], normal[2 * node + 1]];
-        let size = force[0].hypot(force[1]);
-        if size > 0.0 {
+        let force = force_of(node);
+        let size = length(force);
+        if size > least {
             let area = faces.area(node, force, |node| problem.position(u, node));
             *pressure += if area > 0.0 { size / area } else { f64::NAN };
         }
