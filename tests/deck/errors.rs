@@ -394,7 +394,10 @@ EBLOCK",
         ),
         shared(PAIR, &initialized("ADJUST=YES", ", , FOT")),
         shared(PAIR, &initialized("ADJUST=YES", "SBOT, STOP, FIT")),
-        step(GENERAL.trim_end()),
+        step(&format!(
+            "*END STEP\n*STEP\n*DYNAMIC, DIRECT\n0.001, 0.01\n{}",
+            GENERAL.trim_end()
+        )),
         clearance(PAIR, "STOP, MASTER=SBOT, VALUE=0."),
         clearance(PAIR, "SBOT, MASTER=STOP, VALUE=-0.1"),
         clearance(

@@ -5,6 +5,7 @@ mod errors;
 mod flat;
 mod fuzz;
 mod left_out;
+mod levels;
 mod model;
 mod owners;
 mod parameters;

@@ -171,7 +171,7 @@ pub(crate) fn deck_with(lines: &str, scope: Scope) -> String {
         _ if ASSEMBLY.contains(lines) => ASSEMBLY.to_owned(),
         _ if lines.ends_with("*END STEP") => format!("{SHARED}{lines}\n"),
         _ if lines.contains("*CONTACT\n") => put("*STEP", "").replacen(PAIR, "", 1),
-        Scope::Step => put("*END STEP", ""),
+        Scope::At(levels) if !levels.are_of_model() => put("*END STEP", ""),
         Scope::Block("MATERIAL") => {
             let law = if lines.contains("ELASTIC") { "" } else { LAW };
             put("*SOLID SECTION", &format!("*MATERIAL, NAME=NEW\n{law}"))

@@ -3,14 +3,14 @@
 
 use super::card::{Card, Instance, Placement};
 use super::collect::Deck;
-use super::keywords::{Scope, Status};
+use super::keywords::{Level, Levels, Scope, Status};
 use super::lines::Line;
 use super::text::{Name, Text};
 use crate::diagnostics::{Code, Diagnostics, Severity, Sources, Span, closest, list_of};
 
 /// The deck with the cards of the parts in place of their instances.
 pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
-    let is_structure = |card: &Card| card.keyword.scope == Scope::Assembly;
+    let is_structure = |card: &Card| card.keyword.scope == Scope::Structure;
     if !deck.cards.iter().any(is_structure) {
         return without_assembly(deck, d);
     }
@@ -25,8 +25,8 @@ pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagno
     let copies = instances(&items, &parts, &mut flat, sources, d);
     for (item, copy) in items.into_iter().zip(&copies) {
         match item {
-            Item::Card(card, region) => {
-                let card = scoped(card, region, &flat, d);
+            Item::Card(card) => {
+                let card = scoped(card, &flat, d);
                 flat.cards.push(card);
             }
             Item::Instance(_, own) => {
@@ -128,11 +128,8 @@ fn undefined<'n>(
 }
 
 /// The card with its rows in the instance that its parameter names.
-fn scoped(card: Card, region: Region, flat: &Deck, d: &mut Diagnostics) -> Card {
-    let Some(text) = card
-        .value("INSTANCE")
-        .filter(|_| region == Region::Assembly)
-    else {
+fn scoped(card: Card, flat: &Deck, d: &mut Diagnostics) -> Card {
+    let Some(text) = card.value("INSTANCE") else {
         return card;
     };
     match flat.instance(&text.name_key()) {
@@ -170,8 +167,8 @@ pub(super) struct Part {
 
 /// A card outside parts, or an instance.
 pub(super) enum Item {
-    /// A card and where it stands.
-    Card(Card, Region),
+    /// A card.
+    Card(Card),
     /// `*INSTANCE` with the cards up to `*END INSTANCE`.
     Instance(Card, Vec<Card>),
 }
@@ -180,7 +177,8 @@ pub(super) enum Item {
 pub(super) struct Structure {
     pub parts: Vec<Part>,
     pub items: Vec<Item>,
-    region: Region,
+    /// The level of the next card.
+    level: Level,
     has_assembly: bool,
     /// Whether the last card is reported to be out of place: one of several in a row is.
     misplaced: bool,
@@ -192,7 +190,7 @@ impl Structure {
         let mut structure = Structure {
             parts: Vec::new(),
             items: Vec::new(),
-            region: Region::Model,
+            level: Level::Model,
             has_assembly: false,
             misplaced: false,
         };
@@ -201,26 +199,27 @@ impl Structure {
             structure.add(card, d);
         }
         if let Some(end) = end {
-            report_open(structure.region, end, d);
+            report_open(structure.level, end, d);
         }
         structure
     }
 
     fn add(&mut self, card: Card, d: &mut Diagnostics) {
+        self.misplaced &= card.keyword.scope != Scope::Structure;
         match card.keyword.name {
             "PART" => self.part(card, d),
             "ASSEMBLY" => self.assembly(&card, d),
             "INSTANCE" => self.instance(card, d),
-            "END PART" => self.end(Region::Part, Region::Model, &card, d),
-            "END ASSEMBLY" => self.end(Region::Assembly, Region::Model, &card, d),
-            "END INSTANCE" => self.end(Region::Instance, Region::Assembly, &card, d),
+            "END PART" => self.end(Level::Part, Level::Model, &card, d),
+            "END ASSEMBLY" => self.end(Level::Assembly, Level::Model, &card, d),
+            "END INSTANCE" => self.end(Level::Instance, Level::Assembly, &card, d),
             _ => self.other(card, d),
         }
     }
 
     fn part(&mut self, head: Card, d: &mut Diagnostics) {
-        report_open(self.region, head.span, d);
-        self.region = Region::Part;
+        report_open(self.level, head.span, d);
+        self.level = Level::Part;
         let text = head.required("NAME", d);
         let name = text.and_then(|text| text.name(d));
         let known = |name: &Name| {
@@ -239,8 +238,8 @@ impl Structure {
     }
 
     fn assembly(&mut self, head: &Card, d: &mut Diagnostics) {
-        report_open(self.region, head.span, d);
-        self.region = Region::Assembly;
+        report_open(self.level, head.span, d);
+        self.level = Level::Assembly;
         head.has("NAME");
         if std::mem::replace(&mut self.has_assembly, true) {
             let message = "*ASSEMBLY appears a second time here";
@@ -249,10 +248,10 @@ impl Structure {
     }
 
     fn instance(&mut self, head: Card, d: &mut Diagnostics) {
-        if self.region != Region::Assembly {
-            report_open(self.region, head.span, d);
+        if self.level != Level::Assembly {
+            report_open(self.level, head.span, d);
         }
-        if self.region == Region::Model {
+        if self.level == Level::Model {
             d.error(
                 Code::WrongPlace,
                 head.span,
@@ -260,128 +259,98 @@ impl Structure {
             )
             .help("move it between *ASSEMBLY and *END ASSEMBLY");
         }
-        self.region = Region::Instance;
+        self.level = Level::Instance;
         self.items.push(Item::Instance(head, Vec::new()));
     }
 
-    /// The end of `region`, behind which cards belong to `outer`.
-    fn end(&mut self, region: Region, outer: Region, card: &Card, d: &mut Diagnostics) {
-        if self.region == Region::Instance && region == Region::Assembly {
-            report_open(self.region, card.span, d);
-        } else if self.region != region {
-            let head = region.head().unwrap_or_default();
+    /// The end of `level`, behind which cards belong to `outer`.
+    fn end(&mut self, level: Level, outer: Level, card: &Card, d: &mut Diagnostics) {
+        if self.level == Level::Instance && level == Level::Assembly {
+            report_open(self.level, card.span, d);
+        } else if self.level != level {
+            let head = head(level).unwrap_or_default();
             let message = format!("{} without *{head}", card.title());
             d.error(Code::AssemblyStructure, card.span, message);
         }
-        self.region = outer;
+        self.level = outer;
     }
 
     fn other(&mut self, card: Card, d: &mut Diagnostics) {
-        if card.keyword.name == "STEP" {
-            report_open(self.region, card.span, d);
-            self.region = Region::Model;
-        }
-        let misplaced = !self.region.takes(&card);
-        if misplaced && !self.misplaced {
-            self.region.report(&card, d);
-        }
-        self.misplaced = misplaced;
-        let (part, item) = (self.parts.last_mut(), self.items.last_mut());
-        match (self.region, part, item) {
-            (Region::Part, Some(part), _) => part.cards.push(card),
-            (Region::Instance, _, Some(Item::Instance(_, cards))) => cards.push(card),
-            (region, _, _) => self.items.push(Item::Card(card, region)),
-        }
-    }
-}
-
-/// The part of a deck that a card stands in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Region {
-    /// Outside parts and the assembly.
-    Model,
-    /// A part.
-    Part,
-    /// The assembly, outside its instances.
-    Assembly,
-    /// An instance.
-    Instance,
-}
-
-/// Cards of parts and instances.
-const OF_PARTS: [&str; 6] = [
-    "NODE",
-    "ELEMENT",
-    "NSET",
-    "ELSET",
-    "SURFACE",
-    "SOLID SECTION",
-];
-
-/// Cards of the assembly.
-const OF_ASSEMBLY: [&str; 7] = [
-    "NODE",
-    "ELEMENT",
-    "NSET",
-    "ELSET",
-    "SURFACE",
-    "RIGID BODY",
-    "EQUATION",
-];
-
-impl Region {
-    /// The keyword that begins it; none outside parts and the assembly.
-    pub fn head(self) -> Option<&'static str> {
-        match self {
-            Region::Model => None,
-            Region::Part => Some("PART"),
-            Region::Assembly => Some("ASSEMBLY"),
-            Region::Instance => Some("INSTANCE"),
-        }
-    }
-
-    /// Whether the card may stand here.
-    pub fn takes(self, card: &Card) -> bool {
-        let name = card.keyword.name;
-        if card.keyword.status != Status::Read {
-            return true;
-        }
-        match self {
-            Region::Model => !OF_PARTS.contains(&name),
-            Region::Part | Region::Instance => OF_PARTS.contains(&name),
-            Region::Assembly => OF_ASSEMBLY.contains(&name),
-        }
-    }
-
-    /// Where the card belongs.
-    fn advice(card: &Card) -> &'static str {
-        match (card.keyword.name, card.keyword.scope) {
-            ("SOLID SECTION", _) => "put it between *PART and *END PART",
-            (name, _) if OF_PARTS.contains(&name) => {
-                "in a deck with an assembly it belongs to *PART or *ASSEMBLY"
+        match card.keyword.name {
+            "STEP" => {
+                report_open(self.level, card.span, d);
+                self.level = Level::LaterStep;
             }
-            (_, Scope::Step) => "move it between *STEP and *END STEP",
-            _ => "move it behind *END ASSEMBLY",
+            "END STEP" => self.level = Level::Model,
+            _ => {}
+        }
+        let misplaced = !takes(self.level, &card);
+        if misplaced && !self.misplaced {
+            report(self.level, &card, d);
+        }
+        // sets and surfaces of a mesh out of place may stand there
+        self.misplaced = misplaced || (self.misplaced && card.keyword.levels.are_of_mesh());
+        let (part, item) = (self.parts.last_mut(), self.items.last_mut());
+        match (self.level, part, item) {
+            (Level::Part, Some(part), _) => part.cards.push(card),
+            (Level::Instance, _, Some(Item::Instance(_, cards))) => cards.push(card),
+            _ => self.items.push(Item::Card(card)),
         }
     }
+}
 
-    /// Reports a card that cannot stand here.
-    pub fn report(self, card: &Card, d: &mut Diagnostics) {
-        let region = match self {
-            Region::Model => "outside parts and the assembly",
-            Region::Part => "in a part",
-            Region::Assembly => "in the assembly",
-            Region::Instance => "in an instance",
-        };
-        let message = format!("{} cannot stand {region}", card.title());
-        d.error(Code::WrongPlace, card.span, message)
-            .help(Region::advice(card));
+/// The keyword that begins a part, an instance or the assembly.
+fn head(level: Level) -> Option<&'static str> {
+    match level {
+        Level::Part => Some("PART"),
+        Level::Assembly => Some("ASSEMBLY"),
+        Level::Instance => Some("INSTANCE"),
+        Level::Model | Level::FirstStep | Level::LaterStep => None,
     }
+}
+
+/// Whether a card may stand here, as far as parts and the assembly decide: the order of model and steps is not looked at.
+fn takes(level: Level, card: &Card) -> bool {
+    if card.keyword.status != Status::Read {
+        return true;
+    }
+    let levels = card.keyword.levels;
+    match level {
+        Level::Part | Level::Instance | Level::Assembly => levels.has(level),
+        Level::Model => levels.has(level) || !levels.are_of_mesh(),
+        Level::FirstStep | Level::LaterStep => true,
+    }
+}
+
+/// Where a card of these levels belongs.
+fn advice(levels: Levels) -> &'static str {
+    if levels.has(Level::Part) && !levels.has(Level::Assembly) {
+        "put it between *PART and *END PART"
+    } else if levels.are_of_mesh() {
+        "in a deck with an assembly it belongs to *PART or *ASSEMBLY"
+    } else if !levels.has(Level::Model) {
+        "move it between *STEP and *END STEP"
+    } else {
+        "move it behind *END ASSEMBLY"
+    }
+}
+
+/// Reports a card that cannot stand here.
+fn report(level: Level, card: &Card, d: &mut Diagnostics) {
+    let place = match level {
+        Level::Part => "in a part",
+        Level::Assembly => "in the assembly",
+        Level::Instance => "in an instance",
+        Level::Model | Level::FirstStep | Level::LaterStep => "outside parts and the assembly",
+    };
+    let message = format!("{} cannot stand {place}", card.title());
+    d.error(Code::WrongPlace, card.span, message)
+        .help(advice(card.keyword.levels));
 }
 
 /// Reports a part, an assembly or an instance whose end is missing before `span`.
-pub(super) fn report_open(region: Region, span: Span, d: &mut Diagnostics) {
-    if let Some(head) = region.head() {
+pub(super) fn report_open(level: Level, span: Span, d: &mut Diagnostics) {
+    if let Some(head) = head(level) {
         let message = format!("the *{head} before is not closed");
         d.error(Code::AssemblyStructure, span, message)
             .help(format!("close it with *END {head}"));

@@ -109,6 +109,12 @@ impl Card {
         self.value(name).and_then(|value| value.integer(d))
     }
 
+    /// Takes parameters and data lines as read: what is left out of the card is told.
+    pub fn leave_out(&self) {
+        self.params.iter().for_each(|param| param.used.set(true));
+        self.rows.read.set(ALL_ROWS);
+    }
+
     /// Warns about parameters that the reader has not used, and reports the first row that it has not read.
     pub fn report_unused(&self, d: &mut Diagnostics) {
         let read = self.rows.read.get();
@@ -248,6 +254,14 @@ impl Placement {
         let [x, y] = [x - a, y - b];
         [a + cosine * x - sine * y, b + sine * x + cosine * y]
     }
+
+    /// Where a direction of the part points: `R n`.
+    pub fn turn(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        match self.rotation {
+            Some((_, [cosine, sine])) => [cosine * x - sine * y, sine * x + cosine * y],
+            None => [x, y],
+        }
+    }
 }
 
 #[cfg(test)]
@@ -266,5 +280,7 @@ mod tests {
             ..moved
         };
         assert_eq!(turned.of([1.0, 0.0]), [1.0, 3.0]);
+        assert_eq!(moved.turn([1.0, 0.0]), [1.0, 0.0]);
+        assert_eq!(turned.turn([1.0, 0.0]), [0.0, 1.0]);
     }
 }

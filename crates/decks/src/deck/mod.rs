@@ -22,8 +22,8 @@ pub use change::first_change;
 pub use collect::Deck;
 pub use content::{not_regular, open_regular};
 pub use keywords::{
-    Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes, Value,
-    dimensions_json, find_keyword, keyword_reference, keywords,
+    Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
+    Value, dimensions_json, find_keyword, keyword_reference, keywords,
 };
 pub use lines::Line;
 pub use text::{Name, Text};

@@ -623,19 +623,35 @@ fn write_connectors(model: &Model, lines: &mut DeckWriter) {
                     .map(|label| label.to_string()),
             );
         }
+        let (directions, axes) = match direction {
+            ConnectorDirection::Line => (None, None),
+            ConnectorDirection::Angle => (Some([6; 2]), None),
+            ConnectorDirection::Fixed(both) => match both.map(axis) {
+                [Some(first), Some(second)] => (Some([first, second]), None),
+                _ if both[0] == both[1] => (Some([1, 1]), Some(*both)),
+                _ => (Some([1, 2]), Some(*both)),
+            },
+        };
+        let mut parameters = vec![set_of];
+        if let Some([first, second]) = axes {
+            let name = format!("AXES-{}", index + 1);
+            parameters.push(named("ORIENTATION", &name));
+            let side = match first == second {
+                true => [-first[1], first[0]],
+                false => second,
+            };
+            lines.card("ORIENTATION", [named("NAME", &name)]);
+            let [[ax, ay], [bx, by]] = [first, side];
+            lines.row([ax, ay, 0.0, bx, by, 0.0].map(number));
+        }
+        if let ForceCurve::Table(_) = curve {
+            parameters.push("NONLINEAR".to_owned());
+        }
         let keyword = match law {
             ConnectorLaw::Spring => "SPRING",
             ConnectorLaw::Dashpot => "DASHPOT",
         };
-        match curve {
-            ForceCurve::Linear(_) => lines.card(keyword, [set_of]),
-            ForceCurve::Table(_) => lines.card(keyword, [set_of, "NONLINEAR".to_owned()]),
-        }
-        let directions = match direction {
-            ConnectorDirection::Line => None,
-            ConnectorDirection::Fixed(both) => Some(both.map(|axis| axis + 1)),
-            ConnectorDirection::Angle => Some([6; 2]),
-        };
+        lines.card(keyword, parameters);
         if let Some(both) = directions {
             let count = group[0].nodes.len();
             lines.row(both.iter().take(count).map(usize::to_string));
@@ -649,6 +665,13 @@ fn write_connectors(model: &Model, lines: &mut DeckWriter) {
             }
         }
     }
+}
+
+/// The number of a direction of the plane along an axis.
+fn axis(direction: [f64; 2]) -> Option<usize> {
+    let axes = [[1.0, 0.0], [0.0, 1.0]];
+    let found = axes.iter().position(|axis| *axis == direction);
+    found.map(|index| index + 1)
 }
 
 /// Points on a data line.

@@ -5,6 +5,7 @@ use super::boundary::{self, Targets};
 use super::context::Context;
 use super::label::{instance_of, number_of};
 use super::mesh_index::{ConnectorElement, ConnectorKind, MeshIndex};
+use super::orientations::{Axes, Orientations};
 use super::outline::Outline;
 use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
@@ -24,11 +25,13 @@ pub(super) fn read(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec
     let mesh_index = targets.mesh_index;
     let mut all: Vec<Option<Connector>> = vec![None; mesh_index.connectors.len()];
     let errors = cx.errors();
+    let orientations = Orientations::new(outline, cx);
     for law in [ConnectorLaw::Spring, ConnectorLaw::Dashpot] {
         for card in outline.model_cards(keyword(law)) {
-            card_of(card, law, targets, &mut all, cx);
+            card_of((card, law), &orientations, targets, &mut all, cx);
         }
     }
+    orientations.report_unused(cx);
     let elements = || mesh_index.connectors.iter().zip(&all);
     if let Some((element, _)) = elements().find(|(_, connector)| connector.is_none())
         && cx.errors() == errors
@@ -105,8 +108,8 @@ fn number_instances(mesh_index: &MeshIndex, all: &mut [Connector]) {
 
 /// Gives the force of a card to its elements.
 fn card_of(
-    card: &Card,
-    law: ConnectorLaw,
+    (card, law): (&Card, ConnectorLaw),
+    orientations: &Orientations,
     targets: Targets,
     all: &mut [Option<Connector>],
     cx: &mut Context,
@@ -150,7 +153,10 @@ fn card_of(
         return;
     }
     let all_elements: Vec<&ConnectorElement> = elements().collect();
-    let Some((direction, curve)) = force(card, (kind, &all_elements), targets, cx) else {
+    let Ok(axes) = axes(card, kind, orientations, cx) else {
+        return;
+    };
+    let Some((direction, curve)) = force(card, (kind, &all_elements), (axes, targets), cx) else {
         return;
     };
     for &k in members {
@@ -174,12 +180,28 @@ fn card_of(
     }
 }
 
+/// The axes of the orientation that a card names; `Err` after a reported error.
+fn axes(
+    card: &Card,
+    kind: ConnectorKind,
+    orientations: &Orientations,
+    cx: &mut Context,
+) -> Result<Option<Axes>, ()> {
+    if kind.form == 'A' {
+        return Ok(None);
+    }
+    match card.value("ORIENTATION") {
+        Some(field) => orientations.find(field, cx).map(Some).ok_or(()),
+        None => Ok(None),
+    }
+}
+
 /// Direction and force that the rows of a card give: the directions of nodes first, but for types that act along a
 /// line.
 fn force(
     card: &Card,
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),
-    targets: Targets,
+    (axes, targets): (Option<Axes>, Targets),
     cx: &mut Context,
 ) -> Option<(ConnectorDirection, ForceCurve)> {
     let mut rows = card.rows.iter().peekable();
@@ -189,7 +211,7 @@ fn force(
             rows.next_if(is_blank);
             Some(ConnectorDirection::Line)
         }
-        _ => (rows.next()).and_then(|row| directions(row, (kind, elements), targets, cx)),
+        _ => (rows.next()).and_then(|row| directions(row, (kind, elements), (axes, targets), cx)),
     };
     let Some(first) = rows.next() else {
         if !card.faulty {
@@ -211,20 +233,21 @@ fn force(
     Some((direction?, curve?))
 }
 
-/// `direction of node 1, direction of node 2`
+/// `direction of node 1, direction of node 2`, along the axes of an orientation, or of the instance of the row.
 fn directions(
     row: Line,
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),
-    targets: Targets,
+    (axes, targets): (Option<Axes>, Targets),
     cx: &mut Context,
 ) -> Option<ConnectorDirection> {
     row.at_most(kind.nodes(), cx.d);
-    let mut both = [0; 2];
+    let axes = axes.unwrap_or_else(|| [[1.0, 0.0], [0.0, 1.0]].map(|axis| cx.turned(axis, row)));
+    let mut both = [axes[0]; 2];
     let mut angles = 0;
-    for (k, axis) in both.iter_mut().take(kind.nodes()).enumerate() {
+    for (k, along) in both.iter_mut().take(kind.nodes()).enumerate() {
         let field = row.required(k, "the direction, 1, 2 or 6", cx.d)?;
         match boundary::direction(field, cx)? {
-            boundary::Direction::Plane(of_node) => *axis = of_node,
+            boundary::Direction::Plane(axis) => *along = axes[axis],
             boundary::Direction::Rotation => {
                 angles += 1;
                 let mut nodes = elements.iter().filter_map(|element| element.nodes.get(k));
@@ -244,6 +267,9 @@ fn directions(
                 return None;
             }
         }
+    }
+    if kind.nodes() == 1 {
+        both[1] = both[0];
     }
     match angles {
         0 => Some(ConnectorDirection::Fixed(both)),

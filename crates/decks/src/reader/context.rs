@@ -2,7 +2,7 @@
 //! suggestion of what was meant, among names of all kinds of things that a deck defines.
 
 use super::label::{instance_of, label, number_of};
-use crate::deck::{Card, Deck, Line, Name, Text};
+use crate::deck::{Card, Deck, Line, Name, Placement, Text};
 use crate::diagnostics::{Added, Code, Diagnostic, Diagnostics, Span, closest, list_of};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
@@ -60,9 +60,19 @@ impl<'a> Context<'a> {
 
     /// Where a point of a part is in the instance of a row (length).
     pub fn placed(&self, at: [f64; 2], row: Line) -> [f64; 2] {
-        let index = (row.instance as usize).checked_sub(1);
-        let instance = index.and_then(|index| self.deck.instances.get(index));
-        instance.map_or(at, |instance| instance.placement.of(at))
+        let placement = self.placement_of(row);
+        placement.map_or(at, |placement| placement.of(at))
+    }
+
+    /// Where a direction of a part points in the instance of a row; of length 1 where it was.
+    pub fn turned(&self, direction: [f64; 2], row: Line) -> [f64; 2] {
+        let placement = self.placement_of(row);
+        placement.map_or(direction, |placement| placement.turn(direction))
+    }
+
+    fn placement_of(&self, row: Line) -> Option<&Placement> {
+        let index = (row.instance as usize).checked_sub(1)?;
+        Some(&self.deck.instances.get(index)?.placement)
     }
 
     /// A name of a part as it is called outside: `Instance.name`.
@@ -76,12 +86,18 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Key by which a name of a part, or of the whole deck, is compared.
+    /// Key of a name that a card defines: that of a part has its instance before it.
     pub fn key_of(&self, text: Text) -> String {
         match self.deck.instance_of(text.span) {
             Some(instance) => format!("{}.{}", instance.name.key, text.name_key()),
             None => text.name_key(),
         }
+    }
+
+    /// Keys of what a name may mean where it stands, the nearest first: what its instance defines, and what the assembly and
+    /// the model do.
+    pub fn keys_of(&self, text: Text) -> [String; 2] {
+        [self.key_of(text), text.name_key()]
     }
 
     /// A number with the name of an instance before it, such as `Block-1.12`, without that name and

@@ -78,7 +78,7 @@ pub(super) fn read(
             }
             takes_both([row.get(1), row.get(2)], row, cx);
         }
-        let named = card.value("NAME").map(|field| field.text.to_owned());
+        let named = card.value("NAME").and_then(|field| name(field, cx));
         let label = lookup.mesh_index.node_name(reference);
         let name = named.unwrap_or_else(|| format!("COUPLING-{label}"));
         ride(&name, reference, nodes, card.span, lookup, bodies, cx);
@@ -89,6 +89,12 @@ pub(super) fn read(
         }
     }
     links
+}
+
+/// The name of a coupling.
+fn name(field: Text, cx: &mut Context) -> Option<String> {
+    let name = field.name(cx.d)?;
+    Some(cx.of_instance(name, field.span).typed)
 }
 
 fn reference(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<usize> {
@@ -112,7 +118,7 @@ fn coupling(
     });
     let name = card
         .required("CONSTRAINT NAME", cx.d)
-        .map(|field| field.text.to_owned());
+        .and_then(|field| name(field, cx));
     let [kind] = block.parts[..] else {
         if !card.faulty && !cx.may_lack_cards() {
             let message = "*COUPLING has one card under it: *KINEMATIC or *DISTRIBUTING";

@@ -23,9 +23,18 @@ const LARGEST_RATIO: f64 = 1e50;
 struct Term {
     /// Nodes, in the order of their numbers.
     nodes: Vec<usize>,
-    direction: usize,
-    coefficient: f64,
+    /// Coefficients of the displacements along x and y: one, or two where the instance of the row is turned.
+    coefficients: [f64; 2],
     span: Span,
+}
+
+impl Term {
+    /// Dofs with their coefficients at the node number `i` of the first term's.
+    fn at(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let node = self.nodes[if self.nodes.len() == 1 { 0 } else { i }];
+        let both = [2 * node, 2 * node + 1].into_iter();
+        both.zip(self.coefficients).filter(|(_, c)| *c != 0.0)
+    }
 }
 
 /// An equation of single dofs, u_dof = sum c_k u_k.
@@ -134,10 +143,11 @@ fn term(row: Line, first: usize, targets: Targets, cx: &mut Context) -> Option<T
         }
     });
     let coefficient = row.real(first + 2, "the coefficient", cx.d);
+    let mut direction = [0.0; 2];
+    direction[axis?] = coefficient?;
     Some(Term {
         nodes: nodes?,
-        direction: axis?,
-        coefficient: coefficient?,
+        coefficients: cx.turned(direction, row),
         span: target?.span,
     })
 }
@@ -148,7 +158,7 @@ fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> 
     let mut nodes = targets.sets.nodes_of(field, targets.mesh_index, cx);
     let labels = &targets.mesh_index.mesh.node_labels;
     nodes.sort_by_key(|&node| labels.get(node));
-    if nodes.len() > 1 && targets.sets.unsorted.contains(&cx.key_of(field)) {
+    if nodes.len() > 1 && targets.sets.is_unsorted(field, cx) {
         let message = format!("the set {} is UNSORTED: its order is not kept", field.text);
         cx.error(Code::BadEquation, field.span, message)
             .help("number its nodes in their order, or write an equation for each");
@@ -174,31 +184,88 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
             .help("sets of an equation have as many nodes as the first, or are one node");
         return;
     }
-    if first.coefficient == 0.0 {
+    if first.coefficients == [0.0; 2] {
         let message = "the first coefficient is zero";
         cx.error(Code::BadEquation, first.span, message)
             .help("the first term is eliminated: put one with a coefficient first");
         return;
     }
-    for (i, node) in first.nodes.iter().enumerate() {
-        let dof = 2 * node + first.direction;
-        let at = |term: &Term| term.nodes[if term.nodes.len() == 1 { 0 } else { i }];
-        let others = others.iter().map(|term| {
-            let c = -term.coefficient / first.coefficient;
-            (2 * at(term) + term.direction, c)
-        });
-        let equation = SolvedEquation {
-            terms: others.collect(),
-            owner: Owner::Equation(first.span),
+    for i in 0..count {
+        let own: Vec<(usize, f64)> = first.at(i).collect();
+        let others = others.iter().flat_map(|term| term.at(i));
+        let solution = match own[..] {
+            [first] => solved_for(first, others.collect()),
+            _ => solved_at_node(&own, others, solved),
         };
-        if equation.terms.iter().any(|&(other, _)| other == dof) {
-            let message = format!("{} stands in it again", name(dof, targets));
-            cx.error(Code::BadEquation, first.span, message)
-                .help("the first term is eliminated: it stands in the equation once");
-        } else {
-            claim(dof, equation, solved, targets, cx);
+        let owner = Owner::Equation(first.span);
+        match solution {
+            Ok((dof, terms)) => claim(dof, SolvedEquation { terms, owner }, solved, targets, cx),
+            Err(dof) => {
+                let message = format!("{} stands in it again", name(dof, targets));
+                cx.error(Code::BadEquation, first.span, message)
+                    .help("the first term is eliminated: it stands in the equation once");
+            }
         }
     }
+}
+
+/// A dof with the terms that it follows; `Err` with one that the others cancel.
+type Solution = Result<(usize, Vec<(usize, f64)>), usize>;
+
+/// An equation solved for its first term, which must not stand among the others.
+fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solution {
+    if others.iter().any(|&(other, _)| other == dof) {
+        return Err(dof);
+    }
+    others.iter_mut().for_each(|term| term.1 /= -first);
+    Ok((dof, others))
+}
+
+/// An equation solved for one of both displacements of a node, that with the larger coefficient where what equations
+/// before give is substituted; where the other one follows that, it is substituted there.
+fn solved_at_node(
+    own: &[(usize, f64)],
+    others: impl Iterator<Item = (usize, f64)>,
+    solved: &mut ByDof,
+) -> Solution {
+    let mut row: BTreeMap<usize, f64> = BTreeMap::new();
+    for (dof, c) in own.iter().copied().chain(others) {
+        *row.entry(dof).or_insert(0.0) += c;
+    }
+    let is_known = |dof: &usize| solved.contains_key(dof);
+    if !own.iter().all(|(dof, _)| is_known(dof)) {
+        for &(dof, _) in own {
+            if let Some(known) = solved.get(&dof)
+                && let Some(c) = row.remove(&dof)
+            {
+                for &(to, ck) in &known.terms {
+                    *row.entry(to).or_insert(0.0) += c * ck;
+                }
+            }
+        }
+    }
+    let size = |dof: usize| row.get(&dof).map_or(0.0, |c| c.abs());
+    let dofs = own.iter().map(|&(dof, _)| dof);
+    let pivot = dofs.fold(own[0].0, |best, dof| match size(dof) > size(best) {
+        true => dof,
+        false => best,
+    });
+    let Some(first) = row.remove(&pivot).filter(|c| *c != 0.0) else {
+        return Err(pivot);
+    };
+    let terms: Vec<(usize, f64)> = row.into_iter().map(|(to, c)| (to, -c / first)).collect();
+    for &(dof, _) in own {
+        let Some(known) = solved.get_mut(&dof).filter(|_| dof != pivot) else {
+            continue;
+        };
+        if let Some(at) = known.terms.iter().position(|term| term.0 == pivot) {
+            let (_, c) = known.terms.swap_remove(at);
+            known
+                .terms
+                .extend(terms.iter().map(|&(to, ck)| (to, c * ck)));
+        }
+    }
+    Ok((pivot, terms))
 }
 
 /// Enters an equation; reports a dof that another card makes follow already.

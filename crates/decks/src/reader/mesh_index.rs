@@ -215,8 +215,12 @@ impl MeshIndex {
 }
 
 /// Replaces the labels of nodes and elements by numbers; those of instances follow the largest one
-/// of the others.
-pub(super) fn number_instances(mesh: &mut Mesh, cx: &Context) -> Vec<Instance> {
+/// of the others, that of springs and dashpots among them.
+pub(super) fn number_instances(
+    mesh: &mut Mesh,
+    connectors: &[ConnectorElement],
+    cx: &Context,
+) -> Vec<Instance> {
     if cx.deck.instances.is_empty() {
         return Vec::new();
     }
@@ -237,7 +241,8 @@ pub(super) fn number_instances(mesh: &mut Mesh, cx: &Context) -> Vec<Instance> {
             instance.node_numbers.push(number);
         }
     }
-    let first = first_number(mesh.elements.iter().map(|element| &element.label));
+    let plane = mesh.elements.iter().map(|element| &element.label);
+    let first = first_number(plane.chain(connectors.iter().map(|element| &element.label)));
     let labels = mesh.elements.iter_mut().map(|element| &mut element.label);
     for (index, instance, number) in renumbered(labels, first) {
         if let Some(instance) = instances.get_mut(instance) {

@@ -23,6 +23,7 @@ mod mesh_index;
 mod names;
 mod nearest;
 mod nodes_elements;
+mod orientations;
 mod outline;
 mod output;
 mod owners;

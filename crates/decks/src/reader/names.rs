@@ -101,15 +101,30 @@ impl Names {
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let name = text.name(cx.d)?;
         let local = self.defined(text, cx)?;
-        let found = self.index.get(&local.key);
-        let found = found.or_else(|| self.index.get(&name.key));
+        let found = self.known(text, cx);
         if found.is_none() && !self.nameless {
             let prefix = local.typed.strip_suffix(&name.typed).unwrap_or_default();
             let known = self.typed();
             let known = known.map(|known| known.strip_prefix(prefix).unwrap_or(known));
             cx.undefined(self.what, text, known);
         }
-        *found?
+        found?
+    }
+
+    /// What a name means where it stands, if it is defined: its number, none where its definition has an error.
+    fn known(&self, text: Text, cx: &Context) -> Option<Option<usize>> {
+        let keys = match self.of_parts {
+            true => cx.keys_of(text),
+            false => [text.name_key(), String::new()],
+        };
+        keys.iter().find_map(|key| self.index.get(key)).copied()
+    }
+
+    /// What is meant by a name where it stands, as it is called in the whole deck.
+    pub fn full_name(&self, text: Text, cx: &Context) -> String {
+        let found = self.known(text, cx).flatten();
+        let found = found.and_then(|index| self.typed.get(index));
+        found.map_or_else(|| text.text.to_owned(), |name| name.typed.clone())
     }
 }
 

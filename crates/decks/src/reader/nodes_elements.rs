@@ -381,7 +381,8 @@ impl MeshReading {
         if used.contains(&false) {
             mesh_index.keep_nodes(&used);
         }
-        mesh_index.instances = mesh_index::number_instances(&mut mesh_index.mesh, cx);
+        let (mesh, connectors) = (&mut mesh_index.mesh, &mesh_index.connectors);
+        mesh_index.instances = mesh_index::number_instances(mesh, connectors, cx);
         mesh_index
     }
 
@@ -610,7 +611,7 @@ pub(super) fn labels_needed(
     for field in fields(outline) {
         match cx.is_number(field) {
             true => labels.extend(cx.as_label(field)),
-            false => names.extend([field.name_key(), cx.key_of(field)]),
+            false => names.extend(cx.keys_of(field)),
         }
     }
     for (_, members) in groups.iter().filter(|(name, _)| names.contains(*name)) {

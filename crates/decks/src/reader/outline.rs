@@ -1,7 +1,7 @@
 //! The cards of a deck in their order: blocks of the model, and steps. Reports cards out of place.
 
 use super::context::Context;
-use crate::deck::{Card, Data, Scope, Status};
+use crate::deck::{Card, Data, Level, Levels, Scope, Status};
 use crate::diagnostics::Code;
 
 /// A model card with the cards that belong to it, such as a material with its constants.
@@ -10,6 +10,8 @@ pub(crate) struct CardBlock<'a> {
     pub head: &'a Card,
     /// The cards under it.
     pub parts: Vec<&'a Card>,
+    /// The step that it stands in, from 0.
+    pub step: Option<usize>,
 }
 
 impl<'a> CardBlock<'a> {
@@ -31,7 +33,7 @@ pub(crate) struct StepCards<'a> {
 /// The cards of a deck, sorted into blocks of the model and steps.
 #[derive(Default)]
 pub(crate) struct Outline<'a> {
-    /// Cards outside steps.
+    /// Cards of the model: those outside steps, and those in steps that define what belongs to the model.
     pub model: Vec<CardBlock<'a>>,
     /// Steps in order.
     pub steps: Vec<StepCards<'a>>,
@@ -61,7 +63,7 @@ impl<'a> Outline<'a> {
         outline
     }
 
-    /// Cards outside steps with this keyword.
+    /// Cards of the model with this keyword.
     pub fn model_cards(&self, keyword: &str) -> Vec<&'a Card> {
         self.blocks(keyword).map(|block| block.head).collect()
     }
@@ -94,14 +96,35 @@ impl<'a> Outline<'a> {
                 Some(block) => block.parts.push(card),
                 None => self.place_in_model(card, cx),
             },
-            (_, Scope::Step) => self.place_in_step(card, cx),
-            (_, Scope::Anywhere) if self.open => self.place_in_step(card, cx),
-            (_, Scope::Model | Scope::Anywhere | Scope::Assembly) => self.place_in_model(card, cx),
+            (_, Scope::At(levels)) => self.place_at(card, levels, cx),
+            (_, Scope::Structure) => self.place_in_model(card, cx),
+        }
+    }
+
+    /// Places a card that belongs to no block by the levels at which it may stand.
+    fn place_at(&mut self, card: &'a Card, levels: Levels, cx: &mut Context) {
+        let is_in_step = self.open && levels.has(self.step_level());
+        if is_in_step && levels.hold_from_the_start() {
+            self.add_to_model(card);
+        } else if is_in_step || !levels.are_of_model() {
+            self.place_in_step(card, cx);
+        } else {
+            self.place_in_model(card, cx);
+        }
+    }
+
+    /// The level of the step that is open.
+    fn step_level(&self) -> Level {
+        match self.steps.len() {
+            1 => Level::FirstStep,
+            _ => Level::LaterStep,
         }
     }
 
     fn place_in_model(&mut self, card: &'a Card, cx: &mut Context) {
+        let may_begin = card.keyword.levels.has(Level::FirstStep);
         let fault = match (self.open, self.steps.is_empty()) {
+            (true, _) if may_begin => Some("cannot stand in a step behind the first"),
             (true, _) => Some("cannot stand in a step"),
             (false, false) => Some("must stand before the first step"),
             (false, true) => None,
@@ -109,10 +132,15 @@ impl<'a> Outline<'a> {
         if let Some(fault) = fault {
             out_of_place(card, fault, "move it above the first *STEP", cx);
         }
+        self.add_to_model(card);
+    }
+
+    fn add_to_model(&mut self, card: &'a Card) {
         self.in_model = true;
         self.model.push(CardBlock {
             head: card,
             parts: Vec::new(),
+            step: self.open.then(|| self.steps.len() - 1),
         });
     }
 
@@ -146,7 +174,7 @@ impl<'a> Outline<'a> {
 
     /// Whether the last card is that of a step with this keyword.
     fn is_after(&self, of_step: &str) -> bool {
-        let step = self.steps.last().filter(|_| self.open);
+        let step = self.steps.last().filter(|_| self.open && !self.in_model);
         let last = step.and_then(|step| step.cards.last());
         last.is_some_and(|card| card.keyword.name == of_step)
     }

@@ -203,15 +203,15 @@ pub(crate) fn check_actions(
     let bodies = targets.rigid_bodies.iter().flat_map(Rigid::nodes);
     let of_bodies: BTreeSet<usize> = bodies.flat_map(|node| [2 * node, 2 * node + 1]).collect();
     let of_connectors = connectors.iter().flat_map(|connector| {
-        let axes = match connector.direction {
-            ConnectorDirection::Fixed(both) => both.map(|axis| [axis; 2]),
-            ConnectorDirection::Line => [[0, 1]; 2],
+        let directions = match connector.direction {
+            ConnectorDirection::Fixed(both) => both,
+            ConnectorDirection::Line => [[1.0; 2]; 2],
             ConnectorDirection::Angle => return Vec::new(),
         };
-        let nodes = connector.nodes.iter().zip(axes);
-        nodes
-            .flat_map(|(node, axes)| axes.map(|axis| 2 * node + axis))
-            .collect()
+        let nodes = connector.nodes.iter().zip(directions);
+        let dofs = nodes.flat_map(|(node, [x, y])| [(2 * node, x), (2 * node + 1, y)]);
+        dofs.filter_map(|(dof, along)| (along != 0.0).then_some(dof))
+            .collect::<Vec<_>>()
     });
     let mut exist: BTreeSet<usize> = of_bodies.into_iter().chain(of_connectors).collect();
     let has_element = |dof: &usize| targets.has_element.get(dof / 2) == Some(&true);

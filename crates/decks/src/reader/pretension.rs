@@ -89,13 +89,16 @@ fn faces(
     cx: &mut Context,
 ) -> Option<Vec<Face>> {
     let field = card.required("SURFACE", cx.d)?;
-    let key = cx.key_of(field);
-    let is_meant = |surface: &&Card| {
-        let name = surface.value("NAME");
-        name.is_some_and(|name| cx.key_of(name) == key)
-    };
     let all = outline.model_cards("SURFACE");
-    let Some(surface) = all.into_iter().find(is_meant) else {
+    let with_key = |key: &String| {
+        let mut all = all.iter();
+        all.find(|surface| {
+            surface
+                .value("NAME")
+                .is_some_and(|name| cx.key_of(name) == *key)
+        })
+    };
+    let Some(surface) = cx.keys_of(field).iter().find_map(with_key) else {
         if !cx.may_lack_cards() {
             let message = format!("surface {} is not defined", field.text);
             cx.error(Code::PreTension, field.span, message);
@@ -154,7 +157,7 @@ fn normal(
     Some(given.map(|x| x * cosine.signum()))
 }
 
-/// `nx, ny[, nz]`
+/// `nx, ny[, nz]`, turned with the instance of the row.
 fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     row.at_most(3, cx.d);
     let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, cx.d));
@@ -165,7 +168,7 @@ fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
         cx.error(Code::BadDirection, row.span(), message);
         return None;
     }
-    Some([x / length, y / length])
+    Some(cx.turned([x / length, y / length], row))
 }
 
 /// Mean normal out of the elements of the faces; none of faces around a hole.

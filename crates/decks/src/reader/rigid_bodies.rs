@@ -293,7 +293,8 @@ fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
     for field in ["NSET", "PIN NSET", "TIE NSET"].map(|name| card.value(name)) {
         let Some(field) = field else { continue };
         let nodes = lookup.sets.nodes_of(field, lookup.mesh_index, cx);
-        rigid.add_part(RigidPart::Nodes(field.text.to_owned()), field.text, nodes);
+        let name = lookup.sets.node_names.full_name(field, cx);
+        rigid.add_part(RigidPart::Nodes(name.clone()), &name, nodes);
     }
     if card.has("ANALYTICAL SURFACE") || rigid.parts.is_empty() {
         rigid.add_surface(card, lookup, cx)?;
@@ -317,11 +318,8 @@ impl Rigid {
         self.elements.sort_unstable();
         let nodes = self.elements.iter().flat_map(|&e| &mesh.elements[e].nodes);
         let nodes = nodes.copied().collect();
-        self.add_part(
-            RigidPart::Elements(field.text.to_owned()),
-            field.text,
-            nodes,
-        );
+        let name = lookup.sets.element_names.full_name(field, cx);
+        self.add_part(RigidPart::Elements(name.clone()), &name, nodes);
     }
 
     /// Adds the rigid surface of a card.

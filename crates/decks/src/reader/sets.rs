@@ -16,8 +16,8 @@ pub(crate) struct Sets {
     pub node_names: Names,
     /// Node sets in the order of their names.
     pub nodes: Vec<Set>,
-    /// Keys of node sets whose members are listed unsorted; that order is lost.
-    pub unsorted: BTreeSet<String>,
+    /// Names of node sets whose members are listed unsorted; that order is lost.
+    unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
     /// Element sets in the order of their names: their plane elements.
@@ -32,6 +32,12 @@ impl Sets {
         let others = self.others.get(set);
         let elements = self.elements.get(set).map(|set| &set.members);
         others.is_some_and(|all| !all.is_empty()) && elements.is_some_and(Vec::is_empty)
+    }
+
+    /// Whether the members of the node set that a field names are listed unsorted.
+    pub fn is_unsorted(&self, field: Text, cx: &Context) -> bool {
+        let set = self.node_names.full_name(field, cx);
+        self.unsorted.contains(&set)
     }
 
     /// The node, or the nodes of the set, that a field names.
@@ -179,7 +185,7 @@ fn members(sets: &[Set], index: Option<usize>) -> &[usize] {
 pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) -> Sets {
     let mut elements = SetFamily::new("element set", &mesh_index.elements);
     elements.add_groups(&mesh_index.element_groups);
-    elements.define(&outline.model_cards("ELSET"), "ELSET", cx);
+    elements.define(outline, "ELSET", cx);
     elements.fill(cx);
     let element_names = elements.names;
     let element_sets = resolve(&element_names, elements.drafts, cx);
@@ -192,7 +198,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
 
     let mut nodes = SetFamily::new("node set", &mesh_index.nodes);
     nodes.add_groups(&mesh_index.node_groups);
-    nodes.define(&outline.model_cards("NSET"), "NSET", cx);
+    nodes.define(outline, "NSET", cx);
     nodes.fill(cx);
     let mut sets = Sets {
         node_names: nodes.names,
@@ -232,9 +238,13 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     sets
 }
 
+/// When a set is first defined: in a deck that goes on from an earlier job or not, in the model or in which step.
+type Age = (bool, Option<usize>);
+
 /// A set before the sets it lists are known.
 struct Draft {
     span: Span,
+    age: Age,
     /// In any order, some perhaps several times.
     members: Vec<usize>,
     children: Vec<usize>,
@@ -262,11 +272,12 @@ impl<'a> SetFamily<'a> {
         }
     }
 
-    fn open(&mut self, name: crate::deck::Name, span: Span) -> usize {
+    fn open(&mut self, name: crate::deck::Name, span: Span, age: Age) -> usize {
         let index = self.names.define(name);
         if index == self.drafts.len() {
             self.drafts.push(Draft {
                 span,
+                age,
                 members: Vec::new(),
                 children: Vec::new(),
             });
@@ -276,7 +287,7 @@ impl<'a> SetFamily<'a> {
 
     fn add_groups(&mut self, groups: &[Group]) {
         for group in groups {
-            let index = self.open(group.name.clone(), group.span);
+            let index = self.open(group.name.clone(), group.span, Age::default());
             let labels = self.labels;
             let found = group.labels.iter().filter_map(|label| labels.get(label));
             if let Some(draft) = self.drafts.get_mut(index) {
@@ -292,25 +303,29 @@ impl<'a> SetFamily<'a> {
         }
     }
 
-    /// Registers the names of all cards.
-    fn define(&mut self, cards: &[&'a Card], parameter: &str, cx: &mut Context) {
-        // those of the job that the deck goes on from, which stand before all that it adds
-        let mut of_earlier = None;
-        for card in cards {
-            let text = card.required(parameter, cx.d);
-            match text.and_then(|text| Some((self.names.defined(text, cx)?, text.span))) {
-                Some((name, span)) => {
-                    let known = self.drafts.len();
-                    let index = self.open(name, span);
-                    if card.added && index < *of_earlier.get_or_insert(known) {
-                        let message = "a set of the earlier job cannot have other members";
-                        cx.error(Code::RepeatedName, span, message)
-                            .help("give the set of this deck another name");
-                    }
-                    self.cards.push((index, card));
-                }
-                None => self.names.spoil_unknown(),
+    /// Registers the names of all cards; reports those that add members to a set of the earlier job, or in a step.
+    fn define(&mut self, outline: &Outline<'a>, keyword: &str, cx: &mut Context) {
+        for block in outline.blocks(keyword) {
+            let card = block.head;
+            let text = card.required(keyword, cx.d);
+            let Some((name, text)) =
+                text.and_then(|text| Some((self.names.defined(text, cx)?, text)))
+            else {
+                self.names.spoil_unknown();
+                continue;
+            };
+            let age = (card.added, block.step);
+            let index = self.open(name, text.span, age);
+            let known = self.drafts.get(index).map_or(age, |draft| draft.age);
+            if known < age {
+                let message = match card.added && !known.0 {
+                    true => "a set of the earlier job cannot have other members",
+                    false => "a set cannot get members in a step behind its definition",
+                };
+                cx.error(Code::RepeatedName, text.span, message)
+                    .help("give the set here another name");
             }
+            self.cards.push((index, card));
         }
     }
 
@@ -319,8 +334,9 @@ impl<'a> SetFamily<'a> {
         for (index, card) in std::mem::take(&mut self.cards) {
             let generate = card.has("GENERATE");
             if card.has("UNSORTED") {
-                let name = card.value("NSET").map(|name| cx.key_of(name));
-                self.unsorted.extend(name);
+                let name = card.value("NSET");
+                self.unsorted
+                    .extend(name.map(|name| self.names.full_name(name, cx)));
             }
             if card.keyword.name == "NSET"
                 && let Some(source) = card.value("ELSET")

@@ -53,7 +53,7 @@ pub(super) fn read(
     surfaces: &Surfaces,
     cx: &mut Context,
 ) -> Ties {
-    let mut names = Names::new("tie");
+    let mut names = Names::of_parts("tie");
     let mut rows = Vec::new();
     for card in outline.model_cards("TIE") {
         rows.extend(rows_of(card, &mut names, (mesh_index, sets, surfaces), cx));

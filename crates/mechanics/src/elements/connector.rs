@@ -137,14 +137,13 @@ impl PlacedConnector {
                     line: Some((r, l)),
                 }
             }
-            (ConnectorDirection::Fixed([i, j]), nodes) => {
-                let axis = |i: usize| Vector2::ith(i, 1.0);
-                let value = |(node, i): (&usize, usize)| u[2 * node + i];
-                let first = nodes.first().map_or(0.0, |node| value((node, i)));
-                let second = nodes.get(1).map_or(0.0, |node| value((node, j)));
+            (ConnectorDirection::Fixed(both), nodes) => {
+                let [e, f] = both.map(Vector2::from);
+                let first = nodes.first().map_or(0.0, |&node| e.dot(&of(node)));
+                let second = nodes.get(1).map_or(0.0, |&node| f.dot(&of(node)));
                 Elongation {
                     value: first - second,
-                    gradient: [axis(i), -axis(j)],
+                    gradient: [e, -f],
                     line: None,
                 }
             }
@@ -359,7 +358,8 @@ mod tests {
 
     fn connectors(law: ConnectorLaw) -> Vec<PlacedConnector> {
         let table = ForceCurve::Table(vec![[-2.0, -3.0], [-0.05, -0.5], [0.1, 0.4], [2.0, 1.0]]);
-        let directions = [ConnectorDirection::Line, ConnectorDirection::Fixed([0, 1])];
+        let fixed = [[0.6, 0.8], [0.0, -1.0]];
+        let directions = [ConnectorDirection::Line, ConnectorDirection::Fixed(fixed)];
         let mut model = Model::default();
         model.mesh.coordinates = X.to_vec();
         let of = |direction| {

@@ -44,13 +44,13 @@ impl Connector {
 }
 
 /// What the elongation of a connector is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ConnectorDirection {
     /// The distance of its nodes less that of the reference configuration; the line turns with them.
     Line,
-    /// The displacement of the first node in the first direction (0 = x, 1 = y) less that of the second node
+    /// The displacement of the first node in the first direction, a unit vector, less that of the second node
     /// in the second.
-    Fixed([usize; 2]),
+    Fixed([[f64; 2]; 2]),
     /// The angle of the rigid body whose reference node the first node is, less that of the body of the second; its force
     /// is a moment.
     Angle,

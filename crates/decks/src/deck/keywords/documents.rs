@@ -2,7 +2,9 @@
 //! dimensions as JSON for programs that change the units of a deck.
 
 use super::keywords;
-use super::types::{Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes};
+use super::types::{
+    Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
+};
 use crate::diagnostics::wrapped;
 use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
@@ -12,7 +14,7 @@ use std::fmt::Write;
 pub fn keyword_reference() -> String {
     let read: Vec<&Keyword> = keywords().filter(|k| k.status == Status::Read).collect();
     let mut text = String::from(HEAD);
-    text.push_str("## Keywords that are read\n\n| keyword | |\n|---|---|\n");
+    text.push_str("## Keywords that are read\n\n| keyword | level | |\n|---|---|---|\n");
     for keyword in &read {
         push_entry(&mut text, keyword);
     }
@@ -49,6 +51,14 @@ A deck is a text file, ASCII or UTF-8.
 * A keyword or parameter may be cut to a unique beginning of at least four letters; a warning says so.
 * Keywords of the model stand before the first step. A keyword that belongs to another one stands
   directly below it.
+* A deck may have parts, instances of them in an assembly, and cards behind the assembly. The table below gives
+  the levels at which a keyword may stand: `part` (in a part, or between `*INSTANCE` and `*END INSTANCE`),
+  `assembly`, `model` (outside both) and `step`. In a deck without parts, keywords of parts and the assembly stand before
+  the first step.
+* A name is looked up at the level where it is used, then outside: in a part, the assembly, the model. From outside,
+  a set, surface, node or element of an instance has the instance's name before it: `Block-1.Top`, `Block-1.12`.
+* What a part says moves and turns with its instances: points, normals, and the directions of springs, dashpots and
+  equations. The directions of `*BOUNDARY`, loads and initial conditions are those of the whole deck.
 * Node and element numbers run from 1 to 999 999 999, as in Abaqus. Numbers have a decimal point.
 * Units are up to the user: any consistent set gives the same results. `scripts/rescale.py` writes a
   deck in another set.
@@ -63,7 +73,7 @@ An error stops the run before it begins. These are errors:
 
 ";
 
-/// A keyword that is read, in the table at the beginning: its first sentence, and where it stands.
+/// A keyword that is read, in the table at the beginning: its levels and its first sentence.
 fn push_entry(text: &mut String, keyword: &Keyword) {
     let sentence = keyword
         .text
@@ -74,8 +84,8 @@ fn push_entry(text: &mut String, keyword: &Keyword) {
         .filter_map(|end| sentence.find(end));
     let first = &sentence[..ends.min().unwrap_or(sentence.len())].replace('\u{a0}', " ");
     let anchor = keyword.name.to_lowercase().replace(' ', "-");
-    let (name, first) = (keyword.name, plain(first));
-    let _ = writeln!(text, "| [`*{name}`](#{anchor}) | {first} |");
+    let (name, first, levels) = (keyword.name, plain(first), levels(keyword).join(", "));
+    let _ = writeln!(text, "| [`*{name}`](#{anchor}) | {levels} | {first} |");
 }
 
 fn push_keyword(text: &mut String, keyword: &Keyword) {
@@ -201,15 +211,51 @@ fn parameter(parameter: &Parameter) -> String {
 /// Where a keyword stands.
 pub(super) fn place(keyword: &Keyword) -> String {
     match keyword.scope {
-        Scope::Model if keyword.name == "STEP" => "after the keywords of the model".to_string(),
-        Scope::Model => "before the first step".to_string(),
-        Scope::Step => "in a step".to_string(),
-        Scope::Anywhere => "before the first step or in a step".to_string(),
+        Scope::At(_) if keyword.name == "STEP" => "after the keywords of the model".to_string(),
+        Scope::At(levels) => place_by_levels(levels),
         Scope::Block(name) => format!("under `*{name}`"),
         Scope::BlockOrAfter(name, other) => format!("under `*{name}` or `*{other}`"),
         Scope::BlockOrModel(name) => format!("under `*{name}` or before the first step"),
-        Scope::Assembly => "in assembly decks".to_string(),
+        Scope::Structure => "in assembly decks".to_string(),
     }
+}
+
+/// Where a keyword stands in a deck without parts, and in one with them.
+fn place_by_levels(levels: Levels) -> String {
+    let in_steps = [Level::FirstStep, Level::LaterStep].map(|level| levels.has(level));
+    let flat = match (levels.are_of_model(), in_steps) {
+        (false, _) => "in a step",
+        (true, [true, true]) => "before the first step or in a step",
+        (true, [true, false]) => "before the first step or in it",
+        (true, _) => "before the first step",
+    };
+    let with_parts = match [Level::Assembly, Level::Model].map(|level| levels.has(level)) {
+        _ if !levels.are_of_mesh() => "",
+        [false, _] => "; in a deck with parts in a part or an instance",
+        [true, false] => "; in a deck with parts in a part, an instance or the assembly",
+        [true, true] => "; in a deck with parts in a part, an instance, the assembly or behind it",
+    };
+    format!("{flat}{with_parts}")
+}
+
+/// Words for the levels of a keyword.
+fn levels(keyword: &Keyword) -> Vec<&'static str> {
+    if keyword.scope == Scope::Structure {
+        return Vec::new();
+    }
+    let levels = keyword.levels;
+    let words = [
+        (Level::Part, "part"),
+        (Level::Assembly, "assembly"),
+        (Level::Model, "model"),
+    ];
+    let words = words.into_iter().filter(|(level, _)| levels.has(*level));
+    let steps = match [Level::LaterStep, Level::FirstStep].map(|level| levels.has(level)) {
+        [true, _] => Some("step"),
+        [false, true] => Some("first step"),
+        [false, false] => None,
+    };
+    words.map(|(_, word)| word).chain(steps).collect()
 }
 
 /// The data lines of a keyword.

@@ -7,7 +7,8 @@ mod types;
 
 pub use documents::{dimensions_json, keyword_reference};
 pub use types::{
-    Data, DataLineForm, Field, Keyword, Parameter, Quantity, Scope, Status, Takes, Value,
+    Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
+    Value,
 };
 
 use super::text::fold;
@@ -23,7 +24,7 @@ static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
         include_str!("steps.txt"),
         include_str!("output.txt"),
     ];
-    texts.into_iter().flat_map(table::read).collect()
+    table::with_levels(texts.into_iter().flat_map(table::read).collect())
 });
 
 /// All known keywords.

@@ -2,7 +2,7 @@
 //! keywords:
 //!
 //! ```text
-//! *AMPLITUDE @ anywhere, required             where it stands, and its data lines
+//! *AMPLITUDE @ model step, required           its levels, and its data lines
 //! | under DEFINITION=DECAY | first | A0, A    a kind of data line: which lines, and their fields
 //! - TIME=: which time                         a parameter with a value; TIME alone takes none, TIME[=] may
 //!   = STEP TIME: since the start of the step  a word that its value may be
@@ -14,9 +14,18 @@
 //! *FILTER, *PRINT @ warned                    keywords that are not read
 //! ```
 //!
+//! Levels are `part`, which stands for instances too, `assembly`, `model`, `step` and `first-step`; `anywhere` stands for
+//! all. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of parts that
+//! stands in a step, or one of the model in the first step, belongs to the model. `under *X` are places in the block of
+//! another keyword, `structure` is that of the assembly itself.
+//!
 //! A line that begins with four blanks continues the one before; lines with two stars are comments.
 
-use super::types::{Data, DataLineForm, Keyword, Parameter, Scope, Status, Takes, Value};
+use std::collections::HashMap;
+
+use super::types::{
+    Data, DataLineForm, Keyword, Level, Levels, Parameter, Scope, Status, Takes, Value,
+};
 
 /// The keywords of a text, in its order.
 pub(super) fn read(text: &'static str) -> Vec<Keyword> {
@@ -36,6 +45,7 @@ pub(super) fn read(text: &'static str) -> Vec<Keyword> {
             name: "",
             status,
             scope,
+            levels: Levels::default(),
             data: match data {
                 "rows" => Data::Rows(forms),
                 "required" => Data::Required(forms),
@@ -52,6 +62,25 @@ pub(super) fn read(text: &'static str) -> Vec<Keyword> {
             name: name.trim_start_matches('*'),
             ..keyword
         }));
+    }
+    all
+}
+
+/// The keywords with their levels, those of a block being the levels of what begins it.
+pub(super) fn with_levels(mut all: Vec<Keyword>) -> Vec<Keyword> {
+    let scopes: HashMap<&str, Scope> = all.iter().map(|k| (k.name, k.scope)).collect();
+    let of = |name: &str| match scopes.get(name) {
+        Some(Scope::At(levels)) => *levels,
+        _ => Levels::default(),
+    };
+    for keyword in &mut all {
+        keyword.levels = match keyword.scope {
+            Scope::At(levels) => levels,
+            Scope::Block(head) => of(head),
+            Scope::BlockOrAfter(head, other) => of(head).and(of(other)),
+            Scope::BlockOrModel(head) => of(head).and(Levels::of(&[Level::Model])),
+            Scope::Structure => Levels::default(),
+        };
     }
     all
 }
@@ -74,7 +103,7 @@ fn treatment(what: &'static str) -> (Status, Scope, &'static str) {
     let (place, data) = what.split_once(", ").unwrap_or((what, "skipped"));
     if let ("", status @ (Status::Ignored | Status::Warned | Status::Refused)) = with_status(place)
     {
-        return (status, Scope::Anywhere, data);
+        return (status, Scope::At(Levels::of(&Level::ALL)), data);
     }
     let scope = match place.strip_prefix("under *") {
         Some(block) => match block.strip_suffix(" or model") {
@@ -84,14 +113,27 @@ fn treatment(what: &'static str) -> (Status, Scope, &'static str) {
                 None => Scope::Block(block),
             },
         },
-        None => match place {
-            "step" => Scope::Step,
-            "anywhere" => Scope::Anywhere,
-            "assembly" => Scope::Assembly,
-            _ => Scope::Model,
-        },
+        None if place == "structure" => Scope::Structure,
+        None => Scope::At(levels(place)),
     };
     (Status::Read, scope, data)
+}
+
+/// The levels that words stand for.
+fn levels(words: &str) -> Levels {
+    let of_word = |word: &str| match word {
+        "part" => Levels::of(&[Level::Part, Level::Instance]),
+        "assembly" => Levels::of(&[Level::Assembly]),
+        "model" => Levels::of(&[Level::Model]),
+        "step" => Levels::of(&[Level::FirstStep, Level::LaterStep]),
+        "first-step" => Levels::of(&[Level::FirstStep]),
+        "anywhere" => Levels::of(&Level::ALL),
+        _ => Levels::default(),
+    };
+    words
+        .split(' ')
+        .map(of_word)
+        .fold(Levels::default(), Levels::and)
 }
 
 /// What stands before the status at the end of a text, and the status.

@@ -3,23 +3,86 @@
 
 use crate::deck::text::fold;
 
+/// A level of a deck. Parts, instances and the assembly are levels of decks that have them; in a flat deck their cards
+/// stand at the level of the model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// A part.
+    Part,
+    /// An instance.
+    Instance,
+    /// The assembly, outside its instances.
+    Assembly,
+    /// Outside parts, the assembly and steps.
+    Model,
+    /// The first step.
+    FirstStep,
+    /// A step behind the first.
+    LaterStep,
+}
+
+impl Level {
+    /// All levels.
+    pub const ALL: [Level; 6] = [
+        Level::Part,
+        Level::Instance,
+        Level::Assembly,
+        Level::Model,
+        Level::FirstStep,
+        Level::LaterStep,
+    ];
+}
+
+/// Levels at which a card may stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Levels(u8);
+
+impl Levels {
+    /// These levels.
+    pub fn of(levels: &[Level]) -> Levels {
+        let bits = levels.iter().map(|level| 1 << (*level as u8));
+        Levels(bits.fold(0, |all, bit| all | bit))
+    }
+
+    /// The levels of both.
+    pub fn and(self, other: Levels) -> Levels {
+        Levels(self.0 | other.0)
+    }
+
+    /// Whether a level is among them.
+    pub fn has(self, level: Level) -> bool {
+        self.0 & Levels::of(&[level]).0 != 0
+    }
+
+    /// Whether cards belong to the mesh and what joins it: they define something that steps refer to.
+    pub fn are_of_mesh(self) -> bool {
+        self.has(Level::Part) || self.has(Level::Assembly)
+    }
+
+    /// Whether cards may stand outside steps in a deck without parts.
+    pub fn are_of_model(self) -> bool {
+        self.are_of_mesh() || self.has(Level::Model)
+    }
+
+    /// Whether what a card in a step says holds from the start: it belongs to the model.
+    pub fn hold_from_the_start(self) -> bool {
+        self.are_of_mesh() || !self.has(Level::LaterStep)
+    }
+}
+
 /// Where a keyword may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// Before the first step.
-    Model,
-    /// Between `*STEP` and `*END STEP`.
-    Step,
-    /// Before the first step or in a step.
-    Anywhere,
-    /// In the block of the model keyword of this name.
+    /// By itself at these levels.
+    At(Levels),
+    /// In the block of the keyword of this name.
     Block(&'static str),
     /// In the block of the first, a model keyword, or right after the second, a keyword of steps.
     BlockOrAfter(&'static str, &'static str),
-    /// In such a block, or by itself before the first step.
+    /// In such a block, or by itself at the level of the model.
     BlockOrModel(&'static str),
-    /// Structure of assembly decks.
-    Assembly,
+    /// Around parts, instances and the assembly.
+    Structure,
 }
 
 /// Data lines of a keyword.
@@ -58,6 +121,8 @@ pub struct Keyword {
     pub status: Status,
     /// Where it may stand.
     pub scope: Scope,
+    /// The levels at which it may stand, with the block that it belongs to.
+    pub levels: Levels,
     /// Its data lines.
     pub data: Data,
     /// Its parameters.

@@ -1,0 +1,103 @@
+//! Decks as Abaqus/CAE, CalculiX, PrePoMax and Gmsh users write them (tests/decks/others), with their right values.
+
+use crate::reading::read;
+use crate::statics::run_deck;
+use stickslip::dynamics::IncrementReport;
+use stickslip::model::Model;
+
+/// Model and reports of a deck that runs to its end.
+fn finished(text: &str) -> (Model, Vec<IncrementReport>) {
+    let (keep, failure) = run_deck(text);
+    assert_eq!(failure, None);
+    (read(text), keep.reports)
+}
+
+/// Displacement at the end of the one node of a set.
+fn at_end((model, reports): &(Model, Vec<IncrementReport>), set: &str) -> [f64; 2] {
+    let found = model.sets.nodes.iter().find(|known| known.name == set);
+    let node = found.unwrap_or_else(|| panic!("{set}")).members[0];
+    let u = &reports.last().expect("reports").state.u;
+    [u[2 * node], u[2 * node + 1]]
+}
+
+/// Stretch of a bar of St. Venant-Kirchhoff material with nu = 0 under a nominal stress: P = E (s^3 - s)/2.
+fn stretch(stress: f64, young: f64) -> f64 {
+    let mut s = 1.0;
+    for _ in 0..50 {
+        let rest = young * (s * s * s - s) / 2.0 - stress;
+        s -= rest / (young * (3.0 * s * s - 1.0) / 2.0);
+    }
+    s
+}
+
+#[test]
+fn what_joins_instances_stands_in_the_assembly() {
+    // a column of two squares under the force 10
+    let way = 2.0 * (stretch(-10.0, 1000.0) - 1.0);
+    for deck in [
+        include_str!("../decks/others/tie_coupling_in_assembly.inp"),
+        include_str!("../decks/others/mpc_in_assembly.inp"),
+        include_str!("../decks/others/mass_in_assembly.inp"),
+    ] {
+        let [x, y] = at_end(&finished(deck), "m_RP");
+        assert!((y - way).abs() < 1e-10, "{y} {way}");
+        assert!(x.abs() < 1e-10, "{x}");
+    }
+}
+
+/// The column with a spring, in an assembly and as a flat deck.
+#[test]
+fn equations_and_springs_of_the_assembly_are_those_of_a_flat_deck() {
+    let deck = include_str!("../decks/others/spring_in_assembly.inp");
+    let flat = "*NODE\n1,0.,0.\n2,1.,0.\n3,1.,1.\n4,0.,1.\n11,0.,1.\n12,1.,1.\n13,1.,2.\n14,0.,2.\n\
+        *NODE, NSET=RP\n21, 0.5, 2.5\n*ELEMENT, TYPE=CPE4, ELSET=A\n1,1,2,3,4\n*ELEMENT, TYPE=CPE4, ELSET=B\n2,11,12,13,14\n\
+        *ELSET, ELSET=ALL\nA, B\n*SURFACE, NAME=TOP\nA, S3\n*SURFACE, NAME=BOTS\nB, S1\n\
+        *SOLID SECTION, ELSET=ALL, MATERIAL=M\n,\n*TIE, NAME=T1\nBOTS, TOP\n\
+        *EQUATION\n2\n14, 2, 1., 21, 2, -1.\n2\n13, 2, 1., 21, 2, -1.\n\
+        *ELEMENT, TYPE=SPRINGA, ELSET=SP\n3, 1, 13\n*SPRING, ELSET=SP\n\n5.\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n\
+        *BOUNDARY\n1, 1, 2\n2, 1, 2\n*STEP, NLGEOM\n*STATIC\n0.1, 1., 1e-05, 0.1\n*CLOAD\n21, 2, -10.\n*END STEP\n";
+    let [own, flat] = [deck, flat].map(|text| finished(text).1);
+    assert_eq!(own.len(), flat.len());
+    for (own, flat) in own.iter().zip(&flat) {
+        let both = own.state.u.iter().zip(&flat.state.u);
+        assert!(both.clone().count() == 18 && both.clone().all(|(a, b)| (a - b).abs() < 1e-12));
+    }
+    let way = at_end(&finished(deck), "m_RP")[1];
+    assert!((way + 0.02).abs() < 1e-3, "{way}");
+}
+
+#[test]
+fn a_rigid_part_stands_in_its_instance() {
+    let deck = include_str!("../decks/others/rigid_body_in_instance.inp");
+    let (_, reports) = finished(deck);
+    // the tool, moved by 0.1 with its instance, presses the square to 0.9 of its height
+    let force = 1000.0 * (0.9_f64.powi(3) - 0.9) / 2.0;
+    let last = reports.last().expect("reports");
+    let [_, y] = last.contacts[0].force;
+    assert!((y.abs() + force).abs() < 1e-9 * force.abs(), "{y} {force}");
+    let card = "*Rigid Body, ref node=TOOL-1-RefPt_, analytical surface=RigidSurface_\n";
+    let behind = "*End Assembly\n*Rigid Body, ref node=TOOL-1.TOOL-1-RefPt_, analytical surface=TOOL-1.RigidSurface_\n";
+    let (_, others) = finished(&deck.replace(card, "").replace("*End Assembly\n", behind));
+    assert_eq!(last.state.u, others.last().expect("reports").state.u);
+}
+
+#[test]
+fn a_profile_moves_with_its_instance() {
+    let (_, reports) = finished(include_str!(
+        "../decks/others/segments_in_moved_instance.inp"
+    ));
+    let last = reports.last().expect("reports");
+    assert_eq!(last.contacts[0].force, [0.0; 2]);
+}
+
+#[test]
+fn a_step_defines_a_node_set() {
+    let deck = include_str!("../decks/others/nset_in_step.inp");
+    let set = "*NSET, NSET=NF\n3\n";
+    let before = deck
+        .replace(set, "")
+        .replace("*STEP", &format!("{set}*STEP"));
+    let [own, before] = [deck, &before].map(|text| at_end(&finished(text), "N3"));
+    assert_eq!(own, before);
+    assert!(own[0] > 0.0);
+}
