@@ -256,6 +256,7 @@ fn faulty(code: Code) -> Source {
              *STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.1, 1.\n*BOUNDARY, AMPLITUDE=SHIFT\n4, 1, 1, 0.1\n",
         ),
         BadEquation => model("*EQUATION\n2\n4, 1, 0., 3, 1, -1."),
+        OwnIncrement => square("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC\n, 1."),
         ScaledTolerance => square("*DYNAMIC, DIRECT", "*DYNAMIC, HALFINC SCALE FACTOR=500."),
     }
 }

@@ -311,7 +311,10 @@ fn cards_in_any_order() {
 
 #[test]
 fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
-    let (old, new) = ("*DYNAMIC, DIRECT\n0.1, 1.", "*DYNAMIC, EXPLICIT\n, 1.");
+    let (old, new) = (
+        "*DYNAMIC, DIRECT\n0.1, 1.",
+        "*DYNAMIC, DIRECT, EXPLICIT\n, 1.",
+    );
     let nodes = "1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n";
     let moved = "1, 5., -3.\n2, 6., -3.\n3, 6., -2.\n4, 5., -2.\n";
     for text in [SQUARE.to_owned(), SQUARE.replace(nodes, moved)] {
@@ -324,6 +327,47 @@ fn a_missing_increment_comes_with_a_guide_wherever_the_mesh_lies() {
         );
     }
     assert!(SQUARE.contains(nodes));
+}
+
+/// Fields of the times of a step that are empty or zero have their defaults.
+#[test]
+fn empty_and_zero_times_have_defaults() {
+    let increments = |card: &str, row: &str| {
+        let text = SQUARE.replace("*DYNAMIC, DIRECT\n0.1, 1.\n", &format!("{card}\n{row}"));
+        let (model, d) = build(&text);
+        let model = model.unwrap_or_else(|| panic!("{card} {row}: {:?}", codes(&d)));
+        let times = model.steps[0].increments;
+        [times.dt, times.period, times.dt_min, times.dt_max]
+    };
+    let whole = [1.0, 1.0, 1e-5, 1.0];
+    for row in [
+        "",
+        ",\n",
+        ", 1.\n",
+        "0., 0., 0., 0.\n",
+        "1., , ,\n",
+        ", , , \n",
+    ] {
+        assert_eq!(increments("*STATIC", row), whole, "{row}");
+    }
+    assert_eq!(increments("*STATIC", ", 4.\n"), [4.0, 4.0, 4e-5, 4.0]);
+    assert_eq!(
+        increments("*STATIC", "0.5, , , 0.25\n"),
+        [0.25, 1.0, 1e-5, 0.25]
+    );
+    assert_eq!(
+        increments("*DYNAMIC", "1E-3, 1., 0., 0.\n"),
+        increments("*DYNAMIC", "1E-3, 1.\n")
+    );
+    // the side 1 over the speed of waves, but between 1e-5 and 0.1 of the duration
+    let [own, ..] = increments("*DYNAMIC", ", 1.\n");
+    assert!((own - 0.030_166).abs() < 1e-5, "{own}");
+    assert_eq!(increments("*DYNAMIC", "0., 0.1\n")[0], 0.1 * 0.1);
+    assert_eq!(increments("*DYNAMIC, EXPLICIT", ", 1E5\n")[0], 1e-5 * 1e5);
+    assert_eq!(
+        increments("*DYNAMIC, APPLICATION=QUASI-STATIC", ", 2.\n")[0],
+        0.2
+    );
 }
 
 #[test]

@@ -101,3 +101,30 @@ fn a_step_defines_a_node_set() {
     assert_eq!(own, before);
     assert!(own[0] > 0.0);
 }
+
+#[test]
+fn an_explicit_step_has_an_increment_of_its_own() {
+    let deck = include_str!("../decks/others/explicit_blank_first_field.inp");
+    let (model, own) = finished(deck);
+    // the sides of the mesh are 1 and 0.995 long; a pressure wave in plane strain has M = E (1 - nu)/((1 + nu)(1 - 2 nu))
+    let speed = (2e5 * 0.7 / (1.3 * 0.4) / 7.8e-9_f64).sqrt();
+    assert!(
+        (own[1].dt * speed - 0.995).abs() < 1e-12,
+        "{}",
+        own[1].dt * speed
+    );
+    assert_eq!(model.steps[0].increments.dt, own[1].dt);
+    let direct = deck.replace(
+        "*DYNAMIC, EXPLICIT\n, 1.E-4",
+        "*DYNAMIC, DIRECT\n2.5E-8, 1.E-4",
+    );
+    let (_, fine) = finished(&direct);
+    let punch = model.sets.nodes.iter().find(|set| set.name == "NRP");
+    let node = punch.expect("NRP").members[0];
+    let deepest = |reports: &[IncrementReport]| {
+        let depths = reports.iter().map(|report| report.state.u[2 * node + 1]);
+        depths.fold(0.0, f64::min)
+    };
+    let [a, b] = [&own, &fine].map(|reports| deepest(reports));
+    assert!((a - b).abs() < 0.02 * b.abs(), "{a} {b}");
+}

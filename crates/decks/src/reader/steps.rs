@@ -311,8 +311,9 @@ fn increments(
     };
     row.at_most(4, cx.d);
     let tolerance = truncation_error(card, (direct, procedure), has_contacts, cx)?;
-    let first = first_increment(row, guide, cx);
     let period = row.real(1, "the duration of the step", cx.d);
+    let guide = guide.filter(|_| procedure == Procedure::Dynamic);
+    let first = first_increment(row, (direct, period?), guide, cx);
     let (first, period) = (first?, period?);
     let (least, largest) = match direct {
         true => (0.0, f64::INFINITY),
@@ -324,8 +325,8 @@ fn increments(
             },
         ),
     };
-    let (dt_min, dt_max) = (row.real_or(2, least, cx.d), row.real_or(3, largest, cx.d));
-    let (dt_min, dt_max) = (dt_min?, dt_max?);
+    let dt_min = time_or(row, 2, least, cx)?;
+    let dt_max = time_or(row, 3, largest, cx)?;
     let dt = if direct { first } else { first.min(dt_max) };
     check_times(row, dt, period, dt_min, dt_max, cx)?;
     if direct {
@@ -422,16 +423,16 @@ fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
         });
     };
     row.at_most(4, cx.d);
-    let period = row.real_or(1, 1.0, cx.d);
-    let first = row.real_or(0, period.unwrap_or(1.0), cx.d);
+    let period = time_or(row, 1, 1.0, cx);
+    let first = time_or(row, 0, period.unwrap_or(1.0), cx);
     let (dt, period) = (first?, period?);
     let least = if direct {
         0.0
     } else {
         dt.min(LEAST_STATIC * period)
     };
-    let (dt_min, dt_max) = (row.real_or(2, least, cx.d), row.real_or(3, period, cx.d));
-    let (dt_min, dt_max) = (dt_min?, dt_max?);
+    let dt_min = time_or(row, 2, least, cx)?;
+    let dt_max = time_or(row, 3, period, cx)?;
     check_times(row, dt, period, dt_min, dt_max, cx)?;
     if direct {
         let help = "with DIRECT increments keep their size but for cutbacks";
@@ -447,20 +448,40 @@ fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
     })
 }
 
-fn first_increment(row: Line, guide: Option<f64>, cx: &mut Context) -> Option<f64> {
-    match row.get(0) {
-        Some(field) => field.real(cx.d),
-        None => {
-            let message = "give the time increment in the first field";
-            let error = cx.error(Code::MissingField, row.span(), message);
-            if let Some(dt) = guide {
-                error.help(format!(
-                    "a wave crosses the shortest element side in {dt:.2e}"
-                ));
-            }
-            None
-        }
+/// A time of a data line, or `default` where the field is empty or zero.
+fn time_or(row: Line, index: usize, default: f64, cx: &mut Context) -> Option<f64> {
+    let time = row.real_or(index, default, cx.d)?;
+    Some(if time == 0.0 { default } else { time })
+}
+
+/// The first increment of a dynamic step. Where none is given and it may change, it is `guide`, the time of a wave through the
+/// shortest side of an element, within parts of the duration.
+fn first_increment(
+    row: Line,
+    (direct, period): (bool, f64),
+    guide: Option<f64>,
+    cx: &mut Context,
+) -> Option<f64> {
+    let given = time_or(row, 0, 0.0, cx)?;
+    if given != 0.0 {
+        return Some(given);
     }
+    if direct {
+        let message = "give the time increment in the first field";
+        let error = cx.error(Code::MissingField, row.span(), message);
+        if let Some(dt) = guide {
+            error.help(format!(
+                "a wave crosses the shortest element side in {dt:.2e}"
+            ));
+        }
+        return None;
+    }
+    let (least, largest) = (LEAST_DYNAMIC * period, LARGEST_DYNAMIC * period);
+    let own = guide.unwrap_or(largest).max(least).min(largest);
+    let message = format!("the first increment is {own:.2e}: none is given");
+    cx.d.note(Code::OwnIncrement, row.span(), message)
+        .help("write one into the first field of the data line to have another");
+    Some(own)
 }
 
 fn check_times(
@@ -471,10 +492,10 @@ fn check_times(
     dt_max: f64,
     cx: &mut Context,
 ) -> Option<()> {
-    let (field, fault) = if dt <= 0.0 {
-        (0, "the increment must be positive")
-    } else if period <= 0.0 {
+    let (field, fault) = if period <= 0.0 {
         (1, "the duration must be positive")
+    } else if dt <= 0.0 {
+        (0, "the increment must be positive")
     } else if dt > period {
         (0, "the increment is longer than the step")
     } else if period / dt > MOST_INCREMENTS {

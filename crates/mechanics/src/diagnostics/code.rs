@@ -404,6 +404,11 @@ codes! {
         "Its amplitude does not start with the displacement that is there: all are 0 before the \
          first step."
         "Let the amplitude start there, or prescribe the velocity."
+    OwnIncrement "D523" "The first increment of a dynamic step is chosen by the program."
+        "The first field of *DYNAMIC is empty, as in every EXPLICIT step of Abaqus/CAE. The first increment is then the time \
+         of a wave through the shortest side of an element, between 1e-5 and 0.1 of the duration; the others follow \
+         their truncation error."
+        "Nothing need be done; write an increment into the first field to have another one."
 }
 
 #[cfg(test)]
