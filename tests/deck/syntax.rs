@@ -370,6 +370,50 @@ fn empty_and_zero_times_have_defaults() {
     );
 }
 
+/// Requests of output that are not known are left out: the model is the same.
+#[test]
+fn output_that_is_not_known_never_stops_a_deck() {
+    let (plain, _) = build(SQUARE);
+    assert!(plain.is_some());
+    let unknown = [
+        ("*CONTACT PRINT, SET=ALL\nCDIS", Code::UnknownParameter),
+        ("*CONTACT PRINT, TOTALS\nCDIS", Code::IgnoredVariable),
+        ("*ELEMENT PRINT, ELSET=BODY\nS", Code::UnknownKeyword),
+        ("*Node Field Output\nU", Code::UnknownKeyword),
+        ("*OUTPUT, FIELD, TIME MARX=NO", Code::UnknownParameter),
+        (
+            "*ENERGY OUTPUT, PER SET=BODY\nALLSE",
+            Code::UnknownParameter,
+        ),
+        ("*NODE FILE, OUTPUT\nU", Code::IgnoredParameter),
+        ("*EL FILE, POSITION=SOMEWHERE\nS", Code::BadValue),
+        ("*EL FILE, POSITION\nS", Code::BadValue),
+        (
+            "*SECTION PRINT, SURFACE=TOP, NAME=P\nSOF",
+            Code::IgnoredKeyword,
+        ),
+    ];
+    for (request, code) in unknown {
+        let text = SQUARE.replacen("*END STEP", &format!("{request}\n*END STEP"), 1);
+        let (model, d) = build(&text);
+        assert_eq!(model, plain, "{request}");
+        assert!(
+            codes(&d).iter().all(|known| *known == code),
+            "{request}: {:?}",
+            codes(&d)
+        );
+    }
+    // what names the keyword of a physical card, or a keyword of one word, is an error as ever
+    for request in [
+        "*CLAOD\n4, 1, 1.",
+        "*FILES\nU",
+        "*CLOAD, FRQUENCY=1\n4, 1, 1.",
+    ] {
+        let text = SQUARE.replacen("*END STEP", &format!("{request}\n*END STEP"), 1);
+        assert!(build(&text).0.is_none(), "{request}");
+    }
+}
+
 #[test]
 fn output_requests_of_both_families_are_silent() {
     for request in [

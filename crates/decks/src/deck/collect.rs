@@ -326,8 +326,9 @@ impl Collector<'_> {
             return;
         }
         let span = first.text.span;
+        let errors = self.d.count(Severity::Error);
         let Some(keyword) = resolve::keyword(first.text, self.d) else {
-            if !self.d.is_lenient() {
+            if self.d.count(Severity::Error) > errors {
                 self.drop_card(rest);
             }
             self.rows = RowRule::Skip;

@@ -4,7 +4,7 @@
 use super::card::{Card, Param};
 use super::keywords::{Keyword, Parameter, Status, Takes, find_keyword, keywords};
 use super::text::{Match, Text, find, find_known};
-use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Severity, Span};
 use std::cell::Cell;
 
 /// A piece of a keyword line between commas.
@@ -29,8 +29,9 @@ pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
         true => find(typed, names),
         false => find_known(typed, names),
     };
+    let is_output = asks_for_output(typed);
     let unknown = || unknown_keyword(starred, span, known);
-    let keyword = known_word(known, unknown, "*", span, d).and_then(find_keyword)?;
+    let keyword = known_word(known, unknown, "*", (span, is_output), d).and_then(find_keyword)?;
     if let Match::Unknown(_) = known {
         return Some(keyword).filter(|keyword| keyword.status == Status::Read);
     }
@@ -38,13 +39,20 @@ pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
     Some(keyword)
 }
 
+/// Whether an unknown keyword asks for output by its last word.
+fn asks_for_output(typed: &str) -> bool {
+    let last = typed.split_whitespace().next_back().unwrap_or_default();
+    let words = ["OUTPUT", "PRINT", "FILE"];
+    typed != last && words.iter().any(|word| last.eq_ignore_ascii_case(word))
+}
+
 /// The known word of a match, or the one probably meant unless reading is lenient; reports
-/// abbreviations and unknown words.
+/// abbreviations and unknown words. Those of output are left out with a warning.
 fn known_word(
     found: Match,
     unknown: impl FnOnce() -> Diagnostic,
     prefix: &str,
-    span: Span,
+    (span, is_output): (Span, bool),
     d: &mut Diagnostics,
 ) -> Option<&'static str> {
     match found {
@@ -55,10 +63,25 @@ fn known_word(
                 .help("write the whole word");
             Some(name)
         }
+        Match::Unknown(_) if is_output => {
+            d.push(left_out(unknown()));
+            None
+        }
         Match::Unknown(meant) => {
             d.push(unknown());
             meant.filter(|_| !d.is_lenient())
         }
+    }
+}
+
+/// A fault of output as a warning.
+fn left_out(fault: Diagnostic) -> Diagnostic {
+    Diagnostic {
+        severity: Severity::Warning,
+        help: Some(
+            "it is left out: what a deck asks for as output does not change the answer".into(),
+        ),
+        ..fault
     }
 }
 
@@ -114,7 +137,8 @@ pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Opti
     let names = card.keyword.parameters.iter().map(|p| p.name);
     let found = find(typed, names);
     let unknown = || unknown_parameter(card, typed, piece, found);
-    let name = known_word(found, unknown, "", span, d)?;
+    let is_output = card.keyword.is_output;
+    let name = known_word(found, unknown, "", (span, is_output), d)?;
     let known = card.keyword.parameter(name)?;
     if card.params.iter().any(|param| param.name == name) {
         d.error(
@@ -137,7 +161,7 @@ pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Opti
         faulty: false,
         used: Cell::new(false),
     };
-    check_value(known, &mut param, d);
+    check_value(known, is_output, &mut param, d);
     Some(param)
 }
 
@@ -186,7 +210,7 @@ fn unknown_parameter(card: &Card, typed: &str, piece: &Piece, found: Match) -> D
 }
 
 /// Checks that a value is given where the parameter takes one, and that it is an allowed word.
-fn check_value(known: &Parameter, param: &mut Param, d: &mut Diagnostics) {
+fn check_value(known: &Parameter, is_output: bool, param: &mut Param, d: &mut Diagnostics) {
     let name = known.name;
     let typed = param.value.as_ref().filter(|(value, _)| !value.is_empty());
     let complaint = match (known.takes, typed) {
@@ -195,16 +219,22 @@ fn check_value(known: &Parameter, param: &mut Param, d: &mut Diagnostics) {
         _ => String::new(),
     };
     if !complaint.is_empty() {
-        d.error(Code::BadValue, param.span, complaint);
+        let fault = Diagnostic::error(Code::BadValue, param.span, complaint);
+        d.push(if is_output { left_out(fault) } else { fault });
         param.faulty = true;
     } else if let (Some((typed, span)), false) = (typed, known.values().is_empty()) {
-        param.choice = choose(known, typed, *span, d);
+        param.choice = choose(known, typed, (*span, is_output), d);
         param.faulty = param.choice.is_none();
     }
 }
 
 /// The full word of a typed value; `None` if it is unknown or refused.
-fn choose(known: &Parameter, typed: &str, span: Span, d: &mut Diagnostics) -> Option<&'static str> {
+fn choose(
+    known: &Parameter,
+    typed: &str,
+    (span, is_output): (Span, bool),
+    d: &mut Diagnostics,
+) -> Option<&'static str> {
     let names = known.values().iter().map(|value| value.name);
     let found = find(typed, names.clone());
     let unknown = || {
@@ -218,7 +248,7 @@ fn choose(known: &Parameter, typed: &str, span: Span, d: &mut Diagnostics) -> Op
             .suggest(meant)
             .help(format!("it can be {}", all.join(", ")))
     };
-    let name = known_word(found, unknown, "", span, d)?;
+    let name = known_word(found, unknown, "", (span, is_output), d)?;
     let value = known.values().iter().find(|value| value.name == name)?;
     let what = format!("{}={name}", known.name);
     report(

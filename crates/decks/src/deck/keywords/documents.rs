@@ -65,7 +65,8 @@ A deck is a text file, ASCII or UTF-8.
 
 An error stops the run before it begins. These are errors:
 
-* a keyword, parameter or value that this page does not list;
+* a keyword, parameter or value that this page does not list; of output requests they are left out with a warning, also
+  keywords that end in `OUTPUT`, `PRINT` or `FILE`;
 * a data line with more fields than its keyword reads;
 * a NUL byte, or a line of more than 65536 bytes (Abaqus reads 256);
 * a wave speed, or the area, stiffness or mass of an element, that overflows or vanishes in

@@ -22,9 +22,14 @@ static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
         include_str!("contact.txt"),
         include_str!("conditions.txt"),
         include_str!("steps.txt"),
-        include_str!("output.txt"),
     ];
-    table::with_levels(texts.into_iter().flat_map(table::read).collect())
+    let output = table::read(include_str!("output.txt"));
+    let output = output.into_iter().map(|keyword| Keyword {
+        is_output: true,
+        ..keyword
+    });
+    let all = texts.into_iter().flat_map(table::read).chain(output);
+    table::with_levels(all.collect())
 });
 
 /// All known keywords.

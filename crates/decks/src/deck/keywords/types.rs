@@ -131,6 +131,8 @@ pub struct Keyword {
     pub text: &'static str,
     /// Lines of a deck that use it, or what is read in its place; empty if there is nothing.
     pub example: &'static str,
+    /// Whether it asks for output: what is not known of it is left out, as the answer does not depend on it.
+    pub is_output: bool,
 }
 
 impl Keyword {
