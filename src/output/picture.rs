@@ -264,8 +264,8 @@ impl Picture<'_> {
             let line = |face: &Face| face.ends(&self.model.mesh).map(|node| self.x[node]);
             loads.extend(step.pressures.iter().map(|load| {
                 let [a, b] = line(&load.at.face);
-                let normal = project(a, a, b).normal;
-                (middle([a, b]), normal.map(|n| -load.magnitude * n))
+                let force = load.at.force(project(a, a, b).normal);
+                (middle([a, b]), force.map(|f| load.magnitude * f))
             }));
             loads.extend(step.tractions.iter().map(|load| {
                 let force = load.at.direction.map(|n| load.magnitude * n);

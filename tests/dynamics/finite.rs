@@ -100,7 +100,10 @@ fn passes_that_diverge_are_no_failure_of_the_linear_solver() {
         let mut blown = step(1e3, 1, Settings::default(), Vec::new());
         let faces = (0..4).flat_map(|side| block.faces(side));
         let blow = |face| Load {
-            at: Pressure { face },
+            at: Pressure {
+                face,
+                is_shear: false,
+            },
             magnitude: pressure,
             variation: Variation::Constant,
         };

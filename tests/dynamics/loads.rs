@@ -82,7 +82,10 @@ fn pressure_all_around_has_no_resultant_and_follows_the_surface() {
         let faces = (0..4).flat_map(|side| block.faces(side));
         step.pressures = faces
             .map(|face| Load {
-                at: Pressure { face },
+                at: Pressure {
+                    face,
+                    is_shear: false,
+                },
                 magnitude: 40.0,
                 variation: Variation::Constant,
             })
@@ -96,6 +99,32 @@ fn pressure_all_around_has_no_resultant_and_follows_the_surface() {
         assert!(last.energy.external_work > 0.0 && last.energy.strain > 0.0);
         let width = 2.0 + last.state.u[2 * block.node(4, 1)] - last.state.u[2 * block.node(0, 1)];
         assert!(width < 2.0);
+        balance_closes(&keep.reports);
+    }
+}
+
+#[test]
+fn shear_all_around_spins_a_block_and_has_no_resultant() {
+    for scheme in SCHEMES {
+        let (mut model, block) = free_block();
+        let mut step = step(0.01, 50, settings(scheme), Vec::new());
+        let faces = (0..4).flat_map(|side| block.faces(side));
+        let shear = |face| Load {
+            at: Pressure {
+                face,
+                is_shear: true,
+            },
+            magnitude: 40.0,
+            variation: Variation::Constant,
+        };
+        step.pressures = faces.map(shear).collect();
+        model.steps = vec![step];
+        let (keep, _) = run_to_end(&model);
+        let last = keep.reports.last().unwrap();
+        assert!(last.momentum.linear[0].abs() < 1e-11 && last.momentum.linear[1].abs() < 1e-11);
+        // counter-clockwise, as faces run from corner to corner
+        assert!(last.momentum.angular > 0.1, "{}", last.momentum.angular);
+        assert!(last.energy.external_work > 0.0);
         balance_closes(&keep.reports);
     }
 }
@@ -115,7 +144,10 @@ fn pressure_acts_on_the_face_as_it_is_now() {
         });
         let mut step = step(0.01, 20, settings(scheme), supports.collect());
         let pressure = |face| Load {
-            at: Pressure { face },
+            at: Pressure {
+                face,
+                is_shear: false,
+            },
             magnitude: 40.0,
             variation: Variation::Constant,
         };

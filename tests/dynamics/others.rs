@@ -1,6 +1,6 @@
 //! Decks as Abaqus/CAE, CalculiX, PrePoMax and Gmsh users write them (tests/decks/others), with their right values.
 
-use crate::reading::read;
+use crate::reading::{read, try_read};
 use crate::statics::run_deck;
 use stickslip::dynamics::IncrementReport;
 use stickslip::model::Model;
@@ -127,4 +127,121 @@ fn an_explicit_step_has_an_increment_of_its_own() {
     };
     let [a, b] = [&own, &fine].map(|reports| deepest(reports));
     assert!((a - b).abs() < 0.02 * b.abs(), "{a} {b}");
+}
+
+/// Forces of a load on the right side of a square of side 1 whose nodes are held: at the nodes of the side, at the end of a
+/// quarter turn, or of nothing.
+fn side_forces(load: &str, element: &str, turns: bool) -> [f64; 2] {
+    let moved = |[x, y]: [f64; 2]| if turns { [-y - x, x - y] } else { [0.0; 2] };
+    let nodes = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let middle = [[0.5, 0.0], [1.0, 0.5], [0.5, 1.0], [0.0, 0.5]];
+    let all = nodes.iter().chain(if element.ends_with('8') {
+        &middle[..]
+    } else {
+        &[]
+    });
+    let rows: String = (1..)
+        .zip(all.clone())
+        .map(|(n, [x, y])| format!("{n}, {x:?}, {y:?}\n"))
+        .collect();
+    let held: String = (1..)
+        .zip(all.clone())
+        .flat_map(|(n, &at)| {
+            let [x, y] = moved(at);
+            [format!("{n}, 1, 1, {x:?}\n"), format!("{n}, 2, 2, {y:?}\n")]
+        })
+        .collect();
+    let numbers: Vec<String> = (1..=all.count()).map(|n| n.to_string()).collect();
+    let text = format!(
+        "*NODE\n{rows}*ELEMENT, TYPE={element}, ELSET=E\n1, {}\n*SURFACE, NAME=R\nE, S2\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*DENSITY\n1.\n*SOLID SECTION, ELSET=E, MATERIAL=M\n2.\n\
+         *STEP, NLGEOM\n*STATIC\n1., 1.\n*BOUNDARY\n{held}{load}*END STEP\n",
+        numbers.join(", ")
+    );
+    let (model, reports) = finished(&text);
+    let reaction = &reports.last().expect("reports").nodal.reaction;
+    // a rigid turn has no internal forces: the supports hold the load
+    let sum = |i: usize| {
+        -(0..model.mesh.node_count())
+            .map(|n| reaction[2 * n + i])
+            .sum::<f64>()
+    };
+    [sum(0), sum(1)]
+}
+
+#[test]
+fn tractions_turn_with_their_faces_where_they_follow() {
+    // thickness 2, length 1
+    let on = |card: &str, row: &str| format!("*{card}\n{row}\n");
+    for element in ["CPS4", "CPS8"] {
+        for (load, still, turned) in [
+            (
+                on("DSLOAD", "R, TRSHR, 10., 3., 4."),
+                [0.0, 20.0],
+                [-20.0, 0.0],
+            ),
+            (
+                on("DSLOAD", "R, TRSHR, 10., 1., -0.1"),
+                [0.0, -20.0],
+                [20.0, 0.0],
+            ),
+            (
+                on("DLOAD", "E, TRSHR2, 10., 0., 1."),
+                [0.0, 20.0],
+                [-20.0, 0.0],
+            ),
+            (
+                on("DSLOAD", "R, TRVEC, 10., 3., 4."),
+                [12.0, 16.0],
+                [-16.0, 12.0],
+            ),
+            (
+                on("DSLOAD, FOLLOWER=YES", "R, TRVEC, 10., -1., 0."),
+                [-20.0, 0.0],
+                [0.0, -20.0],
+            ),
+            (
+                on("DLOAD", "1, TRVEC2, 10., 3., 4."),
+                [12.0, 16.0],
+                [-16.0, 12.0],
+            ),
+            (
+                on("DSLOAD, FOLLOWER=NO", "R, TRVEC, 10., 3., 4."),
+                [12.0, 16.0],
+                [12.0, 16.0],
+            ),
+            (on("DSLOAD", "R, P, 10."), [-20.0, 0.0], [0.0, -20.0]),
+        ] {
+            for (turns, wanted) in [(false, still), (true, turned)] {
+                let found = side_forces(&load, element, turns);
+                let error = (found[0] - wanted[0]).hypot(found[1] - wanted[1]);
+                assert!(
+                    error < 1e-10,
+                    "{load}{element} {turns}: {found:?} {wanted:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_shear_acts_as_the_forces_of_its_nodes() {
+    let deck = include_str!("../decks/others/traction_TRSHR.inp").replace("1000.,0.", "1E9,0.");
+    let forces = deck.replace(
+        "*DSLOAD\nR, TRSHR, 10., 1., 0., 0.",
+        "*CLOAD\n4, 1, 5.\n3, 1, 5.",
+    );
+    assert_ne!(deck, forces);
+    // small displacements: the face has not turned
+    let [a, b] = [&deck, &forces].map(|text| at_end(&finished(text), "N3"));
+    assert!(
+        b[0] > 1e-9 && (a[0] - b[0]).abs() < 1e-7 * b[0],
+        "{a:?} {b:?}"
+    );
+    let across = deck.replace("TRSHR, 10., 1., 0.", "TRSHR, 10., 0., 1.");
+    let (model, _, messages) = try_read(&across);
+    assert!(
+        model.is_none() && messages.contains("points across the face"),
+        "{messages}"
+    );
 }

@@ -10,6 +10,7 @@ use crate::model::{
     Variation,
 };
 use crate::reader::{self, carried_loads};
+use crate::vectors::difference;
 use std::collections::HashMap;
 
 /// Times on a data line.
@@ -527,9 +528,17 @@ fn centrifugal_force(load: &Load<CentrifugalForce>, model: &Model) -> LoadLine {
 }
 
 fn pressure(load: &Load<Pressure>, model: &Model) -> LoadLine {
-    let Pressure { face } = load.at;
-    let label = model.mesh.elements[face.element].label;
-    LoadLine::new(label.to_string(), format!("P{}", face.side + 1), load)
+    let Pressure { face, is_shear } = load.at;
+    let (mesh, side) = (&model.mesh, face.side + 1);
+    let label = mesh.elements[face.element].label.to_string();
+    if !is_shear {
+        return LoadLine::new(label, format!("P{side}"), load);
+    }
+    let [from, to] = face.ends(mesh).map(|node| mesh.coordinates[node]);
+    LoadLine {
+        direction: difference(from, to).map(number).to_vec(),
+        ..LoadLine::new(label, format!("TRSHR{side}"), load)
+    }
 }
 
 fn traction(load: &Load<Traction>, model: &Model) -> LoadLine {

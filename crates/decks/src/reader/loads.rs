@@ -6,11 +6,12 @@ use super::context::Context;
 use super::mesh_index::PointKind;
 use super::surfaces::{Surfaces, side_count};
 use crate::deck::{Card, Line, Text};
-use crate::diagnostics::{Code, Span};
+use crate::diagnostics::Code;
 use crate::model::{
     Amplitude, BodyForce, CentrifugalForce, Face, Load, PointLoad, Pressure, Step, SurfaceKind,
     TimeBase, Traction, Variation,
 };
+use crate::vectors::{cross, difference, distance, dot};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -22,7 +23,7 @@ pub(crate) struct LoadHistories {
     weights: LoadHistory<(u32, usize), PointLoad>,
     bodies: LoadHistory<(u32, Body), BodyForce>,
     turned: LoadHistory<u32, CentrifugalForce>,
-    pressures: LoadHistory<OnFace, Pressure>,
+    pressures: LoadHistory<(OnFace, Follower), Pressure>,
     tractions: LoadHistory<OnFace, Traction>,
     /// By the keywords.
     operations: BTreeMap<&'static str, Operation>,
@@ -32,6 +33,37 @@ pub(crate) struct LoadHistories {
 
 /// A face, and the surface (index) on which `*DSLOAD` loads it; none with `*DLOAD`.
 type OnFace = (Option<usize>, Face);
+
+/// Kinds of load that follow their face; a later step replaces a load of the same kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Follower {
+    Pressure,
+    /// What a traction that turns with the face has across it.
+    Across,
+    /// What it has along the face, or a shear.
+    Along,
+}
+
+impl Follower {
+    fn of(load: &Pressure) -> Follower {
+        match load.is_shear {
+            true => Follower::Along,
+            false => Follower::Pressure,
+        }
+    }
+}
+
+/// A load on a face.
+#[derive(Clone, Copy)]
+enum FaceLoad {
+    Pressure,
+    /// Along a direction that stays.
+    Dead([f64; 2]),
+    /// Along a direction that turns with the face.
+    Turning([f64; 2]),
+    /// Along the face, to the side of a direction.
+    Shear([f64; 2]),
+}
 
 /// Kinds of body force; a later step replaces a force of the same kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,7 +90,7 @@ pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
         weights: LoadHistory::default(),
         bodies: LoadHistory::of(&step.body_forces, |at| (at.element as u32, Body::of(at))),
         turned: LoadHistory::of(&step.centrifugal_forces, |at| at.element as u32),
-        pressures: LoadHistory::of(&step.pressures, |at| (None, at.face)),
+        pressures: LoadHistory::of(&step.pressures, |at| ((None, at.face), Follower::of(at))),
         tractions: LoadHistory::of(&step.tractions, |at| (None, at.face)),
         operations: BTreeMap::new(),
         actions: Actions::default(),
@@ -125,7 +157,7 @@ impl LoadHistories {
             self.turned.clear(context, |_| true);
         }
         let is_meant = |(surface, _): &OnFace| surface.is_some() == on_surfaces;
-        self.pressures.clear(context, is_meant);
+        self.pressures.clear(context, |(on, _)| is_meant(on));
         self.tractions.clear(context, is_meant);
     }
 
@@ -178,15 +210,12 @@ impl LoadHistories {
             warn_of_masses(row, source.targets, cx);
             return self.centrifugal_row(row, &elements, source, cx);
         }
-        let Some((side, is_traction)) = loaded_side(&key) else {
-            let known = "GRAV, BX, BY, CENTRIF, P1 to P4 and TRVEC1 to TRVEC4";
+        let Some((name, side)) = loaded_side(&key) else {
+            let known = "GRAV, BX, BY, CENTRIF, P1 to P4, TRVEC1 to TRVEC4 and TRSHR1 to TRSHR4";
             return unknown_kind(kind, known, cx);
         };
-        let direction = match is_traction {
-            true => Some(dead_direction(kind, row, source.card, cx)?),
-            false => None,
-        };
-        self.face_row(row, (side, direction), &elements, source, cx)
+        let load = face_load(name, row, source.card, cx)?;
+        self.face_row(row, (side, load), &elements, source, cx)
     }
 
     fn body_row(
@@ -299,18 +328,15 @@ impl LoadHistories {
         Some(())
     }
 
-    /// A pressure, or a traction with its direction, on one side of each element.
+    /// A load on one side of each element.
     fn face_row(
         &mut self,
         row: Line,
-        (side, direction): (usize, Option<[f64; 2]>),
+        (side, load): (usize, FaceLoad),
         elements: &[usize],
         source: Source,
         cx: &mut Context,
     ) -> Option<()> {
-        if direction.is_none() {
-            row.at_most(3, cx.d);
-        }
         let magnitude = row.real(2, "the magnitude", cx.d)?;
         let mesh = &source.targets.mesh_index.mesh;
         if let Some(&bad) = elements.iter().find(|&&e| side >= side_count(mesh, e)) {
@@ -320,26 +346,23 @@ impl LoadHistories {
             return None;
         }
         for &element in elements {
-            self.add_to_face((None, Face { element, side }), direction, magnitude, source);
+            let face = Face { element, side };
+            self.add_to_face((None, face), (load, magnitude), row, source, cx)?;
         }
         Some(())
     }
 
-    /// `surface, P, p` or `surface, TRVEC, t, dx, dy[, dz]`
+    /// `surface, P, p`, or `surface, TRVEC or TRSHR, t, dx, dy[, dz]`
     fn surface_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         let field = row.required(0, "a surface", cx.d);
         let surface = field.and_then(|field| source.surfaces.find(field, cx));
         let kind = row.required(1, "the kind of load", cx.d)?;
         let magnitude = row.real(2, "the magnitude", cx.d)?;
-        let direction = match kind.name_key().as_str() {
-            "P" => {
-                row.at_most(3, cx.d);
-                warn_that_pressure_follows(source.card, cx);
-                None
-            }
-            "TRVEC" => Some(dead_direction(kind, row, source.card, cx)?),
-            _ => return unknown_kind(kind, "P and TRVEC", cx),
-        };
+        let key = kind.name_key();
+        if !["P", "TRVEC", "TRSHR"].contains(&key.as_str()) {
+            return unknown_kind(kind, "P, TRVEC and TRSHR", cx);
+        }
+        let load = face_load(&key, row, source.card, cx)?;
         let (index, surface, span) = surface?;
         let SurfaceKind::Faces(faces) = &surface.kind else {
             let message = format!("surface {} has no element faces", surface.name);
@@ -347,7 +370,7 @@ impl LoadHistories {
             return None;
         };
         for &face in faces {
-            self.add_to_face((Some(index), face), direction, magnitude, source);
+            self.add_to_face((Some(index), face), (load, magnitude), row, source, cx)?;
         }
         Some(())
     }
@@ -355,21 +378,40 @@ impl LoadHistories {
     fn add_to_face(
         &mut self,
         key: OnFace,
-        direction: Option<[f64; 2]>,
-        magnitude: f64,
+        (load, magnitude): (FaceLoad, f64),
+        row: Line,
         source: Source,
-    ) {
+        cx: &mut Context,
+    ) -> Option<()> {
         let (amplitude, context, face) = (source.amplitude, source.context, key.1);
-        match direction {
-            None => {
-                let at = Pressure { face };
-                self.pressures.add(key, at, magnitude, amplitude, context);
-            }
-            Some(direction) => {
+        let mut follow = |follower: Follower, size: f64| {
+            let is_shear = follower == Follower::Along;
+            let at = Pressure { face, is_shear };
+            (self.pressures).add((key, follower), at, size, amplitude, context);
+        };
+        match load {
+            FaceLoad::Pressure => follow(Follower::Pressure, magnitude),
+            FaceLoad::Dead(direction) => {
                 let at = Traction { face, direction };
                 self.tractions.add(key, at, magnitude, amplitude, context);
             }
+            FaceLoad::Turning(direction) => {
+                let along = straight(face, row, source.targets, cx)?;
+                follow(Follower::Along, magnitude * dot(direction, along));
+                follow(Follower::Across, magnitude * cross(along, direction));
+            }
+            FaceLoad::Shear(direction) => {
+                let part = dot(direction, chord(face, source.targets));
+                if part.abs() < ACROSS {
+                    let message = "the direction of this shear points across the face";
+                    cx.error(Code::BadDirection, row.span(), message)
+                        .help("a shear acts along the face, to the side of its direction");
+                    return None;
+                }
+                follow(Follower::Along, magnitude * part.signum());
+            }
         }
+        Some(())
     }
 
     /// Writes the loads of the current step; those of the last one are not carried further.
@@ -404,16 +446,49 @@ fn unknown_kind(kind: Text, known: &str, cx: &mut Context) -> Option<()> {
     None
 }
 
-/// Side, from 0, of P1 to P4 and of TRVEC1 to TRVEC4, and whether it is a traction.
-fn loaded_side(kind: &str) -> Option<(usize, bool)> {
-    let (number, is_traction) = match kind.strip_prefix("TRVEC") {
-        Some(number) => (number, true),
-        None => (kind.strip_prefix('P')?, false),
-    };
+/// The kind of a load on a face, and its side from 0: of P1 to P4, TRVEC1 to TRVEC4 and TRSHR1 to TRSHR4.
+fn loaded_side(kind: &str) -> Option<(&'static str, usize)> {
+    let kinds = ["TRVEC", "TRSHR", "P"].into_iter();
+    let (name, number) = kinds
+        .filter_map(|name| Some((name, kind.strip_prefix(name)?)))
+        .next()?;
     let side = ["1", "2", "3", "4"]
         .iter()
         .position(|side| *side == number)?;
-    Some((side, is_traction))
+    Some((name, side))
+}
+
+/// Cosine of the angle between a face and a shear's direction below which the direction says no side.
+const ACROSS: f64 = 1e-3;
+
+/// Largest distance of a node between the ends of a side from its chord, as a part of that, for the side to be straight.
+const STRAIGHT: f64 = 1e-9;
+
+/// The unit vector along a face in the mesh, from its first corner to its last.
+fn chord(face: Face, targets: Targets) -> [f64; 2] {
+    let mesh = &targets.mesh_index.mesh;
+    let [a, b] = face.ends(mesh).map(|node| mesh.coordinates[node]);
+    let length = distance(a, b);
+    difference(a, b).map(|x| x / length)
+}
+
+/// The unit vector along a straight face; reports a curved one, which has many.
+fn straight(face: Face, row: Line, targets: Targets, cx: &mut Context) -> Option<[f64; 2]> {
+    let (mesh, along) = (&targets.mesh_index.mesh, chord(face, targets));
+    let [first, last] = face.ends(mesh).map(|node| mesh.coordinates[node]);
+    let nodes = face.nodes(mesh).into_iter();
+    let off = nodes.map(|node| cross(along, difference(first, mesh.coordinates[node])).abs());
+    if off.fold(0.0, f64::max) > STRAIGHT * distance(first, last) {
+        let name = targets.mesh_index.element_name(face.element);
+        let message = format!(
+            "face S{} of element {name} is curved: no direction turns with it",
+            face.side + 1
+        );
+        cx.error(Code::BadDirection, row.span(), message)
+            .help("write FOLLOWER=NO for a direction that stays, P and TRSHR for parts across and along the face");
+        return None;
+    }
+    Some(along)
 }
 
 /// The point masses among the elements of a row.
@@ -496,24 +571,41 @@ fn warn_unless_unit(row: Line, cx: &mut Context) {
     }
 }
 
-fn warn_that_pressure_follows(card: &Card, cx: &mut Context) {
+fn warn_that_it_follows(what: &str, card: &Card, cx: &mut Context) {
     if card.choice("FOLLOWER") == Some("NO") {
-        let message = "FOLLOWER=NO has no effect on P: a pressure always follows its face";
+        let message = format!("FOLLOWER=NO has no effect on {what} always follows its face");
         let span = card.span_of("FOLLOWER");
         cx.d.warning_once(Code::IgnoredParameter, span, message);
     }
 }
 
-/// Direction of a TRVEC, which must not follow the face.
-fn dead_direction(kind: Text, row: Line, card: &Card, cx: &mut Context) -> Option<[f64; 2]> {
+/// What a row of P, TRVEC or TRSHR says of the load on a face.
+fn face_load(name: &str, row: Line, card: &Card, cx: &mut Context) -> Option<FaceLoad> {
+    if name == "P" {
+        row.at_most(3, cx.d);
+        warn_that_it_follows("P: a pressure", card, cx);
+        return Some(FaceLoad::Pressure);
+    }
     row.at_most(6, cx.d);
-    if card.choice("FOLLOWER") != Some("NO") {
-        let span: Span = kind.span;
-        let message = "TRVEC needs FOLLOWER=NO: tractions that turn with the face cannot be used";
-        cx.error(Code::UnsupportedParameter, span, message);
+    let direction = unit_direction(row, cx)?;
+    if card.choice("CONSTANT RESULTANT") == Some("YES") && card.choice("FOLLOWER") != Some("NO") {
+        let span = card.span_of("CONSTANT RESULTANT");
+        cx.error(
+            Code::UnsupportedParameter,
+            span,
+            "CONSTANT RESULTANT=YES is for TRVEC with FOLLOWER=NO",
+        )
+        .help("a traction that follows its face acts on its area as it is then");
         return None;
     }
-    unit_direction(row, cx)
+    Some(match (name, card.choice("FOLLOWER")) {
+        ("TRSHR", _) => {
+            warn_that_it_follows("TRSHR: a shear", card, cx);
+            FaceLoad::Shear(direction)
+        }
+        (_, Some("NO")) => FaceLoad::Dead(direction),
+        _ => FaceLoad::Turning(direction),
+    })
 }
 
 /// How a load without amplitude reaches its magnitude, and the step it is given in.

@@ -263,11 +263,24 @@ pub struct CentrifugalForce {
     pub axis: [f64; 2],
 }
 
-/// Follower pressure (magnitude: force/length^2, positive into the body) on the current face.
+/// Pressure or shear (magnitude: force/length^2) on the current face, which it follows: a pressure is positive into the body, a
+/// shear acts along the face, from its first corner to its last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pressure {
     /// Loaded face.
     pub face: Face,
+    /// Whether it is a shear.
+    pub is_shear: bool,
+}
+
+impl Pressure {
+    /// The force of a unit magnitude where `int N^T n dl`, n being the outward normal, is `thrust`.
+    pub fn force(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        match self.is_shear {
+            true => [-y, x],
+            false => [-x, -y],
+        }
+    }
 }
 
 /// Dead traction (magnitude: force per reference area) along a fixed direction.

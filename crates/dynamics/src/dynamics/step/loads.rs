@@ -334,7 +334,8 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// Pressure p on the current face: -p int N^T n t dl, n the outward normal, t the thickness or 2 pi r.
+    /// Pressure p on the current face: -p int N^T n t dl, n the outward normal, t the thickness or 2 pi r; shear p along the
+    /// face: p int N^T e t dl, e the unit vector along it.
     fn add_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64], r: &mut [f64]) {
         let side = load.at.face.of(&self.model.mesh);
         let (x, a) = (&self.model.mesh.coordinates, side.nodes()[0]);
@@ -342,8 +343,9 @@ impl<'m> Loads<'m> {
         let thickness = self.elements.thickness(load.at.face.element);
         let across = (thickness, x[a][0] + u[2 * a]);
         for (node, thrust) in side.thrusts(from_first, across) {
-            r[2 * node] -= p * thrust[0];
-            r[2 * node + 1] -= p * thrust[1];
+            let [x, y] = load.at.force(thrust);
+            r[2 * node] += p * x;
+            r[2 * node + 1] += p * y;
         }
     }
 
@@ -375,7 +377,8 @@ impl<'m> Loads<'m> {
             };
             let first = at(dofs[0] / 2);
             let thrusts = side.thrusts(|node| difference(first, at(node)), (thickness, first[0]));
-            DVector::from_iterator(dofs.len(), thrusts.flat_map(|(_, n)| n.map(|n| -p * n)))
+            let forces = thrusts.flat_map(|(_, thrust)| load.at.force(thrust).map(|f| p * f));
+            DVector::from_iterator(dofs.len(), forces)
         };
         let column = |&dof: &usize| (forces(dof, step) - forces(dof, -step)) / (2.0 * step);
         let columns: Vec<DVector<f64>> = dofs.iter().map(column).collect();
