@@ -201,6 +201,56 @@ fn names_are_looked_up_from_the_level_of_the_card_outwards() {
     );
 }
 
+/// Names with blanks, dots and signs, in quotation marks or not, whole or in parts, in any case.
+#[test]
+fn names_are_found_however_they_are_quoted() {
+    let quoted = deck_with("", 'M')
+        .replace("NAME=P\n", "NAME=\"Plate (left)\"\n")
+        .replace(
+            "NAME=I, PART=P",
+            "NAME=\"Plate (left) 1\", PART=\"Plate (left)\"",
+        )
+        .replacen(
+            "*END PART",
+            "*NSET, NSET=\"Top & 1.5\"\n3, 4\n*Nset, nset=Low side\n1, 2\n*END PART",
+            1,
+        );
+    let plain = quoted
+        .replace("\"Plate (left)", "Plate (left)")
+        .replace("1\", PART", "1, PART");
+    let plain = plain.replace("Plate (left)\"", "Plate (left)");
+    let set = |text: &str, name: &str| {
+        let own = format!("*NSET, NSET=OWN\n{name}\n*END ASSEMBLY");
+        let (model, _, messages) = try_read(&text.replacen("*END ASSEMBLY", &own, 1));
+        let model = model.unwrap_or_else(|| panic!("{name}\n{messages}"));
+        let own = model.sets.nodes.iter().find(|set| set.name == "OWN");
+        own.expect("the set").members.clone()
+    };
+    for name in [
+        "\"Plate (left) 1\".\"Top & 1.5\"",
+        "\"Plate (left) 1.Top & 1.5\"",
+    ] {
+        assert_eq!(set(&quoted, name), [2, 3]);
+    }
+    for name in [
+        "\"Plate (left) 1\".LOW SIDE",
+        "\"Plate (left) 1\".lowside",
+        "\"Plate (left) 1\".\"LOWSIDE\"",
+        "\"Plate (left) 1.Low side\"",
+    ] {
+        assert_eq!(set(&quoted, name), [0, 1]);
+    }
+    assert_eq!(set(&quoted, "\"Plate (left) 1\".3"), [2]);
+    for name in [
+        "Plate (left) 1.Low Side",
+        "plate(left)1.lowside",
+        "Plate (left) 1.\"LOWSIDE\"",
+    ] {
+        assert_eq!(set(&plain, name), [0, 1]);
+    }
+    assert_eq!(set(&plain, "PLATE (LEFT) 1.\"Top & 1.5\""), [2, 3]);
+}
+
 /// The words of `stickslip explain` follow from the same table.
 #[test]
 fn places_are_explained() {

@@ -136,6 +136,10 @@ impl<'a> Text<'a> {
 
     /// Its value as a name; reports invalid names.
     pub fn name(&self, d: &mut Diagnostics) -> Option<Name> {
+        if let Some((prefix, last)) = self.parts() {
+            let (prefix, last) = (prefix.name(d)?, last.name(d)?);
+            return Some(prefix.joined(&last));
+        }
         let fault = match self.quoted_content() {
             Some(content) if fits(content) => return Some(Name::quoted(content)),
             Some(_) => Some("a name has 1 to 80 characters".to_string()),
@@ -171,12 +175,32 @@ impl<'a> Text<'a> {
 
     /// Key by which its value is compared as a name, valid or not.
     pub fn name_key(&self) -> String {
+        if let Some((prefix, last)) = self.parts() {
+            return format!("{}.{}", prefix.name_key(), last.name_key());
+        }
         let quoted = self.quoted_content();
         quoted.map_or_else(|| fold(self.text), str::to_string)
     }
 
+    /// The names before and behind a dot, if one of both is between quotation marks: `"Part 1".Top`.
+    fn parts(&self) -> Option<(Text<'a>, Text<'a>)> {
+        let mut is_quoted = false;
+        let is_outside = |(at, c): (usize, char)| {
+            is_quoted ^= c == '"';
+            (c == '.' && !is_quoted).then_some(at)
+        };
+        let has_quotes = self.text.contains('"');
+        let dot = has_quotes.then(|| self.text.char_indices().find_map(is_outside))??;
+        let part = |text: &'a str| Text {
+            text,
+            span: self.span,
+        };
+        Some((part(&self.text[..dot]), part(&self.text[dot + 1..])))
+    }
+
     fn quoted_content(&self) -> Option<&'a str> {
-        self.text.strip_prefix('"')?.strip_suffix('"')
+        let content = self.text.strip_prefix('"')?.strip_suffix('"')?;
+        (!content.contains('"')).then_some(content)
     }
 
     fn fault_of_plain_name(&self) -> Option<String> {
@@ -213,6 +237,14 @@ impl Name {
         Name {
             typed: typed.to_string(),
             key: fold(typed),
+        }
+    }
+
+    /// The name of something in an instance, as it is called outside.
+    pub fn joined(&self, own: &Name) -> Name {
+        Name {
+            typed: format!("{}.{}", self.typed, own.typed),
+            key: format!("{}.{}", self.key, own.key),
         }
     }
 

@@ -78,10 +78,7 @@ impl<'a> Context<'a> {
     /// A name of a part as it is called outside: `Instance.name`.
     pub fn of_instance(&self, name: Name, span: Span) -> Name {
         match self.deck.instance_of(span) {
-            Some(instance) => Name {
-                typed: format!("{}.{}", instance.name.typed, name.typed),
-                key: format!("{}.{}", instance.name.key, name.key),
-            },
+            Some(instance) => instance.name.joined(&name),
             None => name,
         }
     }
@@ -95,9 +92,19 @@ impl<'a> Context<'a> {
     }
 
     /// Keys of what a name may mean where it stands, the nearest first: what its instance defines, and what the assembly and
-    /// the model do.
-    pub fn keys_of(&self, text: Text) -> [String; 2] {
-        [self.key_of(text), text.name_key()]
+    /// the model do. Where the name of an instance and what it holds stand in the same quotation marks, neither need be
+    /// defined between such marks.
+    pub fn keys_of(&self, text: Text) -> [String; 3] {
+        let key = text.name_key();
+        let of_instance = self.deck.instances.iter().find_map(|instance| {
+            let (name, own) = key.split_at_checked(instance.name.key.len())?;
+            let own = own.strip_prefix('.')?;
+            let is_meant = Text { text: name, ..text }.name_key() == instance.name.key
+                || name == instance.name.typed;
+            is_meant.then(|| format!("{}.{}", instance.name.key, Name::plain(own).key))
+        });
+        let last = of_instance.unwrap_or_else(|| key.clone());
+        [self.key_of(text), key, last]
     }
 
     /// A number with the name of an instance before it, such as `Block-1.12`, without that name and

@@ -115,7 +115,7 @@ impl Names {
     fn known(&self, text: Text, cx: &Context) -> Option<Option<usize>> {
         let keys = match self.of_parts {
             true => cx.keys_of(text),
-            false => [text.name_key(), String::new()],
+            false => [text.name_key(), String::new(), String::new()],
         };
         keys.iter().find_map(|key| self.index.get(key)).copied()
     }
