@@ -2,11 +2,12 @@
 //! faults that other codes accept.
 
 use stickslip::deck::{self, Card, Deck};
-use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources, Strictness};
+use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources, Span, Strictness};
 use stickslip::model::{Curve, Model};
 use stickslip::reader;
 
 const SQUARE: &str = include_str!("../decks/square.inp");
+const SHARED: &str = include_str!("../decks/shared.inp");
 
 /// Cards and messages of a text.
 fn parse(text: &str) -> (Deck, Diagnostics) {
@@ -368,6 +369,53 @@ fn empty_and_zero_times_have_defaults() {
         increments("*DYNAMIC, APPLICATION=QUASI-STATIC", ", 2.\n")[0],
         0.2
     );
+}
+
+/// Soft laws of contact and its damping are left out with a warning; the model is that of hard contact.
+#[test]
+fn soft_contact_is_taken_as_hard() {
+    let hard = SHARED.replace(
+        "PRESSURE-OVERCLOSURE=LINEAR\n2.1E7, 0.1, 1.E-3",
+        "PRESSURE-OVERCLOSURE=HARD",
+    );
+    // without the places of the contacts
+    let model = |text: &str| {
+        let (model, d) = build(text);
+        let mut model = model.expect("no errors");
+        model
+            .contacts
+            .iter_mut()
+            .for_each(|contact| contact.span = Span::default());
+        (model, codes(&d).len())
+    };
+    let (hard_model, before) = model(&hard);
+    for law in [
+        "EXPONENTIAL\n1.E-4, 50.",
+        "TABULAR\n0., 0.\n10., 1.E-4\n50., 2.E-4",
+        "SCALE FACTOR\n0.1, 2.",
+        "LINEAR\n1.E5",
+    ] {
+        let (soft, count) = model(&hard.replace("OVERCLOSURE=HARD", &format!("OVERCLOSURE={law}")));
+        assert_eq!(count, before + 1, "{law}");
+        assert_eq!(soft, hard_model, "{law}");
+    }
+    let damping = "*CONTACT DAMPING, DEFINITION=DAMPING COEFFICIENT\n1., 0.1\n*FRICTION";
+    let damped = model(&hard.replacen("*FRICTION", damping, 1));
+    assert_eq!(damped, (hard_model, before + 1));
+}
+
+/// Words of Abaqus from 2022 on.
+#[test]
+fn secondary_and_main_are_slave_and_master() {
+    let clearance = |words: &str| {
+        let card = format!("*CLEARANCE, {words}, VALUE=0.05\n*BOUNDARY");
+        build(&SHARED.replacen("*BOUNDARY", &card, 1)).0
+    };
+    let old = clearance("SLAVE=SBOT, MASTER=STOP");
+    assert!(old.is_some());
+    assert_eq!(clearance("SECONDARY=SBOT, MAIN=STOP"), old);
+    assert_eq!(clearance("main=stop, Slave=sbot"), old);
+    assert!(clearance("SLAVE=SBOT, SECONDARY=SBOT, MAIN=STOP").is_none());
 }
 
 /// Requests of output that are not known are left out: the model is the same.

@@ -134,12 +134,12 @@ fn advice(sentence: &str) -> String {
 pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Option<Param> {
     let span = piece.text.span;
     let (typed, value) = piece.text.assignment();
-    let names = card.keyword.parameters.iter().map(|p| p.name);
-    let found = find(typed, names);
+    let found = find(typed, card.keyword.parameter_names());
     let unknown = || unknown_parameter(card, typed, piece, found);
     let is_output = card.keyword.is_output;
     let name = known_word(found, unknown, "", (span, is_output), d)?;
     let known = card.keyword.parameter(name)?;
+    let name = known.name;
     if card.params.iter().any(|param| param.name == name) {
         d.error(
             Code::RepeatedParameter,
@@ -195,7 +195,7 @@ fn unknown_parameter(card: &Card, typed: &str, piece: &Piece, found: Match) -> D
         Match::Unknown(meant) => meant,
         _ => None,
     };
-    let names: Vec<&str> = card.keyword.parameters.iter().map(|p| p.name).collect();
+    let names: Vec<&str> = card.keyword.parameter_names().collect();
     let mut help = match names.is_empty() {
         true => format!("{title} has no parameters"),
         false => format!("the parameters of {title} are {}", names.join(", ")),

@@ -285,12 +285,14 @@ fn friction(block: &CardBlock, cx: &mut Context) -> Option<Friction> {
     }
 }
 
-/// Warns that the data of a pressure-overclosure law have no effect, as contact is exact; LINEAR
-/// has a warning of its own.
+/// Warns that the data of a pressure-overclosure law have no effect, as contact is exact; soft laws have a warning of their
+/// own.
 fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
     let Some(row) = card.rows.first() else { return };
-    if card.choice("PRESSURE-OVERCLOSURE") == Some("LINEAR") {
-        return row.at_most(3, cx.d);
+    match card.choice("PRESSURE-OVERCLOSURE") {
+        Some("LINEAR") => return row.at_most(3, cx.d),
+        Some("EXPONENTIAL" | "TABULAR" | "SCALE FACTOR") => return card.rows.leave_out(),
+        _ => {}
     }
     let message = "this data line has no effect";
     cx.d.warning_once(Code::IgnoredParameter, row.span(), message)

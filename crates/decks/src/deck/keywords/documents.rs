@@ -282,9 +282,12 @@ pub(super) fn status(status: Status) -> &'static str {
 
 /// A parameter as it is written.
 pub(super) fn written(parameter: &Parameter) -> String {
-    let name = parameter.name;
+    let name = match parameter.other {
+        "" => parameter.name.to_string(),
+        other => format!("{} or {other}", parameter.name),
+    };
     match parameter.takes {
-        Takes::Nothing => name.to_string(),
+        Takes::Nothing => name,
         Takes::Value | Takes::Choice(_) => format!("{name}="),
         Takes::Optional | Takes::OptionalChoice(_) => format!("{name}[=]"),
     }

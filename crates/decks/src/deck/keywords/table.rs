@@ -8,6 +8,7 @@
 //!   = STEP TIME: since the start of the step  a word that its value may be
 //! - SMOOTH= [length] warned: they stay sharp  what its value measures, and that it is not read
 //! - INPUT as *NODE                            the parameter of a keyword before
+//! - SLAVE or SECONDARY=: a surface              a parameter with two names
 //! A function of time.                         what the keyword says
 //! > *AMPLITUDE, NAME=PUSH                     lines of a deck that use it
 //!
@@ -196,8 +197,10 @@ fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter]
         } else {
             (head, Takes::Nothing)
         };
+        let (name, other) = name.split_once(" or ").unwrap_or((name, ""));
         all.push(Parameter {
             name,
+            other,
             takes,
             measures,
             status,

@@ -136,10 +136,17 @@ pub struct Keyword {
 }
 
 impl Keyword {
+    /// The words for its parameters.
+    pub fn parameter_names(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
+        let both = self.parameters.iter().flat_map(|p| [p.name, p.other]);
+        both.filter(|name| !name.is_empty())
+    }
+
     /// The parameter with this name, blanks and case aside.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         let folded = fold(name);
-        self.parameters.iter().find(|p| fold(p.name) == folded)
+        let is_meant = |p: &&Parameter| [p.name, p.other].map(fold).contains(&folded);
+        self.parameters.iter().find(is_meant)
     }
 }
 
@@ -194,6 +201,8 @@ impl Value {
 pub struct Parameter {
     /// The word before the equals sign, with blanks.
     pub name: &'static str,
+    /// Another word for it; empty if there is none.
+    pub other: &'static str,
     /// Its values.
     pub takes: Takes,
     /// What a value measures, written as for fields; empty where it measures nothing.
