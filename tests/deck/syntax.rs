@@ -404,6 +404,38 @@ fn soft_contact_is_taken_as_hard() {
     assert_eq!(damped, (hard_model, before + 1));
 }
 
+/// Quadrilaterals with two corners at one node are the triangles of these nodes, with the sides of the quadrilaterals.
+#[test]
+fn collapsed_quadrilaterals_are_triangles() {
+    let element = "*ELEMENT, TYPE=CPS4, ELSET=BODY\n7, 1, 2, 3, 4\n";
+    let load = "*END STEP";
+    assert!(SQUARE.contains(element) && SQUARE.contains("BODY, S3"));
+    let of = |kind: &str, rows: &str, top: &str, left: &str| {
+        let elements = format!("*ELEMENT, TYPE={kind}, ELSET=BODY\n{rows}");
+        let text = SQUARE
+            .replacen(element, &elements, 1)
+            .replacen("BODY, S3", top, 1)
+            .replacen(load, &format!("*DLOAD\n8, {left}, 2.\n{load}"), 1);
+        let (model, d) = build(&text);
+        (model, codes(&d))
+    };
+    let (triangles, _) = of("CPS3", "7, 3, 1, 2\n8, 4, 1, 3\n", "8, S3", "P1");
+    assert!(triangles.is_some());
+    for kind in ["CPS4", "CPS4R", "CPS4I"] {
+        let (collapsed, codes) = of(kind, "7, 1, 2, 3, 3\n8, 1, 3, 4, 4\n", "8, S2", "P4");
+        assert_eq!(collapsed, triangles, "{kind}");
+        assert!(codes.contains(&Code::BadShape), "{codes:?}");
+    }
+    // the side of no length, corners across each other, and triangles that are none
+    for (kind, rows, top) in [
+        ("CPS4", "7, 1, 2, 3, 3\n8, 1, 3, 4, 4\n", "8, S3"),
+        ("CPS4", "7, 1, 2, 3, 3\n8, 1, 3, 1, 4\n", "8, S2"),
+        ("CPE4H", "7, 1, 2, 3, 3\n8, 1, 3, 4, 4\n", "8, S2"),
+    ] {
+        assert!(of(kind, rows, top, "P4").0.is_none(), "{kind} {rows}");
+    }
+}
+
 /// Words of Abaqus from 2022 on.
 #[test]
 fn secondary_and_main_are_slave_and_master() {

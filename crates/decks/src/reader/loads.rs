@@ -4,7 +4,7 @@ use super::actions::{Action, Actions};
 use super::boundary::{Targets, row_dofs};
 use super::context::Context;
 use super::mesh_index::PointKind;
-use super::surfaces::{Surfaces, side_count};
+use super::surfaces::Surfaces;
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::Code;
 use crate::model::{
@@ -338,14 +338,18 @@ impl LoadHistories {
         cx: &mut Context,
     ) -> Option<()> {
         let magnitude = row.real(2, "the magnitude", cx.d)?;
-        let mesh = &source.targets.mesh_index.mesh;
-        if let Some(&bad) = elements.iter().find(|&&e| side >= side_count(mesh, e)) {
+        let mesh_index = source.targets.mesh_index;
+        let has_none = |&&element: &&usize| mesh_index.side(element, side).is_none();
+        if let Some(&bad) = elements.iter().find(has_none) {
             let label = source.targets.mesh_index.element_name(bad);
             let message = format!("element {label} has no face {}", side + 1);
             cx.error(Code::NoSuchFace, row.span(), message);
             return None;
         }
         for &element in elements {
+            let Some(side) = mesh_index.side(element, side) else {
+                continue;
+            };
             let face = Face { element, side };
             self.add_to_face((None, face), (load, magnitude), row, source, cx)?;
         }

@@ -2,13 +2,14 @@
 //! and the places of the elements. Nodes and elements of instances get numbers of the program's own, as
 //! their numbers in the part appear in every instance.
 
+use super::collapsed::side_of_triangle;
 use super::context::Context;
 use super::label::{LabelList, instance_of, number_of};
 use super::names::{Labelled, Labels};
 use crate::deck::{Card, Name};
 use crate::diagnostics::{Code, Span};
 use crate::model::{ConnectorLaw, Face, Instance, Mesh, element_name, node_name};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
@@ -29,6 +30,8 @@ pub(crate) struct MeshIndex {
     pub connectors: Vec<ConnectorElement>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
+    /// Sides of no length of quadrilaterals that are triangles (indices).
+    pub collapsed: HashMap<usize, usize>,
     /// Node sets named on `*NODE`.
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
@@ -142,6 +145,7 @@ impl Default for MeshIndex {
             points: Vec::new(),
             connectors: Vec::new(),
             places: Vec::new(),
+            collapsed: HashMap::new(),
             node_groups: Vec::new(),
             element_groups: Vec::new(),
             cut_faces: HashSet::new(),
@@ -158,6 +162,15 @@ impl MeshIndex {
     /// What the deck calls an element.
     pub fn element_name(&self, element: usize) -> String {
         element_name(element, &self.mesh, &self.instances)
+    }
+
+    /// The side of an element that the deck gives a number from 0; none if the element has no such side.
+    pub fn side(&self, element: usize, number: usize) -> Option<usize> {
+        let count = self.mesh.elements.get(element)?.side_count();
+        match self.collapsed.get(&element) {
+            Some(&short) => side_of_triangle(number, short),
+            None => (number < count).then_some(number),
+        }
     }
 
     /// Adds nodes without element at these points; their numbers follow the largest one.

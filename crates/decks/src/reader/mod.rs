@@ -8,6 +8,7 @@ mod actions;
 mod amplitudes;
 mod boundary;
 mod checks;
+mod collapsed;
 mod connectors;
 mod contact;
 mod contact_changes;

@@ -3,6 +3,7 @@
 //! A line element names the side of a plane element with the same nodes, as the boundary curves do that
 //! a mesh generator writes; it has no stiffness and no section.
 
+use super::collapsed::Collapsed;
 use super::context::Context;
 use super::label::{LabelList, LabelMap};
 use super::mesh_index;
@@ -212,16 +213,63 @@ impl MeshReading {
             let message = format!("element {name} has {corners} nodes, this is one more");
             cx.error(Code::ExtraField, extra.span, message);
         }
-        let nodes = self.element_nodes(label, rest.get(..corners)?, cx)?;
-        if let Some(line) = self.line_of(label) {
-            self.other_lines.insert(label, span.line);
-            let name = cx.named(label);
-            let message = format!("element {name} is defined on line {line} too");
-            cx.error(Code::RepeatedElement, first.span, message);
+        let fields = rest.get(..corners)?;
+        let collapsed = self.collapsed(kind, fields, cx);
+        if let Some((triangle, of_triangle)) = collapsed {
+            let nodes = self.element_nodes(label, &of_triangle, cx)?;
+            let message = format!(
+                "quadrilaterals with two corners at one node are triangles: {} is read as {}",
+                kind.name(),
+                triangle.element_type.name()
+            );
+            cx.d.note_once(Code::BadShape, span, message)
+                .help("sides keep the numbers that they have in the quadrilateral");
+            if self.is_new(label, (first, span), cx) {
+                let index = self.mesh_index.mesh.elements.len();
+                self.mesh_index.collapsed.insert(index, triangle.side);
+                self.add_element(
+                    label,
+                    nodes,
+                    ElementKind::Plane(triangle.element_type),
+                    span,
+                );
+            }
             return Some(label);
         }
-        self.add_element(label, nodes, kind, span);
+        let nodes = self.element_nodes(label, fields, cx)?;
+        if self.is_new(label, (first, span), cx) {
+            self.add_element(label, nodes, kind, span);
+        }
         Some(label)
+    }
+
+    /// Whether no element has this label yet; reports one that has.
+    fn is_new(&mut self, label: u64, (first, span): (&Text, Span), cx: &mut Context) -> bool {
+        let Some(line) = self.line_of(label) else {
+            return true;
+        };
+        self.other_lines.insert(label, span.line);
+        let name = cx.named(label);
+        let message = format!("element {name} is defined on line {line} too");
+        cx.error(Code::RepeatedElement, first.span, message);
+        false
+    }
+
+    /// The triangle that a quadrilateral is, with the fields of its nodes.
+    fn collapsed<'t>(
+        &self,
+        kind: ElementKind,
+        fields: &[Text<'t>],
+        cx: &Context,
+    ) -> Option<(Collapsed, SmallVec<[Text<'t>; 6]>)> {
+        let ElementKind::Plane(element_type) = kind else {
+            return None;
+        };
+        let labels: Option<SmallVec<[u64; 8]>> =
+            fields.iter().map(|field| cx.as_label(*field)).collect();
+        let triangle = Collapsed::new(element_type, &labels?)?;
+        let nodes = triangle.nodes.iter().map(|&k| fields[k]).collect();
+        Some((triangle, nodes))
     }
 
     /// The last line that defines an element.
@@ -447,6 +495,14 @@ pub(super) enum ElementKind {
 }
 
 impl ElementKind {
+    /// Name of plane elements.
+    fn name(self) -> &'static str {
+        match self {
+            ElementKind::Plane(element_type) => element_type.name(),
+            ElementKind::Line(_) | ElementKind::PointElement(_) | ElementKind::Connector(_) => "",
+        }
+    }
+
     /// Number of nodes.
     pub fn nodes(self) -> usize {
         match self {

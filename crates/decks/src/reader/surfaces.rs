@@ -189,9 +189,9 @@ fn named_faces(
     };
     let mut faces = Vec::new();
     for &element in elements {
-        match side < side_count(&mesh_index.mesh, element) {
-            true => faces.push(Face { element, side }),
-            false => return no_such_face(element, face, mesh_index, cx),
+        match mesh_index.side(element, side) {
+            Some(side) => faces.push(Face { element, side }),
+            None => return no_such_face(element, face, mesh_index, cx),
         }
     }
     faces
@@ -200,10 +200,13 @@ fn named_faces(
 fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<Face> {
     let label = mesh_index.element_name(element);
     let sides = side_count(&mesh_index.mesh, element);
-    let message = format!(
-        "element {label} has faces S1 to S{sides}, not {}",
-        face.text
-    );
+    let message = match mesh_index.collapsed.get(&element) {
+        Some(short) => format!("face S{} of element {label} has no length", short + 1),
+        None => format!(
+            "element {label} has faces S1 to S{sides}, not {}",
+            face.text
+        ),
+    };
     cx.error(Code::NoSuchFace, face.span, message);
     Vec::new()
 }

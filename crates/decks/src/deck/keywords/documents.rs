@@ -351,9 +351,12 @@ fn entry(keyword: &Keyword) -> Option<String> {
             taken.map(|value| value.name).collect()
         }
     };
-    let parameters: Map<String, Json> = parameters
-        .map(|parameter| (parameter.name.to_string(), measure(parameter)))
-        .collect();
+    let names = parameters.flat_map(|parameter| {
+        let both = [parameter.name, parameter.other].into_iter();
+        let both = both.filter(|name| !name.is_empty());
+        both.map(move |name| (name.to_string(), measure(parameter)))
+    });
+    let parameters: Map<String, Json> = names.collect();
     let content = match keyword.data {
         Data::Skipped => return None,
         Data::Words => json!({"anything": true}),
