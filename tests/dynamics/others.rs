@@ -245,3 +245,67 @@ fn a_shear_acts_as_the_forces_of_its_nodes() {
         "{messages}"
     );
 }
+
+/// A rigid wall of lines is the drawn one, whatever the order and direction of the lines.
+#[test]
+fn rigid_lines_are_a_profile() {
+    let deck = include_str!("../decks/others/discrete_rigid_R2D2.inp");
+    let elements = "*ELEMENT,TYPE=R2D2,ELSET=ER\n11,12,11\n*RIGID BODY,ELSET=ER,REF NODE=13\n";
+    let drawn = deck.replace(elements, "").replace(
+        "*SURFACE,NAME=WALL\nER,SPOS\n",
+        "*SURFACE,NAME=WALL,TYPE=SEGMENTS\nSTART, 2., 1.\nLINE, -1., 1.\n\
+         *RIGID BODY,ANALYTICAL SURFACE=WALL,REF NODE=13\n",
+    );
+    assert!(drawn.contains("START") && drawn.contains("ANALYTICAL"));
+    let result = |text: &str| {
+        let (model, reports) = finished(text);
+        assert!(model.surfaces.iter().any(|surface| surface.name == "WALL"));
+        let last = reports.last().expect("reports");
+        (last.state.u[..8].to_vec(), last.contacts[0].force)
+    };
+    let wanted = result(&drawn);
+    // nu = 0: the stress of a height of 0.9
+    let force = 1000.0 * (0.9_f64.powi(3) - 0.9) / 2.0;
+    assert!((wanted.1[1].abs() + force).abs() < 1e-9 * force.abs());
+    let other = |elements: &str, side: &str| {
+        let rows = format!("*NODE\n14, 0.6, 1.\n*ELEMENT,TYPE=RAX2,ELSET=ER\n{elements}*RIGID");
+        deck.replace("*ELEMENT,TYPE=R2D2,ELSET=ER\n11,12,11\n*RIGID", &rows)
+            .replace("ER,SPOS", side)
+    };
+    for text in [
+        deck.to_owned(),
+        other("11, 11, 12\n", "ER, SNEG"),
+        other("11, 14, 11\n12, 12, 14\n", "ER, SPOS"),
+        other("11, 14, 11\n12, 14, 12\n", "11, SPOS\n12, SNEG"),
+    ] {
+        let (u, f) = result(&text);
+        let near = u.iter().zip(&wanted.0).all(|(a, b)| (a - b).abs() < 1e-12);
+        assert!(near && (f[1] - wanted.1[1]).abs() < 1e-10, "{text}");
+    }
+    for (text, said) in [
+        (
+            other("11, 14, 11\n12, 14, 12\n", "ER, SPOS"),
+            "meet at node 14",
+        ),
+        (
+            other("11, 11, 12\n", "ER, SNEG\nE, S3"),
+            "no side SPOS or SNEG",
+        ),
+        (other("11, 11, 12\n", "ER"), "no side SPOS or SNEG"),
+        (
+            deck.replace("*RIGID BODY,ELSET=ER", "*RIGID BODY,NSET=N"),
+            "N is not defined",
+        ),
+        (
+            deck.replace("*SURFACE,NAME=WALL\nER,SPOS\n", "")
+                .replace("TOP,WALL", "TOP"),
+            "make no surface",
+        ),
+    ] {
+        let (model, _, messages) = try_read(&text);
+        assert!(
+            model.is_none() && messages.contains(said),
+            "{said}\n{messages}"
+        );
+    }
+}

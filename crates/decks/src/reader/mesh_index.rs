@@ -28,6 +28,8 @@ pub(crate) struct MeshIndex {
     pub points: Vec<PointElement>,
     /// Springs and dashpots.
     pub connectors: Vec<ConnectorElement>,
+    /// Rigid lines, whose indices follow those of springs and dashpots.
+    pub rigid_lines: Vec<RigidLine>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
     /// Sides of no length of quadrilaterals that are triangles (indices).
@@ -68,6 +70,17 @@ pub(crate) struct ConnectorElement {
     pub kind: ConnectorKind,
     /// Its nodes (indices).
     pub nodes: Vec<usize>,
+    /// Its place.
+    pub span: Span,
+}
+
+/// An element that is a rigid line, of the type R2D2 or RAX2.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RigidLine {
+    /// Label of the element.
+    pub label: u64,
+    /// Its nodes (indices).
+    pub nodes: [usize; 2],
     /// Its place.
     pub span: Span,
 }
@@ -144,6 +157,7 @@ impl Default for MeshIndex {
             lines: Vec::new(),
             points: Vec::new(),
             connectors: Vec::new(),
+            rigid_lines: Vec::new(),
             places: Vec::new(),
             collapsed: HashMap::new(),
             node_groups: Vec::new(),
@@ -195,11 +209,13 @@ impl MeshIndex {
         self.places.reserve(count);
     }
 
-    /// Numbers springs and dashpots after the point elements.
+    /// Numbers springs and dashpots after the point elements, and rigid lines after them.
     pub fn number_connectors(&mut self) {
         let first = self.mesh.elements.len() + self.lines.len() + self.points.len();
-        for (index, connector) in (first..).zip(&self.connectors) {
-            self.elements.insert(connector.label, Labelled::new(index));
+        let connectors = self.connectors.iter().map(|connector| connector.label);
+        let labels = connectors.chain(self.rigid_lines.iter().map(|line| line.label));
+        for (index, label) in (first..).zip(labels) {
+            self.elements.insert(label, Labelled::new(index));
         }
     }
 
@@ -214,7 +230,8 @@ impl MeshIndex {
         self.nodes.renumber(&numbers);
         let elements = self.mesh.elements.iter_mut().flat_map(|e| &mut e.nodes);
         let connectors = self.connectors.iter_mut().flat_map(|c| &mut c.nodes);
-        for node in elements.chain(connectors) {
+        let rigid = self.rigid_lines.iter_mut().flat_map(|line| &mut line.nodes);
+        for node in elements.chain(connectors).chain(rigid) {
             *node = numbers[*node].unwrap_or(*node);
         }
         for point in &mut self.points {

@@ -8,7 +8,7 @@ use super::context::Context;
 use super::label::{LabelList, LabelMap};
 use super::mesh_index;
 use super::mesh_index::{
-    ConnectorElement, ConnectorKind, Group, MeshIndex, PointElement, PointKind,
+    ConnectorElement, ConnectorKind, Group, MeshIndex, PointElement, PointKind, RigidLine,
 };
 use super::names::Labelled;
 use super::outline::Outline;
@@ -306,6 +306,16 @@ impl MeshReading {
                 self.other_lines.insert(label, span.line);
                 self.points.push((kind, LineElement { label, nodes, span }));
             }
+            ElementKind::RigidLine => {
+                self.other_lines.insert(label, span.line);
+                let [from, to] = [nodes[0], nodes[1]];
+                let line = RigidLine {
+                    label,
+                    nodes: [from, to],
+                    span,
+                };
+                self.mesh_index.rigid_lines.push(line);
+            }
             ElementKind::Connector(kind) => {
                 self.other_lines.insert(label, span.line);
                 self.mesh_index.connectors.push(ConnectorElement {
@@ -353,7 +363,8 @@ impl MeshReading {
     fn report_empty(&self, outline: &Outline, cx: &mut Context) {
         let mesh = &self.mesh_index.mesh;
         // rigid bodies of mass elements need no others
-        let has_none = mesh.elements.is_empty() && self.points.is_empty();
+        let has_others = !self.points.is_empty() || !self.mesh_index.rigid_lines.is_empty();
+        let has_none = mesh.elements.is_empty() && !has_others;
         let (keyword, before) = match (mesh.node_count() == 0, has_none) {
             (true, _) => ("NODE", None),
             (false, true) => ("ELEMENT", outline.model_cards("NODE").pop()),
@@ -400,6 +411,9 @@ impl MeshReading {
         let connectors = self.mesh_index.connectors.iter();
         for &node in connectors.flat_map(|connector| &connector.nodes) {
             used[node] = true;
+        }
+        for line in &self.mesh_index.rigid_lines {
+            line.nodes.iter().for_each(|&node| used[node] = true);
         }
         let index = |label: &u64| nodes.get(*label).and_then(Labelled::index);
         for node in references.iter().filter_map(index) {
@@ -492,6 +506,8 @@ pub(super) enum ElementKind {
     PointElement(PointKind),
     /// A spring or dashpot.
     Connector(ConnectorKind),
+    /// A rigid line of two nodes.
+    RigidLine,
 }
 
 impl ElementKind {
@@ -499,7 +515,7 @@ impl ElementKind {
     fn name(self) -> &'static str {
         match self {
             ElementKind::Plane(element_type) => element_type.name(),
-            ElementKind::Line(_) | ElementKind::PointElement(_) | ElementKind::Connector(_) => "",
+            _ => "",
         }
     }
 
@@ -510,6 +526,7 @@ impl ElementKind {
             ElementKind::Line(nodes) => nodes,
             ElementKind::PointElement(_) => 1,
             ElementKind::Connector(kind) => kind.nodes(),
+            ElementKind::RigidLine => 2,
         }
     }
 }
@@ -521,6 +538,7 @@ pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> 
         "T2D2" | "T3D2" | "B21" | "B31" => return Some(ElementKind::Line(2)),
         "T2D3" | "T3D3" | "B22" | "B32" => return Some(ElementKind::Line(3)),
         "MASS" => return Some(ElementKind::PointElement(PointKind::Mass)),
+        "R2D2" | "RAX2" => return Some(ElementKind::RigidLine),
         "ROTARYI" => return Some(ElementKind::PointElement(PointKind::RotaryInertia)),
         _ => {}
     }
@@ -563,7 +581,7 @@ fn reason(folded: &str) -> Option<&'static str> {
         Some(
             "write CAX3, CAX4, CAX4H, CAX4I, CAX4R, CAX6, CAX8, CAX8R, CAX8H or CAX8RH: other formulations are not supported",
         )
-    } else if starts(&["T2D", "T3D", "B2", "B3", "R2D"]) {
+    } else if starts(&["T2D", "T3D", "B2", "B3"]) {
         Some(
             "line elements only name sides of plane elements: use T3D2 with two nodes, T3D3 with three",
         )

@@ -2,7 +2,7 @@
 //! where it is prescribed or they have mass.
 
 use super::context::Context;
-use super::mesh_index::{MeshIndex, PointElement, PointKind};
+use super::mesh_index::{MeshIndex, PointElement, PointKind, RigidLine};
 use super::outline::Outline;
 use super::sets::Sets;
 use super::surfaces::Surfaces;
@@ -156,6 +156,16 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
             None => all.push(rigid),
         }
     }
+    let is_loose = |line: &&RigidLine| {
+        !all.iter()
+            .any(|body| line.nodes.iter().all(|&n| body.has(n)))
+    };
+    let mut lines = lookup.mesh_index.rigid_lines.iter();
+    if let Some(line) = lines.find(is_loose).filter(|_| !incomplete) {
+        let message = format!("element {} belongs to no rigid body", cx.named(line.label));
+        cx.error(Code::RigidSurface, line.span, message)
+            .help("add *RIGID BODY, ELSET=, REF NODE=");
+    }
     let first_surface = |rigid: &Rigid| {
         let of_part = |part: &RigidPart| match part {
             RigidPart::Surface(index) => Some(*index),
@@ -288,7 +298,11 @@ fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
         ..Rigid::default()
     };
     if let Some(field) = card.value("ELSET") {
-        rigid.add_elements(field, lookup, cx);
+        let lines = lookup.sets.rigid_lines_of(field, lookup.mesh_index, cx);
+        match lines.is_empty() {
+            true => rigid.add_elements(field, lookup, cx),
+            false => rigid.add_lines(field, &lines, lookup, cx)?,
+        }
     }
     for field in ["NSET", "PIN NSET", "TIE NSET"].map(|name| card.value(name)) {
         let Some(field) = field else { continue };
@@ -320,6 +334,47 @@ impl Rigid {
         let nodes = nodes.copied().collect();
         let name = lookup.sets.element_names.full_name(field, cx);
         self.add_part(RigidPart::Elements(name.clone()), &name, nodes);
+    }
+
+    /// Adds rigid lines: the surfaces made of them, and their nodes.
+    fn add_lines(
+        &mut self,
+        field: Text,
+        lines: &[usize],
+        lookup: Lookup,
+        cx: &mut Context,
+    ) -> Option<()> {
+        let name = lookup.sets.element_names.full_name(field, cx);
+        if !lookup
+            .sets
+            .elements_of(field, lookup.mesh_index, cx)
+            .is_empty()
+        {
+            let message = format!("{name} holds rigid lines and other elements");
+            cx.error(Code::RigidSurface, field.span, message)
+                .help("give each of them a set and a *RIGID BODY");
+            return None;
+        }
+        let is_meant = |(_, of_surface): &&(usize, Vec<usize>)| {
+            of_surface.iter().all(|line| lines.contains(line))
+        };
+        let surfaces = lookup.surfaces.of_lines.iter().filter(is_meant);
+        for &(index, _) in surfaces {
+            let surface = &lookup.surfaces.all[index];
+            let nodes = surface.nodes(&lookup.mesh_index.mesh);
+            self.add_part(RigidPart::Surface(index), &surface.name, nodes);
+        }
+        if self.parts.is_empty() {
+            let message = format!("the rigid lines of {name} make no surface");
+            cx.error(Code::RigidSurface, field.span, message)
+                .help("make one of them: *SURFACE with the row set, SPOS or set, SNEG");
+            return None;
+        }
+        let own = lines
+            .iter()
+            .map(|&line| lookup.mesh_index.rigid_lines[line]);
+        self.add(own.flat_map(|line| line.nodes).collect());
+        Some(())
     }
 
     /// Adds the rigid surface of a card.

@@ -89,6 +89,21 @@ impl Sets {
         self.members_of(field, mesh_index, cx).1.points.clone()
     }
 
+    /// The rigid lines that a field names.
+    pub fn rigid_lines_of(
+        &self,
+        field: Text,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> Vec<usize> {
+        if mesh_index.rigid_lines.is_empty() {
+            return Vec::new();
+        }
+        (self.members_of(field, mesh_index, cx).1)
+            .rigid_lines
+            .clone()
+    }
+
     /// The element, or the elements of the set, that a field names, and the faces that line elements
     /// among them name; reports springs and dashpots alone.
     pub fn elements_and_lines_of(
@@ -146,11 +161,14 @@ pub(crate) struct OtherElements {
     points: Vec<usize>,
     /// Springs and dashpots (indices).
     pub connectors: Vec<usize>,
+    /// Rigid lines (indices).
+    pub rigid_lines: Vec<usize>,
 }
 
 impl OtherElements {
     fn is_empty(&self) -> bool {
-        self.lines.is_empty() && self.points.is_empty() && self.connectors.is_empty()
+        let are_empty = [&self.points, &self.connectors, &self.rigid_lines].map(Vec::is_empty);
+        self.lines.is_empty() && are_empty == [true; 3]
     }
 }
 
@@ -159,13 +177,16 @@ fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, OtherEleme
     let (count, lines) = (mesh_index.mesh.elements.len(), &mesh_index.lines);
     let of_points = count + lines.len();
     let of_connectors = of_points + mesh_index.points.len();
+    let of_rigid = of_connectors + mesh_index.connectors.len();
     let mut split = OtherElements::default();
-    if of_connectors + mesh_index.connectors.len() == count {
+    if of_rigid + mesh_index.rigid_lines.len() == count {
         return (members, split);
     }
     let (elements, others): (Vec<_>, Vec<_>) = (members.into_iter()).partition(|&m| m < count);
     for member in others {
-        if let Some(connector) = member.checked_sub(of_connectors) {
+        if let Some(line) = member.checked_sub(of_rigid) {
+            split.rigid_lines.push(line);
+        } else if let Some(connector) = member.checked_sub(of_connectors) {
             split.connectors.push(connector);
         } else if let Some(point) = member.checked_sub(of_points) {
             split.points.push(point);
@@ -227,6 +248,9 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
                 .iter()
                 .flat_map(|face| face.nodes(&mesh_index.mesh));
             draft.members.extend(ends);
+            let rigid = others.rigid_lines.iter();
+            let rigid = rigid.filter_map(|&k| mesh_index.rigid_lines.get(k));
+            draft.members.extend(rigid.flat_map(|line| line.nodes));
             let connectors = others.connectors.iter();
             let connectors = connectors.filter_map(|&k| mesh_index.connectors.get(k));
             draft

@@ -9,7 +9,7 @@ use crate::deck::{Card, Deck, Line, Text};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest, shown};
 use crate::model::{CircleArc, ElementsAtNodes, Face, Mesh, RigidProfile, Surface, SurfaceKind};
 use crate::vectors::{angle, cross, difference};
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// All surfaces.
 pub(crate) struct Surfaces {
@@ -19,6 +19,8 @@ pub(crate) struct Surfaces {
     pub all: Vec<Surface>,
     /// Rigid surfaces and their places.
     pub rigid: Vec<(usize, Span)>,
+    /// Rigid surfaces (indices) that are made of rigid lines, and these.
+    pub of_lines: Vec<(usize, Vec<usize>)>,
     /// Points of the rigid surfaces: nodes that follow those of the mesh.
     pub rigid_points: Vec<[f64; 2]>,
 }
@@ -43,6 +45,7 @@ pub(crate) fn read(
         names: Names::of_parts("surface"),
         all: Vec::new(),
         rigid: Vec::new(),
+        of_lines: Vec::new(),
         rigid_points: Vec::new(),
     };
     for card in outline.model_cards("SURFACE") {
@@ -50,7 +53,16 @@ pub(crate) fn read(
             continue;
         };
         let errors = cx.errors();
+        let lines = rigid_lines(card, mesh_index, sets, cx);
         let kind = match card.choice("TYPE") {
+            Some("ELEMENT") | None if !lines.is_empty() => {
+                let first = mesh_index.mesh.node_count() + surfaces.rigid_points.len();
+                let profile = Profile::of_lines(&lines, card, mesh_index, cx);
+                surfaces.rigid_points.extend(&profile.points);
+                let lines = lines.iter().map(|(line, _)| *line).collect();
+                surfaces.of_lines.push((surfaces.all.len(), lines));
+                SurfaceKind::Rigid(profile.in_mesh(first))
+            }
             Some("NODE") => SurfaceKind::Nodes(nodes(card, mesh_index, sets, cx)),
             Some("SEGMENTS") => {
                 let first = mesh_index.mesh.node_count() + surfaces.rigid_points.len();
@@ -76,6 +88,46 @@ pub(crate) fn read(
         surfaces.all.push(Surface { name: typed, kind });
     }
     surfaces
+}
+
+/// Rigid lines that the rows of a card name, with their ends in the direction on whose right the rigid body lies: from the
+/// first node to the second for SPOS. Reports rows of other elements beside them.
+fn rigid_lines(
+    card: &Card,
+    mesh_index: &MeshIndex,
+    sets: &Sets,
+    cx: &mut Context,
+) -> Vec<(usize, [usize; 2])> {
+    if mesh_index.rigid_lines.is_empty() || matches!(card.choice("TYPE"), Some("NODE" | "SEGMENTS"))
+    {
+        return Vec::new();
+    }
+    let mut lines = Vec::new();
+    for row in card.rows.iter() {
+        let Some(field) = row.get(0) else { continue };
+        let own = sets.rigid_lines_of(field, mesh_index, cx);
+        let face = row.get(1).map(|face| face.name_key());
+        let is_back = match face.as_deref() {
+            _ if own.is_empty() && lines.is_empty() => continue,
+            Some("SPOS") if !own.is_empty() => false,
+            Some("SNEG") if !own.is_empty() => true,
+            _ => {
+                let message = "this row names no side SPOS or SNEG of rigid lines";
+                fault(
+                    row.span(),
+                    message,
+                    "the rows of one surface name rigid lines, or faces of other elements",
+                    cx,
+                );
+                continue;
+            }
+        };
+        lines.extend(own.into_iter().map(|line| {
+            let [a, b] = mesh_index.rigid_lines[line].nodes;
+            (line, if is_back { [b, a] } else { [a, b] })
+        }));
+    }
+    lines
 }
 
 fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
@@ -308,6 +360,40 @@ impl Profile {
                 "add LINE or CIRCL rows",
                 cx,
             );
+        }
+        profile
+    }
+
+    /// The profile of rigid lines, end to end.
+    pub fn of_lines(
+        lines: &[(usize, [usize; 2])],
+        card: &Card,
+        mesh_index: &MeshIndex,
+        cx: &mut Context,
+    ) -> Profile {
+        let mut profile = Profile::default();
+        let mut after: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut ends = BTreeSet::new();
+        for &(_, [from, to]) in lines {
+            if after.insert(from, to).is_some() || !ends.insert(to) {
+                let name = mesh_index.node_name(from);
+                let message =
+                    format!("rigid lines of this surface meet at node {name} from unlike sides");
+                let help = "the lines of a surface run one after the other, all with their numbers in one direction";
+                fault(card.span, &message, help, cx);
+                return profile;
+            }
+        }
+        let x = &mesh_index.mesh.coordinates;
+        while let Some((&first, _)) =
+            (after.iter().find(|(from, _)| !ends.contains(from))).or(after.iter().next())
+        {
+            profile.start(x[first]);
+            let mut from = first;
+            while let Some(to) = after.remove(&from) {
+                profile.side_to(x[to]);
+                from = to;
+            }
         }
         profile
     }
