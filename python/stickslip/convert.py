@@ -51,10 +51,10 @@ def _columns(result: ResultFile, path: str) -> Iterator[tuple[str, Array]]:
 def to_xarray(
     result: ResultFile, times: Array | None, fields: Mapping[str, tuple[str, NDArray[Any]]]
 ) -> "xarray.Dataset":
-    """All histories along `time`, named by their paths, and some fields along `frame`.
+    """All histories along `time`, named by their paths with dots, and some fields along `frame`.
 
-    `times` are those of the frames. Of each field are given whether it is PointData or CellData, and its
-    values in all frames [F, N or E, ...].
+    A name with a `/` could not be written with `to_netcdf`. `times` are those of the frames. Of each field are given the
+    dataset below /VTKHDF, and its values in all frames [F, N or E, ...].
 
     Every variable has the attributes `description` and `dimension` of the result file.
     """
@@ -67,19 +67,24 @@ def to_xarray(
         each = Members.of(result, path)
         axes = ["time"]
         if each.names:
-            axes.append(each.axis)
+            axes.append(dotted(each.axis))
             are_numbers = all(re.fullmatch(r"-?\d+", name) for name in each.names)
-            coordinates[each.axis] = list(map(int, each.names)) if are_numbers else each.names
-        variables[path] = _variable(axes, result.complete_rows(f"history/{path}"), stored.attrs, coordinates)
+            coordinates[axes[1]] = list(map(int, each.names)) if are_numbers else each.names
+        variables[dotted(path)] = _variable(axes, result.complete_rows(f"history/{path}"), stored.attrs, coordinates)
     if times is not None:
         coordinates["frame"] = times
-    for name, (kind, data) in fields.items():
-        where = "node" if kind == "PointData" else "element"
+    for name, (dataset, data) in fields.items():
+        where = "node" if dataset.startswith("PointData") else "element"
         labels = result.node_labels if where == "node" else result.element_labels
         coordinates[where] = labels
-        stored = result.file[f"VTKHDF/{kind}/{name}"]
+        stored = result.file[f"VTKHDF/{dataset}"]
         variables[name] = _variable(["frame", where], data, stored.attrs, coordinates)
     return xarray.Dataset(variables, coordinates, {"job": result.job})
+
+
+def dotted(path: str) -> str:
+    """The path of a history as the name of a variable or an axis: `energy.kinetic`."""
+    return path.replace("/", ".")
 
 
 def _variable(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stickslip import convert
 from stickslip.arrays import Array
 from stickslip.errors import Fault, Missing
+from stickslip.fields import AT_NODES, VECTORS, Part, known, part, without_third
 from stickslip.result_file import ResultFile
 
 if TYPE_CHECKING:
@@ -21,16 +22,14 @@ LARGEST = 1e150
 ROUND_OFF = 1e-9
 """Times that differ by this part of the duration are the same."""
 
-AT_NODES = "_AT_NODES"
-"""End of the names of fields of elements at nodes, `S_AT_NODES` and others."""
-
 
 @dataclass(frozen=True)
 class Frame(Mapping[str, Any]):
     """Fields by name at one time: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of elements.
 
     Vectors lose their third component, which is 0. Stresses and strains are means over the
-    elements, (xx, yy, xy); so are the values at nodes, `frame["S_AT_NODES"]` [N, 3].
+    elements, (xx, yy, xy); so are the values at nodes, `frame["S_AT_NODES"]` [N, 3]. Components have names of their
+    own, `frame["S11"]` [E]: see `fields`.
     """
 
     frames: "Frames"
@@ -56,12 +55,36 @@ class Frame(Mapping[str, Any]):
         return positions
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        kind = self.frames.kind(name)
-        rows = self.full(name)
-        if kind == "PointData":
-            is_vector = rows.ndim == 2 and not name.endswith(AT_NODES)
-            return rows[:, :2] if is_vector else rows
-        return rows[: len(self.result.cells)]
+        field, colon, _ = self.frames.known(name).partition(":")
+        rows = self._whole(field)
+        return self.frames.part(name).of(rows) if colon else rows
+
+    def _whole(self, field: str) -> NDArray[Any]:
+        """A field of the file: of vectors what is in the plane, of elements without rigid segments."""
+        kind = self.frames.kind(field)
+        rows = without_third(field, self.full(field))
+        return rows[: len(self.result.cells)] if kind == "CellData" else rows
+
+    def nodal(self, name: str) -> NDArray[Any]:
+        """A field at the nodes [N, ...]: one of elements is averaged within a body and a material (see `nodal`)."""
+        return self.at_places(name)[: len(self.result.coordinates)]
+
+    def at_places(self, name: str) -> NDArray[Any]:
+        """A field at the places [P, ...] of `nodal.Recovery`, which tell the materials at a node apart.
+
+        Where the program has written it at nodes, `POSITION=NODES`, its values are taken at nodes of one material.
+        """
+        spelled = self.frames.known(name)
+        field, colon, _ = spelled.partition(":")
+        recovery = self.result.recovery
+        if self.frames.kind(field) == "PointData":
+            rows = self._whole(field)
+            rows = np.concatenate([rows, rows[recovery.twins]])
+        else:
+            rows = recovery(self._whole(field))
+            if field + AT_NODES in self.frames.fields:
+                rows[recovery.alone] = self.full(field + AT_NODES)[recovery.alone]
+        return self.frames.part(spelled).of(rows) if colon else rows
 
     def full(self, name: str) -> NDArray[Any]:
         """A field as it stands in the file: with third components and rigid segments."""
@@ -120,16 +143,30 @@ class Frames(Sequence[Frame]):
         self.times: Array = result.read("VTKHDF/Steps/Values")[:frames]
         """Times of the frames [F]."""
 
-    def kind(self, name: str) -> str:
-        """Whether a field is PointData or CellData."""
-        if name not in self.fields:
+    def known(self, name: str) -> str:
+        """The name of a field with the spelling of the file, with its component (see `fields`); Missing where there is none."""
+        spelled = known(name, self.fields)
+        if spelled.partition(":")[0] not in self.fields:
             there = ", ".join(self.fields)
             raise Missing(f"{self.result.path} has no field {name}; there are {there}")
-        return self.fields[name]
+        return spelled
+
+    def kind(self, name: str) -> str:
+        """Whether a field is PointData or CellData."""
+        return self.fields[self.known(name).partition(":")[0]]
+
+    def part(self, name: str) -> Part:
+        """What a name asks for of its field; a Fault where it has to say of which component."""
+        spelled = self.known(name)
+        field = spelled.partition(":")[0]
+        shape = self.result.item(f"VTKHDF/{self.fields[field]}/{field}").shape[1:]
+        count = 2 if field in VECTORS else shape[0] if shape else None
+        return part(spelled, count, self.result.is_axisymmetric)
 
     def field(self, name: str) -> tuple[str, NDArray[Any]]:
-        """Whether a field is PointData or CellData, and its values in all frames [F, N or E, ...]."""
-        return self.kind(name), np.stack([frame[name] for frame in self])
+        """Name of the dataset of a field below /VTKHDF, and its values in all frames [F, N or E, ...]."""
+        field = self.known(name).partition(":")[0]
+        return f"{self.fields[field]}/{field}", np.stack([frame[name] for frame in self])
 
     def first_row(self, kind: str, name: str, index: int) -> int:
         """First row of a frame in a field; one that does not change is there once."""

@@ -8,13 +8,17 @@ These names hold too where a result has only the sums and means of a set (`TOTAL
 Values at integration points, `elements/BLOCK/points[7.2]/S:1`, have the element and the number of the point in brackets, springs
 and dashpots, `connectors[9]/force`, their element, hinges, `hinges[3-4]/force:1`, their two nodes.
 Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is that of the body.
+Names of Abaqus hold too, `nodes/TIP/U2` and `elements/BLOCK/S11` (see `fields`).
 """
 
 import re
 from dataclasses import dataclass
 
+import numpy as np
+
 from stickslip.arrays import Array
 from stickslip.errors import Fault
+from stickslip.fields import directions, known
 from stickslip.result_file import ResultFile
 
 NAME = re.compile(r"(?P<path>[^:]*)(?::(?P<component>\d+))?")
@@ -26,14 +30,14 @@ PLACES = re.compile(
 """Groups whose histories have one column for each member, of which their `labels` tell."""
 SUMS = ("RF", "ELSE", "ELKE", "ELHE")
 """Histories of the members of a set that are added up."""
+FORCES = ("force", "RF", "CF")
+"""Histories of rigid surfaces and node sets that are forces on them."""
+LEAST_WORK = 1e-3
+"""A force that does less than this part of the largest work does not move what it acts on."""
 BODIES = re.compile(r"(?P<path>.+)\[(?P<body>\d+)\]")
 
 PER_BODY = re.compile(r"bodies/\w+|contact/.+/body_\w+")
 """Histories with one column for each body."""
-
-DIRECTIONS = {2: ("x", "y"), 3: ("xx", "yy", "xy")}
-"""Names of the components of vectors and of tensors in the plane."""
-
 
 @dataclass(frozen=True)
 class Quantity:
@@ -58,7 +62,8 @@ class Quantity:
 
 def find(result: ResultFile, name: str) -> Quantity:
     """The history of this name; a Fault says which there are when there is none."""
-    matched = NAME.fullmatch(name)
+    place, slash, field = name.rpartition("/")
+    matched = NAME.fullmatch(place + slash + known(field, {path.rpartition("/")[2] for path in result.histories}))
     if matched is None:
         raise Fault(f"{name} is no name of a history: such are energy/kinetic, nodes/TIP/U:2")
     path, component = matched["path"], matched["component"]
@@ -71,7 +76,7 @@ def find(result: ResultFile, name: str) -> Quantity:
     if data.ndim != 2:
         raise Fault(f"{name}: say of which, as in {each.paths[0]}")
     columns = [] if each.is_set else [f"{each.kind} {one}" for one in each.names]
-    names = columns or components(data.shape[1])
+    names = columns or directions(data.shape[1], result.is_axisymmetric)
     parts = dict(zip(names, data.T))
     if component is None:
         return Quantity(quantity, parts)
@@ -81,9 +86,33 @@ def find(result: ResultFile, name: str) -> Quantity:
     return Quantity(quantity, {chosen: parts[chosen]})
 
 
-def components(count: int) -> list[str]:
-    """Names of the components of a history."""
-    return list(DIRECTIONS.get(count, [str(i + 1) for i in range(count)]))
+def force_against_displacement(result: ResultFile) -> list[tuple[str, str]]:
+    """Displacement and force in its direction, by their names, of rigid surfaces and node sets that are moved by a force.
+
+    The one whose force does the largest work is the first.
+    """
+    places = {re.sub(r"(/mean|/sum)?/[^/]*$", "", path) for path in result.histories}
+    works: dict[tuple[str, str], float] = {}
+    for place in sorted(place for place in places if re.fullmatch("(rigid|nodes)/[^/]+", place)):
+        for field in FORCES:
+            moved, force = (_stored(result, place, name) for name in ("U", field))
+            if moved is None or force is None or moved.shape != force.shape:
+                continue
+            # of every node, since those of a set that are held do not move
+            work = np.abs(np.nan_to_num(force[1:])) * np.abs(np.diff(np.nan_to_num(moved), axis=0))
+            sums = work.reshape(-1, work.shape[-1]).sum(axis=0)
+            works |= {(f"{place}/U:{k}", f"{place}/{field}:{k}"): float(sums[k - 1]) for k in (1, 2)}
+    largest = max(works.values(), default=0.0)
+    found = [pair for pair, work in works.items() if work > LEAST_WORK * largest]
+    return sorted(found, key=lambda pair: -works[pair])
+
+
+def _stored(result: ResultFile, place: str, field: str) -> Array | None:
+    """A history of a rigid surface or of the nodes of a set [I, ..., 2]; else its mean or sum over the set."""
+    for path in (f"{place}/{field}", f"{place}/mean/{field}", f"{place}/sum/{field}"):
+        if path in result.histories:
+            return result.complete_rows(f"history/{path}")
+    return None
 
 
 @dataclass(frozen=True)

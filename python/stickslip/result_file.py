@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.arrays import Array, Integers
+from stickslip.drawing import Drawing
 from stickslip.errors import Fault, one_line
+from stickslip.nodal import Recovery, around_element
 
 EVENTS = ("impacts", "returns", "touches")
 """Groups of the history with one row per event."""
@@ -110,7 +112,17 @@ class ResultFile:
     @cached_property
     def outlines(self) -> list[Integers]:
         """Node indices around each element, nodes between corners in their places."""
-        return [np.reshape(cell, (2, -1)).T.ravel() if len(cell) > 4 else cell for cell in self.cells]
+        return list(map(around_element, self.cells))
+
+    @cached_property
+    def recovery(self) -> Recovery:
+        """Values of elements at nodes."""
+        return Recovery.of(self)
+
+    @cached_property
+    def drawing(self) -> Drawing:
+        """The mesh as it is drawn, sides of quadratic elements curved."""
+        return Drawing.of(self)
 
     @cached_property
     def rigid(self) -> Integers:

@@ -166,3 +166,32 @@ def gains_no_energy(
         if scheme == "ENERGY-MOMENTUM":
             assert np.diff(total).max() < 1e-10 * energy.largest
         assert_holds(result)
+
+
+FAMILIES = {
+    "CPE": ("CPE3", "CPE4", "CPE4H", "CPE4I", "CPE4R", "CPE6", "CPE8", "CPE8R", "CPE8H", "CPE8RH"),
+    "CPS": ("CPS3", "CPS4", "CPS4I", "CPS4R", "CPS6", "CPS8", "CPS8R"),
+    "CAX": ("CAX3", "CAX4", "CAX4H", "CAX4I", "CAX4R", "CAX6", "CAX8", "CAX8R", "CAX8H", "CAX8RH"),
+}
+"""All types of elements."""
+
+
+def bent_bodies(family: str) -> Deck:
+    """A free body of every type of a family, side by side, curved from the start and bent by its velocities."""
+    deck = Deck.titled(f"bodies of {family}")
+    for number, kind in enumerate(FAMILIES[family]):
+
+        def place(x: float, y: float, left: float = 1.5 * number + 0.5) -> tuple[float, float]:
+            return left + x + 0.06 * sin(4.0 * y), y + 0.06 * sin(5.0 * x)
+
+        mesh = grid(kind, 2, 2, place)
+        mesh.element_sets = {f"B{number}": mesh.element_sets["BODY"]}
+        mesh.node_sets = mesh.sides = {}
+        first = deck.add_mesh(mesh, plane="stress" if family == "CPS" else "strain")
+        card = deck.find("ELEMENT")[-1]
+        card.head = card.head.replace(_added(kind), kind)
+        deck.elastic(f"M{number}", 1000.0 + number, 0.3, 1.0)
+        with_section(deck, kind, f"B{number}", f"M{number}")
+        speeds = [(first + i, 2, 8.0 * sin(3.0 * (x - 1.5 * number))) for i, (x, _) in enumerate(mesh.points)]
+        deck.add("INITIAL CONDITIONS, TYPE=VELOCITY", *speeds)
+    return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 0.03\n*END STEP\n")

@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import stickslip
+import xarray
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
 from stickslip import Deck, DeckRejected, Fault, Progress, Result, RunFailed, RunStopped
@@ -77,7 +78,6 @@ def test_frames_by_time(result: Result) -> None:
 
 
 def test_a_dataframe_has_the_names_of_quantities(result: Result) -> None:
-    pytest.importorskip("pandas")
     table = result.to_dataframe()
     assert np.array_equal(table.index, result.history.time)
     label = result.history.nodes["UPPER_TIP"].labels[1]
@@ -131,21 +131,26 @@ REJECTED = ("cycle", "faulty_include", "keyword_in_rows", "missing_include")
 @pytest.fixture(scope="module")
 def all_decks(job: Job) -> list[Result]:
     """Results of the decks of tests/decks, and of one with what these lack."""
-    pytest.importorskip("xarray")
-    pytest.importorskip("pandas")
     paths = sorted((ROOT / "tests" / "decks").glob("*.inp"))
     decks = [Deck.read(path) for path in paths if path.stem not in SLOW + REJECTED]
     return [Result(job(deck, "--frames", "1")) for deck in [*decks, Deck.parse(LOCAL)]]
 
 
-def test_every_history_of_every_deck_converts(all_decks: list[Result]) -> None:
+def test_every_history_and_field_of_every_deck_converts(all_decks: list[Result], tmp_path: Path) -> None:
     """All rows are there, and every column has the name that `quantity` and plots use."""
     places = set()
     for result in all_decks:
         rows = result.file["history"].attrs["rows"]
-        table, data = result.to_dataframe(), result.to_xarray()
+        frame = result.frames[-1]
+        table, data = result.to_dataframe(), result.to_xarray(*frame)
         assert len(table) == len(data.time) == result.rows == rows
-        assert set(data.data_vars) == set(result.histories) - {"time"}
+        histories = {name.replace("/", ".") for name in result.histories}
+        assert set(data.data_vars) == histories - {"time"} | set(frame)
+        data.to_netcdf(tmp_path / "all.nc", engine="h5netcdf")
+        with xarray.open_dataset(tmp_path / "all.nc", engine="h5netcdf") as back:
+            assert back.equals(data)
+        grid = frame.to_pyvista()
+        assert {*grid.point_data, *grid.cell_data} == set(frame)
         for name in table:
             assert np.array_equal(table[name], result.quantity(name), equal_nan=True), name
         for name in listed(result):
@@ -157,10 +162,10 @@ def test_every_history_of_every_deck_converts(all_decks: list[Result]) -> None:
     local = all_decks[-1]
     assert local.rows == 21
     data = local.to_xarray()
-    assert data["connectors/force"].dims == ("time", "connectors")
-    assert data["elements/E/points/S"].dims == ("time", "elements/E/points", "tensor")
-    assert list(data["elements/E/points"].values) == ["1.1", "1.2", "1.3", "1.4"]
-    assert list(data["elements/E/at_nodes"].values) == [1, 2, 3, 4]
+    assert data["connectors.force"].dims == ("time", "connectors")
+    assert data["elements.E.points.S"].dims == ("time", "elements.E.points", "tensor")
+    assert list(data["elements.E.points"].values) == ["1.1", "1.2", "1.3", "1.4"]
+    assert list(data["elements.E.at_nodes"].values) == [1, 2, 3, 4]
     for place, third in (("points", "1.3"), ("at_nodes", "3")):
         stress = local.file[f"history/elements/E/{place}/S"][()]
         assert np.array_equal(local.quantity(f"elements/E/{place}[{third}]/S"), stress[:, 2])
@@ -202,15 +207,14 @@ def test_files_are_written_whole_and_through_no_link(
 
 
 def test_xarray_has_axes_labels_and_dimensions(result: Result) -> None:
-    pytest.importorskip("xarray")
     data = result.to_xarray("U", "MISES")
-    tip = data["nodes/UPPER_TIP/U"]
-    assert tip.dims == ("time", "nodes/UPPER_TIP", "component")
+    tip = data["nodes.UPPER_TIP.U"]
+    assert tip.dims == ("time", "nodes.UPPER_TIP", "component")
     label = int(result.history.nodes["UPPER_TIP"].labels[0])
-    chosen = tip.sel({"nodes/UPPER_TIP": label, "component": "2"})
+    chosen = tip.sel({"nodes.UPPER_TIP": label, "component": "2"})
     assert np.array_equal(chosen, result.quantity(f"nodes/UPPER_TIP[{label}]/U:2"))
     assert tip.attrs["dimension"] == "length" and data.attrs["job"] == result.job
-    assert data["bodies/velocity"].dims == ("time", "body", "component")
+    assert data["bodies.velocity"].dims == ("time", "body", "component")
     assert data["MISES"].dims == ("frame", "element")
     node = int(result.node_labels[7])
     shown = data["U"].sel(frame=0.9, node=node, method="nearest")
@@ -433,7 +437,6 @@ def test_what_the_document_says_works(
     result: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The blocks of docs/python.md, one after the other, beside a result and a deck of their names."""
-    pytest.importorskip("xarray")
     text = (ROOT / "docs" / "python.md").read_text()
     blocks = [part.partition("```")[0] for part in text.split("```python\n")[1:]]
     assert len(blocks) > 4

@@ -1,0 +1,98 @@
+"""The mesh as it is drawn: vertices, outlines of elements with curved sides, and triangles that fill them.
+
+Vertices are the places of `nodal` and, on each half of a side of a quadratic element, three more on the parabola through
+its corners and the node between them.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from stickslip.arrays import Array, Integers
+from stickslip.nodal import around_element
+
+if TYPE_CHECKING:
+    from stickslip.result_file import ResultFile
+
+PARABOLA = np.array([3.0, 6.0, -1.0]) / 8.0
+"""Weights of three vertices at equal distances along a parabola for the point in the middle of the first two."""
+STRAIGHT = np.array([0.5, 0.5])
+"""The same along a straight line."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Vertices and what joins them."""
+
+    nodes: int
+    """The first vertices are the N nodes."""
+    ends: tuple[int, int, int]
+    """Vertices up to the first end are places, which have values of their own; those up to the next ones stand between earlier ones."""
+    after: Integers
+    """The vertices behind the nodes [V - N, 3]: each is in the middle between the first two of three earlier ones on a parabola, or
+    at the node that is there three times."""
+    rings: list[Integers]
+    """Vertices around each element, in the order of `Result.outlines`."""
+    outline: Integers
+    """Lines between vertices along `Result.boundary` [., 2], the body on the left."""
+    inner: Integers
+    """Those between elements, each once [., 2]."""
+
+    @classmethod
+    def of(cls, result: "ResultFile") -> "Drawing":
+        """The drawing of a result."""
+        recovery = result.recovery
+        nodes = len(result.coordinates)
+        node = np.concatenate([np.arange(nodes), recovery.twins])
+        after = [(n, n, n) for n in recovery.twins.tolist()]
+        quarters = [half for a, m, b in recovery.middles.tolist() for half in ((a, m, b), (b, m, a))]
+        first = nodes + len(after)
+        eighths = [way for i, (a, m, _) in enumerate(quarters) for way in ((a, first + i, m), (m, first + i, a))]
+        halves: dict[tuple[int, int], list[int]] = {}
+        second = first + len(quarters)
+        for i, (a, m, _) in enumerate(quarters):
+            between = [second + 2 * i, first + i, second + 2 * i + 1]
+            halves |= {(a, m): between, (m, a): between[::-1]}
+        rings: list[Integers] = []
+        outer = set(map(tuple, result.boundary.tolist()))
+        seen: set[tuple[int, int]] = set()
+        lines: dict[bool, list[tuple[int, int]]] = {True: [], False: []}
+        for around in map(around_element, recovery.cells):
+            ring: list[int] = []
+            for a, b in zip(around.tolist(), np.roll(around, -1).tolist()):
+                way = [a, *halves.get((a, b), ()), b]
+                ring += way[:-1]
+                ends = int(node[a]), int(node[b])
+                if ends[::-1] not in seen:
+                    seen.add(ends)
+                    lines[ends in outer] += zip(way[:-1], way[1:])
+            rings.append(np.array(ring))
+        table = np.array([*after, *quarters, *eighths], np.int64).reshape(-1, 3)
+        ends = recovery.places, second, second + len(eighths)
+        return cls(nodes, ends, table, rings, *(np.array(lines[k], np.int64).reshape(-1, 2) for k in (True, False)))
+
+    def node_of(self, places: Integers) -> Integers:
+        """Nodes of places."""
+        return np.concatenate([np.arange(self.nodes), self.after[: self.ends[0] - self.nodes, 0]])[places]
+
+    def positions(self, nodes: Array) -> Array:
+        """Positions of the vertices [V, 2] from those of the nodes [N, 2]."""
+        return self._filled(nodes, PARABOLA)
+
+    def values(self, places: Array) -> Array:
+        """Values at the vertices [V] from those at the places [P], or at the nodes [N]; straight between the nodes."""
+        return self._filled(places, STRAIGHT)
+
+    def _filled(self, known: Array, weights: Array) -> Array:
+        """Numbers at all vertices [V, ...] from those at the first ones."""
+        for end in self.ends:
+            between = self.after[len(known) - self.nodes : end - self.nodes]
+            known = np.concatenate([known, np.einsum("vk...,k->v...", known[between[:, : len(weights)]], weights)])
+        return known
+
+    def fans(self, vertices: Array) -> tuple[Integers, Array]:
+        """Triangles that fill the elements [T, 3], and the vertices [V + E, ...] with the middle of each element behind them."""
+        around = [np.stack([ring, np.roll(ring, -1), np.full(len(ring), len(vertices) + e)], axis=1) for e, ring in enumerate(self.rings)]
+        middles = [vertices[ring].mean(axis=0, keepdims=True) for ring in self.rings]
+        return np.concatenate([np.empty((0, 3), np.int64), *around]), np.concatenate([vertices, *middles])
