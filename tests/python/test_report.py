@@ -3,6 +3,7 @@
 import base64
 import html.parser
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -15,8 +16,10 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from bodies import FAMILIES, bent_bodies
 from conftest import ROOT, Job
 from decks import CANTILEVERS, COLUMN, oblique_impact, shortened, spinning_bar
+from oracle.shapes import shape_functions
 from stickslip.deck import Deck
 from stickslip.errors import Fault
 from stickslip.report import Choice, page_of
@@ -227,8 +230,12 @@ def test_elements_are_drawn_as_their_outlines(job: Job) -> None:
         }
         ends = mesh["offsets"].ravel()
         rings = np.split(mesh["connectivity"].ravel(), ends[1:-1])
-        assert all(np.array_equal(*pair) for pair in zip(rings, result.outlines, strict=True))
-        assert sorted(map(tuple, mesh["outline"])) == list(map(tuple, result.boundary))
+        nodes = len(result.coordinates)
+        around = [ring[ring < nodes] for ring in rings]
+        assert all(np.array_equal(*pair) for pair in zip(around, result.outlines, strict=True))
+        assert [len(ring) for ring in rings] == [4 * len(one) for one in result.outlines]
+        assert set(mesh["outline"].ravel()) >= set(result.boundary.ravel())
+        assert len(mesh["outline"]) == 4 * len(result.boundary)
         slaves = np.isfinite(result.frames[0]["SLIP"])
         both = slaves[result.boundary].all(axis=1)
         # each surface goes along its edges, through the nodes between corners
@@ -246,6 +253,8 @@ def test_fields_and_frames_are_chosen(job: Job, tmp_path: Path) -> None:
     path = two_bodies(job, tmp_path)
     (result,) = json.loads(Tags(page_of([path], Choice(("MISES", "V"), 7))).data)["results"]
     assert [field["name"] for field in result["fields"]] == ["V", "MISES"]
+    (known,) = json.loads(Tags(page_of([path], Choice(("mises", "V1", "cpress"), 2))).data)["results"]
+    assert [field["name"] for field in known["fields"]] == ["CONTACT_PRESSURE", "V", "MISES"]
     times = Result(path).frames.times
     assert (
         len(result["times"]) == 7
@@ -399,9 +408,12 @@ def test_values_under_the_mouse_are_those_of_the_file(
             )
         )
         assert lines["element"].split(",")[0] == str(Result(path).element_labels[element])
-        assert float(lines["von Mises stress"]) == pytest.approx(
+        assert float(lines["mean of the element"]) == pytest.approx(
             expected["MISES"][element], rel=1e-3
         )
+        # linear elements: in the middle stands the mean of the values at their nodes
+        middle = expected.nodal("MISES")[nodes].mean()
+        assert float(lines["von Mises stress"]) == pytest.approx(middle, rel=2e-3)
     for field in ("MISES", "S", "V", "U", "CONTACT_FORCE"):
         values = page.evaluate(
             """async ([name, frame]) => {
@@ -415,8 +427,52 @@ def test_values_under_the_mouse_are_those_of_the_file(
         exact = expected[field].reshape(len(values), -1)
         size = np.abs(exact).max()
         assert np.allclose(values, exact, rtol=FINE, atol=1e-4 * size), field
+    nodal = page.evaluate(
+        """async ([name, frame]) => {
+            const { nodal } = page.result.scalar(name);
+            await nodal.field.load();
+            return Array.from({ length: nodal.field.places }, (_, place) => nodal.value(frame, place));
+        }""",
+        ["S:xx", frame],
+    )
+    exact = expected.at_places("S11")
+    assert np.allclose(nodal, exact, rtol=2.0 * FINE, atol=1e-3 * np.abs(exact).max())
     page.mouse.move(5, 5)
     assert page.locator("#tip").is_hidden()
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_right_element_is_under_every_point(family: str, shown: Shown, job: Job) -> None:
+    """Points inside of elements of every type, by their shape functions, in the bent bodies."""
+    path = job(bent_bodies(family), "--frames", "1")
+    page = shown(path)
+    page.keyboard.press("End")
+    page.evaluate("page.view.draw()")
+    random = np.random.default_rng(1)
+    with Result(path) as result:
+        types = result.read("model/element_types")
+        assert len(set(types)) == len(FAMILIES[family])
+        positions = result.frames[-1].positions
+        bent = sum(
+            np.abs(positions[m] - 0.5 * (positions[a] + positions[b])).max() for m, (a, b) in result.middles.items()
+        )
+        assert bent / len(result.middles) > 0.01, "sides are curved"
+        points, expected = [], []
+        for element, cell in enumerate(result.cells):
+            natural = random.uniform(-0.96, 0.96, (6, 2))
+            if len(cell) in (3, 6):
+                natural = random.dirichlet((1.0, 1.0, 1.0), 6)[:, 1:] * 0.94 + 0.02
+            shapes, _ = shape_functions(len(cell), natural)
+            points += (shapes @ positions[cell]).tolist()
+            expected += [element] * len(natural)
+    found = page.evaluate(
+        """(points) => points.map(([x, y]) => {
+            const [mx, my] = page.result.mesh.middle;
+            return page.view.elementAt(x - mx, y - my);
+        })""",
+        points,
+    )
+    assert len(points) >= 200 and found == expected
 
 
 def test_window_zoom_nodes_range_and_theme(shown: Shown, job: Job, tmp_path: Path) -> None:
@@ -490,6 +546,8 @@ def test_a_peak_does_not_set_the_colours(shown: Shown, job: Job, tmp_path: Path)
         cells = len(file["VTKHDF/Types"])
         stress[5 * cells + 3] = 1e4 * usual
     page = shown(path)
+    page.keyboard.press("v")
+    page.wait_for_function("page.view.look.scalar.at === 'elements'")
     ends = page.evaluate("page.view.ends()")
     assert 0.1 * usual < ends["high"] <= 1.01 * usual
     assert ends["most"] == pytest.approx(1e4 * usual, rel=1e-3) and ends["mostFrame"] == 5
@@ -504,7 +562,9 @@ def test_a_second_result_is_laid_over_the_first(shown: Shown, job: Job, tmp_path
     page.uncheck("#other")
     assert picture(page) != both
     assert all(charts(page))
-    labels = page.evaluate("page.charts[1].plot.series.map((series) => series.label)")
+    labels = page.evaluate(
+        "page.charts.find((chart) => chart.title === 'Contact').plot.series.map((series) => series.label)"
+    )
     assert labels == ["t", "normal", "tangential", "normal, other", "tangential, other"]
 
 
@@ -521,6 +581,118 @@ def test_chart_and_picture_show_the_same_time(shown: Shown, job: Job, tmp_path: 
     assert page.evaluate("page.view.frame") == middle > 0
 
 
+def pressed_ring(job: Job) -> Path:
+    """A static result of a body of revolution between rigid plates."""
+    return job(Deck.read(ROOT / "input" / "disc_spring" / "disc_spring_mu014.inp"))
+
+
+def test_static_runs_of_bodies_of_revolution(shown: Shown, job: Job) -> None:
+    """Force against displacement comes first, momenta are left out, directions are r and z."""
+    path = pressed_ring(job)
+    page = shown(path)
+    charts(page)
+    titles = page.evaluate("page.charts.map((chart) => chart.title)")
+    assert titles[0] == "Force and displacement" and "Momenta" not in titles
+    x, y = page.evaluate("page.charts[0].plot.data")
+    with Result(path) as result:
+        assert np.allclose(x, result.quantity("nodes/PLATE/U2"), rtol=1e-6)
+        assert np.allclose(y, result.quantity("nodes/PLATE/RF2"), rtol=1e-6)
+    assert page.evaluate("page.charts[0].made.along") == "displacement of PLATE, z"
+    # the abscissa goes to and fro: the line stands where the frame is, pressed and let go
+    places = {}
+    for time in (0.6, 1.4, 1.0):
+        page.evaluate(f"page.player.go(page.result.nearestFrame({time}))")
+        places[time] = float(page.evaluate("page.charts[0].line.style.transform")[len("translateX(") : -len("px)")])
+    assert places[0.6] == pytest.approx(places[1.4], abs=0.5) and places[1.0] < places[0.6] - 20.0
+    labels = page.locator("#field option").all_inner_texts()
+    assert {"stress, rr (S11)", "stress around the axis (S33)", "displacement, z (U2)"} <= set(labels)
+    page.select_option('[aria-label="abscissa"]', "contact/SKIN_ABOVE/normal|0")
+    page.wait_for_function("page.charts.at(-1).made.way === true")
+    with Result(path) as result:
+        x = page.evaluate("page.charts.at(-1).plot.data[0]")
+        assert np.allclose(x, result.quantity("contact/SKIN_ABOVE/normal"), rtol=1e-6, atol=1e-3)
+
+
+def test_forces_on_rigid_lines_stand_where_the_contact_is(shown: Shown, job: Job) -> None:
+    path = pressed_ring(job)
+    page = shown(path)
+    middle = page.evaluate("Math.round(0.5 * (page.result.frames - 1))")
+    page.evaluate(f"(page.player.go({middle}), page.view.draw())")
+    found = page.evaluate(
+        """(() => {
+            const marks = new Marks(page.view, page.view.overlay.getContext("2d"));
+            return marks.onRigid(page.result.field("CONTACT_FORCE")).map(([spot, x, y]) => {
+                const [px, py] = page.view.point(...spot);
+                return [px + page.result.mesh.middle[0], py + page.result.mesh.middle[1], x, y];
+            });
+        })()"""
+    )
+    with Result(path) as result:
+        frame = result.frames[middle]
+        force = frame["CONTACT_FORCE"]
+        rigid = np.unique(result.rigid)
+        closed = result.in_cells[np.abs(force[result.in_cells]).any(axis=1)]
+        assert len(found) == len(closed) >= 2
+        for at, node in zip(np.array(found), closed):
+            assert np.allclose(at[:2], frame.positions[node], atol=0.01)
+            assert np.allclose(at[2:], -force[node], rtol=1e-3)
+        # the same as the file has at the ends of the segments
+        assert np.allclose(np.sum(found, axis=0)[2:], force[rigid].sum(axis=0), rtol=1e-3, atol=1e-3)
+
+
+def test_keys_reach_values_and_nodes(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(two_bodies(job, tmp_path))
+    page.evaluate("page.view.draw()")
+    page.keyboard.press("m")
+    cross = page.evaluate("page.view.cross")
+    target = page.evaluate("page.view.spot(20)")
+    for axis, keys in enumerate((("ArrowLeft", "ArrowRight"), ("ArrowUp", "ArrowDown"))):
+        way = target[axis] - cross[axis]
+        for _ in range(int(abs(way) / 10)):
+            page.keyboard.press(keys[way > 0])
+        for _ in range(round(abs(way) % 10)):
+            page.keyboard.press(f"Shift+{keys[way > 0]}")
+    assert np.allclose(page.evaluate("page.view.cross"), target, atol=1.0)
+    lines = dict(zip(page.locator("#tip dt").all_inner_texts(), page.locator("#tip dd").all_inner_texts()))
+    assert lines["node"] == str(page.evaluate("page.result.mesh.nodeLabels[20]"))
+    page.keyboard.press("Enter")
+    assert page.evaluate("page.view.picked") == [20]
+    page.keyboard.press("Escape")
+    assert page.evaluate("page.view.cross") is None and page.locator("#tip").is_hidden()
+    before = picture(page)
+    page.keyboard.press("End")
+    page.keyboard.press("u")
+    assert picture(page) != before and page.locator("#undeformed").is_checked()
+    # all that a mouse clicks is in the order of the tabulator
+    charts(page)
+    skipped = page.evaluate(
+        """[...document.querySelectorAll("button, select, input, summary, a, .u-series th")]
+            .filter((each) => each.tabIndex < 0 || (each.matches("th") && each.tabIndex !== 0)).length"""
+    )
+    assert skipped == 0
+
+
+def test_values_of_elements_bands_and_marks_are_a_choice(shown: Shown, job: Job, tmp_path: Path) -> None:
+    path = two_bodies(job, tmp_path)
+    page = shown(path)
+    page.keyboard.press("End")
+    colours = "(page.view.draw(), new Set(page.view.painter.table).size)"
+    assert page.evaluate(colours) == 12
+    nodal = picture(page)
+    page.select_option("#bands", "0")
+    assert page.evaluate(colours) > 100 and picture(page) != nodal
+    page.select_option("#values", "elements")
+    page.wait_for_function("page.view.look.scalar.at === 'elements'")
+    with Result(path) as result:
+        assert page.evaluate("page.view.ends().most") == pytest.approx(
+            max(frame["MISES"].max() for frame in result.frames), rel=FINE
+        )
+    marked = "(page.view.draw(), document.getElementById('overlay').toDataURL())"
+    with_marks = page.evaluate(marked)
+    page.keyboard.press("e")
+    assert page.evaluate(marked) != with_marks
+
+
 def test_a_deck_with_markup_in_it_stays_text(shown: Shown, job: Job, tmp_path: Path) -> None:
     text = (
         spinning_bar(tmp_path)
@@ -531,3 +703,42 @@ def test_a_deck_with_markup_in_it_stays_text(shown: Shown, job: Job, tmp_path: P
     path.write_text(text)
     page = shown(job(Deck.read(path)))
     assert page.inner_text("#heading") == "a </script><b>bold</b> &amp; {{data}} bar"
+
+
+# On paper.
+
+
+def pictures_of_pdf(data: bytes) -> list[np.ndarray]:
+    """The pictures of a PDF in colour [rows, columns, 3]."""
+    found = []
+    for matched in re.finditer(rb"/Subtype /Image\s([^>]*)>>\s*stream\r?\n", data):
+        numbers = {name: int(value) for name, value in re.findall(rb"/(\w+) (\d+)", matched[1])}
+        pixels = np.frombuffer(zlib.decompress(data[matched.end() :][: numbers[b"Length"]]), np.uint8)
+        if len(pixels) == 3 * numbers[b"Width"] * numbers[b"Height"]:
+            found.append(pixels.reshape(numbers[b"Height"], numbers[b"Width"], 3))
+    return found
+
+
+def test_paper_has_the_bodies_the_rigid_lines_and_all_charts(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(rigid_surface(job, tmp_path))
+    page.select_option("#field", "none")
+    page.wait_for_function("page.charts.every((chart) => chart.plot)")
+    on_screen = page.evaluate(
+        """(() => {
+            const { width, height } = page.view.overlay;
+            return Array.from(page.drawn().getContext("2d").getImageData(0, 0, width, height).data);
+        })()"""
+    )
+    shapes = page.evaluate("page.charts.map((chart) => [chart.plot.ctx.canvas.height, chart.plot.ctx.canvas.width])")
+    data = page.pdf()
+    images = pictures_of_pdf(data)
+    assert len(images) >= len(shapes)
+    bodies = max(images, key=lambda image: (image == (0xCD, 0xD8, 0xE4)).all(axis=2).sum())
+    pixels = np.reshape(on_screen, (-1, 4))[:, :3]
+    for colour in ((0xCD, 0xD8, 0xE4), (0x3D, 0x4A, 0x58)):
+        wanted = (pixels == colour).all(axis=1).sum()
+        assert wanted > 300
+        assert (bodies == colour).all(axis=2).sum() == wanted
+    printed = [list(image.shape[:2]) for image in images]
+    assert all(shape in printed for shape in shapes), "charts are whole"
+    assert page.locator(".printed").count() == 0, "the screen is as it was"

@@ -11,7 +11,8 @@ from stickslip.arrays import Array, Integers
 from stickslip.certificate.certify import certify
 from stickslip.certificate.own import own_checks
 from stickslip.errors import Fault
-from stickslip.quantity import Members, components
+from stickslip.fields import VECTORS, also, directions, words
+from stickslip.quantity import Members, find, force_against_displacement
 from stickslip.report.pack import Packed
 from stickslip.result import Result
 
@@ -47,16 +48,17 @@ def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
     """Everything of a result."""
     with Result(path) as result:
         frames = _chosen(len(result.frames), choice.frames)
-        mesh = _mesh(result)
-        surfaces = _surfaces(result, mesh)
+        surfaces = _surfaces(result)
         fields = _fields(result, frames, choice.fields, packed)
         return {
             **_record(result, frames),
-            "mesh": _pack_mesh(result, mesh, packed),
-            "motion": _motion(result, frames, mesh, None, packed),
+            "mesh": _pack_mesh(result, packed),
+            "recovery": _recovery(result, packed),
+            "motion": _motion(result, frames, None, packed),
             "fields": fields,
             "surfaces": surfaces,
             "histories": _histories(result, packed),
+            "pairs": _pairs(result, packed),
             "checks": _checks(result),
             "certificate": _certificate(result),
             "deck": result.deck,
@@ -67,30 +69,36 @@ def collect_outline(path: Path, packed: Packed, choice: Choice) -> dict[str, Any
     """What is laid over another result: outlines in motion, pressure along surfaces, histories."""
     with Result(path) as result:
         frames = _chosen(len(result.frames), choice.frames)
-        mesh = _mesh(result)
-        drawn = np.unique(np.concatenate([mesh.outline.ravel(), mesh.rigid.ravel()]))
+        drawing = result.drawing
+        drawn = np.unique(np.concatenate([result.boundary.ravel(), result.rigid.ravel()]))
         place = np.full(len(result.coordinates), -1)
         place[drawn] = np.arange(len(drawn))
-        coordinates = result.coordinates[drawn]
+        # vertices of the outline behind the nodes, which have vertices of the outline around them
+        behind = np.unique(drawing.outline[drawing.outline >= drawing.nodes])
+        vertex = np.concatenate([place, np.full(len(drawing.after), -1)])
+        vertex[behind] = len(drawn) + np.arange(len(behind))
+        after = vertex[drawing.after[behind - drawing.nodes]]
         fields = _fields(result, frames, ("CONTACT_PRESSURE",), packed)
         for each in fields:
             each["only"] = packed.whole(place[_contact_nodes(result)])
-        surfaces = _surfaces(result, mesh)
+        surfaces = _surfaces(result)
         for surface in surfaces:
             surface["nodes"] = [int(place[node]) for node in surface["nodes"]]
         return {
             **_record(result, frames),
             "mesh": {
                 "nodes": len(drawn),
-                "coordinates": packed.bits(coordinates - _middle(result)),
+                "coordinates": packed.bits(result.coordinates[drawn] - _middle(result)),
                 "middle": _middle(result).tolist(),
-                "outline": packed.whole(place[mesh.outline]),
-                "rigid": packed.whole(place[mesh.rigid]),
+                "after": packed.whole(after),
+                "outline": packed.whole(vertex[drawing.outline]),
+                "rigid": packed.whole(place[result.rigid]),
             },
-            "motion": _motion(result, frames, mesh, drawn, packed),
+            "motion": _motion(result, frames, drawn, packed),
             "fields": fields,
             "surfaces": surfaces,
             "histories": _histories(result, packed),
+            "pairs": _pairs(result, packed),
         }
 
 
@@ -108,6 +116,10 @@ def _record(result: Result, frames: Integers) -> dict[str, Any]:
         "elements": len(result.element_labels),
         "nodes": len(result.coordinates),
         "bodies": len(result.read("model/bodies/mass")),
+        "displacement": {"words": words("U"), "also": also("U", 2)},
+        "axes": directions(2, result.is_axisymmetric),
+        "tensor": directions(3, result.is_axisymmetric),
+        "static": bool(result.rows > 1 and not result.history.momentum.linear.any() and not result.history.energy.kinetic.any()),
         "increments": result.rows - 1,
         "landings": len(result.complete_rows("history/impacts/time")),
         "steps": int(result.history["step"].max(initial=1)),
@@ -145,41 +157,17 @@ def _chosen(frames: int, most: int | None) -> Integers:
 # The mesh.
 
 
-@dataclass(frozen=True)
-class DrawnMesh:
-    """Elements and what is drawn of them."""
-
-    connectivity: Integers
-    """Node indices around all elements, one element after the other, nodes between corners in their places."""
-    offsets: Integers
-    """Where each element's nodes start [E + 1]."""
-    outline: Integers
-    """Edges of one element only [., 2], the body on the left."""
-    inner: Integers
-    """The other edges, each once [., 2]."""
-    rigid: Integers
-    """Segments of rigid surfaces [., 2]."""
-
-
-def _mesh(result: Result) -> DrawnMesh:
-    connectivity = np.concatenate([*result.outlines, np.empty(0, np.int64)])
-    offsets = np.concatenate([[0], np.cumsum([len(one) for one in result.outlines], dtype=np.int64)])
-    following = np.arange(1, len(connectivity) + 1)
-    following[offsets[1:] - 1] = offsets[:-1]
-    edges = np.stack([connectivity, connectivity[following]], axis=1)
-    ordered = np.sort(edges, axis=1)
-    _, first, count = np.unique(ordered, axis=0, return_index=True, return_counts=True)
-    return DrawnMesh(connectivity, offsets, edges[first[count == 1]], edges[first[count > 1]], result.rigid)
-
-
 def _middle(result: Result) -> Array:
     """Point that coordinates are given from, so that float32 is enough for them."""
     coordinates = result.coordinates
     return 0.5 * (coordinates.min(axis=0) + coordinates.max(axis=0))
 
 
-def _pack_mesh(result: Result, mesh: DrawnMesh, packed: Packed) -> dict[str, Any]:
-    coordinates = result.coordinates
+def _pack_mesh(result: Result, packed: Packed) -> dict[str, Any]:
+    """The mesh with its drawing: `connectivity` and `offsets` are the vertices around the elements."""
+    coordinates, drawing = result.coordinates, result.drawing
+    connectivity = np.concatenate([*drawing.rings, np.empty(0, np.int64)])
+    offsets = np.concatenate([[0], np.cumsum([len(ring) for ring in drawing.rings], dtype=np.int64)])
     middle = _middle(result)
     return {
         "nodes": len(result.coordinates),
@@ -190,21 +178,35 @@ def _pack_mesh(result: Result, mesh: DrawnMesh, packed: Packed) -> dict[str, Any
         "elementLabels": packed.whole(result.element_labels[:, None]),
         "body": packed.whole(result.read("model/bodies/element")[:, None]),
         "nodeBody": packed.whole(result.read("model/bodies/node")[:, None]),
-        "connectivity": packed.whole(mesh.connectivity[:, None]),
-        "offsets": packed.whole(mesh.offsets[:, None]),
-        "outline": packed.whole(mesh.outline),
-        "inner": packed.whole(mesh.inner),
-        "rigid": packed.whole(mesh.rigid),
+        "after": packed.whole(drawing.after),
+        "connectivity": packed.whole(connectivity[:, None]),
+        "offsets": packed.whole(offsets[:, None]),
+        "outline": packed.whole(drawing.outline),
+        "inner": packed.whole(drawing.inner),
+        "rigid": packed.whole(result.rigid),
+    }
+
+
+def _recovery(result: Result, packed: Packed) -> dict[str, Any]:
+    """What makes values at nodes of those of elements."""
+    recovery = result.recovery
+    return {
+        "places": recovery.places,
+        "twins": packed.whole(recovery.twins[:, None]),
+        "place": packed.whole(recovery.place[:, None]),
+        "element": packed.whole(recovery.element[:, None]),
+        "weight": packed.linear(recovery.weight[:, None], 1e-6),
+        "middles": packed.whole(recovery.middles),
     }
 
 
 def _motion(
-    result: Result, frames: Integers, mesh: DrawnMesh, only: Integers | None, packed: Packed
+    result: Result, frames: Integers, only: Integers | None, packed: Packed
 ) -> dict[str, Any]:
     """Displacements [frames, 2 nodes] of all nodes or some."""
     displacement = _field_values(result, "U", frames)[:, :, :2]
-    coordinates = result.coordinates
-    ends = coordinates[np.concatenate([mesh.outline, mesh.inner, mesh.rigid])]
+    drawing = result.drawing
+    ends = drawing.positions(result.coordinates)[np.concatenate([drawing.outline, drawing.inner, result.rigid])]
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     edge = float(np.quantile(length, 0.02)) if len(length) else 0.0
     usable = np.nan_to_num(displacement, nan=0.0, posinf=0.0, neginf=0.0)
@@ -217,26 +219,24 @@ def _motion(
 
 # Fields.
 
-COMPONENTS = {"U": 2, "V": 2, "A": 2, "RF": 2, "CONTACT_FORCE": 2, "CF": 2}
-"""Components in the plane of the vectors at nodes, whose third one is 0."""
-
-
 def _fields(
     result: Result, frames: Integers, names: tuple[str, ...] | None, packed: Packed
 ) -> list[dict[str, Any]]:
     """Fields [frames, places components]; places without any value are left out."""
-    for name in names or ():
-        result.frames.kind(name)  # a Fault where there is no such field
+    chosen = None if names is None else {result.frames.known(name).partition(":")[0] for name in names}
     found = []
     for name, kind in result.frames.fields.items():
-        if name in ("U", "BODY") or (names is not None and name not in names):
+        if name in ("U", "BODY") or (chosen is not None and name not in chosen):
             continue
         values = _field_values(result, name, frames)
         if kind == "CellData":
             values = values[:, : len(result.element_labels)]
-        values = values.reshape(*values.shape[:2], -1)[:, :, : COMPONENTS.get(name)]
+        values = values.reshape(*values.shape[:2], -1)[:, :, : 2 if name in VECTORS else None]
         attributes = result.file[f"VTKHDF/{kind}/{name}"].attrs
-        found.append(_field(kind, name, attributes, values, packed))
+        described = _field(kind, name, attributes, values, packed)
+        described["words"] = words(name, result.is_axisymmetric)
+        described["also"] = also(name, described["components"])
+        found.append(described)
     return found
 
 
@@ -272,7 +272,7 @@ def _contact_nodes(result: Result) -> Integers:
     return np.flatnonzero(known)
 
 
-def _surfaces(result: Result, mesh: DrawnMesh) -> list[dict[str, Any]]:
+def _surfaces(result: Result) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
     A chain that is closed begins where nothing presses it, so that what is pressed is in one piece.
@@ -286,7 +286,7 @@ def _surfaces(result: Result, mesh: DrawnMesh) -> list[dict[str, Any]]:
     body = result.read("model/bodies/node")
     bodies = len(result.read("model/bodies/mass"))
     found: list[dict[str, Any]] = []
-    for chain in _chains(mesh.outline[slave[mesh.outline].all(axis=1)]):
+    for chain in _chains(result.boundary[slave[result.boundary].all(axis=1)]):
         if chain[0] == chain[-1]:
             chain = _opened(chain, most)
         way = np.linalg.norm(np.diff(result.coordinates[chain], axis=0), axis=1)
@@ -354,7 +354,7 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
         described: dict[str, Any] = {
             "name": name,
             "dimension": str(item.attrs.get("dimension", "1")),
-            "columns": _columns(Members.of(result, name), item.shape[1:]),
+            "columns": _columns(Members.of(result, name), item.shape[1:], result.is_axisymmetric),
             "zero": not values.any(),
         }
         if not described["zero"]:
@@ -366,11 +366,28 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
     return {"time": packed.bits(time[:, None]), "thinned": parts is not None, "all": found}
 
 
-def _columns(each: Members, shape: tuple[int, ...]) -> list[str]:
+def _pairs(result: Result, packed: Packed) -> list[dict[str, Any]]:
+    """Forces against displacements: what moves, titles, and time, displacement and force [rows, 3]."""
+    rows = np.unique(np.linspace(0, result.rows - 1, min(result.rows, MOST_ROWS)).astype(np.int64))
+    pairs = []
+    for names in force_against_displacement(result):
+        found = [find(result, name) for name in names]
+        columns = [result.history["time"], *(part for each in found for part in each.parts.values())]
+        pairs.append(
+            {
+                "name": f"{names[0].split('/')[1]}, {next(iter(found[0].parts))}",
+                "titles": [each.title for each in found],
+                "values": packed.bits(np.column_stack(columns)[rows]),
+            }
+        )
+    return pairs
+
+
+def _columns(each: Members, shape: tuple[int, ...], axisymmetric: bool) -> list[str]:
     """Words for the columns of a history: `node 12, x`."""
     of = [f"{each.kind} {name}" for name in each.names] or [""]
     sizes = shape[1:] if each.names else shape
-    of_each = components(sizes[0]) if sizes else [""]
+    of_each = directions(sizes[0], axisymmetric) if sizes else [""]
     return [", ".join(filter(None, pair)) for pair in itertools.product(of, of_each)]
 
 

@@ -54,9 +54,10 @@ function words(name) {
 
 /** Where the curves of a chart come from: a variant of energies, forces, ... */
 class Chart {
-  /** `variants` are {name, label, make}: make returns {x, series, axis, log, along}. */
+  /** `variants` are {name, label, make}: make returns {x, series, axis, log, along}, and `way` where x goes to and fro. */
   constructor(page, title, variants, note = "") {
     this.page = page;
+    this.title = title;
     this.variants = variants;
     this.select = make("select", { "aria-label": `${title}: what is shown`, onchange: () => this.build() });
     fillSelect(this.select, [["", variants.map(({ name }, i) => [i, name])]]);
@@ -92,16 +93,8 @@ class Chart {
     const made = await this.variants[Number(this.select.value) || 0].make();
     if (turn !== this.turn) return;
     const shown = (this.made = made);
-    const tables = new Map();
-    for (const each of shown.series) {
-      const x = each.x ?? shown.x;
-      if (!tables.has(x)) tables.set(x, [Array.from(x)]);
-      tables.get(x).push(each.values);
-      each.table = x;
-    }
-    const ordered = [...tables.keys()].flatMap((x) => shown.series.filter((each) => each.table === x));
-    const joined = tables.size > 1;
-    const data = joined ? uPlot.join([...tables.values()]) : [...tables.values()][0] ?? [[], []];
+    this.card.classList.toggle("empty", Boolean(made.empty));
+    const { ordered, joined, data } = shown.way ? ways(shown) : tables(shown);
     this.plot?.destroy();
     this.line = null;
     this.plotted.replaceChildren();
@@ -110,6 +103,10 @@ class Chart {
     this.line = make("div", { class: "now" });
     this.plot.over.append(this.line);
     this.plot.over.addEventListener("click", () => this.jump());
+    for (const name of this.plot.root.querySelectorAll(".u-series th")) {
+      Object.assign(name, { tabIndex: 0, role: "button" });
+      name.addEventListener("keydown", (event) => event.key === "Enter" && name.click());
+    }
     this.mark();
   }
 
@@ -129,21 +126,22 @@ class Chart {
       height: CHART_HEIGHT,
       legend: { live: true },
       hooks: { draw: [() => this.mark()] },
-      cursor: { sync: shown.along ? undefined : { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
-      scales: { x: { time: false }, y: { distr: shown.log ? 3 : 1, range: shown.log ? undefined : span } },
+      cursor: { sync: shown.along ? undefined : { key: "time" }, drag: { x: !shown.way, y: false }, points: { size: 6 }, ...(shown.way ? { dataIdx: nearestOnWay } : {}) },
+      scales: { x: { time: false, ...(shown.way ? { range: spanOf(shown.series.map(({ x }) => x)) } : {}) }, y: { distr: shown.log ? 3 : 1, range: shown.way ? spanOf(shown.series.map(({ values }) => values)) : shown.log ? undefined : span } },
       axes: [
         { ...axis, label: shown.along ?? "time", values: shorten, size: 34 },
         { ...axis, label: shown.axis, values: shorten, size: widest },
       ],
       series: [
-        { label: shown.along ? "at" : "t", value: (_, value) => number(value, 5) },
+        { label: shown.along ? "at" : "t", value: (_, value) => number(value, 5), ...(shown.way ? { sorted: 0 } : {}) },
         ...ordered.map((each) => {
           const colour = CURVES[each.colour % CURVES.length];
           const stroke = each.faint ? () => styleColour("grid-strong") : colour;
           const points = { show: Boolean(each.points), size: 5, fill: stroke };
           const dash = each.dash ? [6, 4] : undefined;
           const value = (_, found) => number(found, 5);
-          return { label: each.label, stroke, width: 1.6, dash, spanGaps: joined, points, value, fill: each.fill };
+          const paths = shown.way ? wayPath : undefined;
+          return { label: each.label, paths, stroke, width: 1.6, dash, spanGaps: joined, points, value, fill: each.fill };
         }),
       ],
     };
@@ -154,24 +152,103 @@ class Chart {
     this.plot?.setData([this.plot.data[0], ...values], false);
   }
 
-  /** The line at the time of the frame. */
+  /** The line at the time of the frame, or where a curve that goes to and fro is then. */
   mark() {
-    if (!this.line || !this.made || this.made.along) {
-      if (this.line) this.line.hidden = true;
-      return;
-    }
+    if (!this.line || !this.made) return;
+    const { made, plot } = this;
     const { view } = this.page;
-    const left = this.plot.valToPos(view.result.times[view.frame], "x");
-    this.line.hidden = !(left >= 0 && left <= this.plot.over.clientWidth);
+    const time = view.result.times[view.frame];
+    this.line.hidden = Boolean(made.along) && !made.way;
+    if (this.line.hidden) return;
+    const [first] = made.series;
+    const at = made.way && first.times ? first.x[rowAt(first.times, time)] : time;
+    const left = plot.valToPos(at, "x");
+    this.line.hidden = !(left >= 0 && left <= plot.over.clientWidth);
     this.line.style.transform = `translateX(${left}px)`;
   }
 
   /** Goes to the time that was clicked, unless the mouse drew a window. */
   jump() {
-    if (this.made.along || this.plot.select.width > 2) return;
-    const time = this.plot.posToVal(this.plot.cursor.left, "x");
+    const { made, plot } = this;
+    if ((made.along && !made.way) || plot.select.width > 2) return;
+    const { idx, left } = plot.cursor;
+    const time = made.way ? made.series[0].times?.[idx] : plot.posToVal(left, "x");
+    if (time === undefined) return;
     this.page.player.go(this.page.view.result.nearestFrame(time));
   }
+}
+
+/** Curves over abscissae that grow, those of one abscissa beside each other. */
+function tables(shown) {
+  const found = new Map();
+  for (const each of shown.series) {
+    const x = each.x ?? shown.x;
+    if (!found.has(x)) found.set(x, [Array.from(x)]);
+    found.get(x).push(each.values);
+    each.table = x;
+  }
+  const ordered = [...found.keys()].flatMap((x) => shown.series.filter((each) => each.table === x));
+  const joined = found.size > 1;
+  return { ordered, joined, data: joined ? uPlot.join([...found.values()]) : [...found.values()][0] ?? [[], []] };
+}
+
+/** Curves that go to and fro, one behind the other: each has values at its own part of the abscissa. */
+function ways(shown) {
+  const x = shown.series.flatMap((each) => Array.from(each.x));
+  let start = 0;
+  const columns = shown.series.map((each) => {
+    const column = new Array(x.length).fill(null);
+    each.values.forEach((value, row) => (column[start + row] = value));
+    start += each.values.length;
+    return column;
+  });
+  return { ordered: shown.series, joined: false, data: [x, ...columns] };
+}
+
+/** The lines of a curve that goes to and fro. */
+function wayPath(plot, series) {
+  const [x, y] = [plot.data[0], plot.data[series]];
+  const stroke = new Path2D();
+  let down = false;
+  for (let row = 0; row < x.length; row++) {
+    const there = x[row] !== null && y[row] !== null;
+    if (there) stroke[down ? "lineTo" : "moveTo"](plot.valToPos(x[row], "x", true), plot.valToPos(y[row], plot.series[series].scale, true));
+    down = there;
+  }
+  return { stroke, fill: null, clip: null, flags: 1 };
+}
+
+/** The row of a curve that is nearest to the mouse. */
+function nearestOnWay(plot, series) {
+  const [x, y] = [plot.data[0], plot.data[series]];
+  const { left, top } = plot.cursor;
+  let [best, least] = [null, Infinity];
+  for (let row = 0; series > 0 && row < x.length; row++) {
+    if (x[row] === null || y[row] === null) continue;
+    const distance = Math.hypot(plot.valToPos(x[row], "x") - left, plot.valToPos(y[row], "y") - top);
+    if (distance < least) [best, least] = [row, distance];
+  }
+  return series > 0 ? best : nearestOnWay(plot, 1);
+}
+
+/** Last row at or before a time. */
+function rowAt(times, time) {
+  let row = 0;
+  while (row + 1 < times.length && times[row + 1] <= time * (1 + 1e-9)) row++;
+  return row;
+}
+
+/** Ends of an axis for all values of some columns. */
+function spanOf(columns) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const column of columns) {
+    for (const value of column) {
+      if (value === null || !Number.isFinite(value)) continue;
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  return low <= high ? span(null, low, high) : [0, 1];
 }
 
 /** Ends of an axis with some room; a constant has room of its own size. */

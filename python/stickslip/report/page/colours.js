@@ -17,8 +17,8 @@ const MAPS = {
   bodies: "8fb0d3e3b587a5c9a1d3a0a8b7aed4d6cf92a0cfcbc4b5a7",
 };
 
-/** 256 colours [4 bytes each] of a map; those of bodies are steps. */
-function colourTable(name) {
+/** 256 colours [4 bytes each] of a map, in so many bands where their number is not 0; those of bodies are steps. */
+function colourTable(name, bands = 0) {
   const text = MAPS[name];
   const count = text.length / 6;
   const knots = [];
@@ -27,7 +27,7 @@ function colourTable(name) {
   }
   const table = new Uint8Array(4 * 256);
   for (let i = 0; i < 256; i++) {
-    const place = name === "bodies" ? Math.floor((i / 256) * count) : (i / 255) * (count - 1);
+    const place = name === "bodies" ? Math.floor((i / 256) * count) : banded(i, bands) * (count - 1);
     const left = Math.min(Math.floor(place), count - 1);
     const right = Math.min(left + 1, count - 1);
     for (let k = 0; k < 3; k++) {
@@ -36,6 +36,11 @@ function colourTable(name) {
     table[4 * i + 3] = 255;
   }
   return table;
+}
+
+/** Part of a map at the place i of 256. */
+function banded(i, bands) {
+  return bands ? Math.min(Math.floor((i / 256) * bands), bands - 1) / (bands - 1) : i / 255;
 }
 
 /** Colours of the curves of a chart. */

@@ -2,48 +2,27 @@
 
 const NONE = 3e38; // stands for "no value"
 
-const NAMES = {
-  U: "displacement",
-  V: "velocity",
-  A: "acceleration",
-  RF: "reaction",
-  CONTACT_FORCE: "contact force",
-  CF: "concentrated load",
-  GAP: "gap",
-  CONTACT_PRESSURE: "contact pressure",
-  SLIP: "accumulated slip",
-  CONTACT_MASS: "mass of contact nodes",
-  S: "stress",
-  S33: "stress across the thickness",
-  MISES: "von Mises stress",
-  SP1: "smallest principal stress",
-  SP2: "middle principal stress",
-  SP3: "largest principal stress",
-  PRESS: "pressure",
-  E33: "Green-Lagrange strain around the axis",
-  PEEQ: "accumulated plastic strain",
-  E: "Green-Lagrange strain",
-  LE: "logarithmic strain",
-  ENER: "strain energy density",
-};
-
-const VECTOR = [
-  ["magnitude", "magnitude", (d, i) => Math.hypot(d[i], d[i + 1])],
-  ["x", "x", (d, i) => d[i]],
-  ["y", "y", (d, i) => d[i + 1]],
-];
-
 const radius = (d, i) => Math.hypot(0.5 * (d[i] - d[i + 1]), d[i + 2]);
-const TENSOR = [
-  ["xx", "xx", (d, i) => d[i]],
-  ["yy", "yy", (d, i) => d[i + 1]],
-  ["xy", "xy", (d, i) => d[i + 2]],
-  ["max", "largest principal in the plane", (d, i) => 0.5 * (d[i] + d[i + 1]) + radius(d, i)],
-  ["min", "smallest principal in the plane", (d, i) => 0.5 * (d[i] + d[i + 1]) - radius(d, i)],
-  ["mean", "mean in the plane", (d, i) => 0.5 * (d[i] + d[i + 1])],
-];
 
-const ALONE = [["", "", (d, i) => d[i]]];
+/** Numbers made of a vector or a tensor: [id, name in words, function]. The ids of components are the same everywhere. */
+function partsOf(components, axes, tensor) {
+  if (components === 1) return [["", "", (d, i) => d[i]]];
+  if (components === 2) {
+    return [
+      ["magnitude", "magnitude", (d, i) => Math.hypot(d[i], d[i + 1])],
+      ["x", axes[0], (d, i) => d[i]],
+      ["y", axes[1], (d, i) => d[i + 1]],
+    ];
+  }
+  return [
+    ["xx", tensor[0], (d, i) => d[i]],
+    ["yy", tensor[1], (d, i) => d[i + 1]],
+    ["xy", tensor[2], (d, i) => d[i + 2]],
+    ["max", "largest principal in the plane", (d, i) => 0.5 * (d[i] + d[i + 1]) + radius(d, i)],
+    ["min", "smallest principal in the plane", (d, i) => 0.5 * (d[i] + d[i + 1]) - radius(d, i)],
+    ["mean", "mean in the plane", (d, i) => 0.5 * (d[i] + d[i + 1])],
+  ];
+}
 
 /** A field [frames, places, components] of the page, unpacked when it is asked for. */
 class Field {
@@ -83,18 +62,66 @@ class Field {
   }
 }
 
+/** A field of elements at the places of nodes, averaged within a body and a material (nodal.py). */
+class NodalField extends Field {
+  constructor(result, source) {
+    const columns = result.recovery.places * source.components;
+    super({ ...source, at: "nodes", empty: null, only: null, values: { columns } }, result.recovery.places);
+    this.result = result;
+    this.source = source;
+  }
+
+  load() {
+    this.loading ??= this.recover();
+    return this.loading;
+  }
+
+  async recover() {
+    const { result, source, components } = this;
+    const ofProgram = result.field(`${source.name}_AT_NODES`);
+    await Promise.all([source.load(), ofProgram?.load()]);
+    const { places, place, element, weight, middles } = result.recovery;
+    const columns = places * components;
+    const data = new Float32Array(result.frames * columns).fill(NaN);
+    const sums = new Float64Array(places);
+    for (let frame = 0; frame < result.frames; frame++) {
+      for (let k = 0; k < components; k++) {
+        sums.fill(0);
+        let least = Infinity;
+        for (let w = 0; w < place.length; w++) {
+          const value = source.value(frame, element[w], k);
+          if (value < least) least = value;
+          sums[place[w]] += weight[w] * value;
+        }
+        const start = frame * columns + k;
+        for (const at of result.recovery.corners) data[start + at * components] = least >= 0 ? Math.max(sums[at], 0) : sums[at];
+        for (let i = 0; i < middles.length; i += 3) {
+          const [a, middle, b] = middles.subarray(i, i + 3);
+          data[start + middle * components] = 0.5 * (data[start + a * components] + data[start + b * components]);
+        }
+        for (const node of ofProgram ? result.recovery.alone : []) {
+          data[start + node * components] = ofProgram.value(frame, node, k);
+        }
+      }
+    }
+    this.data = data;
+    this.columns = columns;
+  }
+}
+
 /** A number for each node or element: a component of a field, or what is made of its components. */
 class Scalar {
   constructor(field, part, text, of) {
     this.field = field;
     this.id = part ? `${field.name}:${part}` : field.name;
-    const name = NAMES[field.name] ?? field.name.toLowerCase().replaceAll("_", " ");
+    const name = field.words;
     this.group = name;
     this.label = text ? `${name}, ${text}` : name;
     this.short = text || name;
+    this.known = field.also[part] ?? field.name;
     this.of = of;
     this.at = field.at;
-    this.onEdges = field.at === "nodes" && field.empty === null;
+    this.onEdges = field.at === "nodes" && field.empty === null && !field.source && !field.name.endsWith("_AT_NODES");
   }
 
   value(frame, place) {
@@ -172,13 +199,17 @@ function usual(ends, all) {
   return Math.min(positive[positive.length - 1], 2 * quartile);
 }
 
-/** All scalars of the fields. */
-function scalarsOf(fields) {
+/** All scalars of the fields of a result; those of elements have a twin at nodes. */
+function scalarsOf(result) {
   const scalars = [];
-  for (const field of fields) {
+  for (const field of result.fields) {
     if (field.name === "CONTACT_STATUS" || field.values.columns === 0) continue;
-    const parts = field.components === 1 ? ALONE : field.components === 2 ? VECTOR : TENSOR;
-    for (const [part, text, of] of parts) scalars.push(new Scalar(field, part, text, of));
+    const nodal = field.at === "elements" && field.dimension !== "energy" && result.recovery ? new NodalField(result, field) : null;
+    for (const [part, text, of] of partsOf(field.components, result.axes, result.tensor)) {
+      const scalar = new Scalar(field, part, text, of);
+      if (nodal) scalar.nodal = new Scalar(nodal, part, text, of);
+      scalars.push(scalar);
+    }
   }
   return scalars;
 }
@@ -188,20 +219,28 @@ class Result {
   constructor(described) {
     Object.assign(this, described);
     this.frames = this.times.length;
-    const motion = { name: "U", at: "nodes", components: 2, empty: 0, dimension: "length", values: this.motion };
+    const motion = { name: "U", at: "nodes", components: 2, empty: 0, dimension: "length", values: this.motion, ...this.displacement };
     this.displacement = new Field(motion, this.mesh.nodes);
     this.fields = [motion, ...this.fields].map(
       (each) => new Field(each, each.at === "nodes" ? this.mesh.nodes : this.mesh.elements),
     );
     this.fields[0] = this.displacement;
-    this.scalars = scalarsOf(this.fields);
+    this.scalars = scalarsOf(this);
   }
 
   /** Unpacks the mesh, its motion and what belongs to contact. */
   async load() {
-    const { mesh } = this;
-    for (const [name, value] of Object.entries(mesh)) {
-      if (value && typeof value === "object" && "blob" in value) mesh[name] = await unpacked(value);
+    const { mesh, recovery } = this;
+    for (const group of [mesh, recovery ?? {}]) {
+      for (const [name, value] of Object.entries(group)) {
+        if (value && typeof value === "object" && "blob" in value) group[name] = await unpacked(value);
+      }
+    }
+    mesh.vertices = mesh.nodes + mesh.after.length / 3;
+    if (recovery) {
+      recovery.corners = [...new Set(recovery.place)];
+      const twins = new Set(recovery.twins);
+      recovery.alone = Array.from({ length: mesh.nodes }, (_, node) => node).filter((node) => !twins.has(node));
     }
     const contact = ["CONTACT_STATUS", "CONTACT_PRESSURE", "CONTACT_FORCE"];
     await Promise.all(this.fields.filter((f) => f.name === "U" || contact.includes(f.name)).map((f) => f.load()));
@@ -216,12 +255,27 @@ class Result {
     return this.scalars.find((scalar) => scalar.id === id) ?? null;
   }
 
-  /** Positions [2 nodes] in a frame, from the middle of the mesh, with displacements so many times. */
+  /** Positions of the vertices [2 vertices] in a frame, from the middle of the mesh, with displacements so many times. */
   positions(frame, scale, into) {
-    const { coordinates, nodes } = this.mesh;
+    const { coordinates, nodes, after } = this.mesh;
     const { data } = this.displacement;
     const start = frame * 2 * nodes;
     for (let i = 0; i < 2 * nodes; i++) into[i] = coordinates[i] + scale * data[start + i];
+    // on the parabola through a corner, a node between and the other corner
+    for (let i = 0, at = 2 * nodes; i < after.length; i += 3) {
+      const [a, m, b] = [2 * after[i], 2 * after[i + 1], 2 * after[i + 2]];
+      into[at++] = 0.375 * into[a] + 0.75 * into[m] - 0.125 * into[b];
+      into[at++] = 0.375 * into[a + 1] + 0.75 * into[m + 1] - 0.125 * into[b + 1];
+    }
+  }
+
+  /** Values at the vertices behind the `known` first ones, straight between nodes. */
+  spread(values, known) {
+    const { nodes, after } = this.mesh;
+    for (let vertex = known; vertex < nodes + after.length / 3; vertex++) {
+      const i = 3 * (vertex - nodes);
+      values[vertex] = 0.5 * (values[after[i]] + values[after[i + 1]]);
+    }
   }
 
   /** Frame that is last at or before a time. */

@@ -1,4 +1,4 @@
-// The charts of the page: energies, momenta, contact forces, work of the solver, surfaces, nodes, any history.
+// The charts of the page: forces against displacements, energies, momenta, contact forces, work of the solver, surfaces, nodes, any history.
 
 /** Curves of histories by name for a result and what is laid over it. */
 async function curves(page, wanted) {
@@ -27,6 +27,31 @@ function present(page, names) {
   return names.filter((name) => page.histories.some((each) => each.has(name) && !each.zero(name)));
 }
 
+/** Forces against the displacements in their directions, and both over the time; the largest work first. */
+function forceChart(page) {
+  const { pairs } = page.result;
+  if (pairs.length === 0) return null;
+  const made = async (pair, x, y) => {
+    const series = [];
+    for (const [k, result] of page.results.entries()) {
+      const found = result.pairs.find((each) => each.name === pair.name && each.titles[1] === pair.titles[1]);
+      if (!found) continue;
+      found.loading ??= unpacked(found.values);
+      const values = await found.loading;
+      const column = (at) => Array.from({ length: found.values.rows }, (_, row) => values[3 * row + at]);
+      series.push({ label: k > 0 ? "other" : result.job, values: column(y), x: column(x), colour: 0, dash: k > 0, times: column(0) });
+    }
+    const note = page.other ? `Dashed: ${page.other.job}.` : "";
+    return { series, x: series[0].x, axis: pair.titles[y - 1], along: x > 0 ? pair.titles[x - 1] : undefined, way: x > 0, note };
+  };
+  const variants = pairs.map((pair) => ({ name: `${pair.name}: force against displacement`, make: () => made(pair, 1, 2) }));
+  for (const pair of pairs) {
+    variants.push({ name: `${pair.name}: force`, make: () => made(pair, 0, 2) });
+    variants.push({ name: `${pair.name}: displacement`, make: () => made(pair, 0, 1) });
+  }
+  return new Chart(page, "Force and displacement", variants);
+}
+
 function energyChart(page) {
   const names = page.histories[0].under("energy/").filter((name) => name !== "energy/balance");
   const wanted = (chosen) => present(page, chosen).map((name) => ({ name, label: words(name) }));
@@ -53,7 +78,8 @@ function energyChart(page) {
 }
 
 function momentumChart(page) {
-  const linear = ["x", "y"].map((axis, column) => ({ name: "momentum/linear", column, label: `linear, ${axis}` }));
+  if (present(page, page.histories[0].under("momentum/")).length === 0) return null; // of static steps
+  const linear = page.result.axes.map((axis, column) => ({ name: "momentum/linear", column, label: `linear, ${axis}` }));
   const angular = [{ name: "momentum/angular", label: "angular" }];
   return new Chart(page, "Momenta", [
     { name: "linear", make: async () => ({ ...(await curves(page, linear)), axis: axisText("momentum", page.histories[0].dimension("momentum/linear")) }) },
@@ -80,10 +106,10 @@ function contactChart(page) {
       { name: at("normal"), label: "normal" },
       { name: at("tangential"), label: "tangential" },
     ];
-    const parts = ["x", "y"].map((axis, column) => ({ name: at("force"), column, label: `force, ${axis}` }));
+    const parts = page.result.axes.map((axis, column) => ({ name: at("force"), column, label: `force, ${axis}` }));
     const pairs = ["closed", "sticking"].map((name) => ({ name: at(name), label: name }));
     const gap = [{ name: at("min_gap"), label: "smallest gap" }];
-    for (const [text, wanted, axis] of [["normal and tangential", forces, "force"], ["force in x and y", parts, "force"], ["pairs in contact", pairs, "pairs"], ["smallest gap", gap, "length"]]) {
+    for (const [text, wanted, axis] of [["normal and tangential", forces, "force"], [`force in ${page.result.axes.join(" and ")}`, parts, "force"], ["pairs in contact", pairs, "pairs"], ["smallest gap", gap, "length"]]) {
       variants.push({ name: `${contact}: ${text}`, make: async () => ({ ...(await curves(page, wanted)), axis }) });
     }
   }
@@ -157,7 +183,7 @@ function surfaceChart(page) {
 
 /** Fields of the chosen nodes over the frames. */
 function nodeChart(page) {
-  const quantities = page.result.scalars.filter((scalar) => scalar.at === "nodes");
+  const quantities = page.result.scalars.map((scalar) => scalar.nodal ?? scalar).filter((scalar) => scalar.at === "nodes");
   const variants = quantities.map((scalar) => ({
     name: scalar.label,
     make: async () => {
@@ -173,7 +199,7 @@ function nodeChart(page) {
         points: page.result.frames < 60,
       }));
       const note = series.length ? `From the ${page.result.frames} frames.` : "Click a node in the picture, or give its number.";
-      return { series: series.length ? series : [{ label: "", values: page.result.times.map(() => null), colour: 0 }], x: page.result.times, axis: axisText(scalar.label, scalar.field.dimension), note };
+      return { series: series.length ? series : [{ label: "", values: page.result.times.map(() => null), colour: 0 }], x: page.result.times, axis: axisText(scalar.label, scalar.field.dimension), note, empty: series.length === 0 };
     },
   }));
   const chart = new Chart(page, "Chosen nodes", variants);
@@ -193,7 +219,7 @@ function nodeChart(page) {
   return chart;
 }
 
-/** Any history of the file. */
+/** Any history of the file, against the time or any other. */
 function anyChart(page) {
   const histories = page.histories[0];
   const groups = new Map();
@@ -207,26 +233,36 @@ function anyChart(page) {
   const chosen = [];
   const start = ["rigid/", "nodes/", "bodies/center"].map((each) => histories.under(each).find((name) => !histories.zero(name) && !/node$/.test(name))).find(Boolean);
   if (start) chosen.push(`${start}|${Math.min(1, histories.columns(start).length - 1)}`);
+  const described = (id) => {
+    const [name, column] = [id.slice(0, id.lastIndexOf("|")), Number(id.slice(id.lastIndexOf("|") + 1))];
+    const text = histories.columns(name)[column];
+    const short = name.split("/").slice(-2).join("/");
+    return { name, column, label: text ? `${short}: ${text}` : short };
+  };
+  const across = make("select", { "aria-label": "abscissa" });
   const make_ = async () => {
-    const wanted = chosen.map((each) => {
-      const [name, column] = each.split("|");
-      const text = histories.columns(name)[Number(column)];
-      const short = name.split("/").slice(-2).join("/");
-      return { name, column: Number(column), label: text ? `${short}: ${text}` : short };
-    });
+    const wanted = chosen.map(described);
     const made = await curves(page, wanted);
     const dimensions = [...new Set(wanted.map(({ name }) => histories.dimension(name)))];
     if (made.series.length === 0) made.series.push({ label: "", values: Array.from(histories.time, () => null), colour: 0 });
-    return { ...made, axis: dimensions.map(dimensionText).join(", ") };
+    const axis = dimensions.map(dimensionText).join(", ");
+    if (!across.value) return { ...made, axis };
+    const { name, column, label } = described(across.value);
+    const columns = new Map();
+    for (const each of page.histories) columns.set(each.time, await each.column(name, column));
+    for (const each of made.series) Object.assign(each, { times: each.x ?? made.x, x: columns.get(each.x ?? made.x) });
+    return { ...made, axis, x: columns.get(made.x), way: true, along: axisText(label, histories.dimension(name)) };
   };
   const chart = new Chart(page, "Any history", [{ name: "", make: make_ }], "Choosing a history adds its curve; every increment is in it.");
   const select = make("select", { "aria-label": "history to add" });
   fillSelect(select, [["", [["", "add a history ..."]]], ...groups]);
+  fillSelect(across, [["", [["", "against the time"]]], ...[...groups].map(([group, each]) => [group, each.map(([id, text]) => [id, `against ${text}`])])]);
+  across.addEventListener("change", () => chart.build());
   select.addEventListener("change", () => {
     if (select.value && !chosen.includes(select.value)) chosen.push(select.value);
     select.value = "";
     chart.build();
   });
-  chart.tools.append(select, make("button", { type: "button", onclick: () => (chosen.splice(0), chart.build()) }, "clear"));
+  chart.tools.append(select, across, make("button", { type: "button", onclick: () => (chosen.splice(0), chart.build()) }, "clear"));
   return chart;
 }

@@ -37,6 +37,14 @@ class Marks {
     }
   }
 
+  /** A field at nodes at a vertex, 0 where it has no value. */
+  atVertex(field, vertex) {
+    const { nodes, after } = this.view.result.mesh;
+    if (vertex < nodes) return field.value(this.view.frame, vertex) || 0;
+    const i = 3 * (vertex - nodes);
+    return 0.5 * (this.atVertex(field, after[i]) + this.atVertex(field, after[i + 1]));
+  }
+
   /** Contact pressure as a height over the surface. */
   pressure() {
     const { view, context } = this;
@@ -50,7 +58,7 @@ class Marks {
     const { outline } = view.result.mesh;
     for (let i = 0; i < outline.length; i += 2) {
       const ends = [outline[i], outline[i + 1]];
-      const heights = ends.map((node) => Math.max(0, field.value(view.frame, node) || 0) / largest);
+      const heights = ends.map((vertex) => Math.max(0, this.atVertex(field, vertex)) / largest);
       if (!(heights[0] > 0) && !(heights[1] > 0)) continue;
       const [a, b] = ends.map((node) => view.spot(node));
       const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
@@ -80,17 +88,105 @@ class Marks {
     if (!field?.data || !scalar) return;
     const largest = scalar.range(result.frames).high;
     if (!(largest > 0)) return;
-    const nodes = field.onlyPlaces ?? view.deformable;
+    const contact = look.vectors === "CONTACT_FORCE";
+    const bodies = new Set(view.deformable);
+    const nodes = (field.onlyPlaces ?? view.deformable).filter((node) => !contact || bodies.has(node));
     const every = field.onlyPlaces && nodes.length < 4000 ? 1 : Math.ceil(nodes.length / MOST_ARROWS);
+    const long = (ARROW_LENGTH * look.vectorScale) / largest;
     context.strokeStyle = context.fillStyle = styleColour("arrow");
     for (let i = 0; i < nodes.length; i += every) {
       const [x, y] = [field.value(frame, nodes[i], 0), field.value(frame, nodes[i], 1)];
       const spot = view.spot(nodes[i]);
-      const long = (ARROW_LENGTH * look.vectorScale) / largest;
       if ((x || y) && this.inside(spot, 100)) this.arrow(spot, x * long, -y * long);
     }
+    if (contact) for (const [spot, x, y] of this.onRigid(field)) this.arrow(spot, x * long, -y * long);
     this.arrow([16, view.seen.height - 18], ARROW_LENGTH * look.vectorScale, 0);
-    this.text(`${NAMES[look.vectors] ?? look.vectors} ${number(largest, 3)}`, 16, view.seen.height - 28);
+    this.text(`${field.words} ${number(largest, 3)}`, 16, view.seen.height - 28);
+  }
+
+  /** Forces on rigid lines [place, x, y] where the contact is: against each node that is pressed by a segment near it.
+   *
+   * The file holds them at the ends of the segments, which may be far away. */
+  onRigid(field) {
+    const { view } = this;
+    const { mesh } = view.result;
+    const { positions } = view.layer;
+    const forceOf = (node) => [0, 1].map((k) => field.value(view.frame, node, k) || 0);
+    const at = (node) => [positions[2 * node], positions[2 * node + 1]];
+    const pressed = [];
+    for (let i = 0; i < mesh.rigid.length; i += 2) {
+      const ends = [mesh.rigid[i], mesh.rigid[i + 1]];
+      if (ends.some((node) => forceOf(node).some(Boolean))) pressed.push(ends.map(at));
+    }
+    const found = [];
+    if (pressed.length === 0) return found;
+    for (const node of view.deformable) {
+      const [x, y] = forceOf(node);
+      if (!x && !y) continue;
+      const [px, py] = at(node);
+      let [best, least] = [null, 0.5 * view.edge];
+      for (const [[ax, ay], [bx, by]] of pressed) {
+        const [dx, dy] = [bx - ax, by - ay];
+        const part = Math.min(1, Math.max(0, ((px - ax) * dx + (py - ay) * dy) / (dx * dx + dy * dy)));
+        const foot = [ax + part * dx, ay + part * dy];
+        const distance = Math.hypot(px - foot[0], py - foot[1]);
+        if (distance < least) [best, least] = [foot, distance];
+      }
+      if (best) found.push([view.spotOf(...best), -x, -y]);
+    }
+    return found;
+  }
+
+  /** Marks of the smallest and the largest value of the frame. */
+  extremes() {
+    const { view, context } = this;
+    const { look, layer, frame, result } = view;
+    const { scalar } = look;
+    const ofElements = scalar.at === "elements";
+    const places = ofElements ? layer.ofElements.length : scalar.field.places;
+    const values = ofElements ? layer.ofElements : layer.values;
+    let [least, most] = [-1, -1];
+    for (let i = 0; i < places; i++) {
+      if (!(values[i] < 1e38)) continue;
+      if (least < 0 || values[i] < values[least]) least = i;
+      if (most < 0 || values[i] > values[most]) most = i;
+    }
+    if (most < 0 || !(values[most] > values[least])) return;
+    for (const [place, down] of [[most, false], [least, true]]) {
+      const [x, y] = ofElements ? view.middle(place) : view.spot(place);
+      if (!this.inside([x, y], 0)) continue;
+      const way = down ? -1 : 1;
+      context.beginPath();
+      context.moveTo(x, y);
+      context.lineTo(x - 5, y - way * 10);
+      context.lineTo(x + 5, y - way * 10);
+      context.closePath();
+      context.fillStyle = styleColour("ink");
+      context.strokeStyle = styleColour("ground");
+      context.lineWidth = 1.5;
+      context.stroke();
+      context.fill();
+      const name = down ? "smallest" : "largest";
+      const right = x > view.seen.width - 240;
+      this.text(`${name} ${number(scalar.value(frame, place))}`, x + (right ? -9 : 9), y - way * 6 + 4, right ? "right" : "left");
+    }
+  }
+
+  /** The cross that the keys move. */
+  cross([x, y]) {
+    const { context } = this;
+    for (const [width, colour] of [[3, "ground"], [1.2, "accent"]]) {
+      context.lineWidth = width;
+      context.strokeStyle = styleColour(colour);
+      context.beginPath();
+      for (const way of [-1, 1]) {
+        context.moveTo(x + 4 * way, y);
+        context.lineTo(x + 14 * way, y);
+        context.moveTo(x, y + 4 * way);
+        context.lineTo(x, y + 14 * way);
+      }
+      context.stroke();
+    }
   }
 
   arrow([x, y], dx, dy) {
@@ -148,7 +244,9 @@ class Marks {
   scale(ends) {
     const { view, context } = this;
     const { scalar } = view.look;
-    const table = colourTable(view.mapShown);
+    const { bands } = view.look;
+    const table = colourTable(view.mapShown, bands);
+    const ticks = bands ? bands / Math.ceil(bands / 8) : 4;
     const height = Math.min(240, view.seen.height - 120);
     const [x, top, width] = [view.seen.width - 84, 56, 14];
     const ink = styleColour("ink");
@@ -167,11 +265,11 @@ class Marks {
     };
     if (ends.most > ends.high * (1 + 1e-6)) point(top, top - 10, 1020);
     if (ends.least < ends.low * (1 + 1e-6) && ends.least < ends.low) point(top + height, top + height + 10, 0);
-    for (let tick = 0; tick <= 4; tick++) {
-      const y = top + height * (1 - tick / 4);
+    for (let tick = 0; tick <= ticks; tick++) {
+      const y = top + height * (1 - tick / ticks);
       context.fillStyle = ink;
       context.fillRect(x + width, y - 0.5, 4, 1);
-      const value = ends.low + (tick / 4) * (ends.high - ends.low);
+      const value = ends.low + (tick / ticks) * (ends.high - ends.low);
       this.text(number(Math.abs(value) < 1e-12 * (ends.high - ends.low) ? 0 : value, 3), x + width + 7, y + 4);
     }
     const right = view.seen.width - 12;

@@ -1,4 +1,5 @@
-// The mouse in the view: wheel zooms, dragging moves, dragging with Shift draws a window, a click chooses a node.
+// The mouse in the view: wheel zooms, dragging moves, dragging with Shift draws a window, a click chooses a node. A cross
+// that the keys move does the same.
 
 class Mouse {
   constructor(view, onNode) {
@@ -74,6 +75,37 @@ class Mouse {
     this.windowed = windowed;
     byId("window").setAttribute("aria-pressed", windowed);
     this.view.overlay.style.cursor = windowed ? "crosshair" : "";
+  }
+
+  /** Shows or hides the cross in the middle of the picture. */
+  toggleCross() {
+    const { view } = this;
+    view.cross = view.cross ? null : [view.camera.width / 2, view.camera.height / 2];
+    this.followCross();
+  }
+
+  /** Moves the cross by pixels; the picture moves where the cross is at its edge. */
+  moveCross(dx, dy) {
+    const { view } = this;
+    const { width, height } = view.camera;
+    const [x, y] = [view.cross[0] + dx, view.cross[1] + dy];
+    view.cross = [Math.min(Math.max(x, 20), width - 20), Math.min(Math.max(y, 20), height - 20)];
+    if (x !== view.cross[0] || y !== view.cross[1]) view.pan(view.cross[0] - x, view.cross[1] - y);
+    this.followCross();
+  }
+
+  /** Chooses the node at the cross. */
+  pickAtCross() {
+    const node = this.view.nodeAt(...this.view.cross, 16);
+    if (node >= 0) this.onNode(node);
+  }
+
+  followCross() {
+    const { view } = this;
+    view.draw();
+    this.last = view.cross;
+    if (view.cross) this.show();
+    else this.hide();
   }
 
   hide() {

@@ -17,7 +17,7 @@ class Page {
     this.mouse = new Mouse(this.view, (node) => this.pick(node));
     this.controls();
     this.keys();
-    const charts = [energyChart, contactChart, momentumChart, solverChart, surfaceChart, nodeChart, anyChart];
+    const charts = [forceChart, energyChart, contactChart, momentumChart, solverChart, surfaceChart, nodeChart, anyChart];
     this.charts = charts.map((chart) => chart(this)).filter(Boolean);
     this.nodes = this.charts.at(-2);
     this.view.on(() => this.charts.forEach((chart) => chart.mark()));
@@ -25,6 +25,8 @@ class Page {
     this.view.setFrame(0);
     this.tables();
     document.body.dataset.ready = "yes";
+    // a print that the browser begins cannot wait for charts
+    (window.requestIdleCallback ?? setTimeout)(() => this.buildAll());
   }
 
   // What stands above the picture.
@@ -64,19 +66,21 @@ class Page {
     const groups = new Map([["", [["none", "no field"], ...(result.bodies > 1 ? [["bodies", "bodies"]] : [])]]]);
     for (const scalar of result.scalars) {
       if (!groups.has(scalar.group)) groups.set(scalar.group, []);
-      groups.get(scalar.group).push([scalar.id, scalar.label]);
+      groups.get(scalar.group).push([scalar.id, `${scalar.label} (${scalar.known})`]);
     }
     fillSelect(byId("field"), [...groups]);
     byId("field").addEventListener("change", (event) => this.chooseField(event.target.value));
+    byId("values").addEventListener("change", () => this.chooseField(byId("field").value));
+    byId("bands").addEventListener("change", (event) => view.setLook({ bands: Number(event.target.value) }));
     byId("range").addEventListener("change", (event) => this.chooseRange(event.target.value));
     for (const id of ["low", "high"]) byId(id).addEventListener("change", () => this.chooseRange("own"));
     byId("map").addEventListener("change", (event) => view.setLook({ map: event.target.value }));
     const vectors = result.fields.filter((field) => field.components === 2 && field.values.columns > 0);
-    fillSelect(byId("vectors"), [["", [["", "no arrows"], ...vectors.map((field) => [field.name, NAMES[field.name] ?? field.name])]]]);
+    fillSelect(byId("vectors"), [["", [["", "no arrows"], ...vectors.map((field) => [field.name, `${field.words} (${field.name})`])]]]);
     byId("vectors").addEventListener("change", (event) => view.setLook({ vectors: event.target.value }));
     byId("vector-scale").addEventListener("input", (event) => view.setLook({ vectorScale: 2 ** Number(event.target.value) }));
     byId("scale").addEventListener("change", (event) => view.setLook({ scale: Math.max(Number(event.target.value) || 0, 0) }));
-    for (const name of ["lines", "states", "pressure", "other"]) {
+    for (const name of ["lines", "states", "pressure", "other", "undeformed", "extremes"]) {
       byId(name).addEventListener("change", (event) => view.setLook({ [name]: event.target.checked }));
     }
     byId("other").parentElement.hidden = !this.other;
@@ -95,7 +99,7 @@ class Page {
       window: () => this.mouse.setWindowed(!this.mouse.windowed),
       picture: () => this.savePicture(),
       theme: () => this.changeTheme(),
-      print: () => window.print(),
+      print: () => this.buildAll().then(() => window.print()),
       help: () => byId("keys").showModal(),
       "close-keys": () => byId("keys").close(),
     };
@@ -114,13 +118,23 @@ class Page {
 
   async chooseField(id) {
     byId("field").value = id;
-    this.chosen = id;
-    const scalar = this.result.scalar(id);
+    const named = this.result.scalar(id);
+    byId("values").disabled = !named?.nodal;
+    const scalar = (byId("values").value === "nodes" && named?.nodal) || named;
+    this.chosen = scalar;
     if (scalar) await scalar.field.load();
-    if (this.chosen !== id) return;
+    if (this.chosen !== scalar) return;
     if (byId("range").value === "own") byId("range").value = "usual";
     await this.view.setLook({ scalar: scalar ?? (id === "bodies" ? id : null), range: byId("range").value });
     this.showRange();
+  }
+
+  /** The other one of values at nodes and of elements. */
+  otherValues() {
+    const select = byId("values");
+    if (select.disabled) return;
+    select.value = select.value === "nodes" ? "elements" : "nodes";
+    this.chooseField(byId("field").value);
   }
 
   async chooseRange(range) {
@@ -133,7 +147,7 @@ class Page {
   /** The ends of the colours in the fields for them. */
   showRange() {
     const coloured = this.view.look.scalar instanceof Scalar;
-    for (const id of ["range", "low", "high", "map"]) byId(id).disabled = !coloured;
+    for (const id of ["range", "low", "high", "map", "bands", "extremes"]) byId(id).disabled = !coloured;
     if (!coloured || this.view.look.range === "own") return;
     const ends = this.view.ends();
     byId("low").value = number(ends.low);
@@ -179,16 +193,29 @@ class Page {
       l: click("lines"),
       c: click("states"),
       p: click("pressure"),
+      u: click("undeformed"),
+      e: click("extremes"),
+      v: () => this.otherValues(),
+      m: () => this.mouse.toggleCross(),
       w: click("window"),
       "?": click("help"),
+    };
+    const move = (dx, dy) => (event) => this.mouse.moveCross(...[dx, dy].map((way) => way * (event.shiftKey ? 1 : 10)));
+    const crossed = {
+      ArrowRight: move(1, 0),
+      ArrowLeft: move(-1, 0),
+      ArrowUp: move(0, -1),
+      ArrowDown: move(0, 1),
+      Enter: () => this.mouse.pickAtCross(),
+      Escape: () => this.mouse.toggleCross(),
     };
     document.addEventListener("keydown", (event) => {
       const { tagName, type } = event.target;
       const typing = tagName === "SELECT" || (tagName === "INPUT" && !["checkbox", "range"].includes(type)) || byId("keys").open;
-      const onButton = event.key === " " && (tagName === "BUTTON" || type === "checkbox" || tagName === "SUMMARY");
+      const onButton = [" ", "Enter"].includes(event.key) && (tagName === "BUTTON" || type === "checkbox" || tagName === "SUMMARY");
       const onSlider = type === "range" && event.target.id !== "frame" && event.key.startsWith("Arrow");
       if (typing || onButton || onSlider || event.ctrlKey || event.metaKey || event.altKey) return;
-      const action = actions[event.key];
+      const action = (view.cross && crossed[event.key]) || actions[event.key];
       if (!action) return;
       event.preventDefault();
       action(event);
@@ -202,15 +229,28 @@ class Page {
     this.redraw();
   }
 
+  /** Light colours, and pictures in the place of canvases, which keep their shape at the width of the paper. */
   forPrint(begins) {
-    if (begins) this.themeBefore = document.documentElement.dataset.theme;
-    if (begins) document.documentElement.dataset.theme = "light";
-    else if (this.themeBefore) document.documentElement.dataset.theme = this.themeBefore;
-    else delete document.documentElement.dataset.theme;
+    const { dataset } = document.documentElement;
+    if (begins) this.themeBefore = dataset.theme;
+    if (begins) dataset.theme = "light";
+    else if (this.themeBefore) dataset.theme = this.themeBefore;
+    else delete dataset.theme;
+    document.querySelectorAll(".printed").forEach((each) => each.remove());
     this.view.draw();
+    if (begins) this.view.element.append(printed(this.drawn()));
+    for (const { plot } of this.charts) {
+      plot?.redraw(false);
+      if (begins && plot) plot.root.querySelector(".u-wrap").append(printed(plot.ctx.canvas));
+    }
+  }
+
+  /** Builds the charts that have not come near the window, so that a print holds them. */
+  async buildAll() {
     for (const chart of this.charts) {
+      if (chart.seen) continue;
       chart.seen = true;
-      if (chart.plot) chart.plot.redraw(false);
+      await chart.build();
     }
   }
 
@@ -223,12 +263,19 @@ class Page {
   savePicture() {
     const { view } = this;
     view.draw();
-    const canvas = make("canvas", { width: view.overlay.width, height: view.overlay.height });
-    const context = canvas.getContext("2d");
-    context.drawImage(byId("bodies"), 0, 0);
-    context.drawImage(view.overlay, 0, 0);
+    const canvas = this.drawn();
     const name = `${this.result.job}_${String(view.frame).padStart(4, "0")}.png`;
     make("a", { href: canvas.toDataURL("image/png"), download: name }).click();
+  }
+
+  /** The picture with its marks. */
+  drawn() {
+    const { overlay } = this.view;
+    const canvas = make("canvas", { width: overlay.width, height: overlay.height });
+    const context = canvas.getContext("2d");
+    context.drawImage(byId("bodies"), 0, 0);
+    context.drawImage(overlay, 0, 0);
+    return canvas;
   }
 
   // Tables below the charts.
@@ -260,6 +307,11 @@ class Page {
     byId("checks").append(make("p", { class: "note" }, `Certificate, from the file alone: ${certificate}.`));
     byId("checks").append(make("table", { class: "checks" }, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows)));
   }
+}
+
+/** A canvas as a picture for paper. */
+function printed(canvas) {
+  return make("img", { class: "printed", alt: "", src: canvas.toDataURL("image/png") });
 }
 
 /** A duration in words. */

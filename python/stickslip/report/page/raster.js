@@ -1,7 +1,7 @@
 // Draws elements and edges into the pixels of a picture, without a graphics card: the same everywhere, also on remote
 // desktops, and fast enough for tens of thousands of elements.
 //
-// An element is drawn as triangles. A pixel belongs to the triangle that holds its centre, so that neighbours leave no gap
+// An element is drawn as triangles around its middle. A pixel belongs to the triangle that holds its centre, so that neighbours leave no gap
 // and do not overlap: both find the crossing of a row with their edge from its lower end. An edge covers the pixels near
 // it in part, by their distance.
 
@@ -22,16 +22,28 @@ class Painter {
     this.table = new Uint32Array(256);
   }
 
-  /** What is drawn of a mesh: positions, values at nodes or of elements, places of the nodes in the picture. */
+  /** What is drawn of a mesh: positions of vertices; places in the picture and values of these and, behind them, of the
+   * middles of elements; values of elements. */
   layer(mesh) {
-    const { nodes } = mesh;
+    const { vertices, elements = 0 } = mesh;
     return {
       mesh,
-      positions: new Float32Array(2 * nodes),
-      values: new Float32Array(Math.max(nodes, mesh.elements ?? 0)),
-      x: new Float64Array(nodes),
-      y: new Float64Array(nodes),
+      positions: new Float32Array(2 * vertices),
+      values: new Float32Array(vertices + elements),
+      ofElements: new Float32Array(elements),
+      x: new Float64Array(vertices + elements),
+      y: new Float64Array(vertices + elements),
     };
+  }
+
+  /** The middles of elements: means of what is around them. */
+  middles({ mesh }, values) {
+    const { connectivity, offsets, vertices, elements = 0 } = mesh;
+    for (let cell = 0; cell < elements; cell++) {
+      let sum = 0;
+      for (let i = offsets[cell]; i < offsets[cell + 1]; i++) sum += values[connectivity[i]];
+      values[vertices + cell] = sum / (offsets[cell + 1] - offsets[cell]);
+    }
   }
 
   colours(table) {
@@ -56,33 +68,34 @@ class Painter {
     this.context.putImageData(this.image, 0, 0);
   }
 
-  /** Places of the nodes of a layer, in pixels. */
+  /** Places of the vertices of a layer and of the middles of its elements, in pixels. */
   place(layer) {
     const { camera, width, height } = this;
     const { positions, x, y } = layer;
     const stretch = camera.scale * camera.density;
-    for (let node = 0; node < x.length; node++) {
-      x[node] = width / 2 + (positions[2 * node] - camera.x) * stretch;
-      y[node] = height / 2 - (positions[2 * node + 1] - camera.y) * stretch;
+    for (let vertex = 0; vertex < layer.mesh.vertices; vertex++) {
+      x[vertex] = width / 2 + (positions[2 * vertex] - camera.x) * stretch;
+      y[vertex] = height / 2 - (positions[2 * vertex + 1] - camera.y) * stretch;
     }
+    this.middles(layer, x);
+    this.middles(layer, y);
   }
 
-  /** Elements of a layer: plain, or coloured by values at nodes or of elements. */
+  /** Elements of a layer, triangles around their middles: plain, or coloured by values at vertices or of elements. */
   drawFaces(layer, { plain, coloured, atNodes, range }) {
-    const { connectivity, offsets, elements } = layer.mesh;
-    const { values } = layer;
+    const { connectivity, offsets, elements, vertices } = layer.mesh;
+    const { values, ofElements } = layer;
     const base = pixelOf(bytesOf(plain));
     for (let cell = 0; cell < elements; cell++) {
-      const first = offsets[cell];
-      const end = offsets[cell + 1];
       let colour = base;
-      if (coloured && !atNodes && values[cell] < 1e38) colour = this.table[this.shade(values[cell], range)];
-      for (let i = first + 1; i + 1 < end; i++) {
-        const a = connectivity[first];
+      if (coloured && !atNodes && ofElements[cell] < 1e38) colour = this.table[this.shade(ofElements[cell], range)];
+      let a = connectivity[offsets[cell + 1] - 1];
+      for (let i = offsets[cell]; i < offsets[cell + 1]; i++) {
         const b = connectivity[i];
-        const c = connectivity[i + 1];
+        const c = vertices + cell;
         const graded = coloured && atNodes && values[a] < 1e38 && values[b] < 1e38 && values[c] < 1e38;
         this.triangle(layer, a, b, c, colour, graded ? range : null);
+        a = b;
       }
     }
   }

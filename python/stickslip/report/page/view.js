@@ -23,6 +23,9 @@ class View {
       vectorScale: 1,
       pressure: false,
       other: true,
+      undeformed: false,
+      bands: 12, // of equal colour; 0 for none
+      extremes: true,
       follow: -1,
     };
     this.frame = 0;
@@ -42,8 +45,11 @@ class View {
     this.painter = new Painter(canvas);
     this.layer = this.painter.layer(result.mesh);
     if (other) this.otherLayer = this.painter.layer(other.mesh);
-    const { connectivity, inner, outline, coordinates } = result.mesh;
-    this.deformable = [...new Set(connectivity)];
+    const { connectivity, inner, outline, nodes } = result.mesh;
+    this.deformable = [...new Set(connectivity)].filter((vertex) => vertex < nodes);
+    this.undeformed = this.painter.layer(result.mesh);
+    const coordinates = this.undeformed.positions;
+    result.positions(0, 0, coordinates);
     const edges = [...inner.slice(0, 4000), ...outline.slice(0, 4000)];
     let length = 0;
     for (let i = 0; i < edges.length; i += 2) {
@@ -98,7 +104,7 @@ class View {
   /** Shows all that the bodies sweep, in all frames or in the present one. */
   fit(now = false) {
     const box = [Infinity, Infinity, -Infinity, -Infinity];
-    const positions = new Float32Array(2 * this.result.mesh.nodes);
+    const positions = new Float32Array(2 * this.result.mesh.vertices);
     const { frames } = this.result;
     const every = Math.max(1, Math.floor(frames / 50));
     for (let frame = now ? this.frame : 0; frame < (now ? this.frame + 1 : frames); frame += every) {
@@ -216,10 +222,9 @@ class View {
     const onEdges = coloured && look.scalar.onEdges;
     const ends = coloured ? this.ends() : null;
     if (coloured) {
-      const map = this.mapName(ends);
-      if (map !== this.mapShown) painter.colours(colourTable((this.mapShown = map)));
-      if (look.scalar === "bodies") result.mesh.body.forEach((body, i) => (layer.values[i] = (body % 8) + 0.5));
-      else look.scalar.fill(frame, layer.values);
+      this.mapShown = this.mapName(ends);
+      painter.colours(colourTable(this.mapShown, look.bands));
+      this.fill();
     }
     painter.begin(camera, ground);
     painter.place(layer);
@@ -234,10 +239,26 @@ class View {
     const thin = this.edge * camera.scale < 2 ? 0.7 : 1.2;
     painter.drawEdges(layer, "outline", thin, { plain: ink, opacity: 0.75 });
     if (onEdges) painter.drawEdges(layer, "outline", 5, { plain, coloured: true, range });
+    if (look.undeformed) {
+      painter.place(this.undeformed);
+      painter.drawEdges(this.undeformed, "outline", 1.2, { plain: styleColour("muted"), opacity: 0.8 });
+    }
     painter.drawEdges(layer, "rigid", 2.5, { plain: styleColour("rigid") });
     if (this.other && look.other) this.drawOther();
     painter.end();
     this.drawMarks(camera, ends);
+  }
+
+  /** Values of the frame: at vertices and middles of elements, or of elements. */
+  fill() {
+    const { layer, look, result, frame, painter } = this;
+    if (look.scalar === "bodies") result.mesh.body.forEach((body, i) => (layer.ofElements[i] = (body % 8) + 0.5));
+    else if (look.scalar.at === "elements") look.scalar.fill(frame, layer.ofElements);
+    else {
+      look.scalar.fill(frame, layer.values);
+      result.spread(layer.values, look.scalar.field.places);
+      painter.middles(layer, layer.values);
+    }
   }
 
   /** Outlines of the other result at the nearest of its frames. */
@@ -246,7 +267,7 @@ class View {
     const { positions } = otherLayer;
     other.positions(other.nearestFrame(this.result.times[this.frame]), this.look.scale, positions);
     const [dx, dy] = [0, 1].map((k) => other.mesh.middle[k] - this.result.mesh.middle[k]);
-    for (let i = 0; i < other.mesh.nodes; i++) {
+    for (let i = 0; i < other.mesh.vertices; i++) {
       positions[2 * i] += dx;
       positions[2 * i + 1] += dy;
     }
@@ -256,14 +277,23 @@ class View {
     painter.drawEdges(otherLayer, "rigid", 1.8, { plain });
   }
 
-  /** Place of a node in the picture. */
-  spot(node) {
+  /** Place of a vertex in the picture. */
+  spot(vertex) {
     const data = this.layer.positions;
+    return this.spotOf(data[2 * vertex], data[2 * vertex + 1]);
+  }
+
+  /** Place of a point of the plane in the picture. */
+  spotOf(x, y) {
     const { seen } = this;
-    return [
-      seen.width / 2 + (data[2 * node] - seen.x) * seen.scale,
-      seen.height / 2 - (data[2 * node + 1] - seen.y) * seen.scale,
-    ];
+    return [seen.width / 2 + (x - seen.x) * seen.scale, seen.height / 2 - (y - seen.y) * seen.scale];
+  }
+
+  /** Place of the middle of an element in the picture. */
+  middle(element) {
+    const { layer, seen } = this;
+    const vertex = layer.mesh.vertices + element;
+    return [layer.x[vertex] / seen.density, layer.y[vertex] / seen.density];
   }
 
   /** Point of the plane at a place of the picture, from the middle of the mesh. */
@@ -284,7 +314,11 @@ class View {
     if (this.look.states) marks.states();
     marks.picked();
     marks.time();
-    if (ends && this.look.scalar !== "bodies") marks.scale(ends);
+    if (ends && this.look.scalar !== "bodies") {
+      if (this.look.extremes) marks.extremes();
+      marks.scale(ends);
+    }
+    if (this.cross) marks.cross(this.cross);
     if (this.window) marks.window(this.window);
   }
 
@@ -335,18 +369,43 @@ class View {
     }
     if (node >= 0) lines.push(["node", String(result.mesh.nodeLabels[node])]);
     if (look.scalar instanceof Scalar && look.scalar.field.data) {
-      const at = look.scalar.at === "nodes" ? node : element;
-      if (at >= 0) lines.push([look.scalar.label, number(look.scalar.value(frame, at))]);
+      const { scalar } = look;
+      if (scalar.at === "elements") {
+        if (element >= 0) lines.push([scalar.label, number(scalar.value(frame, element))]);
+      } else if (element >= 0 && !scalar.onEdges) {
+        lines.push([scalar.label, number(this.valueIn(element, px, py, node))]);
+        const mean = scalar.field.source && result.scalar(scalar.id);
+        if (mean) lines.push(["mean of the element", number(mean.value(frame, element))]);
+      } else if (node >= 0) lines.push([scalar.label, number(scalar.value(frame, node))]);
     }
     const data = this.layer.positions;
     const place = node >= 0 ? [data[2 * node], data[2 * node + 1]] : [px, py];
-    lines.push(["position", place.map((each, k) => number(each + middle[k])).join(", ")]);
+    lines.push([`position ${result.axes.join(", ")}`, place.map((each, k) => number(each + middle[k])).join(", ")]);
     if (node >= 0) {
       const u = [0, 1].map((k) => result.displacement.value(frame, node, k));
       lines.push(["displacement", u.map((each) => number(each)).join(", ")]);
       this.aboutContact(node, lines);
     }
     return lines;
+  }
+
+  /** Value at a node of an element or at a point in it, as it is drawn. */
+  valueIn(element, px, py, node) {
+    const { connectivity, offsets, vertices, nodes } = this.result.mesh;
+    const { values, positions } = this.layer;
+    const { twins } = this.result.recovery;
+    const ring = connectivity.subarray(offsets[element], offsets[element + 1]);
+    const nodeOf = (vertex) => (vertex < nodes ? vertex : twins[vertex - nodes]);
+    for (const vertex of ring) if (nodeOf(vertex) === node) return values[vertex];
+    const sum = [0, 0];
+    for (const vertex of ring) for (const k of [0, 1]) sum[k] += positions[2 * vertex + k] / ring.length;
+    const at = (vertex) => [positions[2 * vertex], positions[2 * vertex + 1]];
+    for (let i = 0; i < ring.length; i++) {
+      const [a, b] = [ring[i], ring[(i + 1) % ring.length]];
+      const parts = barycentric([px, py], at(a), at(b), sum);
+      if (parts.every((part) => part >= -1e-9)) return parts[0] * values[a] + parts[1] * values[b] + parts[2] * values[vertices + element];
+    }
+    return values[vertices + element];
   }
 
   aboutContact(node, lines) {
@@ -360,4 +419,12 @@ class View {
     const parts = [0, 1].map((k) => force.value(frame, node, k));
     if (parts[0] || parts[1]) lines.push(["contact force", parts.map((each) => number(each)).join(", ")]);
   }
+}
+
+/** Parts of the corners of a triangle in a point. */
+function barycentric([x, y], [xa, ya], [xb, yb], [xc, yc]) {
+  const twice = (xb - xa) * (yc - ya) - (xc - xa) * (yb - ya);
+  const b = ((x - xa) * (yc - ya) - (xc - xa) * (y - ya)) / twice;
+  const c = ((xb - xa) * (y - ya) - (x - xa) * (yb - ya)) / twice;
+  return [1 - b - c, b, c];
 }
