@@ -5,6 +5,7 @@ its corners and the node between them.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -91,8 +92,17 @@ class Drawing:
             known = np.concatenate([known, np.einsum("vk...,k->v...", known[between[:, : len(weights)]], weights)])
         return known
 
-    def fans(self, vertices: Array) -> tuple[Integers, Array]:
-        """Triangles that fill the elements [T, 3], and the vertices [V + E, ...] with the middle of each element behind them."""
-        around = [np.stack([ring, np.roll(ring, -1), np.full(len(ring), len(vertices) + e)], axis=1) for e, ring in enumerate(self.rings)]
+    @cached_property
+    def triangles(self) -> Integers:
+        """Triangles that fill the elements, around their middles, which are vertices behind all others [T, 3]."""
+        middle = self.nodes + len(self.after)
+        fans = [
+            np.stack([ring, np.roll(ring, -1), np.full(len(ring), middle + element)], axis=1)
+            for element, ring in enumerate(self.rings)
+        ]
+        return np.concatenate([np.empty((0, 3), np.int64), *fans])
+
+    def with_middles(self, vertices: Array) -> Array:
+        """Numbers at the vertices [V + E, ...], those at the middles of elements behind the others."""
         middles = [vertices[ring].mean(axis=0, keepdims=True) for ring in self.rings]
-        return np.concatenate([np.empty((0, 3), np.int64), *around]), np.concatenate([vertices, *middles])
+        return np.concatenate([vertices, *middles])

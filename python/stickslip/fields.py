@@ -156,7 +156,8 @@ def part(name: str, count: int | None, axisymmetric: bool) -> Part:
         return Part(field, f"{text}, {made[which][0]}", made[which][1])
     names = directions(count, axisymmetric)
     choices = [[str(i + 1) for i in range(count)], list(DIRECTIONS.get(count, ())), names]
-    for at in (each.index(which) for each in choices if which in each):
+    at = next((each.index(which) for each in choices if which in each), None)
+    if at is not None:
         return Part(field, f"{text}, {names[at]}", lambda values: values[..., at])
     wanted = ", ".join(f"{field}:{each}" for each in _unique([*choices[0], *names, *made]))
     raise Missing(f"{name}: say which part of {field}, such as {wanted}")

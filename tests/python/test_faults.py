@@ -199,7 +199,7 @@ def test_an_animation_that_cannot_be_written(
         (("-o", "/dev/null/picture.png"), "/dev/null"),
         (("--dpi", "1e5"), "lower --dpi"),
         (("--interval", "1e-12"), "100 at most"),
-        (("--field", "slip"), "has no field SLIP; there are A, CONTACT_FORCE"),
+        (("--field", "slip"), "has no field slip; there are A, CONTACT_FORCE"),
     ],
 )
 def test_a_picture_that_cannot_be_drawn(

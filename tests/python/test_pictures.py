@@ -4,13 +4,13 @@ import shutil
 from pathlib import Path
 
 import h5py
-import matplotlib.pyplot as plt
+import matplotlib
 import numpy as np
 import pytest
 from conftest import ROOT, Job
 from decks import CANTILEVERS, RINGS, parse, shortened
 from matplotlib.axes import Axes
-from matplotlib.collections import PathCollection
+from matplotlib.collections import Collection, LineCollection, PathCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 from PIL import Image
@@ -18,7 +18,8 @@ from stickslip.deck import Deck
 from stickslip.errors import Fault
 from stickslip.plot import along as plot_along
 from stickslip.plot import history as plot_history
-from stickslip.plot.fields import FIELDS, Colouring, usual
+from stickslip.plot import style
+from stickslip.plot.fields import BANDS, Colouring, Field, on_lines, usual
 from stickslip.plot.motion import Look, animate, chosen_times, overlay, panels, shown_at
 from stickslip.quantity import find, listed
 from stickslip.result import Result
@@ -36,13 +37,6 @@ def contact(job: Job) -> Result:
 def other(job: Job) -> Result:
     """The same without friction."""
     return Result(job(shortened(CANTILEVERS / "A_mu00.inp", 300)))
-
-
-@pytest.fixture(autouse=True)
-def close_figures() -> object:
-    """Figures are drawn and forgotten."""
-    yield
-    plt.close("all")
 
 
 # Histories.
@@ -151,7 +145,7 @@ def test_results_on_top_of_each_other(contact: Result, other: Result) -> None:
 
 
 def test_the_stacked_accounts_sum_up_to_what_was_put_in(contact: Result) -> None:
-    _, axes = plt.subplots()
+    _, axes = style.subplots()
     plot_history.energy(axes, contact)
     account = contact.history.energy
     put_in = account["kinetic"][0] + account["strain"][0] + account["external_work"]
@@ -163,7 +157,7 @@ def test_the_stacked_accounts_sum_up_to_what_was_put_in(contact: Result) -> None
 
 def test_round_off_of_a_momentum_looks_like_nothing(job: Job) -> None:
     with Result(job(shortened(RINGS / "rings_mu02.inp", 40, "default"))) as results:
-        _, axes = plt.subplots(2)
+        _, axes = style.subplots(2)
         plot_history.linear_momentum(axes[0], results)
         plot_history.angular_momentum(axes[1], results)
         assert np.ptp(axes[0].get_ylim()) > 0.1
@@ -183,6 +177,12 @@ def shapes(figure: Figure) -> list[Axes]:
     """The axes that are no colour bars."""
     figure.canvas.draw()
     return [axes for axes in figure.axes if axes.get_aspect() == 1.0]
+
+
+def mappable(axes: Axes) -> Collection:
+    """What is coloured by a field in a panel."""
+    (found,) = (each for each in axes.collections if each.get_array() is not None)
+    return found
 
 
 @pytest.mark.parametrize("count", [1, 4, 6, 8])
@@ -218,7 +218,7 @@ def test_several_results_have_one_scale(contact: Result, other: Result) -> None:
     shown = shapes(figure)
     assert len(shown) == 6
     assert len({(axes.get_xlim(), axes.get_ylim()) for axes in shown}) == 1
-    assert len({axes.collections[0].norm.vmax for axes in shown}) == 1
+    assert len({mappable(axes).norm.vmax for axes in shown}) == 1
     assert [axes.get_title().startswith(contact.job) for axes in shown[:3]] == [True, False, False]
     assert shown[3].get_title().startswith(other.job)
 
@@ -242,27 +242,82 @@ def test_without_contact_there_are_no_arrows_and_no_marks(job: Job) -> None:
         assert "longest 0" in figure.legends[0].get_texts()[0].get_text()
 
 
-def test_von_mises_says_what_it_is(contact: Result, tmp_path: Path) -> None:
-    path = Path(shutil.copy(contact.path, tmp_path / "stress.vtkhdf"))
-    cells, frames = len(contact.cells), len(contact.frames)
-    true = np.arange(float(cells * frames))
-    with h5py.File(path, "r+") as file:
-        grid = file["VTKHDF"]
-        for name in ("CellData/MISES", "Steps/CellDataOffsets/MISES"):
-            if name in grid:
-                del grid[name]
-    field = FIELDS["von-mises"]
-    with Result(path) as results:
-        xx, yy, xy = results.frames[1]["S"].T
-        plane = np.sqrt(xx**2 - xx * yy + yy**2 + 3 * xy**2)
-        assert np.array_equal(field.values(results, 1), plane)
-        assert "in the plane" in Colouring.of("von-mises", [(results, 1)]).label
-    with h5py.File(path, "r+") as file:
-        file["VTKHDF/CellData/MISES"] = true
-        file["VTKHDF/Steps/CellDataOffsets/MISES"] = np.arange(frames) * cells
-    with Result(path) as results:
-        assert np.array_equal(field.values(results, 1), true[cells : 2 * cells])
-        assert Colouring.of("von-mises", [(results, 1)]).label == "von Mises stress"
+def test_fields_have_all_their_names(contact: Result) -> None:
+    """Those of the file, of Abaqus, and words; elements in the middle between their nodes, or as they are."""
+    shown = [(contact, len(contact.frames) - 1)]
+    for name, label in {
+        "MISES": "von Mises stress",
+        "von-mises": "von Mises stress",
+        "S11": "stress, xx",
+        "mean-stress": "stress, mean in the plane",
+        "speed": "velocity, magnitude",
+        "U2": "displacement, y",
+        "cpress": "contact pressure",
+    }.items():
+        assert Colouring.of(Field(name), shown).label.startswith(label), name
+    frame = contact.frames[-1]
+    assert np.array_equal(Field("S12", False).values(*shown[0]), frame["S"][:, 2])
+    assert np.array_equal(Field("S12").values(*shown[0]), frame.at_places("S")[:, 2])
+    bands, elements = (mappable(shapes(panels([shown], Look("MISES", at_nodes)))[0]) for at_nodes in (True, False))
+    assert len(bands.levels) == BANDS + 1 and isinstance(elements, PolyCollection)
+    with pytest.raises(Fault, match="no field MISSES"):
+        panels([shown], Look("MISSES"))
+
+
+def test_default_times_have_the_ends_of_steps_and_the_peak(job: Job) -> None:
+    """The largest value in the picture is that of the history at every increment."""
+    deck = Deck.read(ROOT / "input" / "disc_spring" / "disc_spring_mu014.inp")
+    sets = "*ELEMENT OUTPUT, ELSET=DISC, POSITION=NODES\nMISES, S\n"
+    for at in reversed([i for i, card in enumerate(deck.cards) if card.keyword == "ENDSTEP"]):
+        fields = f"*OUTPUT, FIELD, FREQUENCY=1\n{sets.replace(', ELSET=DISC', '')}"
+        deck.cards[at:at] = Deck.parse(f"{fields}*OUTPUT, HISTORY, FREQUENCY=1\n{sets}").cards
+    with Result(job(deck, "--frames", "40")) as result:
+        history = result.file["history/elements/DISC/at_nodes/MISES"][()]
+        field = Field("MISES")
+        times = chosen_times(result, None, None, field)
+        ends = [result.history.time[result.history.step == step].max() for step in (1, 2)]
+        assert len(times) == 6 and set(ends) < set(times) and times[0] == 0.0
+        figure = panels([shown_at(result, times)], Look("MISES"))
+        words = [text.get_text() for axes in shapes(figure) for text in axes.texts]
+        assert words == [f"{history.max():.4g}"]
+        peak = result.history.time[history.max(axis=1).argmax()]
+        assert peak in times
+        assert Colouring.of(field, shown_at(result, times)).peak.value == history.max()
+
+
+def test_force_against_displacement_is_in_the_picture_of_histories(job: Job, contact: Result) -> None:
+    deck = Deck.read(ROOT / "input" / "disc_spring" / "disc_spring_mu014.inp")
+    with Result(job(deck)) as result:
+        *over_time, last = plot_history.draw([result]).axes
+        (line,) = last.lines
+        assert np.array_equal(line.get_xdata(), result.quantity("nodes/PLATE/U2"))
+        assert np.array_equal(line.get_ydata(), result.quantity("nodes/PLATE/RF2"))
+        assert last.get_xlabel() == "displacement of PLATE, z"
+        # nothing moves with a momentum
+        assert [axes.get_ylabel() for axes in over_time[2:]] == ["contact force", "pairs"]
+        assert over_time[-1].get_xlabel() == "time"
+
+
+def test_the_undeformed_outline_is_drawn(contact: Result) -> None:
+    shown = [[(contact, len(contact.frames) - 1)]]
+    plain, with_outline = panels(shown, PLAIN), panels(shown, Look(undeformed=True))
+    assert len(lines_of(with_outline)) == len(lines_of(plain)) + 1
+    outline = sorted(contact.coordinates[contact.boundary].sum(axis=(1, 2)))
+    sums = [sorted(np.sum(line) for line in lines) for lines in lines_of(with_outline) if len(lines) == len(outline)]
+    assert any(np.allclose(each, outline) for each in sums)
+
+
+def lines_of(figure: Figure) -> list[list[np.ndarray]]:
+    """Lines of the collections of a figure."""
+    return [each.get_segments() for each in figure.axes[0].collections if isinstance(each, LineCollection)]
+
+
+def test_nothing_of_the_users_figures_changes(contact: Result) -> None:
+    with matplotlib.rc_context({"lines.linewidth": 7.0, "backend": "svg"}):
+        before = dict(matplotlib.rcParams)
+        figure = plot_history.draw([contact])
+        assert figure.axes[2].lines[0].get_linewidth() == style.LOOK["lines.linewidth"]
+        assert dict(matplotlib.rcParams) == before
 
 
 def test_fields_of_slave_nodes_colour_the_outline(contact: Result, tmp_path: Path) -> None:
@@ -279,11 +334,12 @@ def test_fields_of_slave_nodes_colour_the_outline(contact: Result, tmp_path: Pat
         grid["PointData/SLIP"] = slid
         grid["Steps/PointDataOffsets/SLIP"] = np.arange(frames) * nodes
     with Result(path) as results:
-        values = FIELDS["slip"].values(results, 1)
-        assert values[0] == 2.0
+        values = on_lines(results, Field("slip").values(results, 1))
+        first = (results.drawing.outline == edge).all(axis=1)
+        assert values[first] == 2.0
         assert sorted(values[np.isfinite(values)]) == [1.0, 2.0, 3.0], "with the edges beside it"
         figure = panels([[(results, 0), (results, 1)]], Look("slip"))
-        assert Colouring.of("slip", [(results, 1)]).norm.vmax == 3.0
+        assert Colouring.of(Field("slip"), [(results, 1)]).norm.vmax == 3.0
         assert len(figure.axes) == 3
 
 
@@ -305,7 +361,7 @@ def test_a_frame_that_is_a_peak_does_not_set_the_colours() -> None:
 
 def test_ends_of_the_colours_can_be_given(contact: Result) -> None:
     last = len(contact.frames) - 1
-    colouring = Colouring.of("von-mises", [(contact, last)], (0.0, 1e-3))
+    colouring = Colouring.of(Field("von-mises"), [(contact, last)], (0.0, 1e-3))
     assert (colouring.norm.vmin, colouring.norm.vmax, colouring.extend) == (0.0, 1e-3, "max")
     assert ", largest " in colouring.label
 
@@ -346,8 +402,10 @@ def test_pressure_along_a_surface(job: Job) -> None:
         (start, end) = figure.axes[0].lines
         assert not np.nan_to_num(start.get_ydata()).any()
         assert len(end.get_xdata()) == len(lines[0]) and (np.diff(end.get_xdata()) > 0.0).all()
-        with pytest.raises(Fault, match="is a vector"):
-            plot_along.field(results, "U", 0)
+        stress = plot_along.draw(results, lines, [last], "S22", "y").axes[0].lines[0]
+        assert np.array_equal(stress.get_ydata(), results.frames[last].nodal("S22")[lines[0]])
+        with pytest.raises(Fault, match="say which part of S"):
+            plot_along.draw(results, lines, [last], "S", "length")
 
 
 def test_times(contact: Result) -> None:

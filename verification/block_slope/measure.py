@@ -8,7 +8,6 @@ DECKS = HERE.parents[1] / "input" / "block_slope"
 sys.path[:0] = [str(HERE), str(HERE.parent)]
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -161,9 +160,10 @@ def tabulate_rebound(study: runner.Study) -> None:
     )
 
 
+@style.styled
 def draw_displacement(study: runner.Study) -> None:
     """Horizontal and vertical displacement against time, all mu in one figure."""
-    figure, axes = plt.subplots(2, 2, figsize=(11, 7.5), sharex=True, sharey="row")
+    figure, axes = style.subplots(2, 2, figsize=(11, 7.5), sharex=True, sharey="row")
     for column, (group, label) in enumerate(LABELS.items()):
         for colour, (case, results) in zip(style.COLOURS, study.group(group)):
             friction = slope.FRICTION[Path(case.deck).stem]
@@ -185,6 +185,7 @@ def draw_displacement(study: runner.Study) -> None:
     style.save(figure, study.output / "displacement.png")
 
 
+@style.styled
 def draw_motion(study: runner.Study) -> None:
     """Shapes every 0.04 s."""
     runs = {
@@ -205,9 +206,10 @@ def draw_motion(study: runner.Study) -> None:
     style.save(page.figure, study.output / "motion.png")
 
 
+@style.styled
 def draw_energy(study: runner.Study) -> None:
     """The ledger against time."""
-    figure, axes = plt.subplots(3, 2, figsize=(11, 10), sharex=True, sharey="row")
+    figure, axes = style.subplots(3, 2, figsize=(11, 10), sharex=True, sharey="row")
     for column, (group, label) in enumerate(LABELS.items()):
         for row, (case, results) in enumerate(study.group(group)):
             parts = accounts(results)
@@ -234,9 +236,10 @@ def draw_energy(study: runner.Study) -> None:
     style.save(figure, study.output / "energy.png")
 
 
+@style.styled
 def draw_rebound(study: runner.Study) -> None:
     """Speed normal to the slope during the first impact, by mesh and increment."""
-    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
+    figure, axes = style.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
     speed = point_mass(0.0).landing_speed
     for case, results in study.group("study"):
         row = 1 if case.scheme == "default" else 0

@@ -7,7 +7,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.penetration import intrusion as penetration  # noqa: E402
@@ -179,9 +178,10 @@ def tabulate_corners(study: runner.Study) -> None:
     study.table("Mean velocity of the upper square at the end", ("case", "x", "y"), rows)
 
 
+@style.styled
 def draw_conservation(study: runner.Study) -> None:
     """What free flight keeps, against time."""
-    figure, axes = plt.subplots(3, 1, figsize=(8, 8))
+    figure, axes = style.subplots(3, 1, figsize=(8, 8))
     for case, results in study.group("free"):
         label = {"label": case.name, "lw": 0.8}
         part = results.history.time / results.history.time[-1]

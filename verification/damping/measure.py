@@ -9,7 +9,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -68,9 +67,10 @@ class Figures:
         )
 
 
+@style.styled
 def draw(study: runner.Study) -> None:
     """Motion of the free end of all runs, with the closed form and its envelope."""
-    figure, axes = plt.subplots(figsize=(9, 4))
+    figure, axes = style.subplots(figsize=(9, 4))
     for case in study.runs:
         results = study.results[case.name]
         axes.plot(

@@ -8,7 +8,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.plot import style  # noqa: E402
 from stickslip.result import Result  # noqa: E402
@@ -63,9 +62,10 @@ def mean_speed(results: Result) -> np.ndarray:
     return (speed.mean(axis=1) @ weight) / bar.ELEMENTS
 
 
+@style.styled
 def draw(study: runner.Study) -> None:
     """Wall force and speed of the mass centre, with and without impulses."""
-    figure, axes = plt.subplots(2, 2, figsize=(10, 6.5), sharex=True)
+    figure, axes = style.subplots(2, 2, figsize=(10, 6.5), sharex=True)
     for column, scheme in enumerate(("ss22", "em")):
         force, speed = axes[:, column]
         for impact, label in (("none", "IMPACT=NONE"), ("impulse", "impact impulses")):

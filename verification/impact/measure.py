@@ -7,7 +7,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -59,10 +58,11 @@ def wall(results: Result) -> tuple[float, float, float]:
     return float(force.mean()), float(force.std()), float(impulse)
 
 
+@style.styled
 def draw(study: runner.Study) -> None:
     """Energy of all runs over time."""
     decks = [deck for deck in impact.DECKS if any(deck in c.deck for c in study.runs)]
-    figure, axes = plt.subplots(len(decks), 1, figsize=(8, 3 * len(decks)), squeeze=False)
+    figure, axes = style.subplots(len(decks), 1, figsize=(8, 3 * len(decks)), squeeze=False)
     for at, deck in zip(axes[:, 0], decks):
         for case in study.runs:
             if deck in case.deck:

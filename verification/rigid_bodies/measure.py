@@ -7,7 +7,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -171,6 +170,7 @@ def check_slider_crank(study: runner.Study) -> None:
     )
 
 
+@style.styled
 def measure(study: runner.Study) -> None:
     """Checks, tabulates and draws what the runs give."""
     for case in study.runs:
@@ -209,7 +209,7 @@ def measure(study: runner.Study) -> None:
     check_chains(study)
     check_slider_crank(study)
 
-    figure, axes = plt.subplots(figsize=(8, 4))
+    figure, axes = style.subplots(figsize=(8, 4))
     for name, body in (("square", "ESQUARE"), ("rod", "NENDS")):
         time = all_results[name].history.time
         axes.plot(time, of_body(all_results[name], body, "angle"), label=f"{name}: angle")

@@ -9,7 +9,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -98,6 +97,7 @@ def face_period(results: Result) -> float:
     return float(np.diff(turns).mean() / made.face_period())
 
 
+@style.styled
 def measure(study: runner.Study) -> None:
     """Checks, tabulates and draws what the runs give."""
     finest: dict[tuple[int, float], tuple[Array, Array]] = {}
@@ -122,7 +122,7 @@ def measure(study: runner.Study) -> None:
             height = np.ptp(x[len(x) // 3 :]) / amplitude
             study.check(f"amplitude / equation, {case.group}", case.name, float(height))
         finest[number, decay] = (time, x)
-    figure, axes = plt.subplots(2, 1, figsize=(8, 6), sharex=True)
+    figure, axes = style.subplots(2, 1, figsize=(8, 6), sharex=True)
     for (number, decay), (time, x) in finest.items():
         ax, (times, exact) = axes[number - 1], motion(number, decay)
         (line, *others) = ax.plot(time, x, label=f"d_c = {decay:g}")

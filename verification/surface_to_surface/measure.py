@@ -8,7 +8,6 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of python/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -88,12 +87,13 @@ def check_hertz(study: runner.Study, name: str, result: Result) -> list[object]:
     return [name, of_slave, of_master, half_width(*slave), peak]
 
 
+@style.styled
 def draw_ironing(study: runner.Study) -> None:
     """Horizontal forces of all pairs of runs."""
     names = [run.name[:-4] for run in study.runs if run.name.endswith("STS") and run.group == "iron"]
     if not names:
         return
-    figure, axes = plt.subplots(len(names), 1, figsize=(8, 2.2 * len(names)), squeeze=False)
+    figure, axes = style.subplots(len(names), 1, figsize=(8, 2.2 * len(names)), squeeze=False)
     for axis, name in zip(axes[:, 0], names):
         for kind, label in (("NTS", "node to surface"), ("STS", "surface to surface")):
             result = study.results.get(f"{name}_{kind}")

@@ -8,7 +8,6 @@ DECKS = HERE.parents[1] / "input" / "two_cantilevers"
 sys.path.insert(0, str(HERE.parent))
 
 import runner  # noqa: E402  (first: it finds the modules of scripts/)
-import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from stickslip.arrays import Array  # noqa: E402
 from stickslip.plot import style  # noqa: E402
@@ -26,9 +25,10 @@ def tip(results: Result, name: str = "UPPER_TIP") -> Array:
     return history.U[:, len(history.labels) // 2]
 
 
+@style.styled
 def draw_displacement(study: runner.Study, name: str, label: str) -> None:
     """Horizontal and vertical displacement of a tip against time, all mu in one figure."""
-    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True)
+    figure, axes = style.subplots(2, 2, figsize=(11, 7), sharex=True)
     for column, load in enumerate("AB"):
         for group, line in (("paper", "-"), ("default", "--")):
             cases = [(c, r) for c, r in study.group(group) if c.deck[0] == load]
@@ -75,9 +75,10 @@ def deviation(results: Result, reference: Result) -> float:
     return float(np.linalg.norm(tip(results) - at, axis=1).max())
 
 
+@style.styled
 def study_convergence(study: runner.Study) -> None:
     """Path of the upper tip against the finest run of each sequence."""
-    figure, axes = plt.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
+    figure, axes = style.subplots(2, 2, figsize=(11, 7), sharex=True, sharey=True)
     rows = []
     for row, group in enumerate(LABELS):
         for column, kind in enumerate(("dt", "mesh")):

@@ -3,15 +3,15 @@
 The nodes are those of a node set (--nset), or else all slave nodes. They are joined along the outlines of
 the bodies; where they make several lines, each has axes of its own, but for lines on which the field is
 zero at all times shown. The abscissa is the length along
-the line in the undeformed mesh, or with --against the current x or y.
+the line in the undeformed mesh, or with --against the current x or y (r, z).
 Without -o the picture goes next to the result, as JOB_along.png.
 """
 
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -19,6 +19,7 @@ from stickslip import command
 from stickslip.arrays import Array, Integers
 from stickslip.errors import Fault
 from stickslip.plot import style
+from stickslip.plot.fields import Field
 from stickslip.plot.motion import chosen_times, shown_at
 from stickslip.result import Result
 
@@ -41,43 +42,32 @@ def chains(results: Result, nodes: Integers) -> list[Integers]:
     return found
 
 
-def field(results: Result, name: str, frame: int) -> Array:
-    """A scalar at the nodes, or a component of a vector as in CONTACT_FORCE:2."""
-    path, _, component = name.partition(":")
-    values = results.frames[frame][path]
-    if values.ndim == 1 and not component:
-        return values
-    if values.ndim == 2 and component in ("1", "2"):
-        return values[:, int(component) - 1]
-    kind = "scalar: leave out" if values.ndim == 1 else f"vector: {path}:1 or {path}:2 name"
-    raise Fault(f"{path} is a {kind} the component")
-
-
 def abscissa(results: Result, line: Integers, frame: int, against: str) -> Array:
-    """Length along the line in the undeformed mesh, or the current x or y."""
+    """Length along the line in the undeformed mesh, or the current x or y (r or z)."""
     if against != "length":
-        return results.frames[frame].positions[line, "xy".index(against)]
+        return results.frames[frame].positions[line, "xyrz".index(against) % 2]
     steps = np.linalg.norm(np.diff(results.coordinates[line], axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
+@style.styled
 def draw(
     results: Result, lines: list[Integers], frames: Sequence[int], name: str, against: str
 ) -> Figure:
     """Axes for each line, a curve for each frame."""
-    figure, axes = plt.subplots(
-        len(lines), 1, figsize=(8, 0.8 + 2.6 * len(lines)), squeeze=False, sharey=True
-    )
+    size = (8.0, 0.8 + 2.6 * len(lines))
+    figure, axes = style.subplots(len(lines), 1, size, squeeze=False, sharey=True)
+    shown = Field(name)
     for at, line in zip(axes[:, 0], lines):
         first, last = results.node_labels[line[[0, -1]]]
         ring = f"whole outline from node {first}"
         at.set_title(ring if first == last else f"nodes {first} to {last}", loc="left")
         for frame, colour in zip(frames, style.colours(len(frames))):
             across = abscissa(results, line, frame, against)
-            values = field(results, name, frame)[line]
+            values = shown.values(results, frame)[line]
             time = results.frames[frame].time
             at.plot(across, values, ".-", ms=4, color=colour, label=f"t = {time:.4g}")
-        at.set_ylabel(name)
+        at.set_ylabel(fill(results.frames.part(name).label, 32))
     axes[0, 0].legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
     axes[-1, 0].set_xlabel("length along the line" if against == "length" else against)
     figure.suptitle(results.job)
@@ -90,11 +80,11 @@ def run() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
-    parser.add_argument("--field", default="CONTACT_PRESSURE", help="field at the nodes")
+    parser.add_argument("--field", default="CPRESS", help="a field as CPRESS, S11, U2; of elements at nodes")
     parser.add_argument("--nset", help="node set whose nodes are taken")
     parser.add_argument("--times", type=command.finite, nargs="+", help="times (nearest frames)")
     parser.add_argument("--interval", type=command.positive, help="0, INTERVAL, 2 INTERVAL...")
-    parser.add_argument("--against", choices=("length", "x", "y"), default="length")
+    parser.add_argument("--against", choices=("length", "x", "y", "r", "z"), default="length")
     parser.add_argument("-o", "--output", type=Path, help="picture to write")
     parser.add_argument("--dpi", type=command.positive, help="pixels per inch of the picture")
     arguments = parser.parse_args()
@@ -104,12 +94,13 @@ def run() -> None:
     else:
         nodes = np.flatnonzero(np.isfinite(results.frames[0]["SLIP"]))
     lines = chains(results, nodes)
-    times = chosen_times(results, arguments.times, arguments.interval)
+    wanted = Field(arguments.field)
+    times = chosen_times(results, arguments.times, arguments.interval, wanted)
     frames = [frame for _, frame in shown_at(results, times)]
     if not lines:
         what = f"nodes of {arguments.nset}" if arguments.nset else "slave nodes"
         raise Fault(f"{results.path}: no edge of an outline joins two {what}")
-    shown = [field(results, arguments.field, frame) for frame in frames]
+    shown = [wanted.values(results, frame) for frame in frames]
     lines = [line for line in lines if any(np.nan_to_num(v[line]).any() for v in shown)] or lines
     if len(lines) > MOST:
         raise Fault(f"the nodes make {len(lines)} lines, {MOST} at most are drawn: give --nset")

@@ -1,7 +1,7 @@
 """Draws the histories of results.
 
-Without names: where the energy is, its balance, momentum and contact forces, results side by side
-or, with --overlay, on top of each other. With --y any histories, against the time or against the
+Without names: where the energy is, its balance, momentum and contact forces, and force against displacement where a
+force moves something, results side by side or, with --overlay, on top of each other. With --y any histories, against the time or against the
 one of --x; all results stand in the same axes then, and every --y has axes of its own:
 
     stickslip-plot-history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
@@ -20,7 +20,6 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -30,7 +29,8 @@ from stickslip import command
 from stickslip.arrays import Array
 from stickslip.errors import Fault
 from stickslip.plot import style
-from stickslip.quantity import find, listed
+from stickslip.fields import directions
+from stickslip.quantity import find, force_against_displacement, listed
 from stickslip.result import Result
 
 LEDGER = (
@@ -87,7 +87,7 @@ def balance(axes: Axes, results: Result) -> None:
 
 def linear_momentum(axes: Axes, results: Result) -> None:
     """Both components; round-off is drawn as zero."""
-    for label, values in zip("xy", results.history.momentum.linear.T):
+    for label, values in zip(directions(2, results.is_axisymmetric), results.history.momentum.linear.T):
         axes.plot(results.history.time, values, label=label)
     speed = np.linalg.norm(results.frames[0]["V"], axis=1).max()
     kinetic = 2.0 * results.history.energy["kinetic"][0]
@@ -151,22 +151,26 @@ def legend_beside(axes: Sequence[Axes]) -> None:
             line.set_linewidth(1.8)  # thin ones have pale colours
 
 
+@style.styled
 def draw(all_results: list[Result]) -> Figure:
     """One column per result, all with the same scales."""
     rows: list[tuple[Plot, float]] = [(energy, 2.0), (balance, 1.0)]
-    rows += [(linear_momentum, 1.0), (angular_momentum, 1.0)]
+    if any(results.history.momentum.linear.any() for results in all_results):
+        rows += [(linear_momentum, 1.0), (angular_momentum, 1.0)]
     if any(results.contact for results in all_results):
         rows += [(contact_force, 1.2), (contact_state, 0.9)]
+    over_time = len(rows)
+    if any(map(force_against_displacement, all_results)):
+        rows.append((force_displacement, 1.6))
     heights = [height for _, height in rows]
-    figure, axes = plt.subplots(
-        len(rows),
-        len(all_results),
-        figsize=(3.2 + 4.5 * len(all_results), 1.0 + 1.5 * sum(heights)),
-        sharex=True,
-        sharey="row",
-        squeeze=False,
-        height_ratios=heights,
+    size = (3.2 + 4.5 * len(all_results), 1.0 + 1.5 * sum(heights))
+    figure, axes = style.subplots(
+        len(rows), len(all_results), size, sharey="row", squeeze=False, height_ratios=heights
     )
+    for at in axes[:over_time].flat:
+        if at is not axes[0, 0]:
+            at.sharex(axes[0, 0])
+        at.tick_params(labelbottom=at in axes[over_time - 1])
     for row, (plot, _) in zip(axes, rows):
         for at, results in zip(row, all_results):
             plot(at, results)
@@ -175,9 +179,18 @@ def draw(all_results: list[Result]) -> Figure:
         legend_beside(row)
     for column, (name, results) in enumerate(zip(names(all_results), all_results)):
         axes[0, column].set_title(name)
-        axes[-1, column].set_xlabel("time")
-        axes[-1, column].set_xlim(*span(all_results))
+        axes[over_time - 1, column].set_xlabel("time")
+        axes[over_time - 1, column].set_xlim(*span(all_results))
     return figure
+
+
+def force_displacement(axes: Axes, results: Result) -> None:
+    """The force that does the largest work against the displacement in its direction."""
+    for names in force_against_displacement(results)[:1]:
+        moved, force = (find(results, name) for name in names)
+        axes.plot(*moved.parts.values(), *force.parts.values(), color="k")
+        axes.set_xlabel(fill(moved.title, 60))
+        axes.set_ylabel(fill(force.title, 30))
 
 
 def losses(results: Result) -> Array:
@@ -208,11 +221,12 @@ COMPARED: tuple[tuple[str, Callable[[Result], Array]], ...] = (
 """What is compared between results: title, values."""
 
 
+@style.styled
 def compare(all_results: list[Result]) -> Figure:
     """Result on top of each other: one line each."""
     touching = any(results.contact for results in all_results)
     rows = COMPARED if touching else COMPARED[:5]
-    figure, axes = plt.subplots(len(rows), 1, figsize=(9, 1.0 + 1.6 * len(rows)), sharex=True)
+    figure, axes = style.subplots(len(rows), 1, (9.0, 1.0 + 1.6 * len(rows)), sharex=True)
     for at, (title, values) in zip(axes, rows):
         at.set_prop_cycle(color=style.colours(len(all_results)))
         for name, results in zip(names(all_results), all_results):
@@ -226,10 +240,11 @@ def compare(all_results: list[Result]) -> Figure:
     return figure
 
 
+@style.styled
 def draw_named(all_results: list[Result], along: str, rows: list[list[str]]) -> Figure:
     """Histories against another one: axes for each row of names, a line for each of its names."""
-    figure, axes = plt.subplots(
-        len(rows), 1, figsize=(9, 0.8 + 3.4 * len(rows)), sharex=True, squeeze=False
+    figure, axes = style.subplots(
+        len(rows), 1, (9.0, 0.8 + 3.4 * len(rows)), sharex=True, squeeze=False
     )
     titles: list[str] = []
     for at, shown in zip(axes[:, 0], rows):

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -25,9 +25,10 @@ from stickslip import command
 from stickslip.arrays import Array
 from stickslip.errors import Fault
 from stickslip.plot import style
-from stickslip.plot.fields import FIELDS, Colouring, Shown
+from stickslip.fields import VECTORS, directions, known
+from stickslip.plot.fields import Colouring, Field, Peak, Shown
 from stickslip.plot.page import Legends, Page
-from stickslip.plot.shapes import VECTORS, Arrows, draw_overlay, draw_shape, limits, status_legend
+from stickslip.plot.shapes import Arrows, draw_overlay, draw_shape, limits, status_legend
 from stickslip.result import Result
 from stickslip.whole import whole
 
@@ -50,7 +51,11 @@ class Look:
     """What is drawn besides the shapes."""
 
     field: str | None = None
-    """Name of the field that colours the bodies."""
+    """Name of the field that colours the bodies (see `stickslip.fields`)."""
+    at_nodes: bool = True
+    """Whether values of elements are averaged at nodes, within a body and a material."""
+    undeformed: bool = False
+    """Whether the outlines of the undeformed bodies are drawn."""
     vectors: str | None = None
     """Name of the vector field whose arrows are drawn."""
     ends: tuple[float, float] | None = None
@@ -63,11 +68,12 @@ class Scene:
     """Frames drawn with one scale of everything."""
 
     def __init__(self, shown: Sequence[Shown], look: Look) -> None:
-        colouring = Colouring.of(look.field, shown, look.ends) if look.field else None
+        colouring = Colouring.of(Field(look.field, look.at_nodes), shown, look.ends) if look.field else None
         self.colouring = colouring
+        self.undeformed = look.undeformed
         self.arrows = Arrows.of(look.vectors, shown) if look.vectors else None
         self.box = look.window or limits(shown, self.arrows)
-        marked = colouring is None or not colouring.field.on_edges
+        marked = colouring is None or not colouring.field.on_outlines(shown[0][0])
         entries = status_legend(shown) if marked else []
         entries += self.arrows.legend() if self.arrows else []
         if colouring:
@@ -77,11 +83,12 @@ class Scene:
 
     def draw(self, axes: Axes, results: Result, frame: int) -> None:
         """One frame."""
-        draw_shape(axes, results, frame, self.colouring)
+        draw_shape(axes, results, frame, self.colouring, self.undeformed)
         if self.arrows:
             self.arrows.draw(axes, results, frame)
 
 
+@style.styled
 def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = None) -> Figure:
     """A page with a panel for each frame.
 
@@ -94,12 +101,12 @@ def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = No
     scene = Scene(shown, look)
     columns = columns or (max(map(len, rows)) if len(rows) > 1 else None)
     if columns is None:
-        page = Page(len(shown), scene.box, scene.legends)
+        page = Page(len(shown), scene.box, scene.legends, titles(shown))
         columns = page.grid.columns
     else:
         columns = min(columns, max(map(len, rows)))
         lines = sum(-(-len(row) // columns) for row in rows)
-        page = Page((lines, columns), scene.box, scene.legends)
+        page = Page((lines, columns), scene.box, scene.legends, titles(shown))
     line = 0
     for row in rows:
         places = [(line + i // columns, i % columns) for i in range(len(row))]
@@ -113,9 +120,14 @@ def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = No
     return page.figure
 
 
+def titles(shown: Sequence[Shown]) -> list[str]:
+    """Titles of the axes."""
+    return directions(2, shown[0][0].is_axisymmetric)
+
+
 def shades(count: int) -> Array:
     """Colours of times [count, 4]."""
-    return plt.get_cmap("plasma")(np.linspace(0.0, 0.85, count))
+    return colormaps["plasma"](np.linspace(0.0, 0.85, count))
 
 
 def time_legend(shown: Sequence[Shown]) -> list[Line2D]:
@@ -125,11 +137,12 @@ def time_legend(shown: Sequence[Shown]) -> list[Line2D]:
     return [Line2D([], [], color=c, label=f"t = {t:.4g}") for t, c in zip(times, colours)]
 
 
+@style.styled
 def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figure:
     """A page with a panel for each result, all its frames in it."""
     legends = Legends(time_legend(max(rows, key=len)))
     box = window or limits([each for row in rows for each in row])
-    page = Page(len(rows), box, legends)
+    page = Page(len(rows), box, legends, titles([each for row in rows for each in row]))
     columns = page.grid.columns
     for i, row in enumerate(rows):
         axes = page.panel(i // columns, i % columns, i + columns >= len(rows))
@@ -202,31 +215,55 @@ def pictures_of(
         yield Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
 
 
+@style.styled
 def animate(all_results: Sequence[Result], look: Look, path: Path, frames_per_second: int) -> None:
     """Writes an animation of all frames of the first result; others are shown at its times."""
     times = all_results[0].frames.times
     rows = [[(each, each.frames.nearest(time).index) for each in all_results] for time in times]
     scene = Scene([each for row in rows for each in row], look)
-    page = Page(len(all_results), scene.box, scene.legends)
+    page = Page(len(all_results), scene.box, scene.legends, titles(rows[0]))
     columns = page.grid.columns
     places = [divmod(i, columns) for i in range(len(all_results))]
     grid = [page.panel(*place, place[0] == places[-1][0]) for place in places]
     write_film(path, pictures_of(page, grid, scene, rows), frames_per_second)
-    plt.close(page.figure)
     print(f"wrote {path}")
 
 
-def chosen_times(results: Result, times: list[float] | None, interval: float | None) -> Array:
-    """The given times, or multiples of an interval, or six times of the whole run."""
+PANELS = 6
+"""Times that are shown where none are asked for, unless the run has more steps."""
+
+
+def chosen_times(results: Result, times: list[float] | None, interval: float | None, field: Field | None = None) -> Array:
+    """The given times, or multiples of an interval, or those that tell of the whole run.
+
+    These are the start, the ends of the steps and the time of the largest value of the field; others between them make
+    up six.
+    """
     if times:
         return np.array(times)
-    first, end = float(results.frames.times[0]), float(results.frames.times[-1])
+    every = results.frames.times
+    first, end = float(every[0]), float(every[-1])
     if interval is None:
-        return np.linspace(first, end, 6)
+        frames = {0, len(every) - 1, *step_ends(results)}
+        if field and (peak := Peak.of(field, [(results, frame) for frame in range(len(every))])):
+            frames.add(peak.frame)
+        while len(frames) < min(PANELS, len(every)):
+            away = np.abs(every[:, None] - every[sorted(frames)]).min(axis=1)
+            away[list(frames)] = -1.0
+            frames.add(int(away.argmax()))
+        return every[sorted(frames)]
     count = (end - first) / interval
     if count > MOST:
         raise Fault(f"--interval {interval:g} asks for {count:.0f} panels: {MOST} at most")
     return first + interval * np.arange(int(count + 1e-9) + 1, dtype=np.float64)
+
+
+def step_ends(results: Result) -> list[int]:
+    """Frames at the ends of the steps; of more than ten steps some."""
+    step, time = results.history["step"], results.history["time"]
+    last = np.flatnonzero(np.diff(step, append=step[-1] + 1))
+    chosen = last[:: -(-len(last) // 10)]
+    return [results.frames.nearest(float(t)).index for t in time[chosen]]
 
 
 def shown_at(results: Result, times: Iterable[float]) -> list[Shown]:
@@ -242,6 +279,13 @@ def window(text: str) -> Box:
     return np.array((x0, y0)), np.array((x1, y1))
 
 
+def vector(text: str) -> str:
+    """Name of a vector field, as a type of argparse."""
+    if (name := known(text, VECTORS)) not in VECTORS:
+        raise argparse.ArgumentTypeError(f"{text} is no vector: choose from {', '.join(VECTORS)}")
+    return name
+
+
 def arguments_of_command_line() -> argparse.Namespace:
     """Options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -250,14 +294,26 @@ def arguments_of_command_line() -> argparse.Namespace:
         "--times", type=command.finite, nargs="+", help="times to show (nearest frames)"
     )
     parser.add_argument("--interval", type=command.positive, help="show 0, INTERVAL, 2 INTERVAL..")
-    parser.add_argument("--field", choices=[*FIELDS, "none"], default="von-mises")
+    parser.add_argument(
+        "--field",
+        default="MISES",
+        metavar="NAME",
+        help="what colours the bodies: a field as MISES, S11, PEEQ, U2, CPRESS, or a word as von-mises, speed; none",
+    )
+    parser.add_argument(
+        "--values",
+        choices=("nodes", "elements"),
+        default="nodes",
+        help="of fields of elements: averages at nodes within a body and a material, or means of elements",
+    )
+    parser.add_argument("--undeformed", action="store_true", help="draw the undeformed outlines")
     parser.add_argument(
         "--range", type=command.numbers(2), metavar="LOW,HIGH", help="ends of the colour scale"
     )
     parser.add_argument(
         "--window", type=window, metavar="X0,X1,Y0,Y1", help="part of the plane to show"
     )
-    parser.add_argument("--vectors", choices=VECTORS, help="draw this vector field as arrows")
+    parser.add_argument("--vectors", type=vector, metavar="NAME", help="draw this vector field as arrows")
     parser.add_argument("--forces", action="store_true", help="the same as --vectors CONTACT_FORCE")
     parser.add_argument("--columns", type=command.positive_integer, help="panels side by side")
     parser.add_argument("--overlay", action="store_true", help="one panel, coloured by time")
@@ -275,14 +331,15 @@ def run() -> None:
     arguments = arguments_of_command_line()
     vectors = arguments.vectors or ("CONTACT_FORCE" if arguments.forces else None)
     field = None if arguments.field == "none" else arguments.field
-    look = Look(field, vectors, arguments.range, arguments.window)
+    at_nodes = arguments.values == "nodes"
+    look = Look(field, at_nodes, arguments.undeformed, vectors, arguments.range, arguments.window)
     film = arguments.animation
     if film:
         check_film(film)
     all_results = [Result(path) for path in arguments.result]
     if arguments.output or not film:
         first = all_results[0]
-        times = chosen_times(first, arguments.times, arguments.interval)
+        times = chosen_times(first, arguments.times, arguments.interval, Field(field, at_nodes) if field else None)
         rows = [shown_at(results, times) for results in all_results]
         if arguments.overlay:
             figure = overlay(rows, arguments.window)

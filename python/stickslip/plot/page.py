@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import fill
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -14,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from stickslip.arrays import Array
+from stickslip.plot.fields import COLOURS
 
 WIDTH, HEIGHT = 11.0, 7.7
 """Largest page that is filled; one with very many panels is higher."""
@@ -137,10 +137,15 @@ class Page:
     """A figure with a grid of panels that show the box between two corners."""
 
     def __init__(
-        self, places: int | tuple[int, int], box: tuple[Array, Array], legends: Legends
+        self,
+        places: int | tuple[int, int],
+        box: tuple[Array, Array],
+        legends: Legends,
+        titles: Sequence[str] = ("x", "y"),
     ) -> None:
-        """`places` is the number of panels, or rows and columns."""
+        """`places` is the number of panels, or rows and columns; `titles` are those of the axes."""
         self.box = box
+        self.titles = titles
         across, up = box[1] - box[0]
         ratio = float(up / across)
         self.left = LEFT + CHARACTER * longest_tick(float(box[0][1]), float(box[1][1]))
@@ -158,7 +163,7 @@ class Page:
         self.width = self.left + width + strip
         self.height = TOP + height + BOTTOM + below
         self.bottom = BOTTOM + below
-        self.figure: Figure = plt.figure(figsize=(self.width, self.height))
+        self.figure = Figure(figsize=(self.width, self.height))
         self.figure.set_layout_engine("none")  # every place is given
         if legends and beside:
             self._beside(legends, self.left + width + 0.15)
@@ -171,8 +176,8 @@ class Page:
         axes = self._axes(self.left + x, self.bottom + y, self.grid.width, self.grid.height)
         self.frame(axes)
         axes.tick_params(labelleft=column == 0, labelbottom=last)
-        axes.set_xlabel("x" if last else "", labelpad=0)
-        axes.set_ylabel("y" if column == 0 else "", labelpad=2)
+        axes.set_xlabel(self.titles[0] if last else "", labelpad=0)
+        axes.set_ylabel(self.titles[1] if column == 0 else "", labelpad=2)
         return axes
 
     def frame(self, axes: Axes) -> None:
@@ -196,7 +201,7 @@ class Page:
         if legends.norm is not None:
             height = top - self.bottom
             self.figure.colorbar(
-                ScalarMappable(legends.norm, "viridis"),
+                ScalarMappable(legends.norm, COLOURS),
                 self._axes(left, self.bottom, 0.2, height),
                 label=fill(legends.label, round(height / CHARACTER)),
                 extend=legends.extend,
@@ -208,7 +213,7 @@ class Page:
         if legends.norm is not None:
             axes = self._axes(left, 0.4, 0.55 * self.width, 0.15)
             self.figure.colorbar(
-                ScalarMappable(legends.norm, "viridis"),
+                ScalarMappable(legends.norm, COLOURS),
                 axes,
                 label=legends.label,
                 orientation="horizontal",

@@ -7,24 +7,17 @@ from typing import Any, cast
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import Collection, LineCollection, PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.tri import Triangulation
 
 from stickslip.arrays import Array, Flags, Integers
-from stickslip.plot.fields import Colouring, Shown
+from stickslip.fields import words
+from stickslip.plot.fields import COLOURS, Colouring, Shown, on_lines
 from stickslip.result import SLIP, STICK, Result
 
-BACKGROUND, EDGE, MARK, ARROW = "#eef1f4", "#40464d", "#d1495b", "#111111"
-
-VECTORS = {
-    "U": "displacement",
-    "V": "velocity",
-    "A": "acceleration",
-    "RF": "support reaction",
-    "CONTACT_FORCE": "contact force",
-}
-"""Vector fields at the nodes: what they are."""
+BACKGROUND, EDGE, MARK, ARROW, UNDEFORMED = "#eef1f4", "#40464d", "#d1495b", "#111111", "#8a94a0"
 
 MESH_LINE = 0.25
 """Widest lines of the mesh in points."""
@@ -91,39 +84,67 @@ class Arrows:
 
     def legend(self) -> list[Artist]:
         """What an arrow is."""
-        label = f"{VECTORS[self.name]},\nlongest {self.largest:.3g}"
+        label = f"{words(self.name)},\nlongest {self.largest:.3g}"
         look: dict[str, Any] = {"color": ARROW, "marker": r"$\rightarrow$", "markersize": 11, "linestyle": "none"}
         return [Line2D([], [], label=label, **look)]
 
 
-def draw_shape(axes: Axes, results: Result, frame: int, colouring: Colouring | None) -> None:
+def draw_shape(
+    axes: Axes, results: Result, frame: int, colouring: Colouring | None, undeformed: bool = False
+) -> None:
     """The deformed mesh in one frame, its outline and the nodes in contact."""
-    position = results.frames[frame].positions
-    on_edges = colouring is not None and colouring.field.on_edges
-    on_cells = colouring is not None and not on_edges
-    bodies = PolyCollection([position[cell] for cell in results.outlines])
+    drawing = results.drawing
+    at = drawing.positions(results.frames[frame].positions)
+    bodies = PolyCollection([at[ring] for ring in drawing.rings], zorder=1.2)
     bodies.set_linewidth(mesh_line(axes, results))
-    bodies.set_edgecolor("#ffffff80" if on_cells else "#b8c0c8")
+    bodies.set_edgecolor("#ffffff80" if colouring else "#b8c0c8")
     bodies.set_facecolor(BACKGROUND)
-    outline = LineCollection(list(position[results.boundary]), colors=EDGE, linewidths=0.8)
     axes.add_collection(bodies)
-    axes.add_collection(outline)
+    axes.add_collection(LineCollection(list(at[drawing.outline]), colors=EDGE, linewidths=0.8))
+    if undeformed:
+        before = drawing.positions(results.coordinates)[drawing.outline]
+        axes.add_collection(LineCollection(list(before), colors=UNDEFORMED, linewidths=0.8, linestyles="--"))
+    on_edges = colouring is not None and colouring.field.on_outlines(results)
     if colouring is not None:
-        values = colouring.field.values(results, frame)
-        coloured: Collection = bodies
-        if on_edges:
-            there = np.isfinite(values) & (values != 0.0)
-            values = values[there]
-            coloured = LineCollection(list(position[results.boundary[there]]), linewidths=3.0, zorder=3)
-            axes.add_collection(coloured)
-        coloured.set(array=values, cmap="viridis", norm=colouring.norm)
-    axes.add_collection(LineCollection(list(position[results.rigid]), colors=EDGE, linewidths=1.6))
+        draw_field(axes, results, frame, colouring, at, bodies)
+    rigid = results.frames[frame].positions[results.rigid]
+    axes.add_collection(LineCollection(list(rigid), colors=EDGE, linewidths=1.6))
     if on_edges:
         return  # marks of the nodes would cover the coloured edges
     status = results.frames[frame]["CONTACT_STATUS"]
+    position = results.frames[frame].positions
     for value, face in ((STICK, MARK), (SLIP, "white")):
-        at = position[status == value]
-        axes.scatter(at[:, 0], at[:, 1], s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
+        touching = position[status == value]
+        axes.scatter(touching[:, 0], touching[:, 1], s=11, facecolor=face, edgecolor=MARK, linewidth=0.9, zorder=5)
+
+
+def draw_field(
+    axes: Axes, results: Result, frame: int, colouring: Colouring, at: Array, bodies: PolyCollection
+) -> None:
+    """The field in its colours, and a mark where it is largest; `at` are the positions of the vertices."""
+    drawing, field = results.drawing, colouring.field
+    values = field.values(results, frame)
+    look: dict[str, Any] = {"cmap": COLOURS, "norm": colouring.norm}
+    if field.on_outlines(results):
+        along = on_lines(results, values)
+        there = np.isfinite(along) & (along != 0.0)
+        lines = LineCollection(list(at[drawing.outline[there]]), linewidths=3.0, zorder=3, array=along[there], **look)
+        axes.add_collection(lines)
+    elif not field.of_nodes(results):
+        bodies.set(array=values, **look)
+    else:
+        bodies.set_facecolor("none")
+        triangles, (x, y) = drawing.triangles, drawing.with_middles(at).T
+        shades = drawing.with_middles(drawing.values(values))
+        hidden = ~np.isfinite(shades[triangles]).all(axis=1)
+        if not hidden.all():
+            mesh = Triangulation(x, y, triangles, hidden)
+            axes.tricontourf(mesh, np.nan_to_num(shades), colouring.levels, extend="both", zorder=1.1, **look)
+    peak = colouring.peak
+    if peak is not None and (peak.results, peak.frame) == (results, frame):
+        place = at[peak.place] if field.of_nodes(results) else at[drawing.rings[peak.place]].mean(axis=0)
+        axes.scatter(*place, s=22, marker="o", facecolor="none", edgecolor=ARROW, linewidth=0.9, zorder=7)
+        axes.annotate(f"{peak.value:.4g}", place, (4, 5), textcoords="offset points", fontsize=7, zorder=7, clip_on=True)
 
 
 def mesh_line(axes: Axes, results: Result) -> float:
@@ -187,10 +208,13 @@ def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) ->
     farthest = np.array([way[results.body == body].max() for body in bodies])
     moving = (farthest > 0.01 * way.max())[results.body]
 
+    drawing = results.drawing
+
     def draw(frame: int, select: Flags, face: object, edge: object) -> None:
         position = results.frames[frame].positions
-        cells = [position[cell] for cell in results.outlines if select[cell[0]]]
-        outline = position[[side for side in results.boundary if select[side[0]]]]
+        at, seen = drawing.positions(position), drawing.values(select.astype(np.float64)) > 0.5
+        cells = [at[ring] for ring in drawing.rings if seen[ring[0]]]
+        outline = at[drawing.outline[seen[drawing.outline[:, 0]]]]
         rigid = position[[side for side in results.rigid if select[side[0]]]]
         axes.add_collection(PolyCollection(cells, facecolors=face, linewidths=0))
         axes.add_collection(LineCollection(list(outline), colors=[edge], linewidths=1.1))

@@ -1,21 +1,17 @@
 """Look of all figures."""
 
-import os
 from pathlib import Path
+from typing import Any
 
 import matplotlib
+import numpy as np
+from cycler import cycler
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from PIL import Image
 
-if not os.environ.get("DISPLAY"):
-    matplotlib.use("Agg")
-
-import numpy as np  # noqa: E402
-from cycler import cycler  # noqa: E402
-from matplotlib.colors import to_hex  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-from PIL import Image  # noqa: E402
-
-from stickslip.errors import Fault, one_line  # noqa: E402
-from stickslip.whole import whole  # noqa: E402
+from stickslip.errors import Fault, one_line
+from stickslip.whole import whole
 
 MOST_PIXELS = 1e8
 """Larger pictures are refused: they would need gigabytes of memory."""
@@ -34,32 +30,42 @@ def colours(count: int) -> list[str]:
     ]
 
 
-matplotlib.rcParams.update(
-    {
-        "figure.dpi": 110,
-        "savefig.dpi": 160,
-        "figure.constrained_layout.use": True,
-        "font.size": 9,
-        "axes.titlesize": 10,
-        "axes.grid": True,
-        "axes.axisbelow": True,
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-        "axes.prop_cycle": cycler(color=COLOURS),
-        "axes.formatter.limits": (-3, 4),
-        "axes.formatter.use_mathtext": True,
-        "grid.color": "#dddddd",
-        "grid.linewidth": 0.6,
-        "lines.linewidth": 1.2,
-        "legend.frameon": False,
-        "legend.fontsize": 8,
-    }
-)
+LOOK: dict[str, Any] = {
+    "figure.dpi": 110,
+    "savefig.dpi": 160,
+    "figure.constrained_layout.use": True,
+    "font.size": 9,
+    "axes.titlesize": 10,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.prop_cycle": cycler(color=COLOURS),
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
+    "grid.color": "#dddddd",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.2,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+}
+"""Parameters of matplotlib in which figures are drawn; those of the user stay as they are."""
+
+styled = matplotlib.rc_context(LOOK)
+"""Decorator of functions that draw or write figures."""
 
 
+@styled
+def subplots(rows: int = 1, columns: int = 1, figsize: tuple[float, float] | None = None, **options: Any) -> tuple[Figure, Any]:
+    """A figure that no window of pyplot knows, and its axes, as in `pyplot.subplots`."""
+    figure = Figure(figsize=figsize)
+    return figure, figure.subplots(rows, columns, **options)
+
+
+@styled
 def save(figure: Figure, path: Path | str, dpi: float | None = None) -> Path:
     """Writes a figure and says so; a .png gets a palette of 256 colours, which halves its size."""
-    path, dpi = Path(path), dpi or float(matplotlib.rcParams["savefig.dpi"])
+    path, dpi = Path(path), dpi or float(LOOK["savefig.dpi"])
     if figure.get_size_inches().prod() * dpi**2 > MOST_PIXELS:
         raise Fault(f"{path} would have more than {MOST_PIXELS:.0e} pixels: lower --dpi")
     with whole(path) as draft:

@@ -6,20 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-
-import numpy as np  # noqa: E402
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.cm import ScalarMappable  # noqa: E402
-from matplotlib.colors import Normalize  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-
-from stickslip.errors import Fault  # noqa: E402
-from stickslip.result import Result  # noqa: E402
-from stickslip.sweep.quantities import Quantity  # noqa: E402
-from stickslip.sweep.table import Table  # noqa: E402
-from stickslip.whole import whole  # noqa: E402
+from stickslip.errors import Fault
+from stickslip.result import Result
+from stickslip.sweep.quantities import Quantity
+from stickslip.sweep.table import Table
+from stickslip.whole import whole
 
 MOST = 12
 """Instead of a legend with more entries there is a scale of colours."""

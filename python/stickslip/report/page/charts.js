@@ -231,10 +231,10 @@ function nearestOnWay(plot, series) {
   return series > 0 ? best : nearestOnWay(plot, 1);
 }
 
-/** Last row at or before a time. */
+/** Last row at or before a time; those of the rows have single precision. */
 function rowAt(times, time) {
   let row = 0;
-  while (row + 1 < times.length && times[row + 1] <= time * (1 + 1e-9)) row++;
+  while (row + 1 < times.length && times[row + 1] <= time * (1 + 1e-6)) row++;
   return row;
 }
 
