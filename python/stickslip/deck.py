@@ -97,6 +97,12 @@ class Deck:
         """The whole deck."""
         return "".join(card.text() for card in self.cards)
 
+    def _repr_html_(self) -> str:
+        """Picture and description of the model, or its faults, in a notebook."""
+        from stickslip import notebook
+
+        return notebook.deck_html(self)
+
     def write(self, path: Path | str) -> Path:
         """Writes the deck and returns its path."""
         write_text(path, self.text())

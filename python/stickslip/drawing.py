@@ -70,8 +70,7 @@ class Drawing:
                     lines[ends in outer] += zip(way[:-1], way[1:])
             rings.append(np.array(ring))
         table = np.array([*after, *quarters, *eighths], np.int64).reshape(-1, 3)
-        ends = recovery.places, second, second + len(eighths)
-        return cls(nodes, ends, table, rings, *(np.array(lines[k], np.int64).reshape(-1, 2) for k in (True, False)))
+        return cls(nodes, (recovery.places, second, second + len(eighths)), table, rings, *(np.array(lines[k], np.int64).reshape(-1, 2) for k in (True, False)))
 
     def node_of(self, places: Integers) -> Integers:
         """Nodes of places."""

@@ -104,13 +104,13 @@ def _places(cells: list[Integers], materials: Integers, nodes: int) -> tuple[lis
 def _weights(corners: list[Integers], centres: Array, at: Array) -> tuple[Integers, Integers, Array]:
     """Place, element and weight of every part of the values at corners."""
     around: dict[int, list[int]] = {}
-    for element, ends in enumerate(corners):
-        for place in ends.tolist():
-            around.setdefault(place, []).append(element)
-    near = [sorted({other for place in ends.tolist() for other in around[place]}) for ends in corners]
-    pairs = [(place, sorted({other for one in of for other in near[one]})) for place, of in around.items()]
-    place = np.repeat([p for p, _ in pairs], [len(of) for _, of in pairs]).astype(np.int64)
-    element = np.concatenate([*(of for _, of in pairs), np.empty(0, int)]).astype(np.int64)
+    for number, ends in enumerate(corners):
+        for end in ends.tolist():
+            around.setdefault(end, []).append(number)
+    near = [{other for end in ends.tolist() for other in around[end]} for ends in corners]
+    pairs = [(end, sorted({other for one in of for other in near[one]})) for end, of in around.items()]
+    place = np.repeat(np.array([p for p, _ in pairs], np.int64), [len(of) for _, of in pairs])
+    element = np.array([one for _, of in pairs for one in of], np.int64)
     if len(place) == 0:
         return place, element, np.empty(0)
     size = len(at)

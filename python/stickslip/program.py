@@ -98,6 +98,13 @@ class Progress:
         """The part of the deck's time that is done."""
         return self.time / self.end if self.end else None
 
+    def __str__(self) -> str:
+        text = f"increment {self.increment}, t = {self.time:.6g}"
+        if self.end:
+            left = self.seconds * (self.end / self.time - 1.0) if self.time > 0.0 else 0.0
+            text += f" of {self.end:.6g}, {left:.0f} s left"
+        return text
+
 
 def binary() -> Path:
     """The program: $STICKSLIP, the one installed with this package, on the path, or built in a checkout."""
@@ -144,7 +151,7 @@ def run(
     solver, threads, checkpoint, extend, oldjob with a value; strict, lenient, verbose, resume as True.
     `words` are options as they are typed.
     `parameters` are values of the deck's parameters, in place of those of its `*PARAMETER` cards.
-    `progress` prints how far the run is, or is called with a `Progress` some times a second. Raises
+    `progress` prints how far the run is (a bar in a notebook), or is called with a `Progress` some times a second. Raises
     DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
@@ -290,7 +297,7 @@ def _watch(
     status: Path, end: float | None, progress: bool | Callable[[Progress], object]
 ) -> Callable[[bool], None]:
     """What looks at the status file of a run and tells how far it is."""
-    tell = progress if callable(progress) else _print
+    tell = progress if callable(progress) else _told()
     start, old = time.monotonic(), _stamp(status)
     last = -1
 
@@ -329,10 +336,11 @@ def _last_increment(status: Path) -> tuple[int, float]:
 
 def _print(progress: Progress) -> None:
     """One line that is written over and over."""
-    text = f"increment {progress.increment}, t = {progress.time:.6g}"
-    if progress.end:
-        left = (
-            progress.seconds * (progress.end / progress.time - 1.0) if progress.time > 0.0 else 0.0
-        )
-        text += f" of {progress.end:.6g}, {left:.0f} s left"
-    print(f"\r{text:<70}", end="", file=sys.stderr, flush=True)
+    print(f"\r{progress!s:<70}", end="", file=sys.stderr, flush=True)
+
+
+def _told() -> Callable[[Progress], object]:
+    """What tells of the progress where nothing else is asked for: a bar in a notebook, else a line."""
+    from stickslip import notebook
+
+    return notebook.Bar() if notebook.runs_here() else _print

@@ -69,6 +69,20 @@ class Result(ResultFile):
         """The frame nearest to a time of the run; a Fault for times before and after the frames."""
         return self.frames.at(time)
 
+    # In a notebook.
+
+    def _repr_html_(self) -> str:
+        """Summary and picture, in a notebook."""
+        from stickslip import notebook
+
+        return notebook.result_html(self)
+
+    def show(self, height: int = 780) -> None:
+        """Puts the report page below the cell of a notebook."""
+        from stickslip import notebook
+
+        notebook.show(self, height)
+
     # The run.
 
     @property

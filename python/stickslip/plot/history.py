@@ -28,8 +28,8 @@ from matplotlib.ticker import MaxNLocator
 from stickslip import command
 from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.plot import style
 from stickslip.fields import directions
+from stickslip.plot import style
 from stickslip.quantity import find, force_against_displacement, listed
 from stickslip.result import Result
 

@@ -24,8 +24,8 @@ from PIL import Image
 from stickslip import command
 from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.plot import style
 from stickslip.fields import VECTORS, directions, known
+from stickslip.plot import style
 from stickslip.plot.fields import Colouring, Field, Peak, Shown
 from stickslip.plot.page import Legends, Page
 from stickslip.plot.shapes import Arrows, draw_overlay, draw_shape, limits, status_legend
@@ -262,7 +262,7 @@ def step_ends(results: Result) -> list[int]:
     """Frames at the ends of the steps; of more than ten steps some."""
     step, time = results.history["step"], results.history["time"]
     last = np.flatnonzero(np.diff(step, append=step[-1] + 1))
-    chosen = last[:: -(-len(last) // 10)]
+    chosen = last[:: -max(1, -(-len(last) // 10))]
     return [results.frames.nearest(float(t)).index for t in time[chosen]]
 
 

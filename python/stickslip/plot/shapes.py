@@ -143,7 +143,7 @@ def draw_field(
     peak = colouring.peak
     if peak is not None and (peak.results, peak.frame) == (results, frame):
         place = at[peak.place] if field.of_nodes(results) else at[drawing.rings[peak.place]].mean(axis=0)
-        axes.scatter(*place, s=22, marker="o", facecolor="none", edgecolor=ARROW, linewidth=0.9, zorder=7)
+        axes.scatter(place[0], place[1], s=22, marker="o", facecolor="none", edgecolor=ARROW, linewidth=0.9, zorder=7)
         axes.annotate(f"{peak.value:.4g}", place, (4, 5), textcoords="offset points", fontsize=7, zorder=7, clip_on=True)
 
 

@@ -30,7 +30,7 @@ def colours(count: int) -> list[str]:
     ]
 
 
-LOOK: dict[str, Any] = {
+LOOK: dict[Any, Any] = {
     "figure.dpi": 110,
     "savefig.dpi": 160,
     "figure.constrained_layout.use": True,
