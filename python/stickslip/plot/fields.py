@@ -127,7 +127,7 @@ PEAK = 3.0
 
 def usual(largest: Array) -> float:
     """The largest value of frames [frames] without the frames that are peaks."""
-    values = largest[largest > 0.0]
+    values = np.sort(largest[largest > 0.0])
     if len(values) == 0:
         return 0.0
-    return float(min(values.max(), PEAK * np.quantile(values, 0.75)))
+    return float(min(values[-1], PEAK * values[int(0.95 * (len(values) - 1))]))

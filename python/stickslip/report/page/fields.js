@@ -195,8 +195,8 @@ function frameEnd(sorted, side) {
 function usual(ends, all) {
   const positive = ends.filter((end) => end > 0).sort((a, b) => a - b);
   if (positive.length === 0) return Math.max(all, 0);
-  const quartile = positive[Math.floor(0.75 * (positive.length - 1))];
-  return Math.min(positive[positive.length - 1], 2 * quartile);
+  const most = positive[Math.floor(0.95 * (positive.length - 1))];
+  return Math.min(positive[positive.length - 1], 2 * most);
 }
 
 /** All scalars of the fields of a result; those of elements have a twin at nodes. */
