@@ -4,15 +4,13 @@ Whatever a method does not offer is a card: `deck.add("KEYWORD, PARAMETER=VALUE"
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
 
-from stickslip.decks import card, material
+from stickslip.building import Building
+from stickslip.decks import card
 from stickslip.errors import Fault
-from stickslip.mesh import Mesh
 from stickslip.whole import write_text
 
 Value = float | int | str
@@ -54,7 +52,7 @@ class Card:
         return "\n".join([self.head, *(", ".join(row) for row in self.rows)]) + "\n"
 
 
-class Deck:
+class Deck(Building):
     """A deck's cards in order, includes in place."""
 
     def __init__(self, cards: Iterable[Card] = (), folder: Path | str = ".") -> None:
@@ -170,115 +168,6 @@ class Deck:
         self.cards += Deck.parse(text).cards
         return self
 
-    def add_mesh(self, mesh: Mesh, plane: Literal["strain", "stress"] = "strain") -> int:
-        """Appends the mesh: nodes, elements, sets, and its sides as surfaces.
-
-        The nodes of an element set are a node set of the same name. Returns the number of its first
-        node: index i of the mesh has that number plus i. A second
-        mesh goes on with the numbers of the first.
-        """
-        node, element = self._next_number("NODE"), self._next_number("ELEMENT")
-        self.add("NODE", *((node + at, *map(float, place)) for at, place in enumerate(mesh.points)))
-        for count in (3, 4, 6, 8):
-            kind = f"CP{'E' if plane == 'strain' else 'S'}{count}"
-            rows = [
-                (element + at, *(node + nodes))
-                for at, nodes in enumerate(mesh.elements)
-                if len(nodes) == count
-            ]
-            if rows:
-                self.add(f"ELEMENT, TYPE={kind}", *rows)
-        for name, members in mesh.node_sets.items():
-            self.add(f"NSET, NSET={name}", *_in_lines(node + members))
-        for name, members in mesh.element_sets.items():
-            self.add(f"ELSET, ELSET={name}", *_in_lines(element + members))
-            if name not in mesh.node_sets:
-                self.add(f"NSET, NSET={name}, ELSET={name}")
-        for name in mesh.sides:
-            faces = [(element + at, f"S{side}") for at, side in mesh.faces(name)]
-            self.add(f"SURFACE, NAME={name}", *faces)
-        return node
-
-    def _next_number(self, keyword: str) -> int:
-        """The first free number of nodes or elements."""
-        numbers = (int(row[0]) for card in self.find(keyword) for row in card.rows)
-        return max(numbers, default=0) + 1
-
-    def surface(self, name: str, *sets: str) -> "Deck":
-        """A surface of all free sides of element sets."""
-        return self.add(f"SURFACE, NAME={name}", *((one,) for one in sets))
-
-    def elastic(
-        self, name: str, young: float, poisson: float, density: float, **damping: float
-    ) -> "Deck":
-        """A St. Venant-Kirchhoff material, for strains below some 20 %; damping as `alpha`, `beta`."""
-        return self.extend(material(name, young, poisson, density, **damping))
-
-    def neo_hooke(self, name: str, c10: float, d1: float, density: float) -> "Deck":
-        """A neo-Hookean material, for large strains in plane strain."""
-        self.add(f"MATERIAL, NAME={name}").add("HYPERELASTIC, NEO HOOKE", (c10, d1))
-        return self.add("DENSITY", (density,))
-
-    def section(self, elements: str, material: str, thickness: float = 1.0) -> "Deck":
-        """Gives a set of elements its material and thickness."""
-        return self.add(f"SOLID SECTION, ELSET={elements}, MATERIAL={material}", (thickness,))
-
-    def contact(self, slave: str, master: str, friction: float | str = 0.0) -> "Deck":
-        """Contact of two surfaces; the friction may be a parameter, `<mu>`."""
-        name = self._interaction(friction)
-        return self.add(f"CONTACT PAIR, INTERACTION={name}", (slave, master))
-
-    def general_contact(self, friction: float | str = 0.0) -> "Deck":
-        """Contact of everything with everything."""
-        name = self._interaction(friction)
-        self.add("CONTACT").add("CONTACT INCLUSIONS, ALL EXTERIOR")
-        return self.add("CONTACT PROPERTY ASSIGNMENT", ("", "", name))
-
-    def _interaction(self, friction: float | str) -> str:
-        """A new interaction; returns its name."""
-        name = f"INTERACTION{len(self.find('SURFACE INTERACTION')) + 1}"
-        self.add(f"SURFACE INTERACTION, NAME={name}").add("FRICTION", (friction,))
-        return name
-
-    def velocity(self, nodes: str, x: float, y: float) -> "Deck":
-        """Initial velocity of a node set; one of `add_mesh` may be that of an element set."""
-        return self.add("INITIAL CONDITIONS, TYPE=VELOCITY", (nodes, 1, x), (nodes, 2, y))
-
-    def support(self, nodes: str, *directions: int, value: float | str = 0.0) -> "Deck":
-        """Holds a node set in directions (1, 2; both when none is given) or, in a step, moves it."""
-        rows = [(nodes, one, one, value) for one in directions or (1, 2)]
-        return self.add("BOUNDARY", *rows)
-
-    def load(self, nodes: str, x: float | str = 0.0, y: float | str = 0.0) -> "Deck":
-        """A force on each node of a set, in a step."""
-        return self.add("CLOAD", *((nodes, i, f) for i, f in ((1, x), (2, y)) if f != 0.0))
-
-    def gravity(self, elements: str, size: float | str, x: float = 0.0, y: float = -1.0) -> "Deck":
-        """An acceleration on an element set, in a step; (x, y) is its direction."""
-        return self.add("DLOAD", (elements, "GRAV", size, x, y))
-
-    def pressure(self, surface: str, size: float | str) -> "Deck":
-        """A pressure on a surface, in a step; positive presses on the body."""
-        return self.add("DSLOAD", (surface, "P", size))
-
-    def history(self, nodes: str) -> "Deck":
-        """Asks for the history of a node set, in a step."""
-        return self.add(f"NODE PRINT, NSET={nodes}", ("U", "V", "RF"))
-
-    @contextmanager
-    def step(self, dt: float | str, duration: float | str, **settings: object) -> "Iterator[Deck]":
-        """A dynamic step of equal increments; what is added within belongs to it.
-
-        `settings` are those of *STICKSLIP: `scheme="SS22"`, `impact_time="EVENT"`.
-        """
-        self.add("STEP, NLGEOM")
-        if settings:
-            text = "".join(f", {key.replace('_', ' ')}={value}" for key, value in settings.items())
-            self.add("STICKSLIP" + text.upper())
-        self.add("DYNAMIC, DIRECT", (dt, duration))
-        yield self
-        self.add("END STEP")
-
     # Changing.
 
     def set_increments(self, dt: float, count: int) -> None:
@@ -306,12 +195,6 @@ class Deck:
         for card in self.find("CONTACT INCLUSIONS"):
             place = next(i for i, other in enumerate(self.cards) if other is card) + 1
             self.cards.insert(place, Card("CONTACTFORMULATION", f"*CONTACT FORMULATION, TYPE={kind}"))
-
-
-def _in_lines(numbers: Iterable[int]) -> list[list[int]]:
-    """Numbers as data lines of eight."""
-    flat = [int(number) for number in numbers]
-    return [flat[at : at + 8] for at in range(0, len(flat), 8)]
 
 
 def _text(path: Path) -> str:
