@@ -4,6 +4,7 @@
 >>> result.history.energy.kinetic
 """
 
+from stickslip import summary as _summary  # noqa: F401  (results and decks show themselves in notebooks)
 from stickslip.deck import Deck
 from stickslip.errors import Fault
 from stickslip.frame import Frame

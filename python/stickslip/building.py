@@ -6,14 +6,12 @@ Every method appends cards. What cannot be is told as a `Fault`; the program che
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal, Self
+from typing import Literal, Self
 
+from stickslip.cards import Card
 from stickslip.decks import material
 from stickslip.errors import Fault
 from stickslip.mesh import Mesh
-
-if TYPE_CHECKING:
-    from stickslip.deck import Card
 
 Number = float | str
 """A number, or the parameter of a deck that stands for it, `<mu>`."""
@@ -41,7 +39,7 @@ Discretisation = Literal["", "node to surface", "surface to surface"]
 class Building(ABC):
     """What appends cards to a deck."""
 
-    cards: "list[Card]"
+    cards: list[Card]
 
     @abstractmethod
     def add(self, head: str, *rows: Sequence[object]) -> Self:
@@ -52,7 +50,7 @@ class Building(ABC):
         """Appends the cards of a text."""
 
     @abstractmethod
-    def find(self, keyword: str) -> "list[Card]":
+    def find(self, keyword: str) -> list[Card]:
         """All cards with this keyword."""
 
     # Meshes and sections.

@@ -5,12 +5,13 @@ Whatever a method does not offer is a card: `deck.add("KEYWORD, PARAMETER=VALUE"
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from stickslip.building import Building
+from stickslip.cards import Card, fields, fold
 from stickslip.decks import card
 from stickslip.errors import Fault
+from stickslip.notebook import Shown
 from stickslip.whole import write_text
 
 Value = float | int | str
@@ -30,29 +31,7 @@ PLAIN_TEXT = re.compile(r"\s*(?P<name>[A-Za-z]\w*)\s*=\s*(?P<quote>['\"])(?P<tex
 """A row of *PARAMETER with a text."""
 
 
-@dataclass
-class Card:
-    """One keyword line with its data lines."""
-
-    keyword: str
-    """In capitals, without blanks: `CONTACTPAIR`."""
-    head: str
-    """Text of the keyword line."""
-    rows: list[list[str]] = field(default_factory=list)
-    """Fields of the data lines; free text, under HEADING and STEP, is one field a line."""
-
-    @property
-    def parameters(self) -> dict[str, str]:
-        """Parameters of the keyword line, names in capitals without blanks."""
-        pairs = (part.partition("=") for part in fields(self.head)[1:])
-        return {fold(name): value.strip() for name, _, value in pairs if name.strip()}
-
-    def text(self) -> str:
-        """The card as deck lines."""
-        return "\n".join([self.head, *(", ".join(row) for row in self.rows)]) + "\n"
-
-
-class Deck(Building):
+class Deck(Building, Shown):
     """A deck's cards in order, includes in place."""
 
     def __init__(self, cards: Iterable[Card] = (), folder: Path | str = ".") -> None:
@@ -94,12 +73,6 @@ class Deck(Building):
     def text(self) -> str:
         """The whole deck."""
         return "".join(card.text() for card in self.cards)
-
-    def _repr_html_(self) -> str:
-        """Picture and description of the model, or its faults, in a notebook."""
-        from stickslip import notebook
-
-        return notebook.deck_html(self)
 
     def write(self, path: Path | str) -> Path:
         """Writes the deck and returns its path."""
@@ -257,23 +230,3 @@ def _read_input(
     more = _lines(_text(path), path.parent, main, values, depth + 1)
     kept = [part for part in head if part not in inputs]
     lines[-1:] = more if fold(head[0]) == "*INCLUDE" else [", ".join(kept), *more]
-
-
-def fields(line: str) -> list[str]:
-    """Fields of a line between its commas; commas between quotation marks do not count."""
-    if '"' not in line:
-        return [part.strip() for part in line.split(",")]
-    parts = [""]
-    quoted = False
-    for character in line:
-        quoted ^= character == '"'
-        if character == "," and not quoted:
-            parts.append("")
-        else:
-            parts[-1] += character
-    return [part.strip() for part in parts]
-
-
-def fold(text: str) -> str:
-    """A word as it is compared: in capitals, without blanks."""
-    return "".join(text.split()).upper()

@@ -6,15 +6,11 @@ its corners and the node between them.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.arrays import Array, Integers
-from stickslip.nodal import around_element
-
-if TYPE_CHECKING:
-    from stickslip.result_file import ResultFile
+from stickslip.nodal import Recovery, around_element
 
 PARABOLA = np.array([3.0, 6.0, -1.0]) / 8.0
 """Weights of three vertices at equal distances along a parabola for the point in the middle of the first two."""
@@ -41,10 +37,9 @@ class Drawing:
     """Those between elements, each once [., 2]."""
 
     @classmethod
-    def of(cls, result: "ResultFile") -> "Drawing":
-        """The drawing of a result."""
-        recovery = result.recovery
-        nodes = len(result.coordinates)
+    def of(cls, recovery: Recovery, boundary: Integers) -> "Drawing":
+        """The drawing of the elements of a recovery with their outlines, as `Result.boundary`."""
+        nodes = recovery.places - len(recovery.twins)
         node = np.concatenate([np.arange(nodes), recovery.twins])
         after = [(n, n, n) for n in recovery.twins.tolist()]
         quarters = [half for a, m, b in recovery.middles.tolist() for half in ((a, m, b), (b, m, a))]
@@ -56,7 +51,7 @@ class Drawing:
             between = [second + 2 * i, first + i, second + 2 * i + 1]
             halves |= {(a, m): between, (m, a): between[::-1]}
         rings: list[Integers] = []
-        outer = set(map(tuple, result.boundary.tolist()))
+        outer = set(map(tuple, boundary.tolist()))
         seen: set[tuple[int, int]] = set()
         lines: dict[bool, list[tuple[int, int]]] = {True: [], False: []}
         for around in map(around_element, recovery.cells):

@@ -6,14 +6,10 @@ linearly to its surface. A field that is linear is exact at every node. Nodes be
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.arrays import Array, Integers
-
-if TYPE_CHECKING:
-    from stickslip.result_file import ResultFile
 
 FARTHEST = 8.0
 """A plane is not extended farther than so many times the spread of the centres in a direction: they are on a line there."""
@@ -44,12 +40,12 @@ class Recovery:
     """Their number P."""
 
     @classmethod
-    def of(cls, result: "ResultFile") -> "Recovery":
-        """The recovery on the mesh of a result, with its undeformed coordinates."""
-        nodes = len(result.coordinates)
-        cells, twins = _places(result.cells, result.read("model/element_materials"), nodes)
+    def of(cls, coordinates: Array, elements: list[Integers], materials: Integers) -> "Recovery":
+        """The recovery on an undeformed mesh whose elements [E] have materials by their numbers."""
+        nodes = len(coordinates)
+        cells, twins = _places(elements, materials, nodes)
         places = nodes + len(twins)
-        at = result.coordinates[np.concatenate([np.arange(nodes), twins])]
+        at = coordinates[np.concatenate([np.arange(nodes), twins])]
         corners = [cell if len(cell) <= 4 else cell[: len(cell) // 2] for cell in cells]
         centres = np.array([at[one].mean(axis=0) for one in corners]).reshape(-1, 2)
         place, element, weight = _weights(corners, centres, at)

@@ -1,27 +1,14 @@
-"""Results, decks and runs in a notebook: summaries with a small picture, the report page inline, a bar of progress.
+"""Notebooks: whether Python runs in one, what is shown there, and a bar that tells how far a run is.
 
-Nothing here is imported by `import stickslip`; IPython and matplotlib are used where they are installed.
+IPython is used where it is installed.
 """
 
-import base64
 import html
-import subprocess
 import sys
-import tempfile
-from io import BytesIO
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any, ClassVar
 
-from stickslip.deck import Deck
 from stickslip.errors import Fault
-from stickslip.program import Progress, binary
-from stickslip.report.page import info_of, page_of
-
-if TYPE_CHECKING:
-    from stickslip.result import Result
-
-STYLE = "max-width:100%;max-height:340px"
-"""Of pictures."""
 
 
 def runs_here() -> bool:
@@ -30,67 +17,30 @@ def runs_here() -> bool:
     return shell is not None and hasattr(shell.get_ipython(), "kernel")
 
 
-def result_html(result: "Result") -> str:
-    """Name, picture and summary of a result."""
-    info = info_of(result.path)
-    lines = info["lines"] or [["model", f"{len(result.coordinates)} nodes, {len(result.cells)} elements"]]
-    lines += [["warning", text] for text in info["warnings"]]
-    rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{_lines(text)}</td></tr>" for name, text in lines)
-    style = "<style scoped>.stickslip th, .stickslip td {text-align:left; vertical-align:top}</style>"
-    return f"{style}<b>{html.escape(result.job)}</b><br>{_picture(result)}<table class='stickslip'>{rows}</table>"
+class Shown:
+    """What shows itself at the end of a cell."""
+
+    summaries: ClassVar[dict[type, Callable[[Any], str]]] = {}
+    """Makes the HTML of an object, by its class; `summary` knows how."""
+
+    def _repr_html_(self) -> str | None:
+        make = self.summaries.get(type(self))
+        return make(self) if make else None
 
 
-def _lines(text: str) -> str:
-    return html.escape(text).replace("\n", "<br>")
+class Paged(Shown):
+    """What has a report page besides."""
 
+    pages: ClassVar[dict[type, Callable[[Any, int], str]]] = {}
+    """Makes the page of an object in a frame of a height in pixels, by its class; `summary` knows how."""
 
-def _picture(result: "Result") -> str:
-    """The end of the step with the largest stress, where matplotlib is installed."""
-    try:
-        from stickslip.plot.fields import Field, Peak
-        from stickslip.plot.motion import Look, panels, step_ends
-    except ImportError:
-        return ""
-    ends = [(result, frame) for frame in step_ends(result)]
-    peak = Peak.of(Field("MISES"), ends)
-    figure = panels([[(result, peak.frame) if peak else ends[-1]]], Look("MISES"))
-    file = BytesIO()
-    figure.savefig(file, format="png", dpi=60)
-    return _image("png", file.getvalue())
+    def show(self, height: int = 780) -> None:
+        """Puts the report page below the cell of a notebook."""
+        if not runs_here():
+            raise Fault("show() is for notebooks: the command stickslip-report writes the page")
+        from IPython.display import HTML, display
 
-
-def _image(kind: str, data: bytes) -> str:
-    return f'<img alt="picture" style="{STYLE}" src="data:image/{kind};base64,{base64.b64encode(data).decode()}"><br>'
-
-
-def deck_html(deck: Deck) -> str:
-    """Picture of the model of a deck and what the program says of it, its faults among it; else how many cards it has."""
-    counts: dict[str, int] = {}
-    for card in deck.cards:
-        counts[card.keyword] = counts.get(card.keyword, 0) + 1
-    cards = ", ".join(f"{count} *{keyword}" if count > 1 else f"*{keyword}" for keyword, count in counts.items())
-    head = f"<b>deck</b> of {len(deck.cards)} cards: {html.escape(cards)}<br>"
-    try:
-        program = str(binary())
-    except Fault as fault:
-        return head + _lines(str(fault))
-    with tempfile.TemporaryDirectory() as folder:
-        path, picture = deck.write(Path(folder) / "deck.inp"), Path(folder) / "deck.svg"
-        command = [program, "check", str(path), "--picture", str(picture)]
-        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-        image = _image("svg+xml", picture.read_bytes()) if picture.exists() else ""
-        told = "\n".join(filter(None, (done.stdout.strip(), done.stderr.strip()))).replace(f"{folder}/", "")
-    return f"{head}{image}<pre>{html.escape(told)}</pre>"
-
-
-def show(result: "Result", height: int) -> None:
-    """Puts the report page of a result below the cell."""
-    if not runs_here():
-        raise Fault("show() is for notebooks: the command stickslip-report writes the page")
-    from IPython.display import HTML, display
-
-    page = html.escape(page_of([result.path]))
-    display(HTML(f'<iframe srcdoc="{page}" style="width:100%;height:{height}px;border:0"></iframe>'))
+        display(HTML(self.pages[type(self)](self, height)))
 
 
 class Bar:
@@ -102,7 +52,7 @@ class Bar:
         self._html: Any = HTML
         self._shown: Any = display(HTML(""), display_id=True)
 
-    def __call__(self, progress: Progress) -> None:
-        part = progress.part
+    def __call__(self, progress: Any) -> None:
+        part: float | None = progress.part
         value = "" if part is None else f' value="{min(part, 1.0):.4f}"'
         self._shown.update(self._html(f"<progress{value} style='width:40%'></progress> {html.escape(str(progress))}"))

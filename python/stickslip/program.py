@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from stickslip import notebook
 from stickslip.deck import Deck, Value
 from stickslip.errors import Fault, one_line
 from stickslip.result import Result
@@ -341,6 +342,4 @@ def _print(progress: Progress) -> None:
 
 def _told() -> Callable[[Progress], object]:
     """What tells of the progress where nothing else is asked for: a bar in a notebook, else a line."""
-    from stickslip import notebook
-
     return notebook.Bar() if notebook.runs_here() else _print

@@ -9,6 +9,7 @@ from stickslip import convert
 from stickslip.arrays import Array
 from stickslip.frame import Frame, Frames
 from stickslip.history import Contacts, History
+from stickslip.notebook import Paged
 from stickslip.quantity import find
 from stickslip.result_file import ResultFile
 
@@ -20,7 +21,7 @@ NONE, OPEN, STICK, SLIP = range(4)
 """Values of CONTACT_STATUS."""
 
 
-class Result(ResultFile):
+class Result(ResultFile, Paged):
     """A result file.
 
     >>> result = Result("job.vtkhdf")
@@ -68,20 +69,6 @@ class Result(ResultFile):
     def frame(self, time: float) -> Frame:
         """The frame nearest to a time of the run; a Fault for times before and after the frames."""
         return self.frames.at(time)
-
-    # In a notebook.
-
-    def _repr_html_(self) -> str:
-        """Summary and picture, in a notebook."""
-        from stickslip import notebook
-
-        return notebook.result_html(self)
-
-    def show(self, height: int = 780) -> None:
-        """Puts the report page below the cell of a notebook."""
-        from stickslip import notebook
-
-        notebook.show(self, height)
 
     # The run.
 

@@ -117,12 +117,12 @@ class ResultFile:
     @cached_property
     def recovery(self) -> Recovery:
         """Values of elements at nodes."""
-        return Recovery.of(self)
+        return Recovery.of(self.coordinates, self.cells, self.read("model/element_materials"))
 
     @cached_property
     def drawing(self) -> Drawing:
         """The mesh as it is drawn, sides of quadratic elements curved."""
-        return Drawing.of(self)
+        return Drawing.of(self.recovery, self.boundary)
 
     @cached_property
     def rigid(self) -> Integers:

@@ -9,9 +9,9 @@ import nbformat
 import pytest
 from conftest import ROOT, Job
 from nbclient import NotebookClient
-from stickslip import Deck, Fault, Result, notebook
-from stickslip.notebook import deck_html, result_html
+from stickslip import Deck, Fault, Result, summary
 from stickslip.report import page
+from stickslip.summary import deck_html, result_html
 
 DECK = ROOT / "tests" / "decks" / "square.inp"
 
@@ -80,6 +80,6 @@ def test_summaries_where_something_is_missing(job: Job, monkeypatch: pytest.Monk
         raise Fault("the program stickslip is not found")
 
     monkeypatch.setattr(page, "binary", missing)
-    monkeypatch.setattr(notebook, "binary", missing)
+    monkeypatch.setattr(summary, "binary", missing)
     assert f"{len(result.coordinates)} nodes" in result_html(result)
     assert "is not found" in deck_html(faulty) and "*MATERIAL" in deck_html(faulty)
