@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from stickslip.arrays import Array
 from stickslip.errors import Fault
+from stickslip.fields import DIRECTIONS, VECTORS
 from stickslip.quantity import Members
 from stickslip.result_file import ResultFile
 
@@ -116,6 +117,9 @@ def to_pyvista(
     for name, (kind, rows) in fields.items():
         data = grid.point_data if kind == "PointData" else grid.cell_data
         data[name] = rows
+        if rows.ndim == 2 and name not in VECTORS:  # for ParaView, which else shows the magnitude of a vector
+            for k, component in enumerate(DIRECTIONS[rows.shape[1]]):
+                data.GetArray(name).SetComponentName(k, component)
     grid.field_data["TimeValue"] = [time]
     return grid
 

@@ -1,11 +1,19 @@
-"""VTK's own reader opens the file and sees every frame."""
+"""VTK's own reader opens the file and sees every frame; exported files hold the same."""
+
+import sys
+from pathlib import Path
 
 import numpy as np
+import pandas
+import pytest
 import pyvista
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
+from stickslip import export
 from stickslip.deck import Deck
 from stickslip.result import Result
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 
 def test_reader_sees_all_frames(job: Job) -> None:
@@ -48,3 +56,31 @@ def test_rigid_surfaces_are_lines(job: Job) -> None:
         floor = results.frames[2]["U"][results.rigid.ravel()]
         assert np.allclose(floor, [0.5, 0.0], rtol=0.0, atol=1e-15)
         assert np.isfinite(results.frames[2]["S"]).all()
+
+
+def exported(monkeypatch: pytest.MonkeyPatch, path: Path, kind: str, folder: Path) -> None:
+    """Runs the command that exports a result."""
+    monkeypatch.setattr(sys, "argv", ["stickslip-export", str(path), "--to", kind, "-o", str(folder)])
+    export.run()
+
+
+@pytest.mark.parametrize("deck", ["quadratic", "rigid_floor", "revolution"])
+def test_frames_are_exported_with_names_of_components(
+    deck: str, job: Job, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = job(Deck.read(ROOT / "tests" / "decks" / f"{deck}.inp"), "--frames", "3")
+    with Result(path) as result:
+        exported(monkeypatch, path, "vtu", tmp_path / "vtu")
+        frames = len(result.frames)
+        assert capsys.readouterr().out == f"wrote {tmp_path / 'vtu' / result.job}.pvd and {frames} more\n"
+        series = pyvista.get_reader(tmp_path / "vtu" / f"{result.job}.pvd")
+        assert np.array_equal(series.time_values, result.frames.times)
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(str(tmp_path / "vtu" / f"{result.job}_{frames - 1:04d}.vtu"))
+        reader.Update()
+        stress = reader.GetOutput().GetCellData().GetArray("S")
+        assert [stress.GetComponentName(k) for k in range(3)] == ["xx", "yy", "xy"]
+        assert np.array_equal(vtk_to_numpy(stress), result.frames[-1].full("S"), equal_nan=True)
+        exported(monkeypatch, path, "csv", tmp_path)
+        table = pandas.read_csv(tmp_path / f"{result.job}.csv", index_col="time")
+        assert np.allclose(table["energy/strain"], result.history.energy.strain, rtol=1e-14)

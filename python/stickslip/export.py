@@ -1,0 +1,66 @@
+"""Writes a result in the format of other programs: frames as .vtu, histories as .csv.
+
+vtu  JOB_0000.vtu ... and JOB.pvd, which names them with their times (needs the package pyvista)
+csv  JOB.csv: all histories, a row for each increment (needs the package pandas)
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from stickslip import command
+from stickslip.errors import Fault
+from stickslip.result import Result
+from stickslip.whole import whole, write_text
+
+
+def vtu(result: Result, folder: Path) -> Iterator[Path]:
+    """Writes every frame, and the file that names them."""
+    entries = []
+    for frame in result.frames:
+        path = folder / f"{result.job}_{frame.index:04d}.vtu"
+        with whole(path) as draft:
+            frame.to_pyvista().save(draft)
+        yield path
+        entries.append(f'<DataSet timestep="{frame.time!r}" file="{path.name}"/>')
+    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1"><Collection>\n'
+    names = folder / f"{result.job}.pvd"
+    write_text(names, head + "\n".join(entries) + "\n</Collection></VTKFile>\n")
+    yield names
+
+
+def csv(result: Result, folder: Path) -> Iterator[Path]:
+    """Writes the table of all histories."""
+    path = folder / f"{result.job}.csv"
+    with whole(path) as draft:
+        result.to_dataframe().to_csv(draft)
+    yield path
+
+
+FORMATS: dict[str, Callable[[Result, Path], Iterator[Path]]] = {"vtu": vtu, "csv": csv}
+
+
+def run() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        prog="stickslip-export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
+    parser.add_argument("--to", choices=FORMATS, required=True, help="format to write")
+    parser.add_argument("-o", "--output", type=Path, help="folder to write into (default: that of the result)")
+    arguments = parser.parse_args()
+    with Result(arguments.result) as result:
+        folder = arguments.output or result.path.parent
+        if folder.exists() and not folder.is_dir():
+            raise Fault(f"{folder} is no folder")
+        written = list(FORMATS[arguments.to](result, folder))
+    print(f"wrote {written[-1]}" if len(written) == 1 else f"wrote {written[-1]} and {len(written) - 1} more")
+
+
+def main() -> None:
+    """Command `stickslip-export`."""
+    command.finish(run)
+
+
+if __name__ == "__main__":
+    main()
