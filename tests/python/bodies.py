@@ -195,3 +195,21 @@ def bent_bodies(family: str) -> Deck:
         speeds = [(first + i, 2, 8.0 * sin(3.0 * (x - 1.5 * number))) for i, (x, _) in enumerate(mesh.points)]
         deck.add("INITIAL CONDITIONS, TYPE=VELOCITY", *speeds)
     return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 0.03\n*END STEP\n")
+
+
+def two_materials(kind: str, pull: float = 0.0) -> Deck:
+    """A square of elements with curved sides, whose right half is of a stiffer material; free, and stretched upwards at a rate."""
+    mesh = grid(kind, 4, 4, lambda x, y: (x + 1.0 + 0.03 * sin(5.0 * y), y + 0.04 * sin(6.0 * x)))
+    middles = [mesh.points[one].mean(axis=0)[0] for one in mesh.elements]
+    halves = {name: [e for e, x in enumerate(middles) if (x > 1.5) == right] for name, right in (("L", False), ("R", True))}
+    mesh.element_sets, mesh.sides = {name: np.array(one) for name, one in halves.items()}, {}
+    deck = Deck.titled(kind)
+    deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
+    for card in deck.find("ELEMENT"):
+        card.head = f"*ELEMENT, TYPE={kind}"
+    for name, young in (("L", 1000.0), ("R", 3000.0)):
+        deck.elastic(f"M{name}", young, 0.3, 1.0)
+        with_section(deck, kind, name, f"M{name}")
+    speeds = [(1 + i, 2, pull * y) for i, (_, y) in enumerate(mesh.points)]
+    deck.add("INITIAL CONDITIONS, TYPE=VELOCITY", *speeds)
+    return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.01\n*END STEP\n")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from bodies import ELASTIC, FAMILIES, bent_bodies, grid, with_section
+from bodies import FAMILIES, bent_bodies, two_materials
 from conftest import ROOT, Job
 from decks import CANTILEVERS, shortened
 from oracle.shapes import shape_functions
@@ -85,22 +85,6 @@ def test_bodies_of_revolution_have_a_radius_and_an_axis(job: Job) -> None:
 
 
 # Values at nodes.
-
-
-def two_materials(kind: str) -> Deck:
-    """A square of elements with curved sides, whose right half is of another material."""
-    mesh = grid(kind, 4, 4, lambda x, y: (x + 1.0 + 0.03 * np.sin(5.0 * y), y + 0.04 * np.sin(6.0 * x)))
-    middles = [mesh.points[one].mean(axis=0)[0] for one in mesh.elements]
-    halves = {name: [e for e, x in enumerate(middles) if (x > 1.5) == right] for name, right in (("L", False), ("R", True))}
-    mesh.element_sets, mesh.sides = {name: np.array(one) for name, one in halves.items()}, {}
-    deck = Deck.titled(kind)
-    deck.add_mesh(mesh, plane="stress" if kind[2] == "S" else "strain")
-    for card in deck.find("ELEMENT"):
-        card.head = f"*ELEMENT, TYPE={kind}"
-    for name in halves:
-        deck.extend(f"*MATERIAL, NAME=M{name}\n{ELASTIC}\n*DENSITY\n1.")
-        with_section(deck, kind, name, f"M{name}")
-    return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.01\n*END STEP\n")
 
 
 @pytest.mark.parametrize("kind", ["CPE3", "CPS4", "CPE6", "CAX8"])

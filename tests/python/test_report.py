@@ -16,7 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from bodies import FAMILIES, bent_bodies
+from bodies import FAMILIES, bent_bodies, two_materials
 from conftest import ROOT, Job
 from decks import CANTILEVERS, COLUMN, oblique_impact, shortened, spinning_bar
 from oracle.shapes import shape_functions
@@ -475,6 +475,43 @@ def test_the_right_element_is_under_every_point(family: str, shown: Shown, job: 
     assert len(points) >= 200 and found == expected
 
 
+@pytest.mark.parametrize("kind", ["CPE4", "CAX8"])
+def test_values_differ_on_both_sides_of_two_materials(kind: str, shown: Shown, job: Job) -> None:
+    """What is drawn at the nodes of every element, those between materials among them."""
+    deck = two_materials(kind, pull=5.0)
+    path = job(deck, "--frames", "1")
+    page = shown(path)
+    page.keyboard.press("End")
+    page.select_option("#field", "S:yy")
+    page.wait_for_function("page.view.look.scalar.id === 'S:yy'")
+    drawn = page.evaluate(
+        """(() => {
+            page.view.draw();
+            const { connectivity, offsets, elements } = page.result.mesh;
+            const cells = Array.from({ length: elements }, (_, cell) => connectivity.subarray(offsets[cell], offsets[cell + 1]));
+            return cells.map((ring) => Array.from(ring, (vertex) => page.view.layer.values[vertex]));
+        })()"""
+    )
+    with Result(path) as result:
+        places = result.frames[-1].at_places("S22")
+        twins = result.recovery.twins
+        assert np.abs(places[len(result.coordinates) :] - places[twins]).min() > 0.02 * np.abs(places).max()
+        values = result.drawing.values(places)
+        for ring, found in zip(result.drawing.rings, drawn):
+            assert np.allclose(found, values[ring], rtol=2e-3, atol=1e-3 * np.abs(places).max())
+
+
+def test_outlines_laid_over_are_curved_too(shown: Shown, job: Job) -> None:
+    path = job(bent_bodies("CPS"), "--frames", "1")
+    page = shown(path, path)
+    page.keyboard.press("End")
+    own, other = page.evaluate(
+        """(page.view.draw(), [page.view.layer, page.view.otherLayer].map(({ mesh, positions }) =>
+            Array.from(mesh.outline, (vertex) => [positions[2 * vertex], positions[2 * vertex + 1]])))"""
+    )
+    assert len(own) > 200 and np.allclose(own, other, rtol=0.0, atol=2e-3)
+
+
 def test_window_zoom_nodes_range_and_theme(shown: Shown, job: Job, tmp_path: Path) -> None:
     page = shown(two_bodies(job, tmp_path), color_scheme="dark")
     scale = "page.view.camera.scale"
@@ -657,6 +694,8 @@ def test_keys_reach_values_and_nodes(shown: Shown, job: Job, tmp_path: Path) -> 
     assert np.allclose(page.evaluate("page.view.cross"), target, atol=1.0)
     lines = dict(zip(page.locator("#tip dt").all_inner_texts(), page.locator("#tip dd").all_inner_texts()))
     assert lines["node"] == str(page.evaluate("page.result.mesh.nodeLabels[20]"))
+    page.keyboard.press("+")
+    assert np.allclose(page.evaluate("(page.view.draw(), page.view.spot(20))"), target, atol=2.0)
     page.keyboard.press("Enter")
     assert page.evaluate("page.view.picked") == [20]
     page.keyboard.press("Escape")
