@@ -450,13 +450,16 @@ fn a_half_increment_residual_scales_the_tolerance_of_the_truncation_error() {
     assert_eq!(messages(&dynamic("")).1, "");
     let fine = dynamic(", HALFINC SCALE FACTOR=500.");
     insta::assert_snapshot!(texts_of(Code::ScaledTolerance, &[fine]));
-    for half in ["HAFTOL=3.", "NOHAF"] {
+    for (half, direct) in [
+        ("HAFTOL=3.", Code::BadIncrement),
+        ("NOHAF", Code::IgnoredParameter),
+    ] {
         let codes = |head: String| {
             let (d, _) = messages(&dynamic(&head));
             d.iter().map(|item| item.code).collect::<Vec<_>>()
         };
         assert_eq!(codes(format!(", {half}")), [Code::IgnoredParameter]);
-        assert_eq!(codes(format!(", DIRECT, {half}")), [Code::BadIncrement]);
+        assert_eq!(codes(format!(", DIRECT, {half}")), [direct]);
     }
     let refused = [
         ", DIRECT, HALFINC SCALE FACTOR=2.",

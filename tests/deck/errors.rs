@@ -117,7 +117,7 @@ fn faulty(code: Code) -> Source {
         ExtraField => square("3, 2, 4.", "3, 2, 4., 5."),
         StrayData => square("*HEADING", "one\n*HEADING"),
         MissingData => square("0.1, 1.\n", ""),
-        BadName => square("NSET=ALL", "NSET=A&B"),
+        BadName => square("NSET=ALL", "NSET=A*B"),
         EmptyDeck => Source::Text("** nothing\n\n".to_string()),
         OpenQuote => square("NSET=ALL", "NSET=\"ALL"),
         LongLine => square(

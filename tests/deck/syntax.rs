@@ -203,6 +203,17 @@ fn unique_beginnings_are_read_with_a_warning() {
         [Code::Abbreviation]
     );
     assert_eq!(faults("*BOUNDARY", "*BOU"), [Code::UnknownKeyword]);
+    // FREQUENCYF begins with FREQUENCY
+    let request = |name: &str| format!("*NODE FILE, {name}=2\nU\n*END STEP");
+    assert_eq!(faults("*END STEP", &request("FREQ")), [Code::Abbreviation]);
+}
+
+#[test]
+fn names_may_have_the_characters_of_other_programs() {
+    let text = SQUARE
+        .replace("NSET=ALL", "NSET=_PICKED;2_#1")
+        .replace("\nALL,", "\n_PICKED;2_#1,");
+    assert_eq!(codes(&build(&text).1), []);
 }
 
 #[test]

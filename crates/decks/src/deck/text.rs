@@ -204,7 +204,7 @@ impl<'a> Text<'a> {
     }
 
     fn fault_of_plain_name(&self) -> Option<String> {
-        let allowed = |c: &char| c.is_alphanumeric() || " \t_-.+/()".contains(*c);
+        let allowed = |c: &char| !(c.is_control() && *c != '\t') && !"\"'=*<>".contains(*c);
         if !fits(self.text) {
             Some("a name has 1 to 80 characters".to_string())
         } else if self.as_integer().is_some() {
@@ -271,7 +271,8 @@ const SHORTEST: usize = 4;
 pub(crate) enum Match {
     /// It is this one.
     Exact(&'static str),
-    /// It is the beginning of this one and of no other.
+    /// It is the beginning of this one, and of no other or only of those that begin with it: FREQ is FREQUENCY where there is
+    /// FREQUENCYF too.
     Abbreviation(&'static str),
     /// It is none of them; the one probably meant.
     Unknown(Option<&'static str>),
@@ -303,9 +304,16 @@ pub(crate) fn find_known(word: &str, known: impl Iterator<Item = &'static str> +
     }
     let size = short.chars().count();
     let begins = |k: &&str| folded(k).take(size).eq(short.chars());
-    let mut longer = known.filter(begins);
-    match (longer.next(), longer.next()) {
-        (Some(only), None) if size >= SHORTEST => Match::Abbreviation(only),
+    let longer = known.filter(begins);
+    let first = longer.clone().min_by_key(|k| folded(k).count());
+    let all_begin_with = |first: &str| {
+        let size = folded(first).count();
+        longer
+            .clone()
+            .all(|k| folded(k).take(size).eq(folded(first)))
+    };
+    match first {
+        Some(first) if size >= SHORTEST && all_begin_with(first) => Match::Abbreviation(first),
         _ => Match::Unknown(None),
     }
 }

@@ -348,7 +348,7 @@ fn increments(
 }
 
 fn is_direct(card: &Card) -> bool {
-    card.has("DIRECT") && card.choice("DIRECT") != Some("NO")
+    (card.has("DIRECT") && card.choice("DIRECT") != Some("NO")) || card.has("DIRECT USER CONTROL")
 }
 
 /// Tolerance of the truncation error of a dynamic step.
@@ -368,7 +368,15 @@ fn truncation_error(
         }
         return Some(TRUNCATION_ERROR);
     }
-    if let Some(given) = about.into_iter().find(|name| direct && card.has(name)) {
+    if direct {
+        if card.has("NOHAF") {
+            let message = "NOHAF has no effect: DIRECT keeps the size of increments";
+            (cx.d).warning(Code::IgnoredParameter, card.span_of("NOHAF"), message);
+        }
+        let mut scaled = ["HAFTOL", "HALFINC SCALE FACTOR"].into_iter();
+        let Some(given) = scaled.find(|name| card.has(name)) else {
+            return Some(TRUNCATION_ERROR);
+        };
         let message = format!("{given} is for automatic increments, and DIRECT keeps their size");
         cx.error(Code::BadIncrement, card.span_of(given), message)
             .help(format!("leave out {given}, or DIRECT"));
