@@ -57,7 +57,8 @@ impl Balance {
             });
         let elements = model.mesh.elements.iter();
         let bodies = model.rigid_bodies.iter().flat_map(|body| &body.masses);
-        let of_points: f64 = bodies.map(|(_, mass)| mass).sum();
+        let points = bodies.chain(&model.point_masses);
+        let of_points: f64 = points.map(|(_, mass)| mass).sum();
         Balance {
             free,
             mass: of_points + elements.map(|e| model.element_mass(e)).sum::<f64>(),

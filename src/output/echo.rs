@@ -43,7 +43,8 @@ impl ModelEcho {
     pub fn new(model: &Model) -> Self {
         let [lower, upper] = extents(model.mesh.coordinates.iter().copied());
         let elements = model.mesh.elements.iter();
-        let points = model.rigid_bodies.iter().flat_map(|body| &body.masses);
+        let of_bodies = model.rigid_bodies.iter().flat_map(|body| &body.masses);
+        let points = of_bodies.chain(&model.point_masses);
         let points: f64 = points.map(|(_, mass)| mass).sum();
         ModelEcho {
             mass: elements.fold(0.0, |mass, element| mass + model.element_mass(element)) + points,

@@ -101,6 +101,11 @@ fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
     for (element, &body) in model.mesh.elements.iter().zip(&bodies.of_element) {
         mass[body] += model.element_mass(element);
     }
+    for &(node, of_point) in &model.point_masses {
+        if let Some(body) = bodies.of_node[node] {
+            mass[body] += of_point;
+        }
+    }
     for rigid in &model.rigid_bodies {
         if let Some(&element) = rigid.elements.first() {
             let of_points = rigid.masses.iter().map(|(_, mass)| mass);
@@ -124,7 +129,7 @@ const MEMBERS: &str = "indices of the members, from 0";
 const COORDINATES: Meaning = ("length", "reference coordinates");
 const MASS: Meaning = (
     "mass",
-    "mass of each body, with that of point elements at its rigid parts",
+    "mass of each body, with that of point elements at its nodes",
 );
 const EDGE_TIME: Meaning = (
     "time",

@@ -309,3 +309,100 @@ fn rigid_lines_are_a_profile() {
         );
     }
 }
+
+/// Largest imbalance of the ledger in energies of their scale.
+fn imbalance(reports: &[IncrementReport]) -> f64 {
+    let parts = reports
+        .iter()
+        .map(|report| report.energy.balance.abs() / report.energy.scale);
+    parts.filter(|part| part.is_finite()).fold(0.0, f64::max)
+}
+
+/// A mass on a node of a block does nothing in statics, and has its weight.
+#[test]
+fn a_mass_on_a_node_of_a_block_has_its_weight() {
+    let deck = include_str!("../decks/others/mass_on_node.inp");
+    let without = deck.replace("*ELEMENT,TYPE=MASS,ELSET=PM\n9,3\n*MASS,ELSET=PM\n2.\n", "");
+    assert_ne!(deck, without);
+    let [with, without] = [deck, &without].map(|text| at_end(&finished(text), "N3"));
+    assert_eq!(with, without);
+    // weight 2 x 5 along x
+    let weight = deck.replace("*CLOAD\n3,1,10.", "*DLOAD\nPM, GRAV, 5., 1., 0.");
+    let weight = at_end(&finished(&weight), "N3");
+    assert!((weight[0] - with[0]).hypot(weight[1] - with[1]) < 1e-12);
+}
+
+/// A mass that hangs on a spring: rest under its weight, and its period.
+#[test]
+fn a_mass_on_a_spring_is_an_oscillator() {
+    let deck = |procedure: &str| {
+        format!(
+            "*NODE, NSET=FOOT\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n*NODE, NSET=HUNG\n5, 0.5, -3.\n\
+             *ELEMENT, TYPE=CPS4, ELSET=E\n1, 1, 2, 3, 4\n*ELEMENT, TYPE=SPRING1, ELSET=S\n2, 5\n\
+             *SPRING, ELSET=S\n2\n8.\n*ELEMENT, TYPE=MASS, ELSET=PM\n3, 5\n*MASS, ELSET=PM\n2.\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*DENSITY\n1.\n*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n\
+             *BOUNDARY\nFOOT, 1, 2\n5, 1\n*STEP, NLGEOM\n{procedure}\n*DLOAD\nPM, GRAV, 10., 0., -1.\n*END STEP\n"
+        )
+    };
+    // k = 8, m = 2: sag m g/k = 2.5, omega = 2
+    let rest = at_end(&finished(&deck("*STATIC\n1., 1.")), "HUNG");
+    assert!((rest[1] + 2.5).abs() < 1e-12, "{rest:?}");
+    let (model, reports) = finished(&deck("*DYNAMIC, DIRECT\n0.002, 2."));
+    let node = model
+        .sets
+        .nodes
+        .iter()
+        .find(|set| set.name == "HUNG")
+        .expect("HUNG")
+        .members[0];
+    for report in &reports {
+        let exact = -2.5 * (1.0 - (2.0 * report.time).cos());
+        let off = report.state.u[2 * node + 1] - exact;
+        assert!(off.abs() < 2.5 * 1e-5, "{}: {off:e}", report.time);
+    }
+    assert!(imbalance(&reports) < 1e-12, "{:e}", imbalance(&reports));
+    let (_, _, messages) = try_read(&deck("*STATIC").replace(
+        "*ELEMENT, TYPE=SPRING1, ELSET=S\n2, 5\n*SPRING, ELSET=S\n2\n8.\n",
+        "",
+    ));
+    assert!(
+        messages.contains("belongs to no element, spring or rigid body"),
+        "{messages}"
+    );
+}
+
+/// A free block with a mass at a corner: momentum, angular momentum and energy are kept, also where its surface hands its
+/// mass on.
+#[test]
+fn a_block_with_a_mass_at_a_corner_flies_freely() {
+    for setting in ["", "*STICKSLIP, CONTACT MASS=REDISTRIBUTED\n"] {
+        let text = format!(
+            "*NODE, NSET=ALL\n1, 0., 0.\n2, 1., 0.\n3, 2., 0.\n4, 0., 1.\n5, 1., 1.\n6, 2., 1.\n\
+             7, 0., 2.\n8, 1., 2.\n9, 2., 2.\n\
+             *NODE, NSET=REF\n20, 0., -9.\n*ELEMENT, TYPE=CPE4, ELSET=E\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n3, 4, 5, 8, 7\n4, 5, 6, 9, 8\n\
+             *SURFACE, NAME=SOLE\n1, S1\n2, S1\n*SURFACE, NAME=FLOOR, TYPE=SEGMENTS\nSTART, -9., -0.5\nLINE, 9., -0.5\n\
+             *RIGID BODY, ANALYTICAL SURFACE=FLOOR, REF NODE=20\n\
+             *ELEMENT, TYPE=MASS, ELSET=PM\n5, 1\n*MASS, ELSET=PM\n3.\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n*DENSITY\n1.\n*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n\
+             *SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nSOLE, FLOOR\n*BOUNDARY\nREF, 1, 2\n\
+             *INITIAL CONDITIONS, TYPE=VELOCITY\nALL, 1, 2.\nALL, 2, 1.\n9, 1, 5.\n\
+             *STEP, NLGEOM\n{setting}*DYNAMIC, DIRECT\n0.01, 0.3\n*END STEP\n"
+        );
+        let (_, reports) = finished(&text);
+        let [first, last] = [&reports[0], reports.last().expect("reports")];
+        // four of the elements and three of the point, both with 2, 1, and the corner's part of its element
+        assert!(
+            (first.momentum.linear[1] - 7.0).abs() < 1e-12,
+            "{:?}",
+            first.momentum.linear
+        );
+        for (a, b) in first.momentum.linear.iter().zip(last.momentum.linear) {
+            assert!((a - b).abs() < 1e-11, "{a} {b}");
+        }
+        assert!((first.momentum.angular - last.momentum.angular).abs() < 1e-10);
+        assert!(imbalance(&reports) < 1e-12, "{:e}", imbalance(&reports));
+        // the body has the whole mass, and its motion the whole momentum
+        let body = &last.bodies[0];
+        assert!((body.velocity[1] * 7.0 - last.momentum.linear[1]).abs() < 1e-11);
+    }
+}

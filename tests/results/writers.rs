@@ -37,6 +37,7 @@ pub fn deck_text() -> String {
 pub fn model() -> Model {
     Model {
         title: "two squares and a triangle".into(),
+        point_masses: Vec::new(),
         restarts: Vec::new(),
         connectors: Vec::new(),
         mesh: mesh(),

@@ -54,6 +54,7 @@ pub fn difference(text: &str, model: &Model) -> Option<String> {
         ("equations", a.equations != b.equations),
         ("hinges", a.hinges != b.hinges),
         ("rigid bodies", a.rigid_bodies != b.rigid_bodies),
+        ("point masses", a.point_masses != b.point_masses),
         (
             "initial velocities",
             a.initial_velocity != b.initial_velocity,

@@ -135,7 +135,7 @@ fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usi
     nodes.filter(move |node| !is_whole && !own.contains(node))
 }
 
-/// Masses and rotary inertia of the rigid bodies, as elements with numbers after the largest one.
+/// Masses at nodes and rotary inertia of rigid bodies, as elements with numbers after the largest one.
 fn point_elements(model: &Model, lines: &mut DeckWriter) {
     let elements = model.mesh.elements.iter().map(|element| element.label);
     let connectors = model.connectors.iter().map(|connector| connector.label);
@@ -149,6 +149,9 @@ fn point_elements(model: &Model, lines: &mut DeckWriter) {
         lines.card(keyword, [set("ELSET", &name)]);
         lines.row(row);
     };
+    for &(node, mass) in &model.point_masses {
+        write("MASS", "MASS", node, vec![number(mass)]);
+    }
     for body in &model.rigid_bodies {
         for &(node, mass) in &body.masses {
             write("MASS", "MASS", node, vec![number(mass)]);

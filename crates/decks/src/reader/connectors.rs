@@ -59,7 +59,8 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
         .flat_map(|element| &element.nodes);
     let bodies = model.rigid_bodies.iter();
     let bodies = bodies.flat_map(|body| body.nodes.iter().copied().chain([body.reference]));
-    for node in of_elements.copied().chain(bodies) {
+    let points = model.point_masses.iter().map(|&(node, _)| node);
+    for node in of_elements.copied().chain(bodies).chain(points) {
         has_mass[2 * node..2 * node + 2].fill(true);
     }
     // what a displacement with mass follows has its mass, and what follows one

@@ -324,6 +324,17 @@ fn is_at_one_place(
     is_near
 }
 
+/// Whether each node belongs to an element, a spring or dashpot, or to nodes that are joined.
+pub(super) fn moving_nodes(links: &[Link], lookup: Lookup) -> Vec<bool> {
+    let mut moves = lookup.mesh_index.mesh.has_element();
+    let connectors = lookup.mesh_index.connectors.iter();
+    let of_connectors = connectors.flat_map(|element| element.nodes.iter().copied());
+    for node in of_connectors.chain(links.iter().flat_map(Link::nodes)) {
+        moves[node] = true;
+    }
+    moves
+}
+
 /// The hinges among links, and their places.
 pub(super) fn hinges(links: &[Link], cx: &mut Context) -> (Vec<Hinge>, Vec<Span>) {
     let (mut all, mut spans): (Vec<Hinge>, Vec<Span>) = Default::default();

@@ -103,7 +103,8 @@ fn read(cx: &mut Context) -> Model {
     let mut rigid_bodies = rigid_bodies::read(&outline, lookup, cx);
     let links = couplings::read(&outline, lookup, &mut rigid_bodies, cx);
     rigid_bodies::find_carried(&mut rigid_bodies, &mesh_index.mesh);
-    let masses = rigid_bodies::point_masses(&mut rigid_bodies, &outline, lookup, cx);
+    let moves = couplings::moving_nodes(&links, lookup);
+    let masses = rigid_bodies::point_masses(&mut rigid_bodies, &moves, &outline, lookup, cx);
     let properties = sections::read(&outline, &mut mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
     let ties = ties::read(&outline, &mut mesh_index, &sets, &surfaces, cx);
@@ -125,7 +126,7 @@ fn read(cx: &mut Context) -> Model {
         mesh_index: &mesh_index,
         sets: &sets,
         amplitudes: &amplitudes,
-        masses: &masses,
+        masses: &masses.all,
         rigid_bodies: &rigid_bodies,
         has_element: &mesh.has_element(),
     };
@@ -163,6 +164,7 @@ fn read(cx: &mut Context) -> Model {
         initial_velocity: velocity.values,
         steps: steps.all,
         rigid_bodies: bodies,
+        point_masses: masses.free,
         restarts: steps.restarts,
     };
     contact::leave_out_joined(&mut model);

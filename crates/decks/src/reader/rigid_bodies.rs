@@ -205,14 +205,22 @@ fn is_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) -> bool {
     true
 }
 
-/// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`; the masses by the point elements, 0 of
-/// others.
+/// Masses of point elements.
+pub(super) struct PointMasses {
+    /// By the point elements, 0 of others (mass).
+    pub all: Vec<f64>,
+    /// Those at nodes of no rigid body (index, mass).
+    pub free: Vec<(usize, f64)>,
+}
+
+/// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`, and others to the nodes that `moves` tells to move.
 pub(super) fn point_masses(
     all: &mut [Rigid],
+    moves: &[bool],
     outline: &Outline,
     lookup: Lookup,
     cx: &mut Context,
-) -> Vec<f64> {
+) -> PointMasses {
     let points = &lookup.mesh_index.points;
     let mut values: Vec<Option<f64>> = vec![None; points.len()];
     for (keyword, kind, column, what) in [
@@ -261,6 +269,7 @@ pub(super) fn point_masses(
             }
         }
     }
+    let mut free = Vec::new();
     for (point, &value) in points.iter().zip(&values) {
         let owner = all.iter_mut().find(|rigid| rigid.has(point.node));
         let fault = match (owner, value, point.kind) {
@@ -272,19 +281,34 @@ pub(super) fn point_masses(
                 rigid.rotary_inertia += value;
                 continue;
             }
+            (None, Some(value), PointKind::Mass) if moves[point.node] => {
+                free.push((point.node, value));
+                continue;
+            }
+            (None, Some(_), PointKind::RotaryInertia) if moves[point.node] => {
+                let message = "this rotary inertia has no effect: its node has no rotation";
+                cx.d.warning_once(Code::IgnoredParameter, point.span, message)
+                    .help("nodes of rigid bodies turn: name one of them");
+                continue;
+            }
             _ if cx.may_lack_cards() => continue,
-            (None, ..) => "this point element belongs to no rigid body",
-            (_, None, PointKind::Mass) => "this element has no *MASS",
-            (_, None, PointKind::RotaryInertia) => "this element has no *ROTARY INERTIA",
+            (None, ..) if !moves[point.node] => {
+                "the node of this point element belongs to no element, spring or rigid body"
+            }
+            (_, _, PointKind::Mass) => "this element has no *MASS",
+            (_, _, PointKind::RotaryInertia) => "this element has no *ROTARY INERTIA",
         };
         cx.error(Code::RigidSurface, point.span, fault)
-            .help("its node is the reference node, or another one, of a *RIGID BODY");
+            .help("give *MASS or *ROTARY INERTIA to an element at a node of a body, a spring or a *RIGID BODY");
     }
     let mass = |(point, value): (&PointElement, Option<f64>)| match point.kind {
         PointKind::Mass => value.unwrap_or(0.0),
         PointKind::RotaryInertia => 0.0,
     };
-    points.iter().zip(values).map(mass).collect()
+    PointMasses {
+        all: points.iter().zip(values).map(mass).collect(),
+        free,
+    }
 }
 
 fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {

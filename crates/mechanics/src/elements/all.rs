@@ -51,6 +51,8 @@ pub struct Elements {
     mass_damping: Vec<MassDamping>,
     /// Springs and dashpots, whose places in lists follow those of the elements.
     connectors: Vec<PlacedConnector>,
+    /// Masses at nodes that belong to no rigid body (index, mass).
+    point_masses: Vec<(usize, f64)>,
     /// Reference positions of all nodes (length).
     coordinates: Vec<[f64; 2]>,
     dofs: usize,
@@ -59,6 +61,11 @@ pub struct Elements {
 }
 
 impl Elements {
+    /// Masses at nodes that belong to no rigid body (index, mass).
+    pub fn point_masses(&self) -> &[(usize, f64)] {
+        &self.point_masses
+    }
+
     /// Elements of a model.
     pub fn new(model: &Model) -> Self {
         let elements = &model.mesh.elements;
@@ -71,6 +78,7 @@ impl Elements {
             variables: 0,
             mass_damping: Vec::new(),
             connectors: Vec::new(),
+            point_masses: model.point_masses.clone(),
             coordinates: model.mesh.coordinates.clone(),
             dofs: model.dof_count(),
             space: Mutex::default(),

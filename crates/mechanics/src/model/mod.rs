@@ -81,6 +81,8 @@ pub struct Model {
     pub steps: Vec<Step>,
     /// Rigid surfaces with their reference nodes, and bodies that turn.
     pub rigid_bodies: Vec<RigidBody>,
+    /// Masses at nodes that belong to no rigid body (index, mass).
+    pub point_masses: Vec<(usize, f64)>,
     /// Requests of checkpoints, in the order of their steps.
     pub restarts: Vec<RestartOutput>,
 }

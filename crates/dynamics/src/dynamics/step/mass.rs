@@ -64,10 +64,10 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Masses of elements and bodies that turn over the nodes that carry them.
+/// Masses of elements, at nodes, and of bodies that turn over the nodes that carry them.
 pub(super) struct Masses {
     /// Lists of nodes: those of every element, none of a rigid one, and of every spring and dashpot, then for each with
-    /// massless nodes those that carry it, then centre and angle of every body that turns.
+    /// massless nodes those that carry it, then those that carry the masses at nodes, then centre and angle of every body that turns.
     nodes: Vec<Vec<usize>>,
     /// List of every mass, and the mass, n x n column by column.
     of_elements: Vec<(usize, Vec<f64>)>,
@@ -97,6 +97,11 @@ impl Masses {
             } else {
                 masses.of_elements.push((element, m));
             }
+        }
+        for &(node, m) in elements.point_masses() {
+            let (carriers, m) = carried(&[node], &[m], redistribution);
+            masses.of_elements.push((masses.nodes.len(), m));
+            masses.nodes.push(carriers);
         }
         // m at the centre, I/L² at s = L c
         let has_inertia = |body: &&TurningBody| body.mass > 0.0 || body.inertia > 0.0;
