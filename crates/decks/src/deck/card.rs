@@ -112,7 +112,7 @@ impl Card {
     /// Takes parameters and data lines as read: what is left out of the card is told.
     pub fn leave_out(&self) {
         self.params.iter().for_each(|param| param.used.set(true));
-        self.rows.leave_out();
+        self.rows.read.set(ALL_ROWS);
     }
 
     /// Warns about parameters that the reader has not used, and reports the first row that it has not read.
@@ -218,11 +218,6 @@ impl DataLines {
             None
         });
         rows.chain(end)
-    }
-
-    /// Takes all rows as read: they are left out, which is told.
-    pub fn leave_out(&self) {
-        self.read.set(ALL_ROWS);
     }
 
     /// Number of lines, not all of which may hold a row.

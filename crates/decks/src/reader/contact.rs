@@ -290,8 +290,16 @@ fn friction(block: &CardBlock, cx: &mut Context) -> Option<Friction> {
 fn warn_of_behavior_data(card: &Card, cx: &mut Context) {
     let Some(row) = card.rows.first() else { return };
     match card.choice("PRESSURE-OVERCLOSURE") {
-        Some("LINEAR") => return row.at_most(3, cx.d),
-        Some("EXPONENTIAL" | "TABULAR" | "SCALE FACTOR") => return card.rows.leave_out(),
+        Some("LINEAR" | "SCALE FACTOR") => return row.at_most(3, cx.d),
+        Some("EXPONENTIAL") => return row.at_most(2, cx.d),
+        Some("TABULAR") => {
+            for row in card.rows.iter() {
+                row.at_most(2, cx.d);
+                row.real(0, "the pressure", cx.d);
+                row.real(1, "the overclosure", cx.d);
+            }
+            return;
+        }
         _ => {}
     }
     let message = "this data line has no effect";

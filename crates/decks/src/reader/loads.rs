@@ -428,7 +428,9 @@ impl LoadHistories {
         (step.point_loads).extend(self.weights.list(is_last).into_iter().filter(acts));
         step.body_forces = self.bodies.list(is_last);
         step.centrifugal_forces = self.turned.list(is_last);
-        step.pressures = joined(self.pressures.list(is_last), |load| load.at.face);
+        step.pressures = joined(self.pressures.list(is_last), |load| {
+            (load.at.face, load.at.is_shear)
+        });
         step.tractions = joined(self.tractions.list(is_last), |load| load.at.face);
     }
 
@@ -809,17 +811,17 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     }
 }
 
-/// LoadHistories on faces in the order of the faces, on each those without amplitude first, which are one load where
+/// Loads on faces in the order of their places, at each those without amplitude first, which are one load where
 /// they have one direction.
-pub(super) fn joined<T: Copy + PartialEq>(
+pub(super) fn joined<T: Copy + PartialEq, K: Ord>(
     mut loads: Vec<Load<T>>,
-    face: fn(&Load<T>) -> Face,
+    place: fn(&Load<T>) -> K,
 ) -> Vec<Load<T>> {
-    loads.sort_by_key(|load| (face(load), load.ends().is_none()));
+    loads.sort_by_key(|load| (place(load), load.ends().is_none()));
     let mut all: Vec<Load<T>> = Vec::with_capacity(loads.len());
     for load in loads {
         let before = all.iter_mut().rev();
-        let mut on_face = before.take_while(|known| face(known) == face(&load));
+        let mut on_face = before.take_while(|known| place(known) == place(&load));
         let same = on_face.find(|known| known.at == load.at && known.ends().is_some());
         match same.and_then(|known| Some((known.ends()?, load.ends()?, known))) {
             Some(([from, to], [more, end], known)) => {
