@@ -1,7 +1,7 @@
 //! Levels of keywords: at every level each keyword is taken or refused as Abaqus' manual says, but for what is told here.
 
 use stickslip::deck::{self, Keyword, Scope, Status, keywords};
-use stickslip::diagnostics::{Code, Diagnostics, Sources};
+use stickslip::diagnostics::{Code, Diagnostics, Sources, Span};
 use stickslip::reader;
 
 use crate::reading::try_read;
@@ -199,6 +199,33 @@ fn names_are_looked_up_from_the_level_of_the_card_outwards() {
         model.is_none() && messages.contains("a set cannot get members in a step"),
         "{messages}"
     );
+}
+
+/// Contacts that stand in the first step, as Abaqus/Explicit has them, hold from the start.
+#[test]
+fn contacts_of_the_first_step_are_those_of_the_model() {
+    let shared = include_str!("../decks/shared.inp");
+    let start = shared
+        .find("*SURFACE INTERACTION")
+        .expect("the interaction");
+    let end = shared.find("*BOUNDARY").expect("the end of contact");
+    let contact = &shared[start..end];
+    let in_step = shared.replacen(contact, "", 1);
+    let in_step = in_step.replacen("*DLOAD", &format!("{contact}*DLOAD"), 1);
+    let general = "*CONTACT, OP=NEW\n*CONTACT INCLUSIONS, ALL EXTERIOR\n*CONTACT PROPERTY ASSIGNMENT\n, , DRY\n";
+    let of_pair = "*CONTACT PAIR, INTERACTION=DRY, TYPE=NODE TO SURFACE\nSBOT, STOP\n";
+    let model = |text: &str| {
+        let (model, _, messages) = try_read(text);
+        let mut model = model.unwrap_or_else(|| panic!("{messages}\n{text}"));
+        model
+            .contacts
+            .iter_mut()
+            .for_each(|contact| contact.span = Span::default());
+        model
+    };
+    assert_eq!(model(&in_step), model(shared));
+    let [in_step, before] = [&in_step, shared].map(|text| text.replacen(of_pair, general, 1));
+    assert_eq!(model(&in_step), model(&before));
 }
 
 /// Names with blanks, dots and signs, in quotation marks or not, whole or in parts, in any case.

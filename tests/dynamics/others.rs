@@ -406,3 +406,83 @@ fn a_block_with_a_mass_at_a_corner_flies_freely() {
         assert!((body.velocity[1] * 7.0 - last.momentum.linear[1]).abs() < 1e-11);
     }
 }
+
+#[test]
+fn axes_of_a_section_with_an_isotropic_material_change_nothing() {
+    let deck = include_str!("../decks/others/orientation_isotropic.inp");
+    let plain = deck
+        .replace(", ORIENTATION=O", "")
+        .replace("*ORIENTATION, NAME=O\n1.,0.,0.,0.,1.,0.\n", "");
+    let (model, _, messages) = try_read(deck);
+    assert_eq!(model, Some(read(&plain)));
+    for said in [
+        "ORIENTATION of *SOLID SECTION is left out",
+        "*ORIENTATION is left out",
+    ] {
+        assert!(messages.contains(said), "{messages}");
+    }
+}
+
+#[test]
+fn a_punch_without_mass_is_pressed_by_a_force_in_a_static_step() {
+    let [_, y] = at_end(
+        &finished(include_str!("../decks/others/force_on_rigid_static.inp")),
+        "NREF",
+    );
+    assert!((y - (stretch(-10.0, 1000.0) - 1.0)).abs() < 1e-10, "{y}");
+}
+
+/// Springs in a direction that *ORIENTATION gives act along it.
+#[test]
+fn springs_act_along_their_axes() {
+    let deck = |axes: &str, row: &str| {
+        format!(
+            "*NODE, NSET=FOOT\n1, 0., 0.\n2, 1., 0.\n3, 1., 1.\n4, 0., 1.\n*NODE, NSET=END\n5, 3., 3.\n\
+             *ELEMENT, TYPE=CPS4, ELSET=E\n1, 1, 2, 3, 4\n*ELEMENT, TYPE=SPRING1, ELSET=S\n2, 5\n\
+             *ELEMENT, TYPE=SPRING1, ELSET=T\n3, 5\n*ORIENTATION, NAME=O\n{axes}\n\
+             *SPRING, ELSET=S, ORIENTATION=O\n{row}\n10.\n*SPRING, ELSET=T\n1\n10.\n\
+             *MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=E, MATERIAL=M\n1.\n*BOUNDARY\nFOOT, 1, 2\n\
+             *STEP, NLGEOM\n*STATIC\n1., 1.\n*CLOAD\n5, 1, 3.\n5, 2, 4.\n*END STEP\n"
+        )
+    };
+    // 10 (n n^T + e e^T) u = (3, 4) along n and x
+    let solution = |[a, b]: [f64; 2]| {
+        let (k11, k12, k22) = (10.0 + 10.0 * a * a, 10.0 * a * b, 10.0 * b * b);
+        let det = k11 * k22 - k12 * k12;
+        [(k22 * 3.0 - k12 * 4.0) / det, (k11 * 4.0 - k12 * 3.0) / det]
+    };
+    for (axes, row, along) in [
+        ("3., 4., 0., -1., 0., 0.", "1", [0.6, 0.8]),
+        ("3., 4., 0., -1., 0., 0.", "2", [-0.8, 0.6]),
+        ("3., 4., 0., 1., 0., 0.", "2", [0.8, -0.6]),
+        ("4., 6., 0., 0., 2., 0., 1., 2., 0.", "1", [0.6, 0.8]),
+        ("4., 0., 0., 0., 1., 0.\n3, 90.", "1", [0.0, 1.0]),
+        (
+            "0., 1., 0., 1., 0., 0.\n3, 60.",
+            "1",
+            [3f64.sqrt() / 2.0, 0.5],
+        ),
+    ] {
+        let [x, y] = at_end(&finished(&deck(axes, row)), "END");
+        let wanted = solution(along);
+        assert!(
+            (x - wanted[0]).hypot(y - wanted[1]) < 1e-11,
+            "{axes}: {x} {y} {wanted:?}"
+        );
+    }
+    for (axes, said) in [
+        ("1., 0., 1., 0., 1., 0.", "do not lie in the plane"),
+        ("1., 0., 0., 2., 0., 0.", "do not lie in the plane"),
+        ("1., 0., 0., 0., 1., 0.\n1, 30.", "leads out of the plane"),
+    ] {
+        let (model, _, messages) = try_read(&deck(axes, "1"));
+        assert!(model.is_none() && messages.contains(said), "{messages}");
+    }
+    let round =
+        deck("1., 0., 0., 0., 1., 0.", "1").replace("NAME=O\n", "NAME=O, SYSTEM=CYLINDRICAL\n");
+    let (model, _, messages) = try_read(&round);
+    assert!(
+        model.is_none() && messages.contains("SYSTEM=CYLINDRICAL"),
+        "{messages}"
+    );
+}
