@@ -29,9 +29,14 @@ def to_dataframe(result: ResultFile) -> "pandas.DataFrame":
     `nodes/TIP[12]/U:2`, `elements/E/points[7.2]/S:1`, `connectors[9]/force`, `bodies/velocity[0]:1`.
     """
     pandas = _package("pandas")
-    columns = {name: values for path in result.histories for name, values in _columns(result, path)}
+    columns = columns_of(result)
     time = columns.pop("time")
     return pandas.DataFrame(columns, index=pandas.Index(time, name="time"))
+
+
+def columns_of(result: ResultFile) -> dict[str, Array]:
+    """The columns of that table by their names, `time` among them."""
+    return {name: values for path in result.histories for name, values in _columns(result, path)}
 
 
 def _columns(result: ResultFile, path: str) -> Iterator[tuple[str, Array]]:

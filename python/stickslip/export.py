@@ -1,14 +1,16 @@
 """Writes a result in the format of other programs: frames as .vtu, histories as .csv.
 
 vtu  JOB_0000.vtu ... and JOB.pvd, which names them with their times (needs the package pyvista)
-csv  JOB.csv: all histories, a row for each increment (needs the package pandas)
+csv  JOB.csv: all histories, a row for each increment
 """
 
 import argparse
+import csv
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from stickslip import command
+from stickslip.convert import columns_of
 from stickslip.errors import Fault
 from stickslip.result import Result
 from stickslip.whole import whole, write_text
@@ -29,15 +31,19 @@ def vtu(result: Result, folder: Path) -> Iterator[Path]:
     yield names
 
 
-def csv(result: Result, folder: Path) -> Iterator[Path]:
+def histories(result: Result, folder: Path) -> Iterator[Path]:
     """Writes the table of all histories."""
     path = folder / f"{result.job}.csv"
-    with whole(path) as draft:
-        result.to_dataframe().to_csv(draft)
+    columns = columns_of(result)
+    names = ["time", *(name for name in columns if name != "time")]
+    with whole(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(names)
+        table.writerows(zip(*(columns[name].tolist() for name in names)))
     yield path
 
 
-FORMATS: dict[str, Callable[[Result, Path], Iterator[Path]]] = {"vtu": vtu, "csv": csv}
+FORMATS: dict[str, Callable[[Result, Path], Iterator[Path]]] = {"vtu": vtu, "csv": histories}
 
 
 def run() -> None:
