@@ -64,7 +64,7 @@ class Recovery:
 
         Where no element has a negative value, no place has one.
         """
-        columns = values.reshape(len(values), -1).T
+        columns = values.reshape(len(values), int(np.prod(values.shape[1:]))).T
         found = np.full((self.places, len(columns)), np.nan)
         there = np.unique(self.place)
         for k, column in enumerate(columns):

@@ -213,3 +213,14 @@ def two_materials(kind: str, pull: float = 0.0) -> Deck:
     speeds = [(1 + i, 2, pull * y) for i, (_, y) in enumerate(mesh.points)]
     deck.add("INITIAL CONDITIONS, TYPE=VELOCITY", *speeds)
     return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.01\n*END STEP\n")
+
+
+def rigid_only() -> Deck:
+    """A rigid line with a mass on a spring: a model without elements that deform."""
+    deck = Deck.titled("a rigid line on a spring")
+    reference, above = deck.node("REF", 0.0, 0.0), deck.node("ABOVE", 0.0, 2.0)
+    deck.rigid_line("LINE", [(-1.0, 0.0), (0.0, -0.5), (1.0, 0.0)], "REF").point_mass(reference, 1.0)
+    deck.spring(above, reference, 50.0).support("ABOVE").support("REF", 1, 6)
+    with deck.step(0.01, 0.3):
+        deck.load("REF", 0.0, -3.0).history("REF")
+    return deck

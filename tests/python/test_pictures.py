@@ -7,6 +7,7 @@ import h5py
 import matplotlib
 import numpy as np
 import pytest
+from bodies import rigid_only
 from conftest import ROOT, Job
 from decks import CANTILEVERS, RINGS, parse, shortened
 from matplotlib.axes import Axes
@@ -435,3 +436,12 @@ def test_rigid_surfaces_are_in_the_picture(job: Job) -> None:
         figure = panels([[(results, 0)]], PLAIN)
         low, high = figure.axes[0].get_xlim()
         assert low < -3.0 and high > 5.0
+
+
+@pytest.mark.parametrize("look", [Look("MISES"), Look("MISES", at_nodes=False), Look("U2", undeformed=True)])
+def test_a_model_without_elements_is_drawn(look: Look, job: Job) -> None:
+    with Result(job(rigid_only())) as result:
+        times = chosen_times(result, None, None, Field(look.field))
+        figure = panels([shown_at(result, times)], look)
+        figure.canvas.draw()
+        assert len(shapes(figure)) == 6

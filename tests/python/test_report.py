@@ -16,7 +16,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from bodies import FAMILIES, bent_bodies, two_materials
+from bodies import FAMILIES, bent_bodies, rigid_only, two_materials
 from conftest import ROOT, Job
 from decks import CANTILEVERS, COLUMN, oblique_impact, shortened, spinning_bar
 from oracle.shapes import shape_functions
@@ -69,6 +69,10 @@ def free_bodies(job: Job, folder: Path) -> Path:
 
 def no_contact(job: Job, folder: Path) -> Path:
     return job(spinning_bar(folder))
+
+
+def without_elements(job: Job, folder: Path) -> Path:
+    return job(rigid_only())
 
 
 def stopped(job: Job, folder: Path) -> Path:
@@ -732,6 +736,18 @@ def test_values_of_elements_bands_and_marks_are_a_choice(shown: Shown, job: Job,
     with_marks = page.evaluate(marked)
     page.keyboard.press("e")
     assert page.evaluate(marked) != with_marks
+
+
+def test_a_model_without_elements_is_shown(shown: Shown, job: Job, tmp_path: Path) -> None:
+    page = shown(without_elements(job, tmp_path))
+    first = picture(page)
+    spots = page.evaluate("Array.from(page.result.mesh.rigid, (node) => page.view.spot(node))")
+    assert all(0.0 < x < 800.0 and 0.0 < y < 560.0 for x, y in spots)
+    page.keyboard.press("End")
+    assert picture(page) != first
+    page.select_option("#field", "V:y")
+    page.wait_for_function("page.view.look.scalar.id === 'V:y'")
+    assert all(charts(page))
 
 
 def test_a_deck_with_markup_in_it_stays_text(shown: Shown, job: Job, tmp_path: Path) -> None:

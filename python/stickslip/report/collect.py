@@ -231,7 +231,8 @@ def _fields(
         values = _field_values(result, name, frames)
         if kind == "CellData":
             values = values[:, : len(result.element_labels)]
-        values = values.reshape(*values.shape[:2], -1)[:, :, : 2 if name in VECTORS else None]
+        count = int(np.prod(values.shape[2:]))
+        values = values.reshape(*values.shape[:2], count)[:, :, : 2 if name in VECTORS else None]
         attributes = result.file[f"VTKHDF/{kind}/{name}"].attrs
         described = _field(kind, name, attributes, values, packed)
         described["words"] = words(name, result.is_axisymmetric)

@@ -101,8 +101,9 @@ class View {
     this.refresh();
   }
 
-  /** Shows all that the bodies sweep, in all frames or in the present one. */
+  /** Shows all that the bodies sweep, or the rigid lines without any, in all frames or in the present one. */
   fit(now = false) {
+    const swept = this.deformable.length ? this.deformable : this.result.mesh.rigid;
     const box = [Infinity, Infinity, -Infinity, -Infinity];
     const positions = new Float32Array(2 * this.result.mesh.vertices);
     const { frames } = this.result;
@@ -110,7 +111,7 @@ class View {
     for (let frame = now ? this.frame : 0; frame < (now ? this.frame + 1 : frames); frame += every) {
       this.result.positions(frame, this.look.scale, positions);
       const [dx, dy] = this.shift(frame);
-      for (const node of this.deformable) {
+      for (const node of swept) {
         const [x, y] = [positions[2 * node] - dx, positions[2 * node + 1] - dy];
         if (x < box[0]) box[0] = x;
         if (y < box[1]) box[1] = y;
