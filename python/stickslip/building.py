@@ -182,7 +182,8 @@ class Building(ABC):
         first, *others = points
         if not others:
             raise Fault(f"{name}: a line has two points or more")
-        self.add(f"SURFACE, NAME={name}, TYPE=SEGMENTS", ("START", *map(float, first)), *(("LINE", *map(float, p)) for p in others))
+        rows = [("START", *map(float, first)), *(("LINE", *map(float, point)) for point in others)]
+        self.add(f"SURFACE, NAME={name}, TYPE=SEGMENTS", *rows)
         return self.add(f"RIGID BODY, ANALYTICAL SURFACE={name}, REF NODE={reference}")
 
     def rigid_body(self, elements: str, reference: str) -> Self:
@@ -232,7 +233,10 @@ class Building(ABC):
             yield self
 
     @contextmanager
-    def _step(self, procedure: str, dt: Number, duration: Number, automatic: bool, settings: Mapping[str, object]) -> Iterator[None]:
+    def _step(
+        self, procedure: str, dt: Number, duration: Number, automatic: bool, settings: Mapping[str, object]
+    ) -> Iterator[None]:
+        """A step of a procedure."""
         self.add("STEP, NLGEOM")
         if settings:
             text = "".join(f", {key.replace('_', ' ')}={value}" for key, value in settings.items())

@@ -25,10 +25,10 @@ class Drawing:
     nodes: int
     """The first vertices are the N nodes."""
     ends: tuple[int, int, int]
-    """Vertices up to the first end are places, which have values of their own; those up to the next ones stand between earlier ones."""
+    """Vertices up to the first end are places, which have values of their own; those up to the next ends are between them."""
     after: Integers
-    """The vertices behind the nodes [V - N, 3]: each is in the middle between the first two of three earlier ones on a parabola, or
-    at the node that is there three times."""
+    """The vertices behind the nodes [V - N, 3]: each is in the middle between the first two of three earlier ones on a
+    parabola, or at the node that is there three times."""
     rings: list[Integers]
     """Vertices around each element, in the order of `Result.outlines`."""
     outline: Integers
@@ -65,11 +65,8 @@ class Drawing:
                     lines[ends in outer] += zip(way[:-1], way[1:])
             rings.append(np.array(ring))
         table = np.array([*after, *quarters, *eighths], np.int64).reshape(-1, 3)
-        return cls(nodes, (recovery.places, second, second + len(eighths)), table, rings, *(np.array(lines[k], np.int64).reshape(-1, 2) for k in (True, False)))
-
-    def node_of(self, places: Integers) -> Integers:
-        """Nodes of places."""
-        return np.concatenate([np.arange(self.nodes), self.after[: self.ends[0] - self.nodes, 0]])[places]
+        outline, inner = (np.array(lines[is_outer], np.int64).reshape(-1, 2) for is_outer in (True, False))
+        return cls(nodes, (recovery.places, second, second + len(eighths)), table, rings, outline, inner)
 
     def positions(self, nodes: Array) -> Array:
         """Positions of the vertices [V, 2] from those of the nodes [N, 2]."""

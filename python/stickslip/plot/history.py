@@ -1,8 +1,9 @@
 """Draws the histories of results.
 
-Without names: where the energy is, its balance, momentum and contact forces, and force against displacement where a
-force moves something, results side by side or, with --overlay, on top of each other. With --y any histories, against the time or against the
-one of --x; all results stand in the same axes then, and every --y has axes of its own:
+Without names: where the energy is, its balance, momentum and contact forces, and force against displacement
+where a force moves something, results side by side or, with --overlay, on top of each other. With --y any
+histories, against the time or against the one of --x; all results stand in the same axes then, and every --y
+has axes of its own:
 
     stickslip-plot-history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
 

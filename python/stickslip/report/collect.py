@@ -119,7 +119,6 @@ def _record(result: Result, frames: Integers) -> dict[str, Any]:
         "displacement": {"words": words("U"), "also": also("U", 2)},
         "axes": directions(2, result.is_axisymmetric),
         "tensor": directions(3, result.is_axisymmetric),
-        "static": bool(result.rows > 1 and not result.history.momentum.linear.any() and not result.history.energy.kinetic.any()),
         "increments": result.rows - 1,
         "landings": len(result.complete_rows("history/impacts/time")),
         "steps": int(result.history["step"].max(initial=1)),

@@ -117,7 +117,6 @@ class Scalar {
     const name = field.words;
     this.group = name;
     this.label = text ? `${name}, ${text}` : name;
-    this.short = text || name;
     this.known = field.also[part] ?? field.name;
     this.of = of;
     this.at = field.at;
