@@ -97,6 +97,28 @@ MADE: dict[int, dict[str, tuple[str, Made]]] = {
 """What is made of vectors and of tensors in the plane: words, function."""
 
 
+def _sorted_principal(k: int) -> Callable[[Array, Array], Array]:
+    """The principal stress k of the three, from the smallest."""
+
+    def of(s: Array, across: Array) -> Array:
+        return np.sort(np.stack([_principal(-1.0)(s), _principal(1.0)(s), across], axis=-1), axis=-1)[..., k]
+
+    return of
+
+
+def _mises(s: Array, across: Array) -> Array:
+    xx, yy, xy = np.moveaxis(s, -1, 0)
+    return np.sqrt(((xx - yy) ** 2 + (yy - across) ** 2 + (across - xx) ** 2) / 2.0 + 3.0 * xy**2)
+
+
+INVARIANTS: dict[str, Callable[[Array, Array], Array]] = {
+    "MISES": _mises,
+    "PRESS": lambda s, across: -(s[..., 0] + s[..., 1] + across) / 3.0,
+    **{f"SP{k + 1}": _sorted_principal(k) for k in range(3)},
+}
+"""Fields that are made of the stresses in the plane S [..., 3] and across it S33 [...]."""
+
+
 def directions(count: int, axisymmetric: bool) -> list[str]:
     """Names of so many components."""
     names = IN_BODIES_OF_REVOLUTION if axisymmetric else DIRECTIONS

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stickslip import convert
 from stickslip.arrays import Array
 from stickslip.errors import Fault, Missing
-from stickslip.fields import AT_NODES, VECTORS, Part, known, part, without_third
+from stickslip.fields import AT_NODES, INVARIANTS, VECTORS, Part, known, part, without_third
 from stickslip.result_file import ResultFile
 
 if TYPE_CHECKING:
@@ -72,7 +72,8 @@ class Frame(Mapping[str, Any]):
     def at_places(self, name: str) -> NDArray[Any]:
         """A field at the places [P, ...] of `nodal.Recovery`, which tell the materials at a node apart.
 
-        Where the program has written it at nodes, `POSITION=NODES`, its values are taken at nodes of one material.
+        Invariants are those of the stresses there. Where the program has written a field at nodes, `POSITION=NODES`, its
+        values are taken at nodes of one material.
         """
         spelled = self.frames.known(name)
         field, colon, _ = spelled.partition(":")
@@ -81,7 +82,10 @@ class Frame(Mapping[str, Any]):
             rows = self._whole(field)
             rows = np.concatenate([rows, rows[recovery.twins]])
         else:
-            rows = recovery(self._whole(field))
+            if field in INVARIANTS and "S33" in self.frames.fields:
+                rows = INVARIANTS[field](self.at_places("S"), self.at_places("S33"))
+            else:
+                rows = recovery(self._whole(field))
             if field + AT_NODES in self.frames.fields:
                 rows[recovery.alone] = self.full(field + AT_NODES)[recovery.alone]
         return self.frames.part(spelled).of(rows) if colon else rows

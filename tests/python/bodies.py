@@ -197,7 +197,7 @@ def bent_bodies(family: str) -> Deck:
     return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.005, 0.03\n*END STEP\n")
 
 
-def two_materials(kind: str, pull: float = 0.0) -> Deck:
+def two_materials(kind: str, stretch: float = 0.0) -> Deck:
     """A square of elements with curved sides, whose right half is of a stiffer material; free, and stretched upwards at a rate."""
     mesh = grid(kind, 4, 4, lambda x, y: (x + 1.0 + 0.03 * sin(5.0 * y), y + 0.04 * sin(6.0 * x)))
     middles = [mesh.points[one].mean(axis=0)[0] for one in mesh.elements]
@@ -210,7 +210,7 @@ def two_materials(kind: str, pull: float = 0.0) -> Deck:
     for name, young in (("L", 1000.0), ("R", 3000.0)):
         deck.elastic(f"M{name}", young, 0.3, 1.0)
         with_section(deck, kind, name, f"M{name}")
-    speeds = [(1 + i, 2, pull * y) for i, (_, y) in enumerate(mesh.points)]
+    speeds = [(1 + i, 2, stretch * y) for i, (_, y) in enumerate(mesh.points)]
     deck.add("INITIAL CONDITIONS, TYPE=VELOCITY", *speeds)
     return deck.extend("*STEP, NLGEOM\n*DYNAMIC, DIRECT\n0.01, 0.01\n*END STEP\n")
 

@@ -256,9 +256,10 @@ def test_equal_results_give_equal_pages(job: Job, tmp_path: Path) -> None:
 def test_fields_and_frames_are_chosen(job: Job, tmp_path: Path) -> None:
     path = two_bodies(job, tmp_path)
     (result,) = json.loads(Tags(page_of([path], Choice(("MISES", "V"), 7))).data)["results"]
-    assert [field["name"] for field in result["fields"]] == ["V", "MISES"]
+    # values of the von Mises stress at nodes are made of the stresses
+    assert [field["name"] for field in result["fields"]] == ["V", "MISES", "S", "S33"]
     (known,) = json.loads(Tags(page_of([path], Choice(("mises", "V1", "cpress"), 2))).data)["results"]
-    assert [field["name"] for field in known["fields"]] == ["CONTACT_PRESSURE", "V", "MISES"]
+    assert [field["name"] for field in known["fields"]] == ["CONTACT_PRESSURE", "V", "MISES", "S", "S33"]
     times = Result(path).frames.times
     assert (
         len(result["times"]) == 7
@@ -482,7 +483,7 @@ def test_the_right_element_is_under_every_point(family: str, shown: Shown, job: 
 @pytest.mark.parametrize("kind", ["CPE4", "CAX8"])
 def test_values_differ_on_both_sides_of_two_materials(kind: str, shown: Shown, job: Job) -> None:
     """What is drawn at the nodes of every element, those between materials among them."""
-    deck = two_materials(kind, pull=5.0)
+    deck = two_materials(kind, stretch=5.0)
     path = job(deck, "--frames", "1")
     page = shown(path)
     page.keyboard.press("End")
@@ -503,6 +504,38 @@ def test_values_differ_on_both_sides_of_two_materials(kind: str, shown: Shown, j
         values = result.drawing.values(places)
         for ring, found in zip(result.drawing.rings, drawn):
             assert np.allclose(found, values[ring], rtol=2e-3, atol=1e-3 * np.abs(places).max())
+
+
+def test_invariants_at_nodes_are_those_of_the_stresses_there(shown: Shown, job: Job) -> None:
+    deck = two_materials("CPE8", stretch=5.0)
+    deck.cards[-1:-1] = Deck.parse("*OUTPUT, FIELD\n*ELEMENT OUTPUT\nS, SP, PRESS\n").cards
+    path = job(deck, "--frames", "1")
+    page = shown(path)
+    with Result(path) as result:
+        frame = result.frames[-1]
+        stress, across = frame.at_places("S"), frame.at_places("S33")
+        full = np.zeros((len(across), 3, 3))
+        full[:, [0, 1, 0, 1], [0, 1, 1, 0]], full[:, 2, 2] = stress[:, [0, 1, 2, 2]], across
+        principal = np.linalg.eigvalsh(full)
+        deviator = full - np.trace(full, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
+        expected = {
+            "MISES": np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))),
+            "PRESS": -np.trace(full, axis1=1, axis2=2) / 3.0,
+            **{f"SP{k + 1}": principal[:, k] for k in range(3)},
+        }
+        for name, exact in expected.items():
+            size = np.abs(exact).max()
+            assert np.allclose(frame.at_places(name), exact, rtol=1e-9, atol=1e-9 * size), name
+            found = page.evaluate(
+                """async (name) => {
+                    const { nodal } = page.result.scalar(name);
+                    await nodal.field.load();
+                    const frame = page.result.frames - 1;
+                    return Array.from({ length: nodal.field.places }, (_, place) => nodal.value(frame, place));
+                }""",
+                name,
+            )
+            assert np.allclose(found, exact, rtol=2e-3, atol=2e-3 * size), name
 
 
 def test_outlines_laid_over_are_curved_too(shown: Shown, job: Job) -> None:

@@ -11,7 +11,7 @@ from stickslip.arrays import Array, Integers
 from stickslip.certificate.certify import certify
 from stickslip.certificate.own import own_checks
 from stickslip.errors import Fault
-from stickslip.fields import VECTORS, also, directions, words
+from stickslip.fields import INVARIANTS, VECTORS, also, directions, words
 from stickslip.quantity import Members, find, force_against_displacement
 from stickslip.report.pack import Packed
 from stickslip.result import Result
@@ -223,6 +223,8 @@ def _fields(
 ) -> list[dict[str, Any]]:
     """Fields [frames, places components]; places without any value are left out."""
     chosen = None if names is None else {result.frames.known(name).partition(":")[0] for name in names}
+    if chosen is not None and chosen & INVARIANTS.keys():
+        chosen |= {"S", "S33"}  # which their values at nodes are made of
     found = []
     for name, kind in result.frames.fields.items():
         if name in ("U", "BODY") or (chosen is not None and name not in chosen):

@@ -62,6 +62,19 @@ class Field {
   }
 }
 
+/** Fields that are made of the stresses in the plane and across it. */
+const principal = (k) => (x, y, xy, z) => {
+  const [middle, half] = [0.5 * (x + y), Math.hypot(0.5 * (x - y), xy)];
+  return [middle - half, middle + half, z].sort((a, b) => a - b)[k];
+};
+const INVARIANTS = {
+  MISES: (x, y, xy, z) => Math.sqrt(((x - y) ** 2 + (y - z) ** 2 + (z - x) ** 2) / 2 + 3 * xy * xy),
+  PRESS: (x, y, xy, z) => -(x + y + z) / 3,
+  SP1: principal(0),
+  SP2: principal(1),
+  SP3: principal(2),
+};
+
 /** A field of elements at the places of nodes, averaged within a body and a material (nodal.py). */
 class NodalField extends Field {
   constructor(result, source) {
@@ -77,35 +90,58 @@ class NodalField extends Field {
   }
 
   async recover() {
-    const { result, source, components } = this;
+    const { result, source } = this;
     const ofProgram = result.field(`${source.name}_AT_NODES`);
-    await Promise.all([source.load(), ofProgram?.load()]);
-    const { places, place, element, weight, middles } = result.recovery;
-    const columns = places * components;
-    const data = new Float32Array(result.frames * columns).fill(NaN);
-    const sums = new Float64Array(places);
-    for (let frame = 0; frame < result.frames; frame++) {
-      for (let k = 0; k < components; k++) {
-        sums.fill(0);
-        let least = Infinity;
-        for (let w = 0; w < place.length; w++) {
-          const value = source.value(frame, element[w], k);
-          if (value < least) least = value;
-          sums[place[w]] += weight[w] * value;
-        }
-        const start = frame * columns + k;
-        for (const at of result.recovery.corners) data[start + at * components] = least >= 0 ? Math.max(sums[at], 0) : sums[at];
-        for (let i = 0; i < middles.length; i += 3) {
-          const [a, middle, b] = middles.subarray(i, i + 3);
-          data[start + middle * components] = 0.5 * (data[start + a * components] + data[start + b * components]);
-        }
-        for (const node of ofProgram ? result.recovery.alone : []) {
-          data[start + node * components] = ofProgram.value(frame, node, k);
+    const [inPlane, across] = ["S", "S33"].map((name) => result.scalars.find((scalar) => scalar.field.name === name)?.nodal.field);
+    const of = inPlane && INVARIANTS[source.name];
+    await Promise.all([source, of && inPlane, of && across, ofProgram].map((field) => field?.load()));
+    const data = of ? this.invariant(of, inPlane.data, across?.data) : this.average();
+    for (let frame = 0; ofProgram && frame < result.frames; frame++) {
+      for (const node of result.recovery.alone) {
+        for (let k = 0; k < this.components; k++) {
+          data[frame * this.values.columns + node * this.components + k] = ofProgram.value(frame, node, k);
         }
       }
     }
     this.data = data;
-    this.columns = columns;
+    this.columns = this.values.columns;
+  }
+
+  /** Values that are made of the stresses at the places; without any across the plane, as in plane stress. */
+  invariant(of, inPlane, across) {
+    const at = (i) => of(inPlane[3 * i], inPlane[3 * i + 1], inPlane[3 * i + 2], across ? across[i] : 0);
+    return Float32Array.from({ length: inPlane.length / 3 }, (_, i) => at(i));
+  }
+
+  /** Weighted means of the elements around corners; means of these between them. */
+  average() {
+    const { result, source, components } = this;
+    const { places, place, element, weight, middles, corners } = result.recovery;
+    const columns = places * components;
+    const data = new Float32Array(result.frames * columns).fill(NaN);
+    const sums = new Float64Array(places);
+    const values = new Float64Array(source.places);
+    for (let frame = 0; frame < result.frames; frame++) {
+      for (let k = 0; k < components; k++) {
+        let least = Infinity;
+        for (let cell = 0; cell < values.length; cell++) {
+          values[cell] = source.value(frame, cell, k);
+          if (values[cell] < least) least = values[cell];
+        }
+        sums.fill(0);
+        for (let w = 0; w < place.length; w++) sums[place[w]] += weight[w] * values[element[w]];
+        const start = frame * columns + k;
+        for (let i = 0; i < corners.length; i++) {
+          const sum = sums[corners[i]];
+          data[start + corners[i] * components] = least >= 0 && sum < 0 ? 0 : sum;
+        }
+        for (let i = 0; i < middles.length; i += 3) {
+          const ends = data[start + middles[i] * components] + data[start + middles[i + 2] * components];
+          data[start + middles[i + 1] * components] = 0.5 * ends;
+        }
+      }
+    }
+    return data;
   }
 }
 
@@ -237,7 +273,7 @@ class Result {
     }
     mesh.vertices = mesh.nodes + mesh.after.length / 3;
     if (recovery) {
-      recovery.corners = [...new Set(recovery.place)];
+      recovery.corners = Int32Array.from(new Set(recovery.place));
       const twins = new Set(recovery.twins);
       recovery.alone = Array.from({ length: mesh.nodes }, (_, node) => node).filter((node) => !twins.has(node));
     }
