@@ -426,6 +426,7 @@ impl LoadHistories {
             None => load.magnitude != 0.0,
         };
         (step.point_loads).extend(self.weights.list(is_last).into_iter().filter(acts));
+        (step.point_loads).sort_by_key(|load| load.at.dof);
         step.body_forces = self.bodies.list(is_last);
         step.centrifugal_forces = self.turned.list(is_last);
         step.pressures = joined(self.pressures.list(is_last), |load| {
