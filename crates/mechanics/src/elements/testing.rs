@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix2};
 use super::enhanced_strain::alternating;
 use super::shapes::tests::{QUAD8, TRI6};
 use super::{ElementResult, Elements, Motion, TangentPart, Updated};
-use crate::materials::{Law, NeoHooke, Ogden, Plastic, SmallStrainModuli, VolumeEnergy};
+use crate::materials::{Hencky, Law, NeoHooke, Ogden, Plastic, SmallStrainModuli, VolumeEnergy};
 use crate::model::{
     Damping, Element, ElementType, Formulation, Material, Mesh, Model, Section, Shape,
 };
@@ -25,14 +25,25 @@ pub(super) struct Sample {
 }
 
 /// Steel and rubber.
-pub(super) fn laws() -> [Law; 3] {
+pub(super) fn laws() -> [Law; 4] {
     let ogden = Ogden {
         terms: [[150.0, 1.7], [40.0, -1.2], [0.0, 0.0]],
         volume: VolumeEnergy {
             d: [2e-3, 0.0, 0.0],
         },
     };
-    [Law::elastic(1000.0, 0.3), rubber(), Law::Ogden(ogden)]
+    let hencky = Hencky {
+        moduli: SmallStrainModuli {
+            young: 1000.0,
+            poisson: 0.3,
+        },
+    };
+    [
+        Law::elastic(1000.0, 0.3),
+        rubber(),
+        Law::Ogden(ogden),
+        Law::Hencky(hencky),
+    ]
 }
 
 /// A compressible neo-Hookean law.

@@ -172,11 +172,20 @@ fn over<T: Number>(f: T, squared: T, bound: f64) -> T {
 mod tests {
     use super::*;
     use crate::materials::plane_stress::PlaneStress;
-    use crate::materials::{NeoHooke, Plane, PlaneLaw, Polynomial, SaintVenantKirchhoff};
+    use crate::materials::{
+        Hencky, NeoHooke, Plane, PlaneLaw, Polynomial, SaintVenantKirchhoff, SmallStrainModuli,
+    };
 
     const NEO_HOOKE: NeoHooke = NeoHooke {
         c10: 200.0,
         d1: 2e-3,
+    };
+
+    const HENCKY: Hencky = Hencky {
+        moduli: SmallStrainModuli {
+            young: 1000.0,
+            poisson: 0.3,
+        },
     };
 
     fn laws() -> Vec<(&'static str, Box<dyn Hyperelastic>)> {
@@ -203,6 +212,14 @@ mod tests {
                 Box::new(PlaneStress {
                     law: polynomial,
                     poisson,
+                }),
+            ),
+            ("Hencky", Box::new(HENCKY)),
+            (
+                "Hencky in plane stress",
+                Box::new(PlaneStress {
+                    law: HENCKY,
+                    poisson: HENCKY.moduli.poisson,
                 }),
             ),
         ]
@@ -327,7 +344,11 @@ mod tests {
             c01: 40.0,
             d: [2e-3, 1e-2, 0.0],
         };
-        let laws = [Law::NeoHooke(NEO_HOOKE), Law::Polynomial(polynomial)];
+        let laws = [
+            Law::NeoHooke(NEO_HOOKE),
+            Law::Polynomial(polynomial),
+            Law::Hencky(HENCKY),
+        ];
         for (law, plane) in laws
             .iter()
             .flat_map(|law| [Plane::Strain, Plane::Stress].map(|plane| (law, plane)))
@@ -351,6 +372,8 @@ mod tests {
     fn elastic(law: &PlaneLaw) -> Box<dyn Hyperelastic> {
         match law {
             PlaneLaw::SaintVenantKirchhoff(law) => Box::new(*law),
+            PlaneLaw::Hencky(law) => Box::new(*law),
+            PlaneLaw::HenckyInPlaneStress(law) => Box::new(*law),
             PlaneLaw::NeoHooke(law) => Box::new(*law),
             PlaneLaw::Polynomial(law) => Box::new(*law),
             PlaneLaw::PolynomialInPlaneStress(law) => Box::new(*law),

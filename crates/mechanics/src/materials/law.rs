@@ -12,9 +12,9 @@ use super::symmetric::{Symmetric, Tangent};
 #[cfg(any(test, feature = "testing"))]
 use super::yielding::Yielding;
 use super::{
-    Across, AnyLaw, Elastic, Flow, LawCard, Metal, NeoHooke, Ogden, OneByOne, Plane, PlanePlastic,
-    PlaneSaintVenantKirchhoff, Plastic, Polynomial, SaintVenantKirchhoff, SmallStrainModuli,
-    StrainMeasure, StressAtPoints,
+    Across, AnyLaw, Elastic, Flow, Hencky, LawCard, Metal, NeoHooke, Ogden, OneByOne, Plane,
+    PlanePlastic, PlaneSaintVenantKirchhoff, Plastic, Polynomial, SaintVenantKirchhoff,
+    SmallStrainModuli, StrainMeasure, StressAtPoints,
 };
 
 /// Law of a material with the constants of the deck.
@@ -22,6 +22,8 @@ use super::{
 pub enum Law {
     /// `*ELASTIC`
     SaintVenantKirchhoff(SaintVenantKirchhoff),
+    /// `*ELASTIC, TYPE=HENCKY`
+    Hencky(Hencky),
     /// `*HYPERELASTIC, NEO HOOKE`
     NeoHooke(NeoHooke),
     /// `*HYPERELASTIC` of other forms.
@@ -45,6 +47,7 @@ impl Law {
     pub fn small_strain(&self) -> SmallStrainModuli {
         match self {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
+            Law::Hencky(law) => law.moduli,
             Law::NeoHooke(law) => law.small_strain(),
             Law::Polynomial(law) => law.small_strain(),
             Law::Ogden(law) => law.small_strain(),
@@ -58,6 +61,7 @@ impl Law {
     pub fn cards(&self) -> Vec<LawCard> {
         match self {
             Law::SaintVenantKirchhoff(law) => law.cards(),
+            Law::Hencky(law) => law.cards(),
             Law::NeoHooke(law) => law.cards(),
             Law::Polynomial(law) => law.cards(),
             Law::Ogden(law) => law.cards(),
@@ -75,6 +79,7 @@ impl Law {
             Law::Polynomial(_) => 2,
             Law::Plastic(_) => 3,
             Law::Ogden(_) => 4,
+            Law::Hencky(_) => 5,
             #[cfg(any(test, feature = "testing"))]
             Law::Yielding(_) => u8::MAX,
         }
@@ -98,7 +103,7 @@ impl Law {
                 powers: law.terms,
                 ..Constants::default()
             },
-            Law::SaintVenantKirchhoff(_) | Law::Plastic(_) => Constants::default(),
+            Law::SaintVenantKirchhoff(_) | Law::Hencky(_) | Law::Plastic(_) => Constants::default(),
             #[cfg(any(test, feature = "testing"))]
             Law::Yielding(_) => Constants::default(),
         }
@@ -115,6 +120,10 @@ impl Law {
         let in_stress = plane == Plane::Stress;
         match self {
             Law::SaintVenantKirchhoff(law) => PlaneLaw::SaintVenantKirchhoff(law.in_plane(plane)),
+            &Law::Hencky(law) if in_stress => {
+                PlaneLaw::HenckyInPlaneStress(PlaneStress { law, poisson })
+            }
+            &Law::Hencky(law) => PlaneLaw::Hencky(law),
             &Law::NeoHooke(law) if in_stress => {
                 let law = law.into();
                 PlaneLaw::PolynomialInPlaneStress(PlaneStress { law, poisson })
@@ -152,6 +161,10 @@ pub enum PlaneLaw {
     /// In any plane.
     SaintVenantKirchhoff(PlaneSaintVenantKirchhoff),
     /// In plane strain and in bodies of revolution.
+    Hencky(Hencky),
+    /// In plane stress.
+    HenckyInPlaneStress(PlaneStress<Hencky>),
+    /// In plane strain and in bodies of revolution.
     NeoHooke(NeoHooke),
     /// In plane strain and in bodies of revolution.
     Polynomial(Polynomial),
@@ -180,6 +193,8 @@ impl PlaneLaw {
     fn kind(&self) -> Kind<'_> {
         match self {
             PlaneLaw::SaintVenantKirchhoff(law) => Kind::Elastic(law),
+            PlaneLaw::Hencky(law) => Kind::Elastic(law),
+            PlaneLaw::HenckyInPlaneStress(law) => Kind::Elastic(law),
             PlaneLaw::NeoHooke(law) => Kind::Elastic(law),
             PlaneLaw::Polynomial(law) => Kind::Elastic(law),
             PlaneLaw::PolynomialInPlaneStress(law) => Kind::Elastic(law),

@@ -9,6 +9,7 @@
 //! of the deck, a [`PlaneLaw`] is the same in the plane of the elements.
 
 mod constitutive_law;
+mod hencky;
 mod hyperelastic;
 mod invariants;
 mod law;
@@ -32,6 +33,7 @@ pub mod yielding;
 pub use constitutive_law::{
     AnyLaw, BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StressAtPoints,
 };
+pub use hencky::Hencky;
 pub use hyperelastic::Hyperelastic;
 pub use invariants::{InvariantEnergy, VolumeEnergy};
 pub use law::{Committed, Constants, Law, LawInLanes, PlaneLaw};

@@ -41,8 +41,8 @@ struct Principal {
 
 impl Principal {
     fn new(e: &Symmetric) -> Self {
-        let spectrum = Spectrum::new(&(e * 2.0));
-        let logarithms = spectrum.values.map(|g| g.ln_1p() / 2.0);
+        let spectrum = Spectrum::of_strain(e);
+        let logarithms = spectrum.logarithms();
         let volume: f64 = logarithms.iter().sum();
         Principal {
             spectrum,
@@ -171,7 +171,7 @@ impl Hyperelastic for Ogden {
         } = *change;
         let start = Principal::new(&e0);
         let by = log_change(&(e0 * 2.0), &(e1 * 2.0), &(half * 4.0));
-        let from = start.spectrum.map(|g| g.ln_1p() / 2.0);
+        let from = start.spectrum.logarithmic_strain();
         let principal = principal_change(&from, &by);
         let volume: f64 = principal.iter().sum();
         let shape = principal.map(|e| e - volume / 3.0);
@@ -195,16 +195,13 @@ impl Hyperelastic for Ogden {
         at.spectrum.log_derivative(&t)
     }
 
-    /// D ln : (dT/de) : D ln + 2 D² ln : T, column by column.
     fn tangent(&self, e: &Symmetric) -> Tangent {
         let at = Principal::new(e);
         let ([x, y, z], of_volume) = self.slopes(&at);
         let spectrum = &at.spectrum;
         let t = spectrum.back(&Symmetric::new(x, y, z, 0.0));
-        Tangent::of_columns(|direction| {
-            let strain = spectrum.to(&spectrum.log_derivative(direction));
-            let change = spectrum.back(&self.stress_change(&at, of_volume, &strain));
-            spectrum.log_derivative(&change) + spectrum.second_derivative(&t, direction) * 2.0
+        spectrum.tangent(&t, |strain| {
+            spectrum.back(&self.stress_change(&at, of_volume, &spectrum.to(strain)))
         })
     }
 }

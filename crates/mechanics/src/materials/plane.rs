@@ -1,6 +1,8 @@
 //! The plane: what elements assume across the thickness, and the moduli of a law near its reference state. Section 2 of
 //! docs/theory.md.
 
+use super::symmetric::{IDENTITY, Symmetric};
+
 /// Kinematic assumption across the thickness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Plane {
@@ -22,6 +24,23 @@ pub struct SmallStrainModuli {
 }
 
 impl SmallStrainModuli {
+    /// Shear modulus mu = E/(2 (1 + nu)) (force/length^2).
+    pub(super) fn shear(&self) -> f64 {
+        self.young / (2.0 * (1.0 + self.poisson))
+    }
+
+    /// Bulk modulus K = E/(3 (1 - 2 nu)) (force/length^2).
+    pub(super) fn bulk(&self) -> f64 {
+        self.young / (3.0 * (1.0 - 2.0 * self.poisson))
+    }
+
+    /// Stress (K - 2/3 mu) tr(A) I + 2 mu A, linear in a strain A (force/length^2).
+    pub(super) fn stress(&self, strain: &Symmetric) -> Symmetric {
+        let trace = strain.x + strain.y + strain.z;
+        let lambda = self.bulk() - 2.0 / 3.0 * self.shear();
+        IDENTITY * (lambda * trace) + *strain * (2.0 * self.shear())
+    }
+
     /// Those of a shear modulus mu and a bulk modulus K (force/length^2):
     ///
     /// ```text

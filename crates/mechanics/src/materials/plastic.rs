@@ -79,11 +79,7 @@ impl Plastic {
     }
 
     fn shear(&self) -> f64 {
-        self.moduli.young / (2.0 * (1.0 + self.moduli.poisson))
-    }
-
-    fn bulk(&self) -> f64 {
-        self.moduli.young / (3.0 * (1.0 - 2.0 * self.moduli.poisson))
+        self.moduli.shear()
     }
 
     fn has_back_strain(&self) -> bool {
@@ -162,18 +158,12 @@ impl Plastic {
         found
     }
 
-    /// Elastic stress K tr(E) I + 2 mu dev E (force/length^2).
-    fn elastic(&self, e: &Symmetric) -> Symmetric {
-        let trace = e.x + e.y + e.z;
-        IDENTITY * ((self.bulk() - 2.0 / 3.0 * self.shear()) * trace) + *e * (2.0 * self.shear())
-    }
-
     /// Trial state of a strain, eq. (2.37).
     fn trial(&self, e: &Symmetric, state: &PlasticState) -> Trial {
         let v = IDENTITY + root(&state.g);
         let y = state.g + between(&v, e) * 2.0;
         let spectrum = Spectrum::new(&y);
-        let strain = spectrum.map(|y| y.ln_1p() / 2.0);
+        let strain = spectrum.logarithmic_strain();
         Trial {
             v,
             y,
@@ -305,7 +295,7 @@ impl Plastic {
     /// dT = K tr dE I + 2 mu dev dE - r dxi - dr/dQ/Q (3/2 xi:dxi) xi,   dxi = 2 mu dev dE
     /// ```
     fn stress_change(&self, change: &Symmetric, flow: &PlasticFlow) -> Symmetric {
-        let elastic = self.elastic(change);
+        let elastic = self.moduli.stress(change);
         if flow.slip == 0.0 {
             return elastic;
         }
@@ -317,7 +307,7 @@ impl Plastic {
     /// Stored energy psi(E, z) (force/length^2).
     fn stored(&self, e: &Symmetric, state: &PlasticState) -> f64 {
         let strain = self.trial(e, state).strain;
-        contract(&self.elastic(&strain), &strain) / 2.0
+        contract(&self.moduli.stress(&strain), &strain) / 2.0
             + self.kinematic / 3.0 * contract(&state.back, &state.back)
     }
 
@@ -330,7 +320,7 @@ impl Plastic {
     fn released(&self, e: &Symmetric, state: &PlasticState, modes: f64) -> f64 {
         let strain = self.trial(e, state).strain;
         let flow = self.flow(&strain, state, modes);
-        let stress = self.elastic(&(strain * 2.0 - flow.strain)) / 2.0;
+        let stress = self.moduli.stress(&(strain * 2.0 - flow.strain)) / 2.0;
         let back = (state.back * 2.0 + flow.strain) * (self.kinematic / 3.0);
         let shear = 3.0 * self.shear();
         let part = flow.parts[1];
@@ -547,8 +537,8 @@ impl<'a> Potential<'a> {
         let dy = between(&start.v, &strains.change()) * 2.0;
         let change = log_change(&start.y, &end.y, &dy);
         let (flow, slip) = law.flow_change(&change, [&flow0, &flow1]);
-        let stress =
-            law.elastic(&(start.strain - flow0.strain)) + law.elastic(&(end.strain - flow1.strain));
+        let stress = law.moduli.stress(&(start.strain - flow0.strain))
+            + law.moduli.stress(&(end.strain - flow1.strain));
         let back = state.back * 2.0 + flow0.strain + flow1.strain;
         let shear = 3.0 * law.shear();
         let kept = 1.0 + law.kinematic / shear;
@@ -597,7 +587,7 @@ impl Hyperelastic for Potential<'_> {
     fn stress(&self, e: &Symmetric) -> Symmetric {
         let trial = self.law.trial(e, &self.state);
         let flow = self.flow(&trial);
-        let stress = self.law.elastic(&(trial.strain - flow.strain));
+        let stress = self.law.moduli.stress(&(trial.strain - flow.strain));
         between(&trial.v, &trial.spectrum.log_derivative(&stress))
     }
 
@@ -605,7 +595,7 @@ impl Hyperelastic for Potential<'_> {
     fn tangent(&self, e: &Symmetric) -> Tangent {
         let trial = self.law.trial(e, &self.state);
         let flow = self.flow(&trial);
-        let stress = self.law.elastic(&(trial.strain - flow.strain));
+        let stress = self.law.moduli.stress(&(trial.strain - flow.strain));
         Tangent::of_columns(|unit| {
             let direction = between(&trial.v, unit);
             // dE_h = D ln : dX/2, dX = 2 V dE V

@@ -1,7 +1,7 @@
 //! Functions of symmetric tensors by their principal values, with derivatives and differences that keep their digits.
-//! Section 2 of docs/theory.md, Plasticity and Ogden's materials.
+//! Section 2 of docs/theory.md: Plasticity, Ogden's materials and Hencky's material.
 
-use super::symmetric::Symmetric;
+use super::symmetric::{Symmetric, Tangent};
 
 /// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first.
 #[derive(Debug, Clone, Copy)]
@@ -11,6 +11,33 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
+    /// That of C - I of a Green-Lagrange strain.
+    pub fn of_strain(e: &Symmetric) -> Self {
+        Spectrum::new(&(e * 2.0))
+    }
+
+    /// Principal values ln(1 + y)/2: the logarithms of the principal stretches.
+    pub fn logarithms(&self) -> [f64; 3] {
+        self.values.map(|y| y.ln_1p() / 2.0)
+    }
+
+    /// The logarithmic strain ln(I + Y)/2.
+    pub fn logarithmic_strain(&self) -> Symmetric {
+        self.map(|y| y.ln_1p() / 2.0)
+    }
+
+    /// C = dS/dE (force/length^2) of S = (D ln C) : T, with T(E_h) of the logarithmic strain and its change with that of E_h:
+    ///
+    /// ```text
+    /// D ln : (dT/dE_h) : D ln + 2 D² ln : T,   column by column
+    /// ```
+    pub fn tangent(&self, t: &Symmetric, change: impl Fn(&Symmetric) -> Symmetric) -> Tangent {
+        Tangent::of_columns(|direction| {
+            let change = change(&self.log_derivative(direction));
+            self.log_derivative(&change) + self.second_derivative(t, direction) * 2.0
+        })
+    }
+
     pub fn new(a: &Symmetric) -> Self {
         let (mean, half) = ((a.x + a.y) / 2.0, (a.x - a.y) / 2.0);
         let radius = half.hypot(a.w);
