@@ -13,6 +13,7 @@ PRESSURES = [name for name in PLANE + RINGS if name.endswith("H")]
 
 MATERIALS = {
     "svk": "*ELASTIC\n1000., 0.3\n",
+    "hencky": "*ELASTIC, TYPE=HENCKY\n1000., 0.3\n",
     "neo-hooke": "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.3\n",
     "rubber": "*HYPERELASTIC, NEO HOOKE\n190., 0.0024\n",
     "mooney": "*HYPERELASTIC, MOONEY-RIVLIN\n150., 40., 0.0024\n",

@@ -526,7 +526,7 @@ fn cause_advice(cause: &Cause, model: &Model) -> Option<&'static str> {
         Cause::Indefinite { node } => match is_for_small_strains_at(*node, model) {
             true => {
                 "take smaller increments, in which inertia holds the body, or a smaller load; for \
-                 large compression *ELASTIC, TYPE=NEO HOOKE with the same constants"
+                 large compression *ELASTIC, TYPE=HENCKY with the same constants"
             }
             false => "take smaller increments, in which inertia holds the body, or a smaller load",
         },

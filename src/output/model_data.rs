@@ -342,7 +342,7 @@ const THICKNESS: Meaning = (
 );
 const LAW: Meaning = (
     "1",
-    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another polynomial of the invariants, 3 metal with J2 plasticity, 4 Ogden",
+    "0 St. Venant-Kirchhoff, 1 neo-Hooke, 2 another polynomial of the invariants, 3 metal with J2 plasticity, 4 Ogden, 5 Hencky",
 );
 const SHAPE: Meaning = (
     "force/length^2",

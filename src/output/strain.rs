@@ -28,8 +28,9 @@ pub(crate) fn inversion_hint(element: usize, model: &Model) -> Vec<String> {
     vec![
         "material St. Venant-Kirchhoff gives way at 58 % of its length (strain -1/3):".to_owned(),
         "         beyond that shorter increments do not help; use smaller loads, or a".to_owned(),
-        "         material for large strains: *ELASTIC, TYPE=NEO HOOKE with the same".to_owned(),
-        format!("         constants, or *HYPERELASTIC, NEO HOOKE with {c10}, {d1}"),
+        "         material for large strains with the same constants: *ELASTIC,".to_owned(),
+        "         TYPE=HENCKY (near Abaqus' law) or *ELASTIC, TYPE=NEO HOOKE (rubber),".to_owned(),
+        format!("         which is *HYPERELASTIC, NEO HOOKE with {c10}, {d1}"),
     ]
 }
 
@@ -115,7 +116,7 @@ pub(crate) fn warning_lines(
     Strained { element, strain }: Strained,
     report: &IncrementReport,
     model: &Model,
-) -> [String; 4] {
+) -> [String; 5] {
     [
         format!(
             "warning  principal strain {strain:.3} in element {} in increment {}",
@@ -123,9 +124,10 @@ pub(crate) fn warning_lines(
             report.increment
         ),
         "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and".to_owned(),
-        "         too soft in compression: take its forces for a guess, or use a material"
+        "         too soft in compression: take its forces for a guess, or use smaller".to_owned(),
+        "         loads or a material for large strains with the same constants: *ELASTIC,"
             .to_owned(),
-        "         for large strains (*ELASTIC, TYPE=NEO HOOKE) or smaller loads".to_owned(),
+        "         TYPE=HENCKY (near Abaqus' law) or *ELASTIC, TYPE=NEO HOOKE (rubber)".to_owned(),
     ]
 }
 
@@ -190,10 +192,13 @@ mod tests {
     #[test]
     fn texts_name_the_law_of_the_element() {
         let of = |element| inversion_hint(element, &model()).join("\n");
-        assert!(of(0).contains("St. Venant-Kirchhoff") && of(0).contains("NEO HOOKE"));
+        for text in ["St. Venant-Kirchhoff", "TYPE=HENCKY", "TYPE=NEO HOOKE"] {
+            assert!(of(0).contains(text), "{text}");
+        }
         assert!(!of(1).contains("Kirchhoff") && of(1).contains("use smaller loads"));
         let warned = warning_lines(Strained::default(), &report(1, [0.3, 0.0]), &model());
-        assert!(warned.join("\n").contains("*ELASTIC, TYPE=NEO HOOKE"));
+        let text = warned.join("\n");
+        assert!(text.contains("TYPE=HENCKY") && text.contains("*ELASTIC, TYPE=NEO HOOKE"));
         let hints = [0, 1].map(|element| inversion_hint(element, &model()));
         let lines = warned.iter().chain(hints.iter().flatten());
         lines.for_each(|line| assert!(line.len() <= 80, "{line}"));

@@ -118,8 +118,8 @@ impl Findings {
         Some(format!(
             "the largest principal strain is {}, above {}, where a St. Venant-Kirchhoff material \
              (*ELASTIC) is too stiff in tension and too soft in compression: trust no forces there; \
-             choose a material for large strains (*ELASTIC, TYPE=NEO HOOKE with the same constants) or \
-             lower the loads",
+             choose a material for large strains with the same constants (*ELASTIC, TYPE=HENCKY, near \
+             Abaqus' law, or *ELASTIC, TYPE=NEO HOOKE for rubber) or lower the loads",
             general(strain, 4),
             general(LARGE, 1),
         ))

@@ -246,6 +246,16 @@ fn constants_of_a_neo_hookean_material() {
 }
 
 #[test]
+fn laws_that_are_none_of_metals() {
+    let texts = texts_of_laws([
+        "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.3\n*PLASTIC\n5., 0.",
+        "*HYPERELASTIC, NEO HOOKE\n200., 2.E-3\n*PLASTIC\n5., 0.",
+        "*ELASTIC, TYPE=HENCKY\n1000., 0.5",
+    ]);
+    insta::assert_snapshot!(texts);
+}
+
+#[test]
 fn two_laws_in_one_material() {
     // nearly incompressible, yet without the warning that belongs to a law
     let texts = texts_of_laws([

@@ -514,9 +514,17 @@ fn materials_of_every_kind() {
         "*HYPERELASTIC, MOONEY-RIVLIN\n150., 50., 3.E-3",
         "*HYPERELASTIC, YEOH\n150., -7., 0.3, 3.E-3, 0., 7.E-3",
         "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.3",
+        "*ELASTIC, TYPE=HENCKY\n1000., 0.3",
     ] {
         round_trip(read(&SQUARE.replace("*ELASTIC\n1000., 0.3", law)));
     }
+    // the elastic strains of metals are Hencky's, whether the deck says so or not
+    let [metal, of_hencky] = ["", ", TYPE=HENCKY"].map(|kind| {
+        let law = format!("*ELASTIC{kind}\n1000., 0.3\n*PLASTIC\n5., 0.\n7., 0.1");
+        read(&SQUARE.replace("*ELASTIC\n1000., 0.3", &law))
+    });
+    assert_eq!(metal.materials, of_hencky.materials);
+    round_trip(metal);
     let mean = rubber.replace("CPS4", "CPE4");
     round_trip(read(&mean.replace(
         "MATERIAL=RUBBER\n",

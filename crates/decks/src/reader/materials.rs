@@ -6,7 +6,7 @@ use super::outline::{CardBlock, Outline};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
 use crate::materials::{
-    Law, NeoHooke, Ogden, Plane, Plastic, Polynomial, SmallStrainModuli, VolumeEnergy,
+    Hencky, Law, NeoHooke, Ogden, Plane, Plastic, Polynomial, SmallStrainModuli, VolumeEnergy,
 };
 use crate::model::{Damping, Material, Section};
 
@@ -159,10 +159,14 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     cx.only_once(&plastic);
     let law = match first.keyword.name {
         _ if !plastic.is_empty() => metal(first, plastic[0], cx),
-        "ELASTIC" if first.choice("TYPE") == Some("NEO HOOKE") => {
-            constant(&[first], elastic_neo_hooke_row, cx)
+        "ELASTIC" => {
+            let read = match first.choice("TYPE") {
+                Some("NEO HOOKE") => elastic_neo_hooke_row,
+                Some("HENCKY") => hencky_row,
+                _ => elastic_row,
+            };
+            constant(&[first], read, cx)
         }
-        "ELASTIC" => constant(&[first], elastic_row, cx),
         _ => hyperelastic(first, cx),
     };
     cards.fold(law, |_, card| {
@@ -171,14 +175,14 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     })
 }
 
-/// The metal of `*ELASTIC` and `*PLASTIC`.
+/// The metal of `*ELASTIC` and `*PLASTIC`. Its elastic strains are Hencky's, whether the deck says so or not.
 fn metal(elasticity: &Card, plasticity: &Card, cx: &mut Context) -> Constant<Law> {
-    let is_linear =
+    let is_of_metals =
         elasticity.keyword.name == "ELASTIC" && elasticity.choice("TYPE") != Some("NEO HOOKE");
-    if !is_linear {
-        let message = "*PLASTIC stands beside *ELASTIC with E and nu";
+    if !is_of_metals {
+        let message = "*PLASTIC stands beside *ELASTIC with E and nu, or with TYPE=HENCKY";
         cx.error(Code::IncompleteMaterial, elasticity.span, message)
-            .help("the elastic strains of metals are small: any law agrees with these constants");
+            .help("the elastic strains of metals are logarithmic (Hencky) and small: other laws agree with these constants");
         return Constant::Wrong;
     }
     let elastic = constant(&[elasticity], elastic_row, cx).given();
@@ -291,6 +295,12 @@ fn elastic_neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     let SmallStrainModuli { young, poisson } = elastic_row(row, cx)?.small_strain();
     let law = NeoHooke::of_small_strain(SmallStrainModuli { young, poisson });
     Some(Law::NeoHooke(law))
+}
+
+/// `E, nu[, T]` of Hencky's material.
+fn hencky_row(row: Line, cx: &mut Context) -> Option<Law> {
+    let moduli = elastic_row(row, cx)?.small_strain();
+    Some(Law::Hencky(Hencky { moduli }))
 }
 
 /// The law of `*HYPERELASTIC`, by its form. What a faulty keyword line gives is not looked at.
