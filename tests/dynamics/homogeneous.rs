@@ -11,12 +11,13 @@ use crate::statics::run_deck;
 const RUBBER: &str = "*HYPERELASTIC, MOONEY-RIVLIN\n0.4, 0.25, 0.2\n";
 const NEO_HOOKE: &str = "*HYPERELASTIC, NEO HOOKE\n0.5, 0.02\n";
 const OGDEN: &str = "*HYPERELASTIC, OGDEN, N=3\n1., 1.3, 0.02, 5., 0.1, -2., 0.1, 0.\n0.5\n";
+const HENCKY: &str = "*ELASTIC, TYPE=HENCKY\n2., 0.3\n";
 const LINEAR: &str = "*ELASTIC\n100., 0.3\n";
 const METAL: &str =
     "*ELASTIC\n120., 0.33\n*PLASTIC\n1., 0.\n1.3, 0.013\n1.6, 0.05\n2.2, 0.2\n2.6, 0.4\n4., 2.\n";
 
 /// Two times two distorted quadrilaterals, or twice as many triangles, over the unit square, with straight sides.
-fn patch(element_type: ElementType, material: &str) -> (String, Vec<[f64; 2]>) {
+pub fn patch(element_type: ElementType, material: &str) -> (String, Vec<[f64; 2]>) {
     let middle = |i: usize, j: usize| match (i, j) {
         (1, 1) => [0.63, 0.409],
         _ => [i as f64 / 2.0, j as f64 / 2.0],
@@ -84,6 +85,9 @@ fn homogeneous_states_stay_homogeneous_to_large_strains() {
         (OGDEN, Some(1.5), None),
         (OGDEN, Some(-0.3), Some(0.5)),
         (OGDEN, None, Some(-0.3)),
+        (HENCKY, Some(1.0), None),
+        (HENCKY, Some(-0.4), Some(0.5)),
+        (HENCKY, None, Some(-0.4)),
         (LINEAR, Some(0.3), None),
         (LINEAR, None, Some(-0.3)),
         (METAL, Some(0.2), None),
@@ -132,19 +136,31 @@ fn ogden_stresses(l: [f64; 3]) -> [f64; 3] {
     stresses
 }
 
+/// The same of [`HENCKY`]: 2 mu ln l_i + lambda ln J.
+fn hencky_stresses(l: [f64; 3]) -> [f64; 3] {
+    let (mu, lambda) = (2.0 / 2.6, 2.0 * 0.3 / (1.3 * 0.4));
+    let grown: f64 = l.iter().map(|l| l.ln()).sum();
+    l.map(|l| 2.0 * mu * l.ln() + lambda * grown)
+}
+
 /// A square that is pulled to a stretch, free in the other directions but for that across of plane strain and that around of
 /// rings: its width and its force are those of the principal stretches.
 #[test]
-fn forces_of_ogdens_material_are_those_of_its_stretches() {
+fn forces_of_laws_of_principal_stretches_are_those_of_the_stretches() {
+    check_forces(OGDEN, ogden_stresses, [0.8, 1.2, 2.5]);
+    check_forces(HENCKY, hencky_stresses, [0.7, 1.2, 2.0]);
+}
+
+fn check_forces(material: &str, stresses: fn([f64; 3]) -> [f64; 3], stretches: [f64; 3]) {
     for element_type in ElementType::NAMED {
-        for along in [0.8, 1.2, 2.5] {
-            let (deck, x) = patch(element_type, OGDEN);
+        for along in stretches {
+            let (deck, x) = patch(element_type, material);
             let deck = format!(
                 "{deck}*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY\nB, 2, 2\nL, 1, 1\nR, 1, 1, {:?}\n\
                  *END STEP\n",
                 along - 1.0
             );
-            let what = format!("{} {along}", element_type.name());
+            let what = format!("{} {material} {along}", element_type.name());
             let (keep, failure) = run_deck(&deck);
             assert_eq!(failure, None, "{what}");
             let report = keep.reports.last().expect("reports");
@@ -156,7 +172,7 @@ fn forces_of_ogdens_material_are_those_of_its_stretches() {
             let (mut low, mut high) = (0.05, 5.0);
             for _ in 0..200 {
                 let middle = (low + high) / 2.0;
-                match ogden_stresses(stretches(middle))[1] < 0.0 {
+                match stresses(stretches(middle))[1] < 0.0 {
                     true => low = middle,
                     false => high = middle,
                 }
@@ -165,7 +181,7 @@ fn forces_of_ogdens_material_are_those_of_its_stretches() {
             assert!((width / low - 1.0).abs() < 1e-9, "{what}: {width} {low}");
             // nominal stress over the side that it acts on
             let area = if element_type.is_ring() { TAU } else { 1.0 };
-            let exact = ogden_stresses(stretches(low))[0] / along * area;
+            let exact = stresses(stretches(low))[0] / along * area;
             let side = (0..x.len()).filter(|&n| x[n][0] == 1.0);
             let force: f64 = side.map(|n| report.nodal.reaction[2 * n]).sum();
             assert!(
@@ -187,6 +203,7 @@ fn loads_that_stay_change_nothing() {
         (NEO_HOOKE, [0.01, -0.03]),
         (RUBBER, [0.01, -0.03]),
         (OGDEN, [0.01, -0.03]),
+        (HENCKY, [0.004, -0.01]),
         (METAL, [0.03, -0.08]),
     ];
     for element_type in ElementType::NAMED {

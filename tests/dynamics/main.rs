@@ -20,6 +20,7 @@ mod friction;
 mod friction_laws;
 mod friction_limit;
 mod halving;
+mod hencky;
 mod hinges;
 mod homogeneous;
 mod invariants;
