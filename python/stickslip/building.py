@@ -107,6 +107,10 @@ class Building(ABC):
         """A St. Venant-Kirchhoff material, for strains below some 20 %; damping as `alpha`, `beta`."""
         return self.extend(material(name, young, poisson, density, **damping))
 
+    def hencky(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
+        """Hencky's material, for large strains: Kirchhoff stress over logarithmic strain; damping as `alpha`, `beta`."""
+        return self.extend(material(name, young, poisson, density, "HENCKY", **damping))
+
     def plastic(
         self,
         name: str,

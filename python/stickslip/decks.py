@@ -18,13 +18,16 @@ def card(keyword: str, *rows: Sequence[object]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def material(name: str, young: float, poisson: float, density: float, **damping: float) -> str:
-    """An elastic material; zero parameters of its damping are left out."""
+def material(
+    name: str, young: float, poisson: float, density: float, law: str = "", **damping: float
+) -> str:
+    """A material of `*ELASTIC`, with the `TYPE` that is its law; zero parameters of its damping are left out."""
+    kind = f", TYPE={law}" if law else ""
     parameters = "".join(f", {key.upper()}={value!r}" for key, value in damping.items() if value)
     return "".join(
         [
             card(f"MATERIAL, NAME={name}"),
-            card("ELASTIC", (young, poisson)),
+            card(f"ELASTIC{kind}", (young, poisson)),
             card("DENSITY", (density,)),
             card(f"DAMPING{parameters}") if parameters else "",
         ]

@@ -23,6 +23,7 @@ from stickslip.deck import Deck
 LAWS = {
     "neo-Hooke": NEO_HOOKE,
     "elastic neo-Hooke": "*ELASTIC, TYPE=NEO HOOKE\n1000., 0.3",
+    "Hencky": "*ELASTIC, TYPE=HENCKY\n1000., 0.3",
     "Mooney-Rivlin": "*HYPERELASTIC, MOONEY-RIVLIN\n150., 50., 2.E-3",
     "Yeoh": "*HYPERELASTIC, YEOH\n200., -20., 5., 2.E-3, 1.E-2, 3.E-2",
 }
@@ -103,6 +104,17 @@ def test_tension_of_a_nearly_incompressible_sheet(tmp_path: Path, law: str, stre
         x = 2.0 * stretch**2 + stretch**-4 - 3.0
         both = 2.0 * (slope(x) + c01 * stretch**2) * (stretch - stretch**-5)
         assert tension(tmp_path, row, stretch, stretch) == pytest.approx(both, rel=part)
+
+
+@pytest.mark.parametrize("kind", ["CPS4", "CPE8R", "CPS6"])
+def test_tension_of_henckys_material(tmp_path: Path, kind: str) -> None:
+    """E' ln(l)/l with E' = E in plane stress and E/(1 - nu^2) in plane strain; the deck is that of `Deck.hencky`."""
+    material = Deck.titled("").hencky("M", 1000.0, 0.3, 1.0).find("ELASTIC")[0]
+    law = f"{material.head}\n{', '.join(map(str, material.rows[0]))}"
+    modulus = 1000.0 / (1.0 - 0.3**2 if kind.startswith("CPE") else 1.0)
+    for stretch in (0.6, 0.8, 1.5, 2.5):
+        force = tension(tmp_path, law, stretch, kind=kind)
+        assert force == pytest.approx(modulus * np.log(stretch) / stretch, rel=1e-8)
 
 
 @pytest.mark.parametrize(
