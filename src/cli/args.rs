@@ -207,8 +207,8 @@ pub(super) struct CheckArgs {
 /// Arguments of `explain`.
 #[derive(Debug, ClapArgs)]
 pub(super) struct ExplainArgs {
-    /// Keywords, with or without their stars, and codes
-    #[arg(value_name = "KEYWORD|CODE", required = true)]
+    /// Keywords, with or without their stars, codes, and words such as bolt or gravity
+    #[arg(value_name = "WORD", required = true)]
     pub words: Vec<String>,
 }
 

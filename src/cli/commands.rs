@@ -10,7 +10,7 @@ use super::args::{
 };
 use super::error::{CliError, Exit};
 use super::terminal::{coloured, complain, print};
-use crate::deck::{Keyword, Status, find_keyword, keywords, not_regular, open_regular};
+use crate::deck::{Keyword, Status, find_keyword, find_word, keywords, not_regular, open_regular};
 use crate::diagnostics::{Code, Diagnostics, EarlierDeck, Severity, Sources, closest, wrapped};
 use crate::dynamics::{Observer, RunError, RunSummary};
 use crate::flat_deck::{difference, flat_deck};
@@ -97,8 +97,8 @@ fn openable(path: &Path) -> Result<(), CliError> {
 /// The page that has an example of every code.
 const MESSAGES: &str = include_str!("../../docs/messages.md");
 
-/// Explains keywords and codes of messages, one after the other: the longest beginning of the words is
-/// taken that is one of them.
+/// Explains keywords, codes of messages and words of other programs, one after the other: the longest beginning of
+/// the words is taken that is one of them.
 pub(super) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     let mut rest = &args.words[..];
     let mut texts = Vec::new();
@@ -113,7 +113,7 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     Ok(Exit::Finished)
 }
 
-/// What some words mean: a code, or a keyword with or without its star.
+/// What some words mean: a code, a keyword with or without its star, or a word for what is no keyword.
 fn explained(words: &[String]) -> Option<String> {
     let name = name(words);
     let is_named = |code: &&Code| code.id().eq_ignore_ascii_case(&name);
@@ -121,6 +121,7 @@ fn explained(words: &[String]) -> Option<String> {
     let keyword = || find_keyword(&name).or_else(|| find_keyword(&name.replace(['-', '_'], " ")));
     code.map(|code| explanation(*code))
         .or_else(|| keyword().map(|keyword| keyword.explanation()))
+        .or_else(|| find_word(&name).map(|word| word.explanation()))
 }
 
 /// The words as one, without the star of a keyword.

@@ -618,3 +618,33 @@ fn a_deck_without_elements_is_not_told_of_each_of_them() {
     let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
     assert_eq!(codes, [Code::EmptyMesh], "{text}");
 }
+
+/// A deck of trusses alone says what becomes of line elements.
+#[test]
+fn a_deck_of_line_elements_is_told_that_there_are_no_trusses() {
+    let block = "*ELEMENT, TYPE=CPS4, ELSET=BODY\n7, 1, 2, 3, 4\n";
+    let (d, text) = messages(&square(block, "*ELEMENT, TYPE=T2D2, ELSET=BODY\n7, 1, 2\n"));
+    let codes: Vec<Code> = d.iter().map(|item| item.code).collect();
+    assert_eq!(codes, [Code::EmptyMesh], "{text}");
+    assert!(text.contains("the deck has line elements only"), "{text}");
+    assert!(text.contains("trusses and beams cannot be used"), "{text}");
+}
+
+/// Initial velocities have no effect before a static step; of other initial conditions nothing is said about velocities.
+#[test]
+fn only_velocities_have_no_effect_in_a_static_step() {
+    let with = |kind: &str, row: &str| {
+        let cards = format!("*INITIAL CONDITIONS, TYPE={kind}\n{row}\n*STEP\n*STATIC");
+        messages(&square("*STEP, NLGEOM\n*DYNAMIC, DIRECT", &cards)).1
+    };
+    let said = "these velocities have no effect";
+    let text = with("VELOCITY", "1, 1, 2.");
+    assert!(text.contains(said), "{text}");
+    for (kind, row) in [("TEMPERATURE", "1, 20."), ("STRESS", "7, 1., 1., 0.")] {
+        let text = with(kind, row);
+        assert!(
+            text.contains("cannot be used") && !text.contains(said),
+            "{text}"
+        );
+    }
+}

@@ -4,7 +4,8 @@
 
 use std::path::Path;
 use stickslip::deck::{
-    self, Keyword, Scope, Status, dimensions_json, find_keyword, keyword_reference, keywords,
+    self, Keyword, Scope, Status, Word, dimensions_json, find_keyword, find_word,
+    keyword_reference, keywords, words,
 };
 use stickslip::diagnostics::{Code, Diagnostics, Severity, Sources};
 use stickslip::reader;
@@ -124,10 +125,7 @@ fn what_is_neither_keyword_nor_code_gets_a_suggestion() {
         ("*BONDARY", "did you mean BOUNDARY?"),
         ("D999", "D999 is neither"),
         ("D103 NONSENSE", "error: NONSENSE is neither"),
-        ("bolts", "keywords about it: *PRE-TENSION SECTION"),
-        ("gravity", "keywords about it: *DENSITY, *DLOAD"),
-        ("Preload", "*PRE-TENSION SECTION"),
-        ("thermal", "keywords about it: *TEMPERATURE"),
+        ("springs", "keywords about it: *SPRING"),
         (
             "D103 CONTCT PAIR",
             "CONTCT PAIR is neither a keyword nor the code of a message; did you mean CONTACT PAIR?",
@@ -141,9 +139,74 @@ fn what_is_neither_keyword_nor_code_gets_a_suggestion() {
 }
 
 #[test]
+fn words_of_other_programs_are_explained() {
+    for (typed, said) in [
+        ("bolts", "*PRE-TENSION SECTION"),
+        ("Preload", "*PRE-TENSION SECTION"),
+        ("gravity", "load GRAV of *DLOAD"),
+        ("thermal", "There are no temperatures"),
+        ("RIKS", "arc-length method"),
+        ("perturbation", "Steps are nonlinear"),
+        ("buckling", "imperfection"),
+        ("umat", "User subroutines"),
+        ("mass-scaling", "Masses are not scaled"),
+        ("user material", "*USER MATERIAL: stops with an error"),
+        ("frequency", "*FREQUENCY: stops with an error"),
+        ("restart", "*RESTART: read"),
+    ] {
+        let words: Vec<&str> = typed.split(' ').collect();
+        let (code, text, error) = explain(&words);
+        assert_eq!((code, error.as_str()), (Some(0), ""), "{typed}");
+        assert!(text.contains(said), "{text}");
+    }
+    let (_, text, _) = explain(&["riks", "d410"]);
+    assert!(text.starts_with("riks, ") && text.contains("\n\nD410: "));
+    assert!(text.contains("in its place\n  *BOUNDARY\n"), "{text}");
+}
+
+/// A word stands once and is no keyword; the keywords of its sentence and example are known, and all those of
+/// its example are read.
+#[test]
+fn words_lead_to_keywords_that_are_read() {
+    let mut names: Vec<&str> = words()
+        .flat_map(|word| word.names.iter().copied())
+        .collect();
+    names.sort_unstable();
+    assert!(names.len() > 80 && names.windows(2).all(|pair| pair[0] != pair[1]));
+    for name in names {
+        assert_eq!(find_keyword(name), None, "{name}");
+        let found = find_word(&name.to_uppercase()).expect("a word");
+        assert!(
+            found.names.contains(&name) && found.text.ends_with('.'),
+            "{name}"
+        );
+    }
+    for word in words() {
+        for line in word
+            .example
+            .lines()
+            .filter_map(|line| line.strip_prefix("  *"))
+        {
+            let keyword = line.split(',').next().and_then(find_keyword);
+            assert_eq!(
+                keyword.map(|keyword| keyword.status),
+                Some(Status::Read),
+                "{line}"
+            );
+        }
+        for said in word.text.split('*').skip(1) {
+            let is_of_name = |c: char| c.is_ascii_uppercase() || " -".contains(c);
+            let end = said.find(|c| !is_of_name(c)).unwrap_or(said.len());
+            assert!(find_keyword(said[..end].trim()).is_some(), "{said}");
+        }
+    }
+}
+
+#[test]
 fn lines_on_the_screen_are_short() {
     let long = |line: &&str| line.len() > 80;
-    let texts: Vec<String> = keywords().map(Keyword::explanation).collect();
+    let texts = keywords().map(Keyword::explanation);
+    let texts: Vec<String> = texts.chain(words().map(Word::explanation)).collect();
     let lines: Vec<&str> = texts
         .iter()
         .flat_map(|text| text.lines())

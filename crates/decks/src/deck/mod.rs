@@ -23,7 +23,7 @@ pub use collect::Deck;
 pub use content::{not_regular, open_regular};
 pub use keywords::{
     Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
-    Value, dimensions_json, find_keyword, keyword_reference, keywords,
+    Value, Word, dimensions_json, find_keyword, find_word, keyword_reference, keywords, words,
 };
 pub use lines::Line;
 pub use text::{Name, Text};

@@ -406,7 +406,11 @@ pub(crate) fn initial_velocity(
 /// Warns about initial velocities before a static step, which is at rest.
 pub(crate) fn check_start(outline: &Outline, first: Option<&Step>, cx: &mut Context) {
     let cards = outline.model_cards("INITIAL CONDITIONS");
-    if let (Some(card), Some(Procedure::Static)) = (cards.first(), first.map(|s| s.procedure)) {
+    let is_velocity =
+        |card: &&&Card| matches!(card.choice("TYPE"), Some("VELOCITY" | "ROTATING VELOCITY"));
+    if let (Some(card), Some(Procedure::Static)) =
+        (cards.iter().find(is_velocity), first.map(|s| s.procedure))
+    {
         let message = "these velocities have no effect: the first step is static";
         cx.d.warning_once(Code::IgnoredParameter, card.span, message)
             .help("give them to a model whose first step is dynamic");

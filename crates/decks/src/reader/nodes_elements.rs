@@ -375,9 +375,17 @@ impl MeshReading {
         let said = cards.iter().any(is_left_out);
         let first = cards.first().copied().or(before);
         if let Some(card) = first.or(cx.deck.cards.first()).filter(|_| !said) {
-            let message = format!("the deck has no {}s", keyword.to_lowercase());
-            cx.error(Code::EmptyMesh, card.span, message)
-                .help(format!("give them with *{keyword}"));
+            let (message, help) = match self.lines.is_empty() || keyword == "NODE" {
+                true => (
+                    format!("the deck has no {}s", keyword.to_lowercase()),
+                    format!("give them with *{keyword}"),
+                ),
+                false => (
+                    "the deck has line elements only".to_owned(),
+                    NO_TRUSSES.to_owned(),
+                ),
+            };
+            cx.error(Code::EmptyMesh, card.span, message).help(help);
         }
     }
 
@@ -647,6 +655,10 @@ fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     faces
 }
 
+/// What to do about line elements that are no sides.
+const NO_TRUSSES: &str = "line elements only name sides of plane elements: trusses and beams cannot be used, and other \
+                          lines of a mesh generator can go";
+
 fn report_strays(strays: &[&LineElement], cx: &mut Context) {
     let Some(first) = strays.first() else { return };
     let label = cx.named(first.label);
@@ -654,10 +666,8 @@ fn report_strays(strays: &[&LineElement], cx: &mut Context) {
         1 => format!("line element {label} is no side of a plane element"),
         n => format!("{n} line elements are no sides of plane elements, the first is {label}"),
     };
-    cx.error(Code::LineElement, first.span, message).help(
-        "line elements only name sides of plane elements: trusses and beams cannot be used, and other lines of a \
-         mesh generator can go",
-    );
+    cx.error(Code::LineElement, first.span, message)
+        .help(NO_TRUSSES);
 }
 
 /// Notes that a mesh generator's triangles and quadrilaterals are in plane stress.

@@ -192,7 +192,7 @@ fn treatment(keyword: &Keyword) -> String {
 }
 
 /// Adds a titled part, if there is one.
-fn push(text: &mut String, title: &str, part: &str) {
+pub(super) fn push(text: &mut String, title: &str, part: &str) {
     if !part.is_empty() {
         let _ = write!(text, "\n{title}\n{part}");
     }

@@ -1,15 +1,17 @@
 //! The table of all keywords, joined from its families, with the dimensions of their fields; look-up
-//! by name, and the documents made from it.
+//! by name, and the documents made from it. Words that are no keywords, with what to use.
 
 mod documents;
 mod table;
 mod types;
+mod words;
 
 pub use documents::{dimensions_json, keyword_reference};
 pub use types::{
     Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
     Value,
 };
+pub use words::{Word, find_word, words};
 
 use super::text::fold;
 use std::collections::HashMap;

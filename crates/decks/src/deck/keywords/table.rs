@@ -88,7 +88,7 @@ pub(super) fn with_levels(mut all: Vec<Keyword>) -> Vec<Keyword> {
 }
 
 /// The lines with those that continue them, without comments.
-fn lines(text: &'static str) -> Vec<&'static str> {
+pub(super) fn lines(text: &'static str) -> Vec<&'static str> {
     let mut lines: Vec<String> = Vec::new();
     let is_said = |line: &&str| !line.is_empty() && !line.starts_with("**");
     for line in text.lines().filter(is_said) {
