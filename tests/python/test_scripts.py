@@ -1,9 +1,11 @@
-"""The commands that draw; decks and their generators."""
+"""The commands that draw; decks and their generators; the list of public decks."""
 
+import re
 import runpy
 import shutil
 import subprocess
 import sys
+import urllib.error
 from pathlib import Path
 from unittest.mock import patch
 
@@ -27,6 +29,7 @@ from decks import (
     WEDGES,
     shortened,
 )
+from lab import public_decks
 from rescale import Units, rescale
 from stickslip import program
 from stickslip.deck import Deck
@@ -140,3 +143,66 @@ def test_rescaling_there_and_back_gives_the_same_deck() -> None:
     back = rescale(there, Units(0.25, 2.0, 0.125))
     numbers = [[card.rows for card in deck.cards] for deck in (rescale(deck, Units()), back)]
     assert numbers[0] == numbers[1]
+
+
+def test_the_list_of_public_decks_has_places_and_judgements() -> None:
+    listed = public_decks.read_list()
+    assert len(listed) >= 60 and len({one.repository for one in listed}) >= 20
+    assert len({one.deck for one in listed}) == len({one.url() for one in listed}) == len(listed)
+    for one in listed:
+        assert re.fullmatch(r"[0-9a-f]{40}", one.commit) and one.path.endswith(".inp"), one
+        assert one.text in ("whole", "mesh", "mesh, head")
+        assert one.reason or one.cause == public_decks.NONE, one
+
+
+def listed_deck(deck: str, cause: str) -> public_decks.Listed:
+    place = ("owner/decks", "0" * 40, f"a folder/{deck}")
+    return public_decks.Listed(deck, *place, "whole", cause, "")
+
+
+def test_public_decks_are_judged(tmp_path: Path) -> None:
+    """A deck that the program reads and one with a user element, each with a right and a wrong cause."""
+    square = (ROOT / "tests/decks/square.inp").read_text()
+    user = square.replace("*STEP", "*USER ELEMENT, TYPE=U1\n*STEP")
+    (tmp_path / "good.inp").write_text(square)
+    (tmp_path / "user.inp").write_text(user)
+    found = {
+        (name, cause): public_decks.tried(program.binary(), listed_deck(name, cause), tmp_path)
+        for name in ("good.inp", "user.inp")
+        for cause in ("none", "user code")
+    }
+    assert {key: one.judgement() for key, one in found.items()} == {
+        ("good.inp", "none"): "read",
+        ("good.inp", "user code"): "read against the list",
+        ("user.inp", "none"): "refused wrongly",
+        ("user.inp", "user code"): "refused rightly",
+    }
+    assert found["good.inp", "none"].run == "runs"
+    assert (found["user.inp", "none"].code, found["user.inp", "none"].run) == ("D201", "")
+    shown = [("good.inp", "none"), ("user.inp", "user code"), ("user.inp", "none")]
+    outcomes = [found[key] for key in shown]
+    listed = [one.listed for one in outcomes]
+    text = public_decks.report(listed, outcomes, {"far.inp": "no network"})
+    assert "3 of 3 listed decks of 1 repositories, 1 not fetched" in text
+    assert "physics of 2 decks: 1 of these pass `check`, and 1 of them run" in text
+    assert "| none: the program has the physics | 2 | 1 | 0 | 0 | 1 | 0 |" in text
+    assert "| user code | 1 | 0 | 0 | 1 | 0 | 0 |" in text
+    assert "| owner/decks/a folder/user.inp | D201 \\*USER ELEMENT cannot be used |" in text
+
+
+def test_public_decks_that_cannot_be_fetched_are_told(tmp_path: Path) -> None:
+    listed = [listed_deck("here.inp", "none"), listed_deck("far.inp", "none")]
+    (tmp_path / "here.inp").write_text("*HEADING\n")
+    asked = []
+
+    def refuse(url: str, timeout: float) -> None:
+        assert timeout > 0
+        asked.append(url)
+        raise urllib.error.URLError("no network")
+
+    with patch("urllib.request.urlopen", refuse):
+        failed = public_decks.fetch(listed, tmp_path)
+    place = "https://raw.githubusercontent.com/owner/decks/" + "0" * 40
+    assert asked == [f"{place}/a%20folder/far.inp"]
+    assert list(failed) == ["far.inp"] and "no network" in failed["far.inp"]
+    assert [path.name for path in tmp_path.iterdir()] == ["here.inp"]
