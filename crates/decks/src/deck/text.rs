@@ -204,7 +204,7 @@ impl<'a> Text<'a> {
     }
 
     fn fault_of_plain_name(&self) -> Option<String> {
-        let allowed = |c: &char| !(c.is_control() && *c != '\t') && !"\"'=*<>".contains(*c);
+        let allowed = |c: &char| !("\"'=*<>".contains(*c) || c.is_control() && *c != '\t');
         if !fits(self.text) {
             Some("a name has 1 to 80 characters".to_string())
         } else if self.as_integer().is_some() {
