@@ -438,8 +438,10 @@ class Scene:
                     "DASHPOT, ELSET=DASHPOTS", (), (2.0,)
                 )
             case "springs along axes":
+                # the first local axis is y
                 return (
-                    card("SPRING, ELSET=LINKS", (2, 2), (300.0,))
+                    card("ORIENTATION, NAME=AXES", (0.0, 1.0, 0.0, -1.0, 0.0, 0.0))
+                    + card("SPRING, ELSET=LINKS, ORIENTATION=AXES", (1, 1), (300.0,))
                     + card(
                         "SPRING, ELSET=GROUNDED, NONLINEAR",
                         (1,),

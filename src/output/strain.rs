@@ -125,8 +125,7 @@ pub(crate) fn warning_lines(
         ),
         "         above 0.2 a St. Venant-Kirchhoff material is too stiff in tension and".to_owned(),
         "         too soft in compression: take its forces for a guess, or use smaller".to_owned(),
-        "         loads or a material for large strains with the same constants: *ELASTIC,"
-            .to_owned(),
+        "         loads, or with the same constants a law for large strains: *ELASTIC,".to_owned(),
         "         TYPE=HENCKY (near Abaqus' law) or *ELASTIC, TYPE=NEO HOOKE (rubber)".to_owned(),
     ]
 }
