@@ -253,8 +253,11 @@ impl DynamicAttempt<'_, '_> {
             false => workspace.wear.begin(),
         };
         factors.renew();
-        let mut closed = ClosedConstraints {
-            acting: Vec::new(),
+        let closed = ClosedConstraints {
+            acting: match state {
+                FactoredState::Iterate => contact.acting().collect(),
+                FactoredState::Unstrained => Vec::new(),
+            },
             at: problem.configurations(&start.u, u),
             pairs_stiffen: false,
             followers: &[],
@@ -262,10 +265,7 @@ impl DynamicAttempt<'_, '_> {
             held: &HeldMotions::default(),
         };
         let factorized = match state {
-            FactoredState::Iterate => {
-                closed.acting = contact.acting().collect();
-                workspace.factorize(problem, interval.dt, motion, &closed)
-            }
+            FactoredState::Iterate => workspace.factorize(problem, interval.dt, motion, &closed),
             FactoredState::Unstrained => {
                 workspace.factorize_unstrained(problem, interval.dt, motion, &closed)
             }

@@ -19,7 +19,7 @@ const RARER: f64 = 4.0;
 const MOST: f64 = 256.0;
 
 /// What K* new factors are of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FactoredState {
     /// That of the iterate.
     Iterate,
