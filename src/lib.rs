@@ -20,7 +20,7 @@
 //!
 //! # Equations
 //!
-//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation of docs/theory.md,
+//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation in docs/theory,
 //! `paper eq. 21` one of Sung & Kwak. A test reads both sides.
 //!
 //! # Vocabulary

@@ -1,5 +1,5 @@
 """Elastic frequencies of free rings, beams and discs with redistributed mass beside those with the
-consistent mass (docs/theory.md, section 2).
+consistent mass (docs/theory/elements.md, Redistributed mass).
 
 Matrices and weights are computed here on their own, for linear elasticity in plane strain; all
 edges are without mass, but for the inner ones of rings. Changes in per cent.

@@ -51,7 +51,7 @@ def rings(program: Path, folder: Path) -> list[str]:
             f"CPE{shape}, {contact}": _work(program, folder, "plane", plane),
             f"CAX{shape}": _work(program, folder, "ring", ring) / around,
         }
-        # one volume ratio of an element: its exponent is 1/2 in the plane, 1/3 in a ring (theory.md, 2.9)
+        # one volume ratio of an element: its exponent is 1/2 in the plane, 1/3 in a ring (docs/theory/elements.md, 2.9)
         wrong += _near(works, 1e-2 if shape == "4H" else 1e-3)
     return wrong
 

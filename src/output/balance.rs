@@ -1,5 +1,5 @@
 //! The energy balance of a run, the energy that contact puts in, and the momentum of a model without forces from outside,
-//! increment by increment. Sections 7 and 9 of docs/theory.md.
+//! increment by increment. See docs/theory/contact.md and docs/theory/impacts.md.
 
 use super::warnings::{BALANCE, Losses, hourglass_part, part};
 use crate::dynamics::{Energy, IncrementReport, Momentum};

@@ -1,5 +1,5 @@
 //! What a run checks in every increment, each beside its bound: the table `/history/certificate`, and the line on the
-//! screen with the largest of all increments. Sections 4, 8 and 9 of docs/theory.md.
+//! screen with the largest of all increments. See docs/theory/time.md, docs/theory/complementarity.md and docs/theory/impacts.md.
 
 use hdf5::Group;
 

@@ -1,6 +1,6 @@
 //! Group `/model`: what the equations of the run are made of. With it elements, materials, contacts and steps need not be
-//! read from the deck to recompute forces, energies and the contact law from the fields. Sections 2 to 4 of
-//! docs/theory.md.
+//! read from the deck to recompute forces, energies and the contact law from the fields.
+//! See docs/theory/elements.md, docs/theory/contact.md and docs/theory/time.md.
 
 use std::collections::BTreeMap;
 

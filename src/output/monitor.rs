@@ -1,5 +1,6 @@
-//! Running checks of a run, increment by increment: conservation (docs/theory.md, section 9), energy put in
-//! by contact (section 7), strains, contacts and counts; the closing lines that report them.
+//! Running checks of a run, increment by increment: conservation and energy that contact
+//! puts in (docs/theory/impacts.md, Ledger, and docs/theory/contact.md, Energy-momentum contact), strains,
+//! contacts and counts; the closing lines that report them.
 
 use std::mem::{Discriminant, discriminant};
 

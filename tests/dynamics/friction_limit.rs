@@ -1,5 +1,5 @@
 //! Friction at its limit on rigid faces, on which only the sums of the contact forces are unique: a block must move as its
-//! equation of motion says, however many nodes its face has. Section 3 of docs/theory.md, Pairs at their limits.
+//! equation of motion says, however many nodes its face has. See docs/theory/contact.md, Pairs at their limits.
 //!
 //! ```text
 //!   |            ____

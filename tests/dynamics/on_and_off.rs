@@ -1,5 +1,5 @@
 //! Loads, motions and contacts that are put on and taken off: what is left is round-off, and no scale of anything.
-//! Section 4 of docs/theory.md, Convergence.
+//! See docs/theory/time.md, Convergence.
 
 use stickslip::dynamics::{Energy, IncrementReport, RunSummary};
 

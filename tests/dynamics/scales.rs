@@ -1,4 +1,4 @@
-//! A light body is solved to its own scale, whatever is beside it (docs/theory.md, convergence).
+//! A light body is solved to its own scale, whatever is beside it (docs/theory/time.md, convergence).
 //!
 //! ```text
 //!      +---+

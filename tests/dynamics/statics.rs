@@ -313,8 +313,9 @@ fn a_block_on_matching_nodes_is_pushed_alike_from_both_sides() {
     }
 }
 
-/// Pairs in both orders that face each other may share a force in many ways, each of which obeys the equations (section 8 of
-/// docs/theory.md). In large increments the iteration decides which: for ten stiffnesses from 500 to 2000 the two sides differ by
+/// Pairs in both orders that face each other may share a force in many ways, each of which obeys the equations
+/// (docs/theory/complementarity.md). In large increments the iteration decides which:
+/// for ten stiffnesses from 500 to 2000 the two sides differ by
 /// 2e-14 to 7e-6 of the largest displacement in static steps, and in dynamic ones by 2e-3 at 500, 1e-8 at 800 and less above.
 #[test]
 fn a_fit_on_matching_nodes_is_pressed_apart_alike_on_both_sides() {

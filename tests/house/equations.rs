@@ -1,10 +1,11 @@
-//! Equations of docs/theory.md and what refers to them: numbers, citations in the source, the table
-//! of docs/architecture.md, and the items and subjects that these documents and docs/numerics.md name.
+//! Equations of the chapters in docs/theory and what refers to them: numbers, citations in the source,
+//! the table of docs/architecture.md, and the items, subjects and pages that texts name.
 //!
 //! `BLESS=1 cargo test --test house` brings the items of the table up to date.
 
 use crate::names::{Tree, missing};
 use crate::numbers::{Number, citations, equations, misnumbered, references};
+use crate::pages;
 use crate::subjects::unknown;
 use crate::table::{HEADING, updated};
 use std::collections::BTreeSet;
@@ -27,7 +28,7 @@ const MAIN_EQUATIONS: [&str; 12] = [
     "ledger",
 ];
 
-const THEORY: &str = "docs/theory.md";
+const THEORY: &str = "docs/theory/";
 const NUMERICS: &str = "docs/numerics.md";
 const ARCHITECTURE: &str = "docs/architecture.md";
 
@@ -40,21 +41,40 @@ fn tree() -> Tree {
     Tree::read(Path::new(env!("CARGO_MANIFEST_DIR")))
 }
 
+/// Paths and texts of the chapters.
+fn chapters(tree: &Tree) -> Vec<(String, String)> {
+    let paths = tree.paths(THEORY).filter(|path| path.ends_with(".md"));
+    paths.map(|path| (path.to_string(), read(path))).collect()
+}
+
+/// Numbers of all equations, with the chapter and the line that define them.
+fn defined(chapters: &[(String, String)]) -> Vec<(String, Number)> {
+    let own = |(path, text): &(String, String)| {
+        let place = |(line, number)| (format!("{path}:{line}"), number);
+        equations(text).into_iter().map(place).collect::<Vec<_>>()
+    };
+    chapters.iter().flat_map(own).collect()
+}
+
 fn assert_none(offences: &[String]) {
     assert!(offences.is_empty(), "\n{}", offences.join("\n"));
 }
 
 #[test]
-fn numbers_count_the_equations_of_their_sections() {
-    let theory = read(THEORY);
-    assert!(equations(&theory).len() > 12);
-    assert_none(&misnumbered(&theory));
+fn numbers_ascend_in_a_chapter_and_none_is_missing() {
+    let chapters = chapters(&tree());
+    assert!(defined(&chapters).len() > 12 && chapters.len() > 5);
+    let texts: Vec<(&str, &str)> = (chapters.iter())
+        .map(|(path, text)| (path.as_str(), text.as_str()))
+        .collect();
+    assert_none(&misnumbered(&texts));
 }
 
 #[test]
 fn citations_name_equations_that_exist() {
-    let theory = read(THEORY);
-    let known: BTreeSet<Number> = equations(&theory).into_iter().map(|(_, n)| n).collect();
+    let tree = tree();
+    let chapters = chapters(&tree);
+    let known: BTreeSet<Number> = defined(&chapters).into_iter().map(|(_, n)| n).collect();
     let mut offences = Vec::new();
     let mut check = |path: &str, found: Vec<(usize, Result<Number, String>)>| {
         offences.extend(found.into_iter().filter_map(|(line, number)| match number {
@@ -63,10 +83,13 @@ fn citations_name_equations_that_exist() {
             Err(form) => Some(format!("{path}:{line}: `{form}` should read `eq. (1.2)`")),
         }));
     };
-    for (path, text) in tree().sources() {
+    for (path, text) in tree.sources() {
         check(path, citations(text));
     }
-    for path in [THEORY, NUMERICS, ARCHITECTURE] {
+    for (path, text) in &chapters {
+        check(path, references(text));
+    }
+    for path in [NUMERICS, ARCHITECTURE] {
         check(path, references(&read(path)));
     }
     assert_none(&offences);
@@ -74,34 +97,54 @@ fn citations_name_equations_that_exist() {
 
 #[test]
 fn every_number_is_cited() {
-    let theory = read(THEORY);
     let tree = tree();
+    let chapters = chapters(&tree);
     let cited: BTreeSet<Number> = (tree.sources())
         .flat_map(|(_, text)| citations(text))
-        .chain(references(&theory))
+        .chain(chapters.iter().flat_map(|(_, text)| references(text)))
         .filter_map(|(_, number)| number.ok())
         .collect();
-    let idle = equations(&theory).into_iter();
+    let idle = defined(&chapters).into_iter();
     let idle = idle.filter(|(_, number)| !cited.contains(number));
-    let offence = |(line, number)| format!("{THEORY}:{line}: nothing cites eq. {number}");
+    let offence = |(place, number)| format!("{place}: nothing cites eq. {number}");
     assert_none(&idle.map(offence).collect::<Vec<_>>());
+}
+
+#[test]
+fn pages_that_texts_name_exist() {
+    let tree = tree();
+    let mut offences = Vec::new();
+    let tests = tree.rust_files("tests/");
+    let tests = tests.filter(|(path, _)| !path.starts_with("tests/house/"));
+    for (path, text) in tree.sources().chain(tests) {
+        let absent = pages::named(text).into_iter();
+        let absent = absent.filter(|(_, page)| !tree.has_path(page));
+        offences.extend(absent.map(|(line, page)| format!("{path}:{line}: there is no {page}")));
+    }
+    assert_none(&offences);
 }
 
 #[test]
 fn named_subjects_exist() {
     let (tree, mut offences) = (tree(), Vec::new());
-    for page in [THEORY, NUMERICS] {
-        let name = page.trim_start_matches("docs/");
-        let page = read(page);
+    let mut pages = chapters(&tree);
+    pages.push((NUMERICS.to_string(), read(NUMERICS)));
+    let documents: Vec<(String, String)> = [ARCHITECTURE, "docs/performance.md"]
+        .map(|path| (path.to_string(), read(path)))
+        .into_iter()
+        .chain(pages.clone())
+        .collect();
+    for (name, page) in &pages {
+        let name = name.trim_start_matches("docs/");
         let mut check = |path: &str, text: &str, is_source| {
-            let subjects = unknown(text, is_source, (name, &page)).into_iter();
+            let subjects = unknown(text, is_source, (name, page)).into_iter();
             offences.extend(subjects.map(|s| format!("{path}: {name} has no subject `{s}`")));
         };
         for (path, text) in tree.sources().chain(tree.rust_files("tests/")) {
             check(path, text, true);
         }
-        for path in [THEORY, NUMERICS, ARCHITECTURE, "docs/performance.md"] {
-            check(path, &read(path), false);
+        for (path, text) in &documents {
+            check(path, text, false);
         }
     }
     assert_none(&offences);
@@ -110,8 +153,10 @@ fn named_subjects_exist() {
 #[test]
 fn named_items_exist() {
     let (tree, mut offences) = (tree(), Vec::new());
-    for path in [THEORY, NUMERICS, ARCHITECTURE] {
-        let names = missing(&read(path), &tree).into_iter();
+    let mut documents = chapters(&tree);
+    documents.extend([NUMERICS, ARCHITECTURE].map(|path| (path.to_string(), read(path))));
+    for (path, text) in documents {
+        let names = missing(&text, &tree).into_iter();
         offences.extend(names.map(|(line, name)| format!("{path}:{line}: there is no `{name}`")));
     }
     assert_none(&offences);

@@ -6,6 +6,7 @@ mod imports;
 mod layers;
 mod names;
 mod numbers;
+mod pages;
 mod sources;
 mod subjects;
 mod table;

@@ -57,8 +57,14 @@ impl Tree {
         packages.flat_map(|folder| self.rust_files(folder))
     }
 
+    /// The paths that start so.
+    pub fn paths(&self, start: &str) -> impl Iterator<Item = &str> {
+        let paths = self.0.keys().map(String::as_str);
+        paths.filter(move |path| path.starts_with(start))
+    }
+
     /// Whether there is a file or a folder with this path.
-    fn has_path(&self, path: &str) -> bool {
+    pub fn has_path(&self, path: &str) -> bool {
         let folder = format!("{}/", path.trim_end_matches('/'));
         let mut paths = self.0.keys();
         paths.any(|own| own == path || own.starts_with(&folder))
@@ -222,7 +228,7 @@ mod tests {
             ("src/contact/geometry/gap.rs", gap),
             ("src/contact/kind.rs", kind),
             ("src/linear/solve.rs", "pub fn solve() {}"),
-            ("docs/theory.md", ""),
+            ("docs/theory/time.md", ""),
         ])
     }
 
@@ -245,7 +251,7 @@ mod tests {
             "src/contact/kind.rs:3",
             "src/contact/",
             "linear::solve::solve",
-            "docs/theory.md",
+            "docs/theory/time.md",
             "CONTACT PAIR",
             "TOLERANCE",
             "use",

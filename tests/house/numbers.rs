@@ -41,32 +41,32 @@ pub fn equations(theory: &str) -> Vec<(usize, Number)> {
         .collect()
 }
 
-/// Numbers that are not those of their section, or do not count its equations from 1 without gaps.
-pub fn misnumbered(theory: &str) -> Vec<String> {
-    let headings: Vec<(usize, usize)> = (theory.lines().enumerate())
-        .filter_map(|(k, line)| {
-            let (number, _) = line.strip_prefix("## ")?.split_once('.')?;
-            Some((k + 1, number.parse().ok()?))
-        })
-        .collect();
+/// Numbers that do not ascend in their chapter, and places in which the numbers of a section, over all chapters, do not
+/// count from 1 without gaps. A chapter is its path and its text.
+pub fn misnumbered(chapters: &[(&str, &str)]) -> Vec<String> {
     let mut offences = Vec::new();
-    let mut last: Option<Number> = None;
-    for (line, number) in equations(theory) {
-        let section = headings.iter().rfind(|(heading, _)| *heading < line);
-        let section = section.map(|(_, section)| *section);
-        if section != Some(number.section) {
-            offences.push(format!(
-                "line {line}: {number} stands in section {section:?}"
-            ));
+    let mut all = Vec::new();
+    for (path, text) in chapters {
+        let mut last = None;
+        for (line, number) in equations(text) {
+            if last.is_some_and(|last| last >= number) {
+                offences.push(format!("{path}:{line}: {number} stands behind a later one"));
+            }
+            last = Some(number);
+            all.push((number, path, line));
         }
-        let before = last.filter(|last| last.section == number.section);
-        let next = before.map_or(1, |last| last.equation + 1);
+    }
+    all.sort();
+    let mut before: Option<Number> = None;
+    for (number, path, line) in all {
+        let before = before.replace(number);
+        let before = before.filter(|before| before.section == number.section);
+        let next = before.map_or(1, |before| before.equation + 1);
         if number.equation != next {
             offences.push(format!(
-                "line {line}: {number} has the place of number {next}"
+                "{path}:{line}: {number} has the place of number {next}"
             ));
         }
-        last = Some(number);
     }
     offences
 }
@@ -127,20 +127,18 @@ mod tests {
 
     #[test]
     fn wrong_numbers_are_found() {
-        let theory = |numbers: [&str; 3]| {
-            let [a, b, c] = numbers.map(|n| format!("    f  ({n})\n"));
-            format!("## 2. A\n{a}{b}## 3. B\n{c}")
+        let found = |a: &[&str], b: &[&str]| {
+            let text = |numbers: &[&str]| -> String {
+                numbers.iter().map(|n| format!("    f  ({n})\n")).collect()
+            };
+            misnumbered(&[("a.md", &text(a)), ("b.md", &text(b))]).len()
         };
-        assert!(misnumbered(&theory(["2.1", "2.2", "3.1"])).is_empty());
-        for wrong in [
-            ["2.1", "2.1", "3.1"],
-            ["2.1", "2.3", "3.1"],
-            ["2.1", "2.2", "3.2"],
-            ["2.1", "2.2", "2.3"],
-            ["2.1", "3.1", "3.2"],
-        ] {
-            assert_eq!(misnumbered(&theory(wrong)).len(), 1, "{wrong:?}");
-        }
+        assert_eq!(found(&["2.1", "2.3", "3.1"], &["2.2", "4.1"]), 0);
+        assert_eq!(found(&["2.1", "2.1"], &[]), 2);
+        assert_eq!(found(&["2.1"], &["2.1"]), 1);
+        assert_eq!(found(&["2.1", "2.3"], &[]), 1);
+        assert_eq!(found(&["2.2", "2.1"], &[]), 1);
+        assert_eq!(found(&["2.1"], &["3.2"]), 1);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Subjects of a page that texts name, such as `docs/theory.md, Damping`: its headings, and the bold beginnings of its
+//! Subjects of a page that texts name, such as `docs/theory/time.md, Damping`: its headings, and the bold beginnings of its
 //! paragraphs.
 
 /// Citations `PAGE, Subject` in comments of a source, or in a document, of subjects that the page does not have.

@@ -1,6 +1,6 @@
 """Elements in the displacement formulation and with mean dilatation: masses, energies, stresses and forces from displacements.
 
-Equation numbers are those of docs/theory.md. Arrays of tensors at integration points have the shape
+Equation numbers are those in docs/theory. Arrays of tensors at integration points have the shape
 [E, G, 2, 2], E elements of one kind with G points each.
 """
 

@@ -1,4 +1,4 @@
-"""Rigid discs: circles that roll, collide and turn without the corners of a polygon. docs/theory.md, Discs."""
+"""Rigid discs: circles that roll, collide and turn without the corners of a polygon. docs/theory/geometry.md, Discs."""
 
 import math
 import subprocess

@@ -1,6 +1,6 @@
 //! Vectors of the plane: products, lengths and angles; bounding circles and their binary hierarchies, for
-//! overlaps and nearest neighbours: the territories of Zhong & Nilsson (1989), section 10 of
-//! docs/theory.md.
+//! overlaps and nearest neighbours: the territories of Zhong & Nilsson (1989),
+//! docs/theory/geometry.md.
 
 /// From `p` to `q`: q - p.
 #[inline]

@@ -11,7 +11,7 @@ from stickslip.result import Result
 
 BEYOND = 1.0
 """A node belongs to the line of a segment as far as this part of a length beyond its ends, and as far
-as it moves in an increment: the law extends segments at corners (docs/theory.md, Contact targets)."""
+as it moves in an increment: the law extends segments at corners (docs/theory/geometry.md, Contact targets)."""
 
 CORNER = 2e-5
 """Nodes that pass the end of a segment within this part of its length have the gap (10.3)."""

@@ -1,5 +1,5 @@
 //! `*SPRING` and `*DASHPOT`: what the force of elements of the types SPRINGA, SPRING1, DASHPOT2 ... follows.
-//! Section 2 of docs/theory.md.
+//! See docs/theory/elements.md.
 
 use super::boundary::{self, Targets};
 use super::context::Context;

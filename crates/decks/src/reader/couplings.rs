@@ -1,5 +1,5 @@
 //! `*COUPLING`, `*KINEMATIC COUPLING` and `*MPC`: nodes that ride on a reference node as a rigid body, nodes whose mean a
-//! reference node follows, and nodes joined to each other. Sections 3 and 11 of docs/theory.md.
+//! reference node follows, and nodes joined to each other. See docs/theory/contact.md and docs/theory/bodies.md.
 
 use super::boundary::{Direction, direction};
 use super::context::Context;

@@ -1,5 +1,5 @@
 //! `*EQUATION`: linear equations between displacements, sum a_k u_k = 0, solved for their first
-//! terms. Section 3 of docs/theory.md.
+//! terms. See docs/theory/contact.md.
 
 use super::boundary::{Direction, Supports, Targets, direction};
 use super::context::Context;

@@ -1,5 +1,5 @@
 //! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let both sides of the cut overlap by one more
-//! displacement, which a force tightens and a support locks. Section 3 of docs/theory.md, Pre-tension.
+//! displacement, which a force tightens and a support locks. See docs/theory/contact.md, Pre-tension.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;

@@ -1,5 +1,5 @@
 //! How rigid bodies move in the steps of a model: their supports and velocities, bodies that turn, and what equations and
-//! moments at their nodes ask for. Section 11 of docs/theory.md.
+//! moments at their nodes ask for. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use super::boundary::{InitialVelocity, Supports};
 use super::context::Context;

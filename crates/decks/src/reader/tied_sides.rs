@@ -1,4 +1,4 @@
-//! `*TIE, TYPE=SURFACE TO SURFACE`: what the points of the sides of a slave surface follow. Section 3 of docs/theory.md,
+//! `*TIE, TYPE=SURFACE TO SURFACE`: what the points of the sides of a slave surface follow. See docs/theory/contact.md,
 //! Ties from surface to surface.
 
 use super::nearest::NearestLines;

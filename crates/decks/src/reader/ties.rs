@@ -1,5 +1,5 @@
 //! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place
-//! beside them, and follow these or the master below their faces at all times. Section 3 of docs/theory.md, Ties.
+//! beside them, and follow these or the master below their faces at all times. See docs/theory/contact.md, Ties.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;

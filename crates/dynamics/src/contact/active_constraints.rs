@@ -1,4 +1,4 @@
-//! Active constraints of a subincrement in event-driven integration. Section 6 of docs/theory.md,
+//! Active constraints of a subincrement in event-driven integration. See docs/theory/impacts.md,
 //! Impacts as events, items 1 and 4.
 
 use super::closed_pairs::ClosedPairs;

@@ -1,4 +1,4 @@
-//! Arcs of rigid masters, which discs meet. Section 3 of docs/theory.md, Discs.
+//! Arcs of rigid masters, which discs meet. See docs/theory/geometry.md, Discs.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Rows of contact with a curved face, made from those of its chord. Section 3 of docs/theory.md, Curved faces.
+//! Rows of contact with a curved face, made from those of its chord. See docs/theory/geometry.md, Curved faces.
 
 use super::bulge::Bulge;
 use super::constraint::{RowForm, RowPair, product, sum_of};

@@ -1,4 +1,4 @@
-//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. Section 3 of docs/theory.md,
+//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. See docs/theory/geometry.md,
 //! Curved faces.
 
 use super::projection::Projection;

@@ -1,6 +1,6 @@
 //! Closed contact pairs with their forces and states: what a pass or an increment hands on of
 //! contact. It starts the next complementarity problem, chooses the pairs of impulses, and tells the
-//! tunnelling check and the landings which nodes are in contact. Sections 5 and 6 of docs/theory.md.
+//! tunnelling check and the landings which nodes are in contact. See docs/theory/complementarity.md and docs/theory/impacts.md.
 
 use super::constraint::{Configurations, Constraint};
 use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};

@@ -1,5 +1,5 @@
 //! Node-to-node contact: the common normal of a slave node and a convex corner, from the
-//! intersection of their normal cones. Section 10 of docs/theory.md, Corner against corner.
+//! intersection of their normal cones. See docs/theory/geometry.md, Corner against corner.
 
 use super::tolerances::CONE_MISS;
 use crate::vectors::angle;

@@ -1,9 +1,10 @@
 //! Compliance at the contacts: the entries of an inverse W that the Delassus operator Q = G T W T^T B^T needs, W
-//! being K*^-1 in a pass and M^-1 for impulses. Sections 5 and 6 of docs/theory.md; docs/numerics.md, Compliance of
+//! being K*^-1 in a pass and M^-1 for impulses. See docs/theory/complementarity.md,
+//! docs/theory/impacts.md and docs/numerics.md, Compliance of
 //! the pairs.
 //!
 //! What gaps and slips of constraints take from forces at the unknowns of one block of the compliance, and
-//! that of contact forces: the two products of the Delassus operator, eq. (5.1). Section 5 of docs/theory.md.
+//! that of contact forces: the two products of the Delassus operator, eq. (5.1). See docs/theory/complementarity.md, Problem of a pass.
 
 use std::array::from_fn;
 use std::collections::BTreeMap;

@@ -1,10 +1,10 @@
 //! A contact constraint, linearised at the current iterate: gap and slip, the rows that its force
 //! acts with and the derivatives of gap and slip. All that the complementarity problem, contact
-//! forces, impulses, convergence and the ledger know of contact. Sections 3 and 5 of
-//! docs/theory.md.
+//! forces, impulses, convergence and the ledger know of contact.
+//! See docs/theory/contact.md and docs/theory/complementarity.md.
 //!
 //! The configurations between which contact constraints are linearised, and the form of their
-//! rows. Sections 3 and 7 of docs/theory.md.
+//! rows. See docs/theory/contact.md.
 
 use std::array::from_fn;
 

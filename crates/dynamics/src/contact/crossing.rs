@@ -1,9 +1,9 @@
 //! Times at which a moving node meets a moving segment: zeros of the cross product of their
-//! relative positions, a quartic for second-order motion. Section 10 of docs/theory.md, Crossing
+//! relative positions, a quartic for second-order motion. See docs/theory/geometry.md, Crossing
 //! (paper eq. 50 without its frozen normal).
 //!
 //! Zeros of a quartic polynomial on [0, 1]: bisection between extrema, which the zeros of the
-//! higher derivatives separate. Section 10 of docs/theory.md, Crossing.
+//! higher derivatives separate. See docs/theory/geometry.md, Crossing.
 
 use super::tolerances::{CLEAR_PRODUCT, CROSS_ROUND_OFF, CROSSING_BEYOND_ENDS};
 use crate::vectors::{cross, difference, dot};

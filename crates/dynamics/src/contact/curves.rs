@@ -1,5 +1,5 @@
 //! Curved faces: a bulge for every segment of a surface, found from the turns between segments in the reference
-//! configuration. Section 3 of docs/theory.md, Curved faces.
+//! configuration. See docs/theory/geometry.md, Curved faces.
 
 use std::collections::HashMap;
 

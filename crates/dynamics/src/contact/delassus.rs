@@ -1,5 +1,5 @@
 //! Delassus operator Q = G W B^T of a set of constraints, and the frictional complementarity
-//! problem it forms. Section 5 of docs/theory.md (paper eqs 36 to 47).
+//! problem it forms. See docs/theory/complementarity.md, Problem of a pass (paper eqs 36 to 47).
 
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};

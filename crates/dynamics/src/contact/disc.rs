@@ -1,5 +1,5 @@
 //! Constraints of rigid discs, which are slaves by their centres, at segments, vertices and arcs of the master.
-//! Section 3 of docs/theory.md, Discs.
+//! See docs/theory/geometry.md, Discs.
 //!
 //! A disc is a node with a radius that turns. Its gap is smaller by the radius than the gap of its centre. Its slip
 //! is the slip of the point of its circle that touches.

@@ -1,5 +1,5 @@
 //! Contact surfaces: slave nodes and oriented master segments, with their neighbours and sharp
-//! corners. Section 10 of docs/theory.md.
+//! corners. See docs/theory/geometry.md.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;

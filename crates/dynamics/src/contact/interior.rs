@@ -1,5 +1,5 @@
 //! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
-//! Section 10 of docs/theory.md.
+//! See docs/theory/geometry.md.
 //!
 //! The line is followed from element to element through their common sides. This tells a node on
 //! the far side of a thin body from a node of another part that has penetrated it, however thin the

@@ -1,5 +1,5 @@
 //! Kinds of contact constraints: every question to a constraint whose answer depends on the kind of its target. A
-//! question is one method with one match. Section 3 of docs/theory.md.
+//! question is one method with one match. See docs/theory/contact.md.
 
 use nalgebra::DMatrix;
 

@@ -1,5 +1,5 @@
 //! Constraint of a slave node at a corner, from those of the two segments that meet there.
-//! Section 10 of docs/theory.md, Corner against corner.
+//! See docs/theory/geometry.md, Corner against corner.
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
 use super::node_to_segment::{SegmentRows, segment_rows};

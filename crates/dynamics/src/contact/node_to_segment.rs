@@ -1,5 +1,5 @@
 //! Constraint of a slave node at a segment: projection, gap, force rows of the end configuration
-//! (section 3 of docs/theory.md) or as discrete gradients (section 7), and derivative rows.
+//! or as discrete gradients, and derivative rows. See docs/theory/contact.md.
 
 use super::bend::{Bend, OfChord};
 use super::bulge::Bulge;

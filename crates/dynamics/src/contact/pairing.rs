@@ -1,5 +1,5 @@
 //! Pairing: the contact targets of all slave nodes at an iterate, from the candidates of the
-//! search and the pairs of the pass before. Section 10 of docs/theory.md, Contact targets.
+//! search and the pairs of the pass before. See docs/theory/geometry.md, Contact targets.
 
 use smallvec::SmallVec;
 

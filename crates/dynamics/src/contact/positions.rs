@@ -1,4 +1,4 @@
-//! Positions of nodes in a configuration. Section 2 of docs/theory.md.
+//! Positions of nodes in a configuration. See docs/theory/elements.md.
 
 use super::projection::{Projection, project};
 

@@ -1,5 +1,5 @@
 //! Projection of a point on a segment: gap, projection point and local frame; what of gaps and slips is round-off.
-//! Section 3 of docs/theory.md.
+//! See docs/theory/geometry.md.
 
 use super::tolerances::{POSITION_ROUND_OFF, SOLVED_GAP};
 use crate::linear::largest;

@@ -1,5 +1,5 @@
 //! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
-//! that stay valid over several increments. Section 10 of docs/theory.md, Candidate search.
+//! that stay valid over several increments. See docs/theory/geometry.md, Candidate search.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -1,5 +1,5 @@
 //! Selection of contact targets: the segments and convex corners that constrain a slave node, with
-//! rules for convex and concave corners and for thin bodies. Section 10 of docs/theory.md, Contact targets.
+//! rules for convex and concave corners and for thin bodies. See docs/theory/geometry.md, Contact targets.
 
 use smallvec::{SmallVec, smallvec};
 

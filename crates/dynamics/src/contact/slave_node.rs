@@ -1,5 +1,5 @@
 //! Kinematics of a slave node relative to nearby segments, at the start of the increment and at
-//! the iterate: the tests by which its contact targets are selected. Section 10 of docs/theory.md, Contact targets.
+//! the iterate: the tests by which its contact targets are selected. See docs/theory/geometry.md, Contact targets.
 
 use super::bulge::Bulge;
 use super::crossing::{Crossing, CrossingSense, QuadraticMotion, crossings};

@@ -1,5 +1,5 @@
-//! Slave faces and master segments of contact from surface to surface, with the vertices at their ends. Section 3 of
-//! docs/theory.md, From surface to surface.
+//! Slave faces and master segments of contact from surface to surface, with the vertices at their ends.
+//! See docs/theory/geometry.md, From surface to surface.
 
 use super::bulge::Bulge;
 use super::lists::{Recycled, entries};

@@ -1,5 +1,5 @@
 //! Stiffness of a closed constraint in K*: the change of its nodal forces with the iterate, and what
-//! holds it closed. Section 4 of docs/theory.md.
+//! holds it closed. See docs/theory/time.md.
 //!
 //! # Derivation
 //!

@@ -1,5 +1,5 @@
 //! Constraints from surface to surface: one for every slave node, whose gap is a weighted mean of the
-//! gaps of points inside the slave faces. Section 3 of docs/theory.md, From surface to surface.
+//! gaps of points inside the slave faces. See docs/theory/geometry.md, From surface to surface.
 //!
 //! A point is a node that is not there: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in
 //! the positions of the nodes, so that rows and stiffness are those of a node on a segment.

@@ -1,5 +1,5 @@
-//! Targets of slave nodes: what is selected for a node, and what a constraint is made from, by kind. Sections 3 and 10
-//! of docs/theory.md.
+//! Targets of slave nodes: what is selected for a node, and what a constraint is made from, by kind.
+//! See docs/theory/contact.md and docs/theory/geometry.md.
 //!
 //! Constraints of each kind are made in a file of their own; `kinds` leads to them.
 

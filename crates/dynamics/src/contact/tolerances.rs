@@ -1,6 +1,6 @@
 //! Tolerances of contact, each a part of a computed scale, so that no result depends on the system
-//! of units. A length is counted in lengths of the segment concerned unless said otherwise. Section
-//! 10 of docs/theory.md.
+//! of units. A length is counted in lengths of the segment concerned unless said otherwise.
+//! See docs/theory/geometry.md.
 
 // Geometry of surfaces and bodies.
 

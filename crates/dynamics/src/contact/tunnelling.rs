@@ -1,8 +1,8 @@
 //! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
-//! their straight paths from U0 to U1. Section 10 of docs/theory.md, Penetration check.
+//! their straight paths from U0 to U1. See docs/theory/geometry.md, Penetration check.
 //!
 //! Edges of slave surfaces that cross segments, as they may at corners though no slave node is inside.
-//! Section 10 of docs/theory.md, Penetration check.
+//! See docs/theory/geometry.md, Penetration check.
 
 use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;

@@ -1,5 +1,5 @@
 //! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
-//! its time being the solution of T(tau) = tau. Section 6 of docs/theory.md, Impacts as events.
+//! its time being the solution of T(tau) = tau. See docs/theory/impacts.md, Impacts as events.
 
 use super::impact_search::{EventTrial, ImpactSearch};
 use super::increment::{Attempt, Failed, Path, Solved, StaticRates};

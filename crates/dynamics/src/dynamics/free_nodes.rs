@@ -1,5 +1,5 @@
-//! Nodes without mass that carry no contact force, with the stiffness that holds them. Section 6 of
-//! docs/theory.md, Releases.
+//! Nodes without mass that carry no contact force, with the stiffness that holds them.
+//! See docs/theory/impacts.md, Releases.
 
 use std::collections::BTreeSet;
 

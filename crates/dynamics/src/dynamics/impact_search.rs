@@ -1,5 +1,5 @@
 //! Time of an impact: the length tau of a subincrement at whose end a gap that stays out of the constraints
-//! is zero, eq. (6.4), bracketed and interpolated. Section 6 of docs/theory.md, Impacts as events, item 3.
+//! is zero, eq. (6.4), bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
 
 use crate::contact::{Constraint, ConstraintKey};
 

@@ -1,5 +1,5 @@
-//! What landing pairs lose in an increment, given back to the velocities of its end. Section 6 of
-//! docs/theory.md, Landing return.
+//! What landing pairs lose in an increment, given back to the velocities of its end.
+//! See docs/theory/impacts.md, Landing return.
 
 use nalgebra::DMatrix;
 

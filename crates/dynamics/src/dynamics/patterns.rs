@@ -1,5 +1,5 @@
 //! Patterns of velocity along which energy is given back, with the momenta of the loads that they
-//! belong to. Section 6 of docs/theory.md, Landing return.
+//! belong to. See docs/theory/impacts.md, Landing return.
 
 use super::results::Cause;
 use super::step::{Hold, StepProblem, Workspace, holds};

@@ -1,5 +1,5 @@
-//! Rest of nodes without mass at the end of an increment in which pairs open. Section 6 of
-//! docs/theory.md, Releases.
+//! Rest of nodes without mass at the end of an increment in which pairs open.
+//! See docs/theory/impacts.md, Releases.
 
 use super::free_nodes::FreeNodes;
 use super::increment::{ContactForces, Release, Solved};

@@ -1,5 +1,5 @@
-//! What releases take of nodes without mass, given back to the velocities of the end. Section 6 of
-//! docs/theory.md, Releases.
+//! What releases take of nodes without mass, given back to the velocities of the end.
+//! See docs/theory/impacts.md, Releases.
 
 use super::increment::{PairReturn, Release, Solved};
 use super::landing::{factorize_anew, give_back, touches};

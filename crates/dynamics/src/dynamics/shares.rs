@@ -1,5 +1,5 @@
-//! How much of every pattern is added to the velocities, so that each gives its own energy. Section 6
-//! of docs/theory.md, Landing return.
+//! How much of every pattern is added to the velocities, so that each gives its own energy.
+//! See docs/theory/impacts.md, Landing return.
 
 use nalgebra::DMatrix;
 

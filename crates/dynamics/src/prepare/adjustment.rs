@@ -1,6 +1,6 @@
 //! Adjustment of the mesh before the start: strain-free moves of slave nodes onto the master
 //! surface (`ADJUST=` of `*CONTACT PAIR`, `*CLEARANCE`, `*CONTACT INITIALIZATION DATA` of general contact), with a check
-//! of the elements that change shape. Section 10 of docs/theory.md, Initial gaps.
+//! of the elements that change shape. See docs/theory/geometry.md, Initial gaps.
 
 use super::initial_gaps::{InitialGap, gaps};
 use crate::contact::tolerances::{ADJUSTMENT_REACH, COORDINATE_ROUND_OFF};

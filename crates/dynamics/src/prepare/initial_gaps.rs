@@ -1,6 +1,6 @@
 //! Initial gaps of a contact by closest-point projection of the slave nodes in the reference
 //! configuration, with branch and bound over the bounding circles of the segments and the fans of their
-//! normals. Section 10 of docs/theory.md, Initial gaps.
+//! normals. See docs/theory/geometry.md, Initial gaps.
 
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};

@@ -1,5 +1,5 @@
 //! Redistribution of the mass of contact surfaces: which nodes are without mass, and the nodes that
-//! carry it for them, V = P V. Section 2 of docs/theory.md, Redistributed mass.
+//! carry it for them, V = P V. See docs/theory/elements.md, Redistributed mass.
 //!
 //! With `LANDING=RETURN` a bar of 50 elements that hits a wall keeps 1.0000 of its energy, where it keeps 0.994 with the
 //! mass at the surface (docs/impact.md).

@@ -1,6 +1,6 @@
 //! All elements of a model in chunks, and sweeps over them in parallel: internal force, tangents, strain
-//! energies and strains, damping, and products of tangents and damping matrices with a vector. Sections 2 and 4 of
-//! docs/theory.md.
+//! energies and strains, damping, and products of tangents and damping matrices with a vector.
+//! See docs/theory/elements.md and docs/theory/time.md.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

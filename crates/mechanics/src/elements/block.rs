@@ -1,6 +1,6 @@
 //! Elements of one shape side by side, and their kinematics: displacement gradients and strains at the integration points at
-//! one configuration or between two (energy-momentum form), and the sums over the points that force and tangent are. Section
-//! 2 of docs/theory.md; docs/numerics.md, Sweeps over elements.
+//! one configuration or between two (energy-momentum form), and the sums over the points that force and tangent are.
+//! See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]

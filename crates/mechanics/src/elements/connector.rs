@@ -1,4 +1,4 @@
-//! Springs and dashpots: force, tangent, stored and dissipated energy. Section 2 of docs/theory.md, Springs and
+//! Springs and dashpots: force, tangent, stored and dissipated energy. See docs/theory/elements.md, Springs and
 //! dashpots.
 //!
 //! Vectors of a connector have two entries for each of its nodes, as those of elements have.

@@ -1,5 +1,5 @@
 //! Damping of an element that is proportional to its mass: impulse in an increment, damping matrix. That of the viscosity is a
-//! sweep of its chunk. Section 4 of docs/theory.md, Damping.
+//! sweep of its chunk. See docs/theory/time.md, Damping.
 
 use super::MAX_DOFS;
 use super::motion::{ElementMatrix, ElementVector, Increment, Motion, NO_MATRIX, dofs};

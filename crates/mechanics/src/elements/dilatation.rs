@@ -5,7 +5,7 @@
 //! Fbar = (theta/J)^(1/n) F,  det Fbar = theta
 //! ```
 //!
-//! eq. (2.9), with the mean theta of J, or with one that is linear in the element. Section 2 of docs/theory.md. n is 2 without
+//! eq. (2.9), with the mean theta of J, or with one that is linear in the element. See docs/theory/elements.md. n is 2 without
 //! strain across the plane, as F_zz stays 1 and the material keeps its plane strain law (de Souza Neto et al. 1996), and 3
 //! with all components.
 //!

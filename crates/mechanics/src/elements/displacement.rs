@@ -1,5 +1,5 @@
-//! The displacement formulation: strains of the displacements at every integration point. Section 2
-//! of docs/theory.md (paper eq. 12).
+//! The displacement formulation: strains of the displacements at every integration point.
+//! See docs/theory/elements.md (paper eq. 12).
 
 use super::block::{
     MatrixLanes, MovedBlock, TangentLanes, add_hoop, add_products, deformation_gradient, elasticity,

@@ -1,5 +1,5 @@
 //! The formulation of every element type, volume and mass of a single element. A shape has one file with its quadrature and
-//! mass. Section 2 of docs/theory.md.
+//! mass. See docs/theory/elements.md.
 
 use nalgebra::SMatrix;
 

@@ -1,7 +1,7 @@
 //! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990) and of the ring with its section (CAX4I),
 //! which bend without locking: four strains of the element, and a fifth around the axis, beside those of the displacements
 //! make its stored energy least. They are no state: they follow from the displacements by Newton's method in the element, eq.
-//! (2.28), which begins with those of the last increment. Section 2 of docs/theory.md.
+//! (2.28), which begins with those of the last increment. See docs/theory/elements.md.
 //!
 //! # Derivation
 //!

@@ -1,6 +1,6 @@
 //! What a formulation of an element is: how strains and stresses at the integration points follow from the displacements of
-//! its nodes. Force, tangent, results, work and internal variables of elements side by side follow from these. Sections 2 and
-//! 4 of docs/theory.md (paper eq. 12).
+//! its nodes. Force, tangent, results, work and internal variables of elements side by side follow from these.
+//! See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
 
 use super::block::{
     ElementBlock, Gradient, MatrixLanes, MovedBlock, NodalLanes, PointForces, SymmetricLanes,

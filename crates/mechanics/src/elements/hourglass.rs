@@ -1,5 +1,5 @@
 //! Potential of the hourglass modes of an element with one strain, and that of a metal, whose strain and modes flow as one:
-//! with the elastic stiffness alone the element would carry moments of any size. Section 2 of docs/theory.md, Hourglass modes
+//! with the elastic stiffness alone the element would carry moments of any size. See docs/theory/materials.md, Hourglass modes
 //! of metals.
 //!
 //! # Derivation

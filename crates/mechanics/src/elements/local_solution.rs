@@ -1,5 +1,5 @@
-//! Strains of an element that make its energy least, found in the element by Newton's method. Section 2 of
-//! docs/theory.md, Enhanced strains.
+//! Strains of an element that make its energy least, found in the element by Newton's method.
+//! See docs/theory/elements.md, Enhanced strains.
 
 // Loops over strains: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]

@@ -1,4 +1,4 @@
-//! Motions in which elements are evaluated, and what of their tangents is assembled. Sections 2 and 4 of docs/theory.md.
+//! Motions in which elements are evaluated, and what of their tangents is assembled. See docs/theory/elements.md and docs/theory/time.md.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 

@@ -1,4 +1,4 @@
-//! Results at integration points, and between them at nodes. Section 2 of docs/theory.md.
+//! Results at integration points, and between them at nodes. See docs/theory/elements.md.
 
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! The four-node quadrilateral with one strain (CPE4R, CPS4R), that of its mean gradients, and the ring with its section
 //! (CAX4R): a potential of their hourglass modes and, in a ring, of the change of the strain around the axis, without which one
-//! layer of elements could tilt freely. Section 2 of docs/theory.md, One strain and hourglass stiffness.
+//! layer of elements could tilt freely. See docs/theory/elements.md, One strain and hourglass stiffness.
 //!
 //! # Derivation
 //!

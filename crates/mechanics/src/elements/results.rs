@@ -1,5 +1,5 @@
 //! Results of elements: strain energy, Cauchy stress and Green-Lagrange strain averaged over an element, the von Mises stress
-//! of these averages, the largest principal strain. Section 2 of docs/theory.md.
+//! of these averages, the largest principal strain. See docs/theory/elements.md.
 
 use super::block::{
     Gradient, SymmetricLanes, deformation_gradient, determinant, smaller, times_symmetric,

@@ -1,6 +1,6 @@
 //! The shapes of elements with their quadrature and mass: the constant-strain triangle T3, the bilinear quadrilateral
-//! Q4, the quadratic triangle T6 and the quadratic quadrilateral Q8 (serendipity), all isoparametric. Section 2 of
-//! docs/theory.md.
+//! Q4, the quadratic triangle T6 and the quadratic quadrilateral Q8 (serendipity), all isoparametric.
+//! See docs/theory/elements.md.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]

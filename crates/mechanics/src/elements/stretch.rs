@@ -1,5 +1,5 @@
-//! Strains that differ from the mean of an element, in the measure in which the energy of its material is convex. Section 2
-//! of docs/theory.md, Enhanced strains.
+//! Strains that differ from the mean of an element, in the measure in which the energy of its material is convex.
+//! See docs/theory/elements.md, Enhanced strains.
 //!
 //! # Derivation
 //!

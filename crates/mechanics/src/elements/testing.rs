@@ -1,4 +1,4 @@
-//! What elements of every type and law have to fulfil. Section 2 of docs/theory.md.
+//! What elements of every type and law have to fulfil. See docs/theory/elements.md.
 
 use nalgebra::{DMatrix, DVector, Matrix2};
 

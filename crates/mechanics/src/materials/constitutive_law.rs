@@ -1,4 +1,4 @@
-//! What an element asks of a material at an integration point. Sections 2 and 4 of docs/theory.md.
+//! What an element asks of a material at an integration point. See docs/theory/materials.md and docs/theory/time.md.
 
 use std::array::from_fn;
 

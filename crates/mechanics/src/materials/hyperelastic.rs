@@ -1,6 +1,6 @@
 //! Elastic materials: their stored energy is all there is. Its energy-momentum stress is the discrete gradient of
-//! Gonzalez (Comput. Methods Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain. Sections 2 and 4 of
-//! docs/theory.md.
+//! Gonzalez (Comput. Methods Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain.
+//! See docs/theory/materials.md and docs/theory/time.md.
 //!
 //! # Derivation
 //!

@@ -1,5 +1,5 @@
 //! Compressible hyperelastic materials whose energy is a function of the invariants of the shape, and of the volume
-//! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6). Section 2 of docs/theory.md.
+//! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6). See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::number::Number;

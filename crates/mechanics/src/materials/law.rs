@@ -1,6 +1,6 @@
 //! The materials a deck may name, each in a file of its own, and their reduction to the plane: a new one is a variant of
 //! [`Law`] and of [`PlaneLaw`]. A law with the internal variables that the last accepted increment has committed.
-//! Section 2 of docs/theory.md.
+//! See docs/theory/materials.md.
 
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! Materials: strain energy, second Piola-Kirchhoff stress and tangent at one integration point, as
-//! functions of the Green-Lagrange strain and of internal variables. Section 2 of
-//! docs/theory.md.
+//! functions of the Green-Lagrange strain and of internal variables.
+//! See docs/theory/materials.md.
 //!
 //! A deformation gradient F enters through E = (F^T F - I)/2 alone, so that every material is
 //! objective; det F > 0 is checked by the elements. A material point has the components 11, 22, 33 and 12 of a

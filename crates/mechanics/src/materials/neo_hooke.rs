@@ -1,6 +1,6 @@
 //! Compressible neo-Hookean material with the energy split into isochoric and volumetric part
 //! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 and 6.5; Bonet & Wood, Nonlinear Continuum
-//! Mechanics for Finite Element Analysis, section 6.5). Section 2 of docs/theory.md.
+//! Mechanics for Finite Element Analysis, section 6.5). See docs/theory/materials.md.
 
 use super::invariants::{InvariantEnergy, VolumeEnergy};
 use super::number::Number;

@@ -1,5 +1,5 @@
 //! Compressible hyperelastic material of Ogden: powers of the principal stretches of the shape, and the volume
-//! (Ogden, Proc. R. Soc. Lond. A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). Section 2 of docs/theory.md.
+//! (Ogden, Proc. R. Soc. Lond. A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::invariants::VolumeEnergy;

@@ -1,5 +1,5 @@
-//! The plane: what elements assume across the thickness, and the moduli of a law near its reference state. Section 2 of
-//! docs/theory.md.
+//! The plane: what elements assume across the thickness, and the moduli of a law near its reference state.
+//! See docs/theory/materials.md.
 
 use super::symmetric::{IDENTITY, Symmetric};
 

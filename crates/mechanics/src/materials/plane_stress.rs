@@ -1,4 +1,4 @@
-//! Plane stress of any law: the stretch across the plane makes the energy least. Section 2 of docs/theory.md.
+//! Plane stress of any law: the stretch across the plane makes the energy least. See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::number::Number;

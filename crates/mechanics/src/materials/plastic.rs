@@ -1,7 +1,7 @@
 //! J2 plasticity at finite strain: multiplicative, with Hencky's elasticity, isotropic hardening by a table and linear
 //! kinematic hardening. The flow of an increment is found inside of a potential of the strain, whose discrete gradient is
-//! the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999). Section 2 of
-//! docs/theory.md, Plasticity.
+//! the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999).
+//! See docs/theory/materials.md, Plasticity.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! St. Venant-Kirchhoff material: second Piola-Kirchhoff stress linear in the Green-Lagrange strain
 //! (Holzapfel, Nonlinear Solid Mechanics, section 6.5; Bonet & Wood, Nonlinear Continuum Mechanics for
-//! Finite Element Analysis, section 6.4). Section 2 of docs/theory.md.
+//! Finite Element Analysis, section 6.4). See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::number::Number;

@@ -1,5 +1,5 @@
 //! Functions of symmetric tensors by their principal values, with derivatives and differences that keep their digits.
-//! Section 2 of docs/theory.md: Plasticity, Ogden's materials and Hencky's material.
+//! See docs/theory/materials.md: Plasticity, Ogden's materials and Hencky's material.
 
 use super::symmetric::{Symmetric, Tangent};
 

@@ -1,5 +1,5 @@
 //! Strains at which a law is evaluated: one, or those of the start and of the end of an increment. The measure in which they
-//! are added, and what happens across the plane. Sections 2 and 4 of docs/theory.md.
+//! are added, and what happens across the plane. See docs/theory/materials.md and docs/theory/time.md.
 
 use super::number::Number;
 use super::symmetric::Symmetric;

@@ -1,5 +1,5 @@
 //! Symmetric tensors whose components 13 and 23 are zero, as those of the plane and of bodies of revolution, and their
-//! products as matrices that act on strains (11, 22, 33, 2*12). Section 2 of docs/theory.md.
+//! products as matrices that act on strains (11, 22, 33, 2*12). See docs/theory/materials.md.
 //!
 //! With `HOOP` the component 33 counts. Without it the strain 33 is zero, as in plane strain: formulas leave its products out.
 

@@ -1,5 +1,5 @@
 //! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
-//! of its shape and of its volume. Section 4 of docs/theory.md, Damping.
+//! of its shape and of its volume. See docs/theory/time.md, Damping.
 
 use super::number::Number;
 use super::strains::{StrainChange, Strains};

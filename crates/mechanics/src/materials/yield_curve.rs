@@ -1,4 +1,4 @@
-//! The yield curve of a metal whose element has hourglass modes, eq. (2.47) of docs/theory.md, of the parts w and z of sigma_y
+//! The yield curve of a metal whose element has hourglass modes, eq. (2.47), of the parts w and z of sigma_y
 //! that strain and modes use:
 //!
 //! ```text

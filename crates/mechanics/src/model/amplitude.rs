@@ -1,5 +1,5 @@
 //! Amplitudes: functions of time with their value and exact rate. The rate is the velocity of a
-//! prescribed displacement (docs/theory.md, section 4).
+//! prescribed displacement (docs/theory/time.md, Supports).
 
 /// Relative difference up to which two times are the same: the round-off of products k dt.
 const SAME_TIME: f64 = 16.0 * f64::EPSILON;

@@ -1,5 +1,5 @@
 //! Springs and dashpots: forces between two nodes, or a node and the ground, that follow from their distance
-//! or from its rate. Section 2 of docs/theory.md.
+//! or from its rate. See docs/theory/elements.md.
 
 use smallvec::SmallVec;
 

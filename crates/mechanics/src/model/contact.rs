@@ -1,6 +1,6 @@
 //! Contact surfaces, contacts and their interactions, hard contact with Coulomb friction; equations between
-//! displacements, and rigid surfaces that move with a reference node. Section 3 of docs/theory.md, and section 9, Rigid
-//! surfaces.
+//! displacements, and rigid surfaces that move with a reference node. See docs/theory/contact.md, and
+//! docs/theory/impacts.md, Rigid bodies.
 //!
 //! Segments run from a to b with the body on the left.
 

@@ -1,5 +1,5 @@
 //! Element types of a deck: shape, formulation and assumption across the thickness, with the nodes,
-//! sides and cell of each shape. Section 2 of docs/theory.md; the mechanics of each type is in
+//! sides and cell of each shape. See docs/theory/elements.md; the mechanics of each type is in
 //! its own file of `elements`.
 
 use std::fmt;

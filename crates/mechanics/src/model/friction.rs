@@ -1,4 +1,4 @@
-//! Coulomb friction whose coefficient may depend on slip rate and contact pressure. Section 3 of docs/theory.md,
+//! Coulomb friction whose coefficient may depend on slip rate and contact pressure. See docs/theory/contact.md,
 //! Friction that depends on slip rate and pressure.
 
 /// Coulomb friction of an interaction.

@@ -1,5 +1,5 @@
 //! The problem as plain data, all names resolved to indices: mesh, materials and sections, sets, surfaces,
-//! contacts, constraints, steps with loads and settings. Sections 1 to 4 of docs/theory.md.
+//! contacts, constraints, steps with loads and settings. See docs/theory/README.md.
 //!
 //! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
 //! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n. A rigid body that turns has

@@ -1,4 +1,4 @@
-//! Sides of elements: their nodes, their shape functions, and what acts on them. Section 2 of docs/theory.md.
+//! Sides of elements: their nodes, their shape functions, and what acts on them. See docs/theory/elements.md.
 //!
 //! A side is not a contact segment: a segment is a straight line between two neighbouring nodes, of which a side has one
 //! or more.

@@ -1,5 +1,5 @@
 //! Steps: time increments, prescribed displacements and loads with their variation in time, times of field output, and
-//! the settings of the solver. Docs/theory.md, section 4 (time, convergence), 6 (impacts) and 8 (complementarity).
+//! the settings of the solver. See docs/theory/time.md, docs/theory/impacts.md and docs/theory/complementarity.md.
 
 use super::{Amplitude, Face, Friction, TimeBase};
 use crate::lcp::LcpMethod;

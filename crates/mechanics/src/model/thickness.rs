@@ -1,4 +1,4 @@
-//! How far an element extends across the plane. Section 2 of docs/theory.md, Bodies of revolution.
+//! How far an element extends across the plane. See docs/theory/elements.md, Bodies of revolution.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
 //! Ties: nodes of a slave surface that follow the segments of a master surface at all times, each by itself or in the
-//! mean over its faces. Section 3 of docs/theory.md, Ties.
+//! mean over its faces. See docs/theory/contact.md, Ties.
 
 use super::contact::{ContactFormulation, Equation};
 use super::side::{Segment, SideNodes};

@@ -1,5 +1,5 @@
-//! What contacts do against the free unknowns of a frictional problem, and the problem without these. Section 8 of
-//! docs/theory.md, Free unknowns.
+//! What contacts do against the free unknowns of a frictional problem, and the problem without these.
+//! See docs/theory/complementarity.md, Free unknowns.
 
 use nalgebra::{DMatrix, DVector};
 

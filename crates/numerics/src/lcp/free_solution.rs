@@ -1,5 +1,5 @@
 //! Solutions of frictional problems with free unknowns where the warm active set finds none, or one whose free unknowns are
-//! unstable. Section 8 of docs/theory.md, Free unknowns.
+//! unstable. See docs/theory/complementarity.md, Free unknowns.
 
 use nalgebra::DVector;
 

@@ -1,6 +1,6 @@
 //! Solves a frictional problem: the order of the methods, and the check of each answer. Primal-dual active set on the
 //! contact states, which is Newton's method on the contact law; non-smooth Gauss-Seidel, in which each contact in turn is
-//! solved exactly with the forces of all others fixed. Section 8 of docs/theory.md.
+//! solved exactly with the forces of all others fixed. See docs/theory/complementarity.md.
 
 use bumpalo::Bump;
 use nalgebra::DVector;

@@ -1,4 +1,4 @@
-//! Contacts that change their states together: those between the same two bodies. Section 8 of docs/theory.md,
+//! Contacts that change their states together: those between the same two bodies. See docs/theory/complementarity.md,
 //! The hybrid.
 
 use std::cell::OnceCell;

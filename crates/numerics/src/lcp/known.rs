@@ -1,4 +1,4 @@
-//! What is known of a frictional problem before its solution. Section 8 of docs/theory.md, The hybrid.
+//! What is known of a frictional problem before its solution. See docs/theory/complementarity.md, The hybrid.
 
 use super::problems::ContactState;
 

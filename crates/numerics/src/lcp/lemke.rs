@@ -1,5 +1,5 @@
 //! Lemke's method: the almost complementary path; the general problem after equilibration by powers of two; the
-//! frictional problem with the blocks of its matrix instead of the matrix itself. Section 8 of docs/theory.md.
+//! frictional problem with the blocks of its matrix instead of the matrix itself. See docs/theory/complementarity.md.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,5 +1,5 @@
-//! The complementarity problems, general and frictional (in Delassus form), their solutions and errors. Section 8 of
-//! docs/theory.md.
+//! The complementarity problems, general and frictional (in Delassus form), their solutions and errors.
+//! See docs/theory/complementarity.md.
 
 use std::ops::AddAssign;
 

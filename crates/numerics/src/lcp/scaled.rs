@@ -1,5 +1,5 @@
 //! The dimensionless form of the frictional problem that the methods solve, without the tangential unknowns of
-//! frictionless contacts. Scale factors are powers of two: multiplication by them is exact. Section 8 of docs/theory.md.
+//! frictionless contacts. Scale factors are powers of two: multiplication by them is exact. See docs/theory/complementarity.md.
 
 use std::ops::Range;
 

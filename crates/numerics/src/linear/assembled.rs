@@ -1,6 +1,6 @@
 //! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through positions computed once;
-//! symmetric blocks that are added beyond that pattern, for unknowns that no element connects. Section 4 of
-//! docs/theory.md.
+//! symmetric blocks that are added beyond that pattern, for unknowns that no element connects.
+//! See docs/theory/time.md.
 
 use std::sync::{Arc, OnceLock};
 

@@ -1,5 +1,5 @@
 //! Matrices over the nodes that are the same in both directions, stored for products with vectors over all
-//! dofs. Section 2 of docs/theory.md.
+//! dofs. See docs/theory/elements.md.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;

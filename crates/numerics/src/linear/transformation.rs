@@ -1,5 +1,5 @@
-//! The linear map T from unknowns q to degrees of freedom u, sparse by rows (section 3 of docs/theory.md, u = T q + g),
-//! and rotations of bodies as block diagonal matrices over the dofs (section 4, Turned factors).
+//! The linear map T from unknowns q to degrees of freedom u, sparse by rows (docs/theory/contact.md, u = T q + g),
+//! and rotations of bodies as block diagonal matrices over the dofs (docs/numerics.md, Turned factors).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::archive::{Archive, ArchiveError};
 /// A free dof has a row of the identity, a prescribed one an empty row, one that follows others by
 /// an equation a row with their coefficients. A dof of a body that turns follows its angle too, by a
 /// coefficient that changes with the iterate: the one that forces act by takes the difference of start
-/// and iterate exactly, the other is the derivative at the iterate (section 11).
+/// and iterate exactly, the other is the derivative at the iterate (docs/theory/bodies.md).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,

@@ -1,4 +1,4 @@
-//! Hinges that hold what other hinges or supports hold already. Section 11 of docs/theory.md, Hinges.
+//! Hinges that hold what other hinges or supports hold already. See docs/theory/bodies.md, Hinges.
 
 use nalgebra::DVector;
 

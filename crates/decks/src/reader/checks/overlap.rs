@@ -1,4 +1,4 @@
-//! Elements that lie over each other, within a body or of two bodies. Section 10 of docs/theory.md, Overlap of
+//! Elements that lie over each other, within a body or of two bodies. See docs/theory/geometry.md, Overlap of
 //! elements.
 //!
 //! Where elements lie over each other, the boundary of a body meets that of another or its own, or a body

@@ -1,5 +1,5 @@
 //! Bodies of revolution: that all elements are of this kind, on one side of the axis, held on it, and that nothing asks
-//! them to turn or to move across it. Section 2 of docs/theory.md, Bodies of revolution.
+//! them to turn or to move across it. See docs/theory/elements.md, Bodies of revolution.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! Acceleration of passes that converge slowly, by what the last ones have changed (Anderson 1965). Section 4 of
-//! docs/theory.md, Acceleration.
+//! Acceleration of passes that converge slowly, by what the last ones have changed (Anderson 1965).
+//! See docs/theory/time.md, Acceleration.
 
 use super::equal_forces::ROUND_OFF;
 use crate::dynamics::step::Parts;

@@ -1,5 +1,5 @@
 //! Solution of one increment: predictor and corrector passes with contact forces and impulses.
-//! Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to 49).
+//! See docs/theory/time.md (paper eqs 27, 29 and 36 to 49).
 
 use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;

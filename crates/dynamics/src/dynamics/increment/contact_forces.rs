@@ -1,5 +1,5 @@
 //! Contact forces of a pass, the solution of a frictional complementarity problem of the
-//! constraints of the iterate. Section 5 of docs/theory.md (paper eqs 36 to 47).
+//! constraints of the iterate. See docs/theory/complementarity.md, Problem of a pass (paper eqs 36 to 47).
 
 use smallvec::SmallVec;
 

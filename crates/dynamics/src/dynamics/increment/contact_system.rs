@@ -1,5 +1,5 @@
 //! Complementarity problem of some constraints with one of the two system matrices: K* for the
-//! contact forces of a pass, M for the impulses. Sections 5 and 6 of docs/theory.md.
+//! contact forces of a pass, M for the impulses. See docs/theory/complementarity.md and docs/theory/impacts.md.
 //!
 //! Complementarity problems of many constraints by blocks, one for each set of bodies that constraints are
 //! between; what the forces of all do to all is computed by the solve that is under way. docs/numerics.md, Blocks.
@@ -67,7 +67,7 @@ impl System<'_> {
     /// `closed`; returns the pivots that it took. With their response, many are solved by blocks where that gains.
     ///
     /// Where a problem with derivative rows has no solution, that with the force rows in their place is
-    /// solved: Q is then symmetric and the theorem of section 8 holds, so that a ray says that pairs
+    /// solved: Q is then symmetric and the theorem of docs/theory/complementarity.md holds, so that a ray says that pairs
     /// contradict each other. Where pairs are so nearly one that round-off spoils both problems, the answer
     /// near the forces before is taken.
     pub(super) fn solve_contact(

@@ -1,5 +1,5 @@
 //! Convergence criterion of the passes: relative residual and correction with local scales and a
-//! round-off floor. Section 4 of docs/theory.md, Convergence.
+//! round-off floor. See docs/theory/time.md, Convergence.
 
 use smallvec::{SmallVec, smallvec};
 

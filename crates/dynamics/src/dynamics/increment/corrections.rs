@@ -1,4 +1,4 @@
-//! How the corrections of the passes become smaller: their rate, and whether they grow. Section 4 of docs/theory.md.
+//! How the corrections of the passes become smaller: their rate, and whether they grow. See docs/theory/time.md.
 
 use crate::dynamics::results::Cause;
 

@@ -1,5 +1,5 @@
 //! Weight of the equal-force rule, by which pairs that can carry the same force keep it near that of the
-//! pass before. Section 5 of docs/theory.md, Equal-force rule.
+//! pass before. See docs/theory/complementarity.md, Equal-force rule.
 
 /// Part of the compliance of a constraint that holds its force, at first.
 pub(super) const FIRST_WEIGHT: f64 = 1e-5;

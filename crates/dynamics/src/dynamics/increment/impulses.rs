@@ -1,5 +1,5 @@
 //! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
-//! iterated along with the passes. Section 6 of docs/theory.md (paper eq. 30).
+//! iterated along with the passes. See docs/theory/impacts.md, Impact impulses (paper eq. 30).
 //!
 //! Whether the rows of an iterate are so near those that impulses were solved with that these may stay.
 //! docs/numerics.md, Kept impulses.

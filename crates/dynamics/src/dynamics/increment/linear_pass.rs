@@ -40,7 +40,7 @@ pub(super) struct Vectors {
 }
 
 /// What K* leaves out of the change of the forces in a static step: N dU, N being the skew parts of the changes of contact
-/// forces and of loads that follow the iterate. Section 12 of docs/theory.md.
+/// forces and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
 #[derive(Default)]
 pub(super) struct SkewPart {
     /// Dofs, with N over them.

@@ -1,4 +1,4 @@
-//! Forces and displacements of a pass, and its residual beside its scales. Section 4 of docs/theory.md,
+//! Forces and displacements of a pass, and its residual beside its scales. See docs/theory/time.md,
 //! Convergence.
 
 use std::ops::Range;

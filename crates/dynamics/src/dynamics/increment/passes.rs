@@ -1,5 +1,5 @@
 //! What the passes of dynamic and static increments share: evaluation of the iterate, motion of the supports, forces of
-//! hinges, measure of residual and correction, end of the increment. Section 4 of docs/theory.md (paper eqs 27, 29 and 36 to
+//! hinges, measure of residual and correction, end of the increment. See docs/theory/time.md (paper eqs 27, 29 and 36 to
 //! 49).
 
 use super::contact_states::ContactStates;

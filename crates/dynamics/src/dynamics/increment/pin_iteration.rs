@@ -1,5 +1,5 @@
 //! A pass of a static increment with bodies that no support holds: contact forces, correction and the rigid motions of the
-//! bodies; motions that only facets resist are held; where there is no equilibrium. Section 12 of docs/theory.md, Pins.
+//! bodies; motions that only facets resist are held; where there is no equilibrium. See docs/theory/bodies.md, Pins.
 
 use super::contact_forces::ContactForces;
 use super::linear_pass::{Vectors, close_hinges};

@@ -1,4 +1,4 @@
-//! Energy that is given back after a converged increment. Section 6 of docs/theory.md, Landing
+//! Energy that is given back after a converged increment. See docs/theory/impacts.md, Landing
 //! return.
 
 use crate::contact::{Constraint, ConstraintKey};

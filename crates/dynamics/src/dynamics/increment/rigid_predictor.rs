@@ -1,5 +1,5 @@
 //! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with
-//! finite rotation; the others move with the supports of the model where these all move alike. Section 4 of docs/theory.md, Predictor.
+//! finite rotation; the others move with the supports of the model where these all move alike. See docs/theory/time.md, Predictor.
 
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};

@@ -1,5 +1,5 @@
 //! Velocities of bodies that turn: those of their nodes at the end of an increment, and what impulses see of those at its
-//! start. Section 11 of docs/theory.md.
+//! start. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! A converged increment, and its motion as the path that another attempt begins with. Section 4 of docs/theory.md.
+//! A converged increment, and its motion as the path that another attempt begins with. See docs/theory/time.md.
 
 use super::contact_states::ContactStates;
 use super::convergence::PartNoise;

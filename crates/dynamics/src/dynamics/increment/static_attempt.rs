@@ -1,5 +1,5 @@
 //! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact lets
-//! them. Section 12 of docs/theory.md.
+//! them. See docs/theory/bodies.md, Static steps.
 
 use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;

@@ -1,6 +1,6 @@
 //! Results of a converged increment besides its energies: momentum, motion of the bodies,
-//! resultants of the contacts, nodal quantities and reactions of rigid surfaces. Section 9 of
-//! docs/theory.md.
+//! resultants of the contacts, nodal quantities and reactions of rigid surfaces.
+//! See docs/theory/impacts.md, Ledger.
 
 use super::bodies::{BodyMasses, Moving, momentum, rigid_reactions};
 use super::contact_ledger::ContactLedger;

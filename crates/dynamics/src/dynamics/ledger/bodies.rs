@@ -1,6 +1,6 @@
-//! Motion and energies of every body, section 9 of docs/theory.md.
+//! Motion and energies of every body, docs/theory/impacts.md, Ledger.
 //!
-//! Resultant reactions of rigid surfaces at their reference nodes. Section 9 of docs/theory.md.
+//! Resultant reactions of rigid surfaces at their reference nodes. See docs/theory/impacts.md, Ledger.
 
 use crate::dynamics::results::{BodyResult, Momentum, RigidReaction, State};
 use crate::dynamics::step::{Mass, StepProblem, TurningBody};

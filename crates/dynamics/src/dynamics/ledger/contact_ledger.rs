@@ -1,7 +1,7 @@
-//! Work, impulses and slip of every contact since the start, section 9 of docs/theory.md.
+//! Work, impulses and slip of every contact since the start, docs/theory/impacts.md, Ledger.
 //!
-//! How far the pairs at the end of a converged increment are from the contact law. Section 5 of
-//! docs/theory.md.
+//! How far the pairs at the end of a converged increment are from the contact law.
+//! See docs/theory/complementarity.md, Problem of a pass.
 
 use std::collections::BTreeMap;
 

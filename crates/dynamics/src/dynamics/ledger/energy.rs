@@ -1,4 +1,4 @@
-//! Energy balance of a run, accumulated increment by increment. Section 9 of docs/theory.md.
+//! Energy balance of a run, accumulated increment by increment. See docs/theory/impacts.md, Ledger.
 
 use std::sync::Arc;
 

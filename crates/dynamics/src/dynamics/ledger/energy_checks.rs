@@ -1,6 +1,6 @@
 //! Energy checks of a converged increment: positive normal work of contact in the energy-momentum scheme, at
-//! corners that turn concave under a sliding node (section 7 of docs/theory.md), and the balance of the ledger
-//! (section 9).
+//! corners that turn concave under a sliding node (docs/theory/contact.md, Energy-momentum contact), and the balance of the ledger
+//! (docs/theory/impacts.md, Ledger).
 
 use super::energy::{CONTACT_WORK_ROUND_OFF, Ledger};
 use crate::contact::tolerances::CLOSED_GAP;

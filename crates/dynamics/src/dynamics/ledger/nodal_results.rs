@@ -1,5 +1,5 @@
 //! Postprocessing of a converged increment: nodal quantities, resultants of the contacts and
-//! landings, the latter by paper eq. 50 with the exact crossing (section 10 of docs/theory.md,
+//! landings, the latter by paper eq. 50 with the exact crossing (docs/theory/geometry.md,
 //! Crossing).
 //!
 //! Contact pressure at slave nodes: normal force over the area of a node.

@@ -1,4 +1,4 @@
-//! Work of the contact forces of an increment, pair by pair. Section 9 of docs/theory.md.
+//! Work of the contact forces of an increment, pair by pair. See docs/theory/impacts.md, Ledger.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Work of friction, depth of wear and heat at the nodes of slave surfaces since the start. Section 9 of docs/theory.md,
+//! Work of friction, depth of wear and heat at the nodes of slave surfaces since the start. See docs/theory/impacts.md,
 //! Wear and heat.
 
 use super::contact_ledger::ContactLedger;

@@ -1,5 +1,5 @@
-//! Terms of the energy ledger, one function each, named by their equations. Section 9 of docs/theory.md, and section 12
-//! for static increments.
+//! Terms of the energy ledger, one function each, named by their equations. See docs/theory/impacts.md, Ledger, and
+//! docs/theory/bodies.md, Static steps, for static increments.
 
 use std::borrow::Cow;
 

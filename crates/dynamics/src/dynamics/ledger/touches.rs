@@ -1,5 +1,5 @@
 //! Touches: contacts of two bodies from the landing of a first node until no node is closed, and the
-//! landings of nodes that take the place of others. Section 9 of docs/theory.md, Touches.
+//! landings of nodes that take the place of others. See docs/theory/impacts.md, Touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 

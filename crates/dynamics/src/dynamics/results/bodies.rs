@@ -1,4 +1,4 @@
-//! Momenta, results of bodies and reactions of rigid ones. Section 9 of docs/theory.md, Bodies and Rigid bodies.
+//! Momenta, results of bodies and reactions of rigid ones. See docs/theory/impacts.md, Bodies and Rigid bodies.
 
 /// Momentum of all bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]

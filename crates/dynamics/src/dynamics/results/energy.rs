@@ -1,4 +1,4 @@
-//! Energies of the ledger. Section 9 of docs/theory.md.
+//! Energies of the ledger. See docs/theory/impacts.md, Ledger.
 
 /// Energies; all but the first two are cumulative from the start of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]

@@ -1,4 +1,4 @@
-//! Results at nodes. Section 9 of docs/theory.md, Pressure and Reactions.
+//! Results at nodes. See docs/theory/impacts.md, Pressure and Reactions.
 
 /// Contact status of a node as slave; a node that is slave of several pairs shows the highest.
 #[derive(

@@ -1,5 +1,5 @@
 //! Checks that a converged increment must pass before it is accepted, and the failures of those that
-//! do not. Section 4 of docs/theory.md, Cutback.
+//! do not. See docs/theory/time.md, Cutback.
 
 use super::nominal_increments::NominalIncrement;
 use crate::contact::NodeAtSegment;

@@ -1,4 +1,4 @@
-//! Automatic increments of a step, by their passes or by their truncation error. Section 4 of docs/theory.md,
+//! Automatic increments of a step, by their passes or by their truncation error. See docs/theory/time.md,
 //! Automatic increments.
 
 use super::impact_control::{EVENT_HALVINGS, MOST_EVENTS};
@@ -29,7 +29,7 @@ const SAFE_GROWTH: f64 = 0.9;
 const WORTHWHILE: f64 = 1.25;
 
 /// Automatic increments of a whole step, shorter where one fails and longer after easy ones: by their passes, cut to a
-/// quarter where one fails, or by their truncation error (section 4 of docs/theory.md, Automatic increments).
+/// quarter where one fails, or by their truncation error (docs/theory/time.md, Automatic increments).
 pub(crate) struct Automatic {
     /// The step.
     nominal: NominalIncrement,

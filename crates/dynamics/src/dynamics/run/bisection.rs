@@ -1,5 +1,5 @@
 //! Fixed grid: a nominal increment in halves, quarters ... that join again as soon as they align.
-//! Section 4 of docs/theory.md, Cutback.
+//! See docs/theory/time.md, Cutback.
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};

@@ -1,5 +1,5 @@
 //! Impact events: a nominal increment in subincrements that end at impacts, or halfway where one
-//! fails. Section 6 of docs/theory.md, Impacts as events.
+//! fails. See docs/theory/impacts.md, Impacts as events.
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};

@@ -1,5 +1,5 @@
 //! A law with internal variables in whole runs: they are committed with an accepted increment and dropped
-//! with a failed attempt. Section 2 of docs/theory.md.
+//! with a failed attempt. See docs/theory/elements.md.
 
 use std::io;
 

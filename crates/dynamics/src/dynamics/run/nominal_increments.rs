@@ -1,4 +1,4 @@
-//! Nominal time increments of a step and their parts. Section 4 of docs/theory.md, Cutback.
+//! Nominal time increments of a step and their parts. See docs/theory/time.md, Cutback.
 
 use crate::dynamics::step::{Interval, StepPlace};
 use crate::model::Increments;

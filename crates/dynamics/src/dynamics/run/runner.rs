@@ -1,5 +1,5 @@
 //! Time stepping of a run: steps, and nominal increments divided by their time control; each
-//! subincrement is attempted, checked, and accepted or cut back. Section 4 of docs/theory.md, Cutback.
+//! subincrement is attempted, checked, and accepted or cut back. See docs/theory/time.md, Cutback.
 
 use std::{io, iter};
 

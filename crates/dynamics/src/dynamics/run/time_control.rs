@@ -1,5 +1,5 @@
-//! Time control of a step: how the increments of its grid are divided. Section 4 of docs/theory.md,
-//! Cutback, and section 6, Impacts as events.
+//! Time control of a step: how the increments of its grid are divided. See docs/theory/time.md,
+//! Cutback, and docs/theory/impacts.md, Impacts as events.
 
 use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::step::Interval;

@@ -1,4 +1,4 @@
-//! Truncation error of an increment, from the third derivative of the motion. Section 4 of docs/theory.md, Automatic
+//! Truncation error of an increment, from the third derivative of the motion. See docs/theory/time.md, Automatic
 //! increments.
 
 use crate::dynamics::step::{Seen, StepProblem, System, dot};

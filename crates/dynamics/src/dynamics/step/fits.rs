@@ -1,4 +1,4 @@
-//! Fits: the overlaps that contacts allow in an increment, eq. (3.15). Section 3 of docs/theory.md.
+//! Fits: the overlaps that contacts allow in an increment, eq. (3.15). See docs/theory/contact.md.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Motions of the pins as free unknowns of the complementarity problems of a static step. Section 12 of docs/theory.md,
+//! Motions of the pins as free unknowns of the complementarity problems of a static step. See docs/theory/bodies.md,
 //! Pins.
 
 use nalgebra::{Cholesky, DMatrix, DVector};

@@ -1,4 +1,4 @@
-//! Coefficients of friction of the pairs in the increments of a step. Section 3 of docs/theory.md, Friction that
+//! Coefficients of friction of the pairs in the increments of a step. See docs/theory/contact.md, Friction that
 //! depends on slip rate and pressure.
 
 use super::loads::{Interval, TimePoint};

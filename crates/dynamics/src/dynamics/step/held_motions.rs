@@ -1,5 +1,5 @@
-//! Rigid motions of static steps that only the facets of the mesh resist: held where they are. Section 12 of
-//! docs/theory.md, Neutral motions.
+//! Rigid motions of static steps that only the facets of the mesh resist: held where they are.
+//! See docs/theory/bodies.md, Neutral motions.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! Hinges between bodies: nodes at one place, whose forces keep them there. Section 11 of docs/theory.md, Hinges.
+//! Hinges between bodies: nodes at one place, whose forces keep them there. See docs/theory/bodies.md, Hinges.
 
 use nalgebra::DMatrix;
 

@@ -1,6 +1,6 @@
 //! What an increment is balanced with, by the procedure of its step: weights and configurations of the
 //! schemes SS22 of Zienkiewicz, Wood & Hine (1984) and the energy-momentum form of Simo & Tarnow (1992), of the backward
-//! Euler rule, and whether anything depends on rates. Section 4 of docs/theory.md.
+//! Euler rule, and whether anything depends on rates. See docs/theory/time.md.
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;

@@ -1,5 +1,5 @@
 //! External loads at a time point and their consistent nodal forces: concentrated loads, body
-//! forces, tractions and follower pressures. Section 4 of docs/theory.md (R_theta).
+//! forces, tractions and follower pressures. See docs/theory/time.md (R_theta).
 //!
 //! Place of a step among the times of the analysis.
 

@@ -1,5 +1,5 @@
-//! Global mass matrices over the nodes and over the unknowns. Section 2 of
-//! docs/theory.md.
+//! Global mass matrices over the nodes and over the unknowns.
+//! See docs/theory/elements.md.
 
 use super::turning::TurningBody;
 use super::unknowns::Unknowns;

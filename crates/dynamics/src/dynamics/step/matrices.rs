@@ -1,8 +1,8 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
-//! stiffness K* of the passes and the mass of the impulses. Sections 4 and 6 of docs/theory.md.
+//! stiffness K* of the passes and the mass of the impulses. See docs/theory/time.md and docs/theory/impacts.md.
 //!
 //! A system matrix of a step, K* or M, whose work is measured: solves, in one go or in parts, and its
-//! complementarity problems. Sections 4 and 5 of docs/theory.md.
+//! complementarity problems. See docs/theory/time.md and docs/theory/complementarity.md.
 
 use std::collections::BTreeMap;
 
@@ -436,7 +436,7 @@ impl EffectiveStiffness {
                 }
             }
         }
-        // K* <- K* - (C + C^T)/2, section 12, of loads
+        // K* <- K* - (C + C^T)/2, docs/theory/bodies.md, Static steps, of loads
         if form != StiffnessForm::Positive {
             for follower in contact.followers {
                 blocks.add(map, &follower.dofs, &-follower.symmetric());

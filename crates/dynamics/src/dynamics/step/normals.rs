@@ -1,5 +1,5 @@
-//! Normals of the closed pairs of a body along its rigid motions, and the facets of its contact surfaces. Section 12 of
-//! docs/theory.md, Neutral motions.
+//! Normals of the closed pairs of a body along its rigid motions, and the facets of its contact surfaces.
+//! See docs/theory/bodies.md, Neutral motions.
 
 use std::collections::HashMap;
 

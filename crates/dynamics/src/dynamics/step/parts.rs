@@ -1,5 +1,5 @@
 //! Bodies, and parts of bodies with one kind of section: convergence is measured for each of them
-//! (section 4 of docs/theory.md, Convergence).
+//! (docs/theory/time.md, Convergence).
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,5 +1,5 @@
-//! Pins of static steps: stiffness at a few dofs that holds the rigid motions which supports leave free. Section 12 of
-//! docs/theory.md, Pins.
+//! Pins of static steps: stiffness at a few dofs that holds the rigid motions which supports leave free.
+//! See docs/theory/bodies.md, Pins.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 

@@ -1,5 +1,5 @@
 //! Inverses that differ from that of the factors of a matrix by few columns: those of matrices whose solutions keep hinges
-//! closed. Section 11 of docs/theory.md, Hinges.
+//! closed. See docs/theory/bodies.md, Hinges.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! What a run has seen so far: floors of the scales of its increments. Section 4 of docs/theory.md, Convergence.
+//! What a run has seen so far: floors of the scales of its increments. See docs/theory/time.md, Convergence.
 
 use super::parts::{Parts, PerBody};
 use super::step_problem::StepProblem;

@@ -1,4 +1,4 @@
-//! Faces of the slave surfaces, and the area that a slave node has on them. Section 9 of docs/theory.md.
+//! Faces of the slave surfaces, and the area that a slave node has on them. See docs/theory/impacts.md, Ledger.
 
 use std::collections::BTreeSet;
 

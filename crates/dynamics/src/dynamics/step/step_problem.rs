@@ -1,5 +1,5 @@
 //! Equation of motion of a step, eq. (3.1) (paper eq. 21), evaluated at an iterate: loads, internal and
-//! inertia forces, and contact pairs. Sections 3 and 4 of docs/theory.md.
+//! inertia forces, and contact pairs. See docs/theory/contact.md and docs/theory/time.md.
 //!
 //! Discretization of a model, constant over a run: elements, mass, bodies with their parts, contact
 //! surfaces.

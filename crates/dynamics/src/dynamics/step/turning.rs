@@ -1,5 +1,5 @@
 //! Rigid bodies: positions of their nodes and rows of T at an iterate of two translations and a
-//! finite rotation. Section 11 of docs/theory.md.
+//! finite rotation. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use crate::elements::Elements;
 use crate::linear::Transformation;

@@ -1,8 +1,8 @@
 //! Unknowns q of a step and the displacements that follow from them, u = T q + g(t): free dofs,
-//! supports, and dofs that follow others by equations. Section 3 of docs/theory.md.
+//! supports, and dofs that follow others by equations. See docs/theory/contact.md.
 //!
 //! Prescribed motion of a step: displacements by ramps and amplitudes, velocities and accelerations
-//! integrated. Section 4 of docs/theory.md.
+//! integrated. See docs/theory/time.md.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

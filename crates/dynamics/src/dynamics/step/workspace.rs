@@ -1,5 +1,5 @@
 //! Workspace of the increments of a step: effective stiffness with its factors, contact search,
-//! times and counts. Each operation measures its own time. Section 4 of docs/theory.md.
+//! times and counts. Each operation measures its own time. See docs/theory/time.md.
 
 use super::held_motions::HeldMotions;
 use super::loads::TimePoint;
