@@ -61,7 +61,7 @@ fn assert_none(offences: &[String]) {
 }
 
 #[test]
-fn numbers_ascend_in_a_chapter_and_none_is_missing() {
+fn numbers_are_unique_and_none_is_missing() {
     let chapters = chapters(&tree());
     assert!(defined(&chapters).len() > 12 && chapters.len() > 5);
     let texts: Vec<(&str, &str)> = (chapters.iter())

@@ -41,22 +41,19 @@ pub fn equations(theory: &str) -> Vec<(usize, Number)> {
         .collect()
 }
 
-/// Numbers that do not ascend in their chapter, and places in which the numbers of a section, over all chapters, do not
-/// count from 1 without gaps. A chapter is its path and its text.
+/// Places in which the numbers of a section, over all chapters, do not count from 1 without gaps and doubles. A chapter
+/// is its path and its text.
 pub fn misnumbered(chapters: &[(&str, &str)]) -> Vec<String> {
-    let mut offences = Vec::new();
-    let mut all = Vec::new();
-    for (path, text) in chapters {
-        let mut last = None;
-        for (line, number) in equations(text) {
-            if last.is_some_and(|last| last >= number) {
-                offences.push(format!("{path}:{line}: {number} stands behind a later one"));
-            }
-            last = Some(number);
-            all.push((number, path, line));
-        }
-    }
+    let mut all: Vec<(Number, &str, usize)> = chapters
+        .iter()
+        .flat_map(|(path, text)| {
+            equations(text)
+                .into_iter()
+                .map(|(line, n)| (n, *path, line))
+        })
+        .collect();
     all.sort();
+    let mut offences = Vec::new();
     let mut before: Option<Number> = None;
     for (number, path, line) in all {
         let before = before.replace(number);
@@ -134,10 +131,9 @@ mod tests {
             misnumbered(&[("a.md", &text(a)), ("b.md", &text(b))]).len()
         };
         assert_eq!(found(&["2.1", "2.3", "3.1"], &["2.2", "4.1"]), 0);
-        assert_eq!(found(&["2.1", "2.1"], &[]), 2);
+        assert_eq!(found(&["2.1", "2.1"], &[]), 1);
         assert_eq!(found(&["2.1"], &["2.1"]), 1);
         assert_eq!(found(&["2.1", "2.3"], &[]), 1);
-        assert_eq!(found(&["2.2", "2.1"], &[]), 1);
         assert_eq!(found(&["2.1"], &["3.2"]), 1);
     }
 
