@@ -412,8 +412,8 @@ def increment() -> Drawing:
 
 
 def landing() -> Drawing:
-    """Height of a point mass over time, with the three rules for a landing within an increment."""
-    drawing = Drawing(660, 320, "A point mass that lands after the part s of an increment")
+    """Height of a body over time, with the three rules for a landing within an increment."""
+    drawing = Drawing(660, 320, "A body that lands after the part s of an increment")
     graph = Graph(drawing, (60, 25), (560, 240), (0.0, 0.0), (3.2, 1.6))
     graph.axes(("", "height"), ((1, 2, 3), ()))
     drawing.text((620, 300), "time / dt", anchor="end")
@@ -434,7 +434,7 @@ def landing() -> Drawing:
     drawing.text(graph.place((1.06, 0.05)), "s dt", GREEN, "start", 12)
     drawing.text(
         (340, 312),
-        "The default rule stops the mass at the end of its increment.",
+        "A stiff body, without the impulses that stop the mass of its landing nodes.",
         anchor="middle",
         size=13,
     )
