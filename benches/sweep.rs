@@ -23,6 +23,7 @@ fn grid(n: usize, element_type: ElementType, law: Law) -> Model {
         law,
         density: 1.0,
         damping: Damping::default(),
+        expansion: None,
     });
     model.sections.push(Section {
         material: 0,

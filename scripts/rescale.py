@@ -27,6 +27,7 @@ BASE: dict[str, "Dimension"] = {
     "time": (0, 0, 1),
     "force": (1, 1, -2),
     "energy": (2, 1, -2),
+    "temperature": (0, 0, 0),
 }
 """Exponents of the names that dimensions are made of."""
 

@@ -39,6 +39,7 @@ WORDS = {
     "LE33": "logarithmic strain around the axis",
     "PEEQ": "accumulated plastic strain",
     "ENER": "strain energy density",
+    "TEMPERATURE": "temperature",
 }
 """Fields in words; those of others are their names in small letters."""
 
@@ -59,6 +60,8 @@ ABAQUS = {
     "COPEN": "GAP",
     "CSLIP": "SLIP",
     "CSTATUS": "CONTACT_STATUS",
+    "NT": "TEMPERATURE",
+    "NT11": "TEMPERATURE",
 }
 """Names of Abaqus for fields and their components. Of shear strains the component of the tensor is meant, which is half of
 Abaqus' number."""

@@ -85,6 +85,8 @@ class Energy(Group):
     kinetic: Array
     strain: Array
     external_work: Array
+    thermal_work: Array
+    """Work of the temperature; older files have none."""
     normal_contact_work: Array
     friction_dissipation: Array
     impact_loss: Array

@@ -145,7 +145,8 @@ def _face_changed(
 
 def _turned_card(card: Card, matrix: Array) -> Card:
     """Velocities, loads and equations in the turned axes."""
-    if card.keyword in ("INITIALCONDITIONS", "CLOAD"):
+    is_velocity = card.keyword == "INITIALCONDITIONS" and card.parameters.get("TYPE") == "VELOCITY"
+    if is_velocity or card.keyword == "CLOAD":
         return _with_rows(card, _turned_components(card.rows, matrix))
     if card.keyword == "DLOAD":
         return _with_rows(card, _turned_loads(card.rows, matrix))
@@ -610,6 +611,7 @@ def renumbered(deck: Deck, seed: int = 1) -> tuple[Deck, dict[str, str], dict[st
             "KINEMATICCOUPLING": (nodes, 1),
             "BOUNDARY": (nodes, 1),
             "INITIALCONDITIONS": (nodes, 1),
+            "TEMPERATURE": (nodes, 1),
             "DLOAD": (elements, 1),
         }.get(card.keyword, ({}, 0))
         if card.keyword == "SURFACE" and not _is_profile(card):

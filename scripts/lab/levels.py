@@ -104,7 +104,7 @@ WITH_CAP = ["tie", "hinge", "springs", "springs along axes"]
 
 LOADS = (
     "force, moment, pressure, traction, face pressure, face traction, gravity, body force, centrifugal, motion, "
-    "rotation, velocity, acceleration, thrown"
+    "rotation, velocity, acceleration, thrown, heat"
 ).split(", ")
 DRIVEN = ["motion", "rotation", "velocity", "acceleration"]
 
@@ -254,7 +254,7 @@ RULES = [
         "a slow motion has no inertia of its own",
         {
             "form": ["slowly"],
-            "load": ["gravity", "centrifugal", "thrown", "velocity", "acceleration"],
+            "load": ["gravity", "centrifugal", "thrown", "velocity", "acceleration", "heat"],
         },
     ),
     Rule(

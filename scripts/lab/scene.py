@@ -365,6 +365,8 @@ class Scene:
         text = (
             card("MATERIAL, NAME=M") + MATERIALS[self.choice["material"]] + card("DENSITY", (1.0,))
         )
+        if self.load == "heat":
+            text += card("EXPANSION, ZERO=10.", (1e-4, 0.0), (1.2e-4, 100.0))
         if self.grounds:
             text += card("SPRING, ELSET=GUIDES", (), (GUIDE,))
         if self.base == "stiff":
@@ -625,6 +627,8 @@ class Scene:
         """Takes the load away."""
         if self.load in DRIVEN:
             return self._supports("BOUNDARY, OP=NEW")
+        if self.load == "heat":
+            return card("TEMPERATURE, OP=NEW") + card("DLOAD, OP=NEW")
         kinds = {"force": "CLOAD", "moment": "CLOAD", "pressure": "DSLOAD", "traction": "DSLOAD"}
         return card(f"{kinds.get(self.load, 'DLOAD')}, OP=NEW")
 
@@ -676,6 +680,10 @@ class Scene:
                     f"DLOAD{amplitude}",
                     ("", "GRAV", down, *((0.0, -1.0) if ring else (0.28, -0.96))),
                 )
+            case "heat":
+                hot = [("UPPER_ALL", 30.0 * scale), ("UPPER_TOP_NODES", 50.0 * scale)]
+                text += card(f"TEMPERATURE{amplitude}", *hot)
+                text += card(f"DLOAD{amplitude}", ("", "GRAV", down, 0.0, -1.0))
             case "body force":
                 rows = (
                     [(elements, "BZ", -down)]

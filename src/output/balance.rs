@@ -72,11 +72,12 @@ impl Balance {
             kinetic,
             strain,
             external_work,
+            thermal_work,
             balance,
             scale,
             ..
         } = report.energy;
-        for energy in [kinetic, strain, external_work, scale] {
+        for energy in [kinetic, strain, external_work, thermal_work, scale] {
             self.largest = larger(self.largest, energy.abs());
         }
         self.worst = larger(self.worst, balance.abs());

@@ -137,7 +137,11 @@ impl<'m> FieldGroup<'m> {
             .filter_map(|(field, has)| has.then_some(field))
             .collect();
         let concentrated = if is_asked { concentrated } else { &[] };
-        let tables = [nodal, concentrated, &friction].into_iter();
+        let temperature: &[NodalField] = match model.has_temperatures() {
+            true => &TEMPERATURE,
+            false => &[],
+        };
+        let tables = [nodal, concentrated, temperature, &friction].into_iter();
         for &(name, row, mostly, dimension, text, of) in tables.flatten() {
             self.add(name, row, mostly, (dimension, text), move |frame, v| {
                 v.extend_from_slice(of(frame));
@@ -412,6 +416,12 @@ const NODAL: [NodalField; 8] = [
 #[rustfmt::skip]
 const CONCENTRATED: [NodalField; 1] = [
     ("CF", IN_SPACE, Mostly::Zero, "force", "concentrated loads on the node", |f| &f.nodal.concentrated),
+];
+
+/// A field of models with temperatures.
+#[rustfmt::skip]
+const TEMPERATURE: [NodalField; 1] = [
+    ("TEMPERATURE", SCALAR, Mostly::Varied, "temperature", "temperature of the node", |f| &f.state.temperature),
 ];
 
 /// Fields of models in which the coefficient of friction of a contact varies, and of those with wear and heat.

@@ -164,6 +164,7 @@ impl Frame {
         self.state.v.clone_from(&state.v);
         self.state.a.clone_from(&state.a);
         self.state.internal.clone_from(&state.internal);
+        self.state.temperature.clone_from(&state.temperature);
         self.nodal.reaction.clone_from(&nodal.reaction);
         self.nodal.concentrated.clone_from(&nodal.concentrated);
         self.nodal.tie_force.clone_from(&nodal.tie_force);

@@ -596,11 +596,13 @@ const ROTARY_CONNECTOR: [DatasetEntry<ConnectorState>; 3] = [
 ];
 
 #[rustfmt::skip]
-const ENERGY: [DatasetEntry<Energy>; 14] = [
+const ENERGY: [DatasetEntry<Energy>; 15] = [
     ("kinetic", "energy", "kinetic energy", Real(|e| e.kinetic)),
     ("strain", "energy", "strain energy, with that of springs", Real(|e| e.strain)),
     ("external_work", "energy",
      "work of the loads and of the supports' prescribed motion since the start", Real(|e| e.external_work)),
+    ("thermal_work", "energy",
+     "work of the temperature on the materials that expand since the start", Real(|e| e.thermal_work)),
     ("normal_contact_work", "energy",
      "work of the normal contact forces since the start", Real(|e| e.normal_contact_work)),
     ("friction_dissipation", "energy",

@@ -56,13 +56,13 @@ impl Local {
     /// Results of the increment or frame of a number, whose state is given.
     pub fn of(&self, number: usize, state: &State) -> Ref<'_, [LocalResult]> {
         if self.latest.borrow().0 != Some(number) {
-            let (all, State { u, internal, .. }) = (&self.elements, state);
+            let (all, motion) = (&self.elements, state.motion());
             let results = match &self.places {
                 ResultPlaces::Points(members) => {
-                    let of = |&e: &usize| all.at_points(e, u, internal);
+                    let of = |&e: &usize| all.at_points(e, motion);
                     members.iter().flat_map(of).collect()
                 }
-                ResultPlaces::Nodes(nodes) => nodes.results(all, u, internal),
+                ResultPlaces::Nodes(nodes) => nodes.results(all, motion),
             };
             *self.latest.borrow_mut() = (Some(number), results);
         }

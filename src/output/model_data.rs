@@ -77,7 +77,19 @@ fn write_materials(at: &Group, model: &Model) -> hdf5::Result<()> {
     column("poisson", POISSON, |m| m.law.small_strain().poisson)?;
     column("density", DENSITY, |m| m.density)?;
     column("alpha", ALPHA, |m| m.damping.alpha)?;
-    column("beta", BETA, |m| m.damping.beta)
+    column("beta", BETA, |m| m.damping.beta)?;
+    if all.iter().all(|material| material.expansion.is_none()) {
+        return Ok(());
+    }
+    column("expansion_zero", EXPANSION_ZERO, |m| {
+        m.expansion.as_ref().map_or(f64::NAN, |own| own.zero)
+    })?;
+    let rows = all.iter().enumerate().flat_map(|(index, material)| {
+        let table = material.expansion.iter().flat_map(|own| &own.table);
+        table.flat_map(move |&[temperature, alpha]| [index as f64, temperature, alpha])
+    });
+    let rows: Vec<f64> = rows.collect();
+    constant(at, "expansion", &[rows.len() / 3, 3], &rows, EXPANSION)
 }
 
 /// Node indices of the segments of a surface.
@@ -365,6 +377,14 @@ const POISSON: Meaning = ("1", "Poisson's ratio at small strains");
 const DENSITY: Meaning = ("mass/length^3", "density of the undeformed material");
 const ALPHA: Meaning = ("1/time", "damping in proportion to the mass");
 const BETA: Meaning = ("time", "damping in proportion to the elasticity");
+const EXPANSION_ZERO: Meaning = (
+    "temperature",
+    "temperature from which the coefficient of thermal expansion counts, NaN of materials that do not expand",
+);
+const EXPANSION: Meaning = (
+    "1",
+    "rows of all materials: index of the material, temperature, coefficient of thermal expansion (1/temperature)",
+);
 const SEGMENTS: Meaning = (
     "1",
     "node indices of the master segments, its body on the left of the way from the first to the second",

@@ -236,10 +236,11 @@ type Account = (&'static str, fn(&mut Energy) -> &mut f64);
 
 /// Accounts of the energy ledger, in the order of the summary; the balance is measured by the largest of
 /// the first three.
-const ACCOUNTS: [Account; 11] = [
+const ACCOUNTS: [Account; 12] = [
     ("kinetic", |e| &mut e.kinetic),
     ("strain", |e| &mut e.strain),
     ("external_work", |e| &mut e.external_work),
+    ("thermal_work", |e| &mut e.thermal_work),
     ("normal_contact_work", |e| &mut e.normal_contact_work),
     ("friction_dissipation", |e| &mut e.friction_dissipation),
     ("impact_loss", |e| &mut e.impact_loss),
@@ -257,7 +258,7 @@ const SCALES: [Account; 2] = [
 ];
 
 /// Accounts that most runs have no entry in: told where they are not zero.
-const RARE_ACCOUNTS: [&str; 3] = ["landing_return", "release_loss", "damping"];
+const RARE_ACCOUNTS: [&str; 4] = ["thermal_work", "landing_return", "release_loss", "damping"];
 
 /// Last value of each energy, the accounts that an older file lacks, which are zero, and the largest energy
 /// that counts as the balance's scale.

@@ -4,7 +4,7 @@ Equation numbers are those in docs/theory. Arrays of tensors at integration poin
 [E, G, 2, 2], E elements of one kind with G points each.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -56,6 +56,22 @@ class Block:
     """C10, C20, C30, C01."""
     compressibility: Array
     """D1, D2, D3; zero for no term."""
+    theta: Array | None = field(default=None, init=False)
+    """Thermal stretch at the points [E, G], eq. (2.52); none without a temperature."""
+    material: int = field(default=-1, init=False)
+    """Index of the material."""
+    at_points: Array = field(default_factory=lambda: np.zeros(0), init=False)
+    """Shape functions at the points [G, k]."""
+
+    def temperature(self, of_nodes: Array) -> Array:
+        """Temperatures at the points [E, G]: the mean of linear elements, the field between the corners of quadratic ones."""
+        nodal = of_nodes[self.nodes]
+        count = nodal.shape[1]
+        if count <= 4:
+            return np.broadcast_to(nodal.mean(axis=1, keepdims=True), self.weight.shape)
+        corners = nodal[:, : count // 2]
+        middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+        return np.concatenate([corners, middles], axis=1) @ self.at_points.T
 
     # Constants of the material.
 
@@ -100,29 +116,56 @@ class Block:
         turned = h.swapaxes(2, 3)
         return 0.5 * (h + turned + turned @ h)
 
+    @property
+    def softening(self) -> Array | float:
+        """theta of elements with one point, which divides their hourglass stiffness."""
+        return 1.0 if self.theta is None else self.theta[:, :1]
+
+    def mechanical(self, e: Array) -> tuple[Array, Array]:
+        """E_m of eq. (2.53) in the plane, and theta."""
+        if self.theta is None:
+            return e, np.ones(e.shape[:2])
+        theta = self.theta
+        return (e - identity_times(0.5 * (theta**2 - 1.0))) / theta[..., None, None] ** 2, theta
+
     def energy_density(self, e: Array) -> Array:
+        """W(E) = theta^3 W_m(E_m), eq. (2.54)."""
+        own, theta = self.mechanical(e)
+        return theta**3 * self.density_at(own)
+
+    def stress(self, e: Array) -> Array:
+        """S(E) = theta S_m(E_m), eq. (2.54)."""
+        own, theta = self.mechanical(e)
+        return theta[..., None, None] * self.own_stress(own)
+
+    def density_at(self, e: Array) -> Array:
         """W(E), eqs (2.13), (2.14) and (2.23)."""
+        z = self.across(e)
+        if self.law == SAINT_VENANT_KIRCHHOFF:
+            around = 0.0 if self.plane_stress else 0.5 * z
+            trace = trace_of(e) + around
+            return 0.5 * self.lame * trace**2 + self.shear * (np.einsum("egij,egij->eg", e, e) + around**2)
         trace, determinant = trace_of(e), determinant_of(e)
         if self.is_polynomial:
-            _, _, x, y, grown = self.invariants(e, self.across(e))
+            _, _, x, y, grown = self.invariants(e, z)
             c10, c20, c30, c01 = self.shape
             volume = sum(k * grown ** (2 * i) for i, k in enumerate(self.stiffnesses, 1))
             return c10 * x + c20 * x**2 + c30 * x**3 + c01 * y + volume
-        if self.law != NEO_HOOKE:
-            return 0.5 * self.lame * trace**2 + self.shear * np.einsum("egij,egij->eg", e, e)
         t, q = 2.0 * trace, 4.0 * determinant
         b = np.expm1(np.log1p(t + q) / 3.0)
         jump = np.expm1(np.log1p(t + q) / 2.0)
         shape = (b * b * (b + 3.0) - q) / (1.0 + b)
         return 0.5 * self.shear * shape + 0.5 * self.bulk * jump**2
 
-    def stress(self, e: Array) -> Array:
+    def own_stress(self, e: Array) -> Array:
         """S(E), eqs (2.13), (2.15), (2.16) and (2.24)."""
+        z = self.across(e)
+        if self.law == SAINT_VENANT_KIRCHHOFF:
+            around = 0.0 if self.plane_stress else 0.5 * z
+            return self.lame * identity_times(trace_of(e) + around) + 2.0 * self.shear * e
         trace = trace_of(e)
         if self.is_polynomial:
-            return self.polynomial_stress(e, self.across(e))[0]
-        if self.law != NEO_HOOKE:
-            return self.lame * identity_times(trace) + 2.0 * self.shear * e
+            return self.polynomial_stress(e, z)[0]
         t, q = 2.0 * trace, 4.0 * determinant_of(e)
         square = 1.0 + t + q
         jump = np.expm1(np.log1p(t + q) / 2.0)
@@ -136,8 +179,9 @@ class Block:
 
     @property
     def is_polynomial(self) -> bool:
-        """Whether the law is one of eq. (2.23), as a neo-Hookean one in plane stress is."""
-        return self.law == POLYNOMIAL or (self.law == NEO_HOOKE and self.plane_stress)
+        """Whether the law is one of eq. (2.23), as a neo-Hookean one in plane stress is, or at a temperature."""
+        is_general = self.plane_stress or self.theta is not None
+        return self.law == POLYNOMIAL or (self.law == NEO_HOOKE and is_general)
 
     @property
     def stiffnesses(self) -> list[float]:
@@ -184,10 +228,12 @@ class Block:
         return in_plane, assemble(z, 1.0, q, 1.0 + t + q, lambda value: value)
 
     def across(self, e: Array) -> Array:
-        """2 E_33: zero in plane strain, and with S_33 = 0 in plane stress, eq. (2.25)."""
+        """2 (E_m)_33: that of E_33 = 0 in plane strain, and with S_33 = 0 in plane stress, eq. (2.25)."""
         trace = trace_of(e)
         if not self.plane_stress:
-            return np.zeros_like(trace)
+            return np.zeros_like(trace) if self.theta is None else self.theta**-2 - 1.0
+        if self.law == SAINT_VENANT_KIRCHHOFF:
+            return -2.0 * self.poisson / (1.0 - self.poisson) * trace
         squared = 2.0 * trace + 4.0 * determinant_of(e)
         stretch = -self.poisson / (1.0 - self.poisson) * 0.5 * np.log1p(squared)
         size = np.abs(e).max(axis=(2, 3))
@@ -286,11 +332,9 @@ class Block:
         f = identity_times(np.ones(h.shape[:2])) + h
         e = self.strain(h)
         j = determinant_of(f)
-        if self.plane_stress and self.is_polynomial:
-            j = j * np.sqrt(1.0 + self.across(self.thickness_strain(u)))
-        elif self.plane_stress:
-            across = -self.poisson / (1.0 - self.poisson) * trace_of(self.thickness_strain(u))
-            j = j * np.sqrt(1.0 + 2.0 * across)
+        if self.plane_stress:
+            own, theta = self.mechanical(self.thickness_strain(u))
+            j = j * theta * np.sqrt(1.0 + self.across(own))
         cauchy = f @ stress @ f.swapaxes(2, 3) / j[..., None, None]
         part = self.weight / self.weight.sum(axis=1, keepdims=True)
         return mean_of(part, cauchy), mean_of(part, e)

@@ -1,12 +1,14 @@
 """All elements of a result: blocks of one type and material each, and sums over bodies."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from oracle.block import NEO_HOOKE, POLYNOMIAL, SAINT_VENANT_KIRCHHOFF, Block
 from oracle.shapes import gradients, integration_rule, mass_rule, shape_functions
 from oracle.types import TYPES
 from oracle.untold import UntoldBlock
-from stickslip.arrays import Array, Integers
+from stickslip.arrays import Array, Flags, Integers
 from stickslip.result import Result
 
 PLASTICITY = 3
@@ -35,8 +37,26 @@ class Elements:
         """Elements whose stresses the displacements do not tell [E]."""
         for block in self.blocks:
             self.is_untold[block.elements] = isinstance(block, UntoldBlock)
+        self.expansions = expansions(result)
+        self.initial = result.frames[0]["TEMPERATURE"] if "TEMPERATURE" in result.frames.fields else None
+        """Temperatures of the nodes at the start [N], where there are any."""
         self.keeps = np.array([0.0, 1.0]) if result.is_axisymmetric else np.ones(2)
         """Directions in which the momentum of a body may differ from zero."""
+
+    def heat(self, temperature: Array, rigid: Flags) -> None:
+        """Heats the elements to temperatures of the nodes [N], but for those of rigid bodies [E]."""
+        for block in self.blocks:
+            if block.material in self.expansions:
+                strain = self.expansions[block.material]
+                ends = block.temperature(temperature), block.temperature(self.initial)
+                block.theta = 1.0 + strain(ends[0]) - strain(ends[1])
+                block.theta[rigid[block.elements]] = 1.0
+
+    @property
+    def heated(self) -> Integers:
+        """Nodes of elements that are heated."""
+        nodes = [block.nodes.ravel() for block in self.blocks if block.theta is not None]
+        return np.unique(np.concatenate(nodes)) if nodes else np.zeros(0, np.int64)
 
     def mass(self) -> Array:
         """Mass of each body."""
@@ -95,6 +115,22 @@ class Elements:
         return total
 
 
+def expansions(result: Result) -> dict[int, Callable[[Array], Array]]:
+    """alpha(T) (T - T0) of the materials that expand, by their indices."""
+    if "expansion" not in result.file["model/materials"]:
+        return {}
+    zeros, rows = result.read("model/materials/expansion_zero"), result.read("model/materials/expansion")
+    found: dict[int, Callable[[Array], Array]] = {}
+    for material in np.unique(rows[:, 0]).astype(int).tolist():
+        _, temperature, alpha = rows[rows[:, 0] == material].T
+
+        def strain(t: Array, temperature: Array = temperature, alpha: Array = alpha, zero: float = zeros[material]) -> Array:
+            return np.interp(t, temperature, alpha) * (t - zero)
+
+        found[material] = strain
+    return found
+
+
 def unknown_types(result: Result) -> list[int]:
     """Numbers of element types of a result that the oracle does not know."""
     return sorted(set(result.read("model/element_types").tolist()) - set(TYPES))
@@ -115,6 +151,7 @@ def blocks(result: Result) -> list[Block]:
             for name, values in constants.items()
         }
         found.append(_block(result, int(kind), elements, thickness[elements], of_material))
+        found[-1].material = int(material)
     return found
 
 
@@ -146,6 +183,7 @@ def _block(
         **constants,
     )
     block.area = area
+    block.at_points = at_points
     if of_kind.is_ring:
         block.around = at_points / radius[..., None]
     elif of_kind.functions:

@@ -49,13 +49,14 @@ class ReducedBlock(Block):
     def energy(self, u: Array) -> Array:
         """Strain energy of each element, eq. (2.42)."""
         h = self.modes(u)[2]
-        return super().energy(u) + 0.5 * np.einsum("ei,eij,ej->e", h, self.hourglass, h)
+        return super().energy(u) + 0.5 * np.einsum("ei,eij,ej->e", h, self.hourglass, h / self.softening)
 
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
         """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
         super().add_forces(total, u0, u1, halfway)
         h0, h1 = self.modes(u0)[2], self.modes(u1)[2]
-        self._add_hourglass(total, 0.5 * (h0 + h1) if halfway else h1, 0.5 * (u0 + u1) if halfway else u1)
+        h = 0.5 * (h0 + h1) if halfway else h1
+        self._add_hourglass(total, h / self.softening, 0.5 * (u0 + u1) if halfway else u1)
 
     def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
         """Adds F_d of eq. (4.16)."""

@@ -32,9 +32,18 @@ class RingBlock(Block):
         h = self.stretch(u)
         return self.strain(self.displacement_gradient(u)), h * (2.0 + h)
 
-    def density_of(self, strain: Strain) -> Array:
-        """W, eqs (2.13) and (2.23)."""
+    def own_strain(self, strain: Strain) -> tuple[Strain, Array]:
+        """E_m of eq. (2.53) and theta."""
         e, z = strain
+        own, theta = self.mechanical(e)
+        return (own, (1.0 + z) / theta**2 - 1.0), theta
+
+    def density_of(self, strain: Strain) -> Array:
+        """W = theta^3 W_m, eq. (2.54), with eqs (2.13) and (2.23)."""
+        (e, z), theta = self.own_strain(strain)
+        return theta**3 * self._density(e, z)
+
+    def _density(self, e: Array, z: Array) -> Array:
         if not self.is_polynomial:
             trace = trace_of(e) + 0.5 * z
             squares = np.einsum("egij,egij->eg", e, e) + 0.25 * z**2
@@ -45,8 +54,12 @@ class RingBlock(Block):
         return c10 * x + c20 * x**2 + c30 * x**3 + c01 * y + volume
 
     def stress_at(self, strain: Strain) -> Strain:
-        """S in the section and S_33."""
-        e, z = strain
+        """S = theta S_m in the section and S_33, eq. (2.54)."""
+        (e, z), theta = self.own_strain(strain)
+        in_plane, around = self._stress(e, z)
+        return theta[..., None, None] * in_plane, theta * around
+
+    def _stress(self, e: Array, z: Array) -> Strain:
         if self.is_polynomial:
             in_plane, around = self.polynomial_stress(e, z)
             return in_plane, around

@@ -355,13 +355,14 @@ class ReducedRingBlock(RingBlock):
     def energy(self, u: Array) -> Array:
         """Strain energy of each element."""
         y = self.modes(u)[3]
-        return super().energy(u) + 0.5 * np.einsum("ei,eij,ej->e", y, self.hourglass, y)
+        return super().energy(u) + 0.5 * np.einsum("ei,eij,ej->e", y, self.hourglass, y / self.softening)
 
     def add_forces(self, total: Array, u0: Array, u1: Array, halfway: bool) -> None:
         """Adds F of eq. (4.5); `halfway`: the energy-momentum form, else that of u1."""
         super().add_forces(total, u0, u1, halfway)
         y0, y1 = self.modes(u0)[3], self.modes(u1)[3]
-        self._add_hourglass(total, 0.5 * (y0 + y1) if halfway else y1, 0.5 * (u0 + u1) if halfway else u1)
+        y = 0.5 * (y0 + y1) if halfway else y1
+        self._add_hourglass(total, y / self.softening, 0.5 * (u0 + u1) if halfway else u1)
 
     def add_damping(self, total: Array, u0: Array, u1: Array, dt: float) -> None:
         """Adds F_d of eq. (4.16)."""

@@ -24,11 +24,12 @@ TIES = ROOT / "tests/decks/ties.inp"
 FRICTION = ROOT / "tests/decks/friction.inp"
 REVOLUTION = ROOT / "tests/decks/revolution.inp"
 PLASTIC = ROOT / "tests/decks/plastic.inp"
+HEATED = ROOT / "tests/decks/heated.inp"
 OTHER_PROGRAMS = ROOT / "tests/decks/other_programs.inp"
 FITS = [ROOT / f"tests/decks/{name}.inp" for name in ("fits", "general_fit", "bolt")]
 CIRCLES = [ROOT / f"tests/decks/circles_{name}.inp" for name in ("of_a_pair", "in_general")]
 ALL_CARDS = [
-    EVERY_CARD, HYPERELASTIC, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES, FRICTION, REVOLUTION, PLASTIC, OTHER_PROGRAMS, *FITS,
+    EVERY_CARD, HYPERELASTIC, ASSEMBLY, CONNECTIONS, STATIC_STEPS, TIES, FRICTION, REVOLUTION, PLASTIC, HEATED, OTHER_PROGRAMS, *FITS,
     *CIRCLES,
 ]
 """Decks that use every keyword, and every number with a dimension."""

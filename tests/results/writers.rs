@@ -67,6 +67,7 @@ pub fn model() -> Model {
             law: Law::elastic(1000.0, 0.0),
             density: 2.0,
             damping: Damping::default(),
+            expansion: None,
         }],
         sections: vec![Section {
             material: 0,

@@ -86,6 +86,8 @@ def _ledger(result: Result, checks: Checks) -> None:
         return
     total = energy["kinetic"] + energy["strain"]
     balance = total - total[0] - energy["external_work"] - energy["normal_contact_work"]
+    if "thermal_work" in energy:
+        balance = balance - energy["thermal_work"]
     for name in (
         "friction_dissipation",
         "impact_loss",

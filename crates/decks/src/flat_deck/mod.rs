@@ -59,6 +59,10 @@ pub fn difference(text: &str, model: &Model) -> Option<String> {
             "initial velocities",
             a.initial_velocity != b.initial_velocity,
         ),
+        (
+            "initial temperatures",
+            a.initial_temperature != b.initial_temperature,
+        ),
     ];
     let of_model = of_model.into_iter().filter(|(_, differs)| *differs);
     let mut all = of_model
@@ -74,6 +78,9 @@ fn difference_of_steps(a: &Step, b: &Step) -> Option<&'static str> {
         || a.centrifugal_forces != b.centrifugal_forces
         || a.pressures != b.pressures
         || a.tractions != b.tractions;
+    if a.temperatures != b.temperatures {
+        return Some("temperatures");
+    }
     match (a.supports != b.supports, loads) {
         (true, _) => Some("supports"),
         (false, true) => Some("loads"),

@@ -4,7 +4,7 @@
 use super::lines::{DeckWriter, name, named, number, set};
 use crate::deck::Text;
 use crate::diagnostics::Span;
-use crate::materials::Law;
+use crate::materials::{Expansion, Law};
 use crate::model::{
     ALL_EXTERIOR, Adjust, Amplitude, Circle, Connector, ConnectorDirection, ConnectorLaw, Contact,
     Curve, Damping, Element, Equation, Face, ForceCurve, Friction, FrictionLaw, Heat, Interaction,
@@ -540,6 +540,7 @@ fn write_material(material: &Material, lines: &mut DeckWriter) {
         law,
         density,
         damping,
+        expansion,
     } = material;
     lines.card("MATERIAL", [named("NAME", name)]);
     write_law(law, lines);
@@ -547,6 +548,12 @@ fn write_material(material: &Material, lines: &mut DeckWriter) {
     if *density > 0.0 {
         lines.card("DENSITY", []);
         lines.row([number(*density)]);
+    }
+    if let Some(Expansion { zero, table }) = expansion {
+        lines.card("EXPANSION", [set("ZERO", number(*zero))]);
+        for [temperature, alpha] in table {
+            lines.row([number(*alpha), number(*temperature)]);
+        }
     }
     let Damping { alpha, beta } = *damping;
     if alpha != 0.0 || beta != 0.0 {

@@ -5,11 +5,11 @@ use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{Interactions, elements_field, friction, pair_row};
 use crate::model::{
     ALL_EXTERIOR, Amplitude, BodyForce, CentrifugalForce, ContactChanges, Frames, HistorySet,
-    Incrementation, Increments, Interference, Load, Model, NamedSets, NodalVariable, PointLoad,
-    Pressure, Procedure, Rate, Scheme, Settings, Step, Support, SupportMotion, TimeBase, Traction,
-    Variation,
+    Incrementation, Increments, Interference, Load, Model, NamedSets, NodalVariable,
+    NodeTemperature, PointLoad, Pressure, Procedure, Rate, Scheme, Settings, Step, Support,
+    SupportMotion, TimeBase, Traction, Variation,
 };
-use crate::reader::{self, carried_loads};
+use crate::reader::{self, carried_loads, carried_temperatures};
 use crate::vectors::difference;
 use std::collections::HashMap;
 
@@ -19,27 +19,36 @@ const TIMES: usize = 8;
 /// Writes initial velocities and all steps.
 pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     initial_velocity(model, lines);
+    initial_temperature(model, lines);
     for (index, step) in model.steps.iter().enumerate() {
         time_points(index, step, lines);
     }
     let mut supports = Vec::new();
     let mut loads = LoadCards::default();
     let mut contacts = &ContactChanges::default();
+    let mut temperatures = Vec::new();
     for (index, step) in model.steps.iter().enumerate() {
         let now = LoadCards::of(step, model);
-        let ramps = now.ramp() || step.contacts.ramp();
+        let ramps = now.ramp() || step.contacts.ramp() || step.temperatures.iter().any(Load::ramps);
         head(step, model, ramps, lines);
         settings(&step.settings, lines);
         write_supports(&step.supports, &supports, model, lines);
         now.write((&loads, ramps), model, lines);
         let before = index.checked_sub(1).map(|before| &model.steps[before]);
         write_interferences(step, before, model, lines);
+        write_temperatures(&step.temperatures, &temperatures, model, lines);
         contact_changes([contacts, &step.contacts], model, lines);
         contacts = &step.contacts;
         requests(index, step, model, lines);
         lines.card("END STEP", []);
         supports = carried(&step.supports, step, &model.amplitudes);
         loads = LoadCards::of(&carried_loads(step, &model.amplitudes), model);
+        temperatures = carried_temperatures(
+            &step.temperatures,
+            &model.initial_temperature,
+            step.increments.period,
+            &model.amplitudes,
+        );
     }
 }
 
@@ -51,6 +60,50 @@ fn initial_velocity(model: &Model, lines: &mut DeckWriter) {
     }
     for (dof, &value) in moving {
         lines.row(dof_fields(dof, model).into_iter().chain([number(value)]));
+    }
+}
+
+fn initial_temperature(model: &Model, lines: &mut DeckWriter) {
+    if model.initial_temperature.is_empty() {
+        return;
+    }
+    lines.card("INITIAL CONDITIONS", [set("TYPE", "TEMPERATURE")]);
+    let labels = model.mesh.node_labels.iter();
+    for (label, &value) in labels.zip(&model.initial_temperature) {
+        lines.row([label.to_string(), number(value)]);
+    }
+}
+
+/// Writes the temperatures that are others than those carried from the step before. Where none is left, and they do not ramp, a
+/// card without rows lets all nodes return to the start.
+fn write_temperatures(
+    now: &[Load<NodeTemperature>],
+    carried: &[Load<NodeTemperature>],
+    model: &Model,
+    lines: &mut DeckWriter,
+) {
+    let is_kept = |load: &Load<NodeTemperature>| now.iter().any(|other| other.at == load.at);
+    let is_new = !carried.iter().all(is_kept);
+    let changed: Vec<&Load<NodeTemperature>> = match is_new {
+        true => now.iter().collect(),
+        false => now.iter().filter(|load| !carried.contains(load)).collect(),
+    };
+    if is_new && changed.is_empty() {
+        lines.card("TEMPERATURE", [set("OP", "NEW")]);
+    }
+    let amplitude = |load: &Load<NodeTemperature>| match load.variation {
+        Variation::Amplitude(index) => Some(index),
+        Variation::Constant | Variation::Ramp { .. } => None,
+    };
+    for alike in changed.chunk_by(|a, b| amplitude(a) == amplitude(b)) {
+        let operation = is_new.then(|| set("OP", "NEW"));
+        let curve =
+            amplitude(alike[0]).map(|index| named("AMPLITUDE", &model.amplitudes[index].name));
+        lines.card("TEMPERATURE", operation.into_iter().chain(curve));
+        for load in alike {
+            let label = model.mesh.node_labels[load.at.node];
+            lines.row([label.to_string(), number(load.magnitude)]);
+        }
     }
 }
 

@@ -656,8 +656,9 @@ pub(crate) struct LoadHistory<K, T> {
     sorted: usize,
 }
 
+/// A load with what the step before has left of it.
 #[derive(Clone, Copy)]
-struct CarriedLoad<T> {
+pub(super) struct CarriedLoad<T> {
     load: Load<T>,
     /// Magnitude at the end of the step before.
     end: f64,
@@ -679,16 +680,10 @@ impl<K, T> Default for LoadHistory<K, T> {
 impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     /// The loads of a step, by the keys of what they act on.
     fn of(loads: &[Load<T>], key: impl Fn(&T) -> K) -> LoadHistory<K, T> {
-        let part = |load: &Load<T>| CarriedLoad {
-            load: *load,
-            end: 0.0,
-            step: 0,
-            replaced: false,
-        };
         LoadHistory {
             parts: loads
                 .iter()
-                .map(|load| (key(&load.at), part(load)))
+                .map(|load| (key(&load.at), CarriedLoad::of(load)))
                 .collect(),
             sorted: 0,
         }
@@ -698,17 +693,13 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     /// step.
     pub fn list(&mut self, is_last: bool) -> Vec<Load<T>> {
         self.sort();
-        let simple = |part: &CarriedLoad<T>| {
-            let load = part.load;
-            load.ends().map_or(load, |ends| load.between(ends))
-        };
         match is_last {
             // within the same memory
             true => {
                 let parts = std::mem::take(self).parts.into_iter();
-                parts.map(|(_, part)| simple(&part)).collect()
+                parts.map(|(_, part)| part.simple()).collect()
             }
-            false => self.parts.iter().map(|(_, part)| simple(part)).collect(),
+            false => self.parts.iter().map(|(_, part)| part.simple()).collect(),
         }
     }
 
@@ -854,9 +845,35 @@ fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, CarriedLoad<T>)]) {
     }
 }
 
+impl<T: Copy> CarriedLoad<T> {
+    /// A load of a step of its own.
+    pub fn of(load: &Load<T>) -> Self {
+        CarriedLoad {
+            load: *load,
+            end: 0.0,
+            step: 0,
+            replaced: false,
+        }
+    }
+
+    /// The load, without a ramp where it is constant.
+    pub fn simple(&self) -> Load<T> {
+        let load = self.load;
+        load.ends().map_or(load, |ends| load.between(ends))
+    }
+
+    /// Magnitude that a load ramps from that takes its place in a step: the one at the end of the step before.
+    pub fn reached(&self, context: StepContext) -> f64 {
+        match (self.step as usize == context.step, self.load.variation) {
+            (true, Variation::Ramp { from }) => from,
+            _ => self.end,
+        }
+    }
+}
+
 impl<T> CarriedLoad<T> {
     /// A load that reaches its magnitude from zero where it ramps.
-    fn new(
+    pub fn new(
         at: T,
         magnitude: f64,
         amplitude: Option<usize>,
@@ -881,7 +898,7 @@ impl<T> CarriedLoad<T> {
     }
 
     /// The same load, from another magnitude where it ramps.
-    fn rising_from(mut self, from: f64) -> CarriedLoad<T> {
+    pub fn rising_from(mut self, from: f64) -> CarriedLoad<T> {
         if let Variation::Ramp { .. } = self.load.variation {
             self.load.variation = Variation::Ramp { from };
         }
@@ -893,7 +910,8 @@ impl<T> CarriedLoad<T> {
         self.load.variation = Variation::Ramp { from: self.end };
     }
 
-    fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
+    /// Ends a step: the load keeps the magnitude it has reached, unless it follows the total time.
+    pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         let load = &mut self.load;
         let curve = match load.variation {
             Variation::Amplitude(index) => amplitudes.get(index),

@@ -6,7 +6,8 @@ use super::outline::{CardBlock, Outline};
 use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, Span};
 use crate::materials::{
-    Hencky, Law, NeoHooke, Ogden, Plane, Plastic, Polynomial, SmallStrainModuli, VolumeEnergy,
+    Expansion, Hencky, Law, NeoHooke, Ogden, Plane, Plastic, Polynomial, SmallStrainModuli,
+    VolumeEnergy,
 };
 use crate::model::{Damping, Material, Section};
 
@@ -30,6 +31,7 @@ struct Draft {
     law: Constant<Law>,
     density: Constant<f64>,
     damping: Damping,
+    expansion: Constant<Expansion>,
 }
 
 /// Density where none is given: static steps use none, and masses are volumes.
@@ -79,6 +81,7 @@ impl Drafts {
                 law: draft.law.given().unwrap_or(Law::elastic(0.0, 0.0)),
                 density: draft.density.given().unwrap_or(NO_DENSITY),
                 damping: draft.damping,
+                expansion: draft.expansion.given(),
             };
             if !draft.places.has_no_density {
                 hint_at_units(&material, draft.places.material, cx);
@@ -113,6 +116,43 @@ fn draft(
         law: law(block, cx),
         density,
         damping,
+        expansion: expansion(&block.parts_of("EXPANSION"), cx),
+    }
+}
+
+/// `alpha[, T]`, in rows of increasing temperatures, alpha being the mean since `ZERO`.
+fn expansion(cards: &[&Card], cx: &mut Context) -> Constant<Expansion> {
+    cx.only_once(cards);
+    let Some(card) = cards.first() else {
+        return Constant::Missing;
+    };
+    if card.faulty {
+        return Constant::Wrong;
+    }
+    let errors = cx.errors();
+    let zero = card
+        .value("ZERO")
+        .map_or(Some(0.0), |value| value.real(cx.d));
+    let mut table: Vec<[f64; 2]> = Vec::new();
+    for row in card.rows.iter() {
+        row.at_most(2, cx.d);
+        let alpha = row.real(0, "the coefficient of expansion", cx.d);
+        let temperature = row.real_or(1, 0.0, cx.d);
+        let (Some(alpha), Some(temperature)) = (alpha, temperature) else {
+            continue;
+        };
+        if table
+            .last()
+            .is_some_and(|[before, _]| temperature <= *before)
+        {
+            let message = "temperatures must grow from row to row";
+            cx.error(Code::MaterialRange, row.span_at(1), message);
+        }
+        table.push([temperature, alpha]);
+    }
+    match zero {
+        Some(zero) if cx.errors() == errors => Constant::Given(Expansion { zero, table }),
+        _ => Constant::Wrong,
     }
 }
 

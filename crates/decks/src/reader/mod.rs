@@ -36,6 +36,7 @@ mod sets;
 mod smoothing;
 mod steps;
 mod surfaces;
+mod temperatures;
 mod tied_sides;
 mod ties;
 
@@ -44,6 +45,7 @@ pub(crate) use steps::{
     CONTACT_MASS, FACTORIZATION, IMPACT, IMPACT_TIME, LANDING, LCP, SOLVER, TRUNCATION_ERROR,
     tolerance_of_factor,
 };
+pub(crate) use temperatures::carried_temperatures;
 
 use crate::deck::{self, Card, Deck};
 use crate::diagnostics::{Code, Diagnostics, Sources};
@@ -131,7 +133,13 @@ fn read(cx: &mut Context) -> Model {
         has_element: &mesh.has_element(),
     };
     let connectors = connectors::read(&outline, targets, cx);
-    let mut steps = steps::read(&outline, targets, (&surfaces, &contacts), guide, cx);
+    let initial_temperature = temperatures::initial(&outline, targets, cx);
+    let known = (
+        &surfaces,
+        contacts.as_slice(),
+        initial_temperature.as_slice(),
+    );
+    let mut steps = steps::read(&outline, targets, known, guide, cx);
     checks::density(&properties, mesh, &steps.all, cx);
     let at_start = (steps.at_start.as_slice(), &steps.supports);
     let velocity = boundary::initial_velocity(&outline, targets, at_start, cx);
@@ -162,6 +170,7 @@ fn read(cx: &mut Context) -> Model {
         equations,
         hinges,
         initial_velocity: velocity.values,
+        initial_temperature,
         steps: steps.all,
         rigid_bodies: bodies,
         point_masses: masses.free,
@@ -171,7 +180,7 @@ fn read(cx: &mut Context) -> Model {
     formulation::restrict(&mut model, cx);
     formulation::choose(&mut model, cx);
     contact::keep_arcs_for_discs(&mut model);
-    let all: [&dyn Fn(&mut Context); 11] = [
+    let all: [&dyn Fn(&mut Context); 12] = [
         &|cx| checks::hinges(&model, &hinge_places, cx),
         &|cx| contact::check_discs(&model, cx),
         &|cx| checks::axis(&model, &mesh_index.places, cx),
@@ -183,6 +192,7 @@ fn read(cx: &mut Context) -> Model {
         &|cx| checks::proportion(&model.steps, &outline.steps, guide, cx),
         &|cx| checks::overlap(&model, &mesh_index.places, cx),
         &|cx| checks::motion(&model, &outline.steps, cx),
+        &|cx| temperatures::check(&model, &properties.places, &outline, cx),
     ];
     for check in all {
         if !cx.d.has_errors() {

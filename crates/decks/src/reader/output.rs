@@ -17,7 +17,7 @@ const WRITTEN: &[&str] = &[
     "CF1", "CF2", "S", "PEEQ", "SP", "SP1", "SP2", "SP3", "PRESS", "E", "LE", "ENER", "ELSE",
     "ELKE", "EVOL", "CSTRESS", "CDISP", "CFORCE", "CSTATUS", "CDIS", "CSTR", "CELS", "CF", "CFN",
     "CFS", "CFT", "CNUM", "CFNM", "CFSM", "CFTM", "CPRESS", "COPEN", "CSLIP1", "ALLKE", "ALLSE",
-    "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL",
+    "ALLIE", "ALLWK", "ALLFD", "ALLVD", "ETOTAL", "NT", "NT11", "TEMP",
 ];
 
 /// Output requests of the deck so far.

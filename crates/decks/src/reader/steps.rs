@@ -9,6 +9,7 @@ use super::loads::{LoadHistories, Operation, StepContext};
 use super::outline::{Outline, StepCards};
 use super::output::{Histories, Requests};
 use super::surfaces::Surfaces;
+use super::temperatures::TemperatureHistory;
 use crate::deck::{Card, Line};
 use crate::diagnostics::{Code, shown};
 use crate::model::{
@@ -40,7 +41,7 @@ pub(crate) struct Steps {
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
-    (surfaces, contacts): (&Surfaces, &[Contact]),
+    (surfaces, contacts, temperatures): (&Surfaces, &[Contact], &[f64]),
     guide: Option<f64>,
     cx: &mut Context,
 ) -> Steps {
@@ -58,6 +59,7 @@ pub(crate) fn read(
         support_operation: Operation::default(),
         loads: LoadHistories::default(),
         interferences: Interferences::default(),
+        temperatures: TemperatureHistory::new(temperatures.to_vec()),
         requests: Requests::new(cx),
         nonlinear: false,
         start: 0.0,
@@ -102,6 +104,7 @@ struct StepReader<'a> {
     support_operation: Operation,
     loads: LoadHistories,
     interferences: Interferences,
+    temperatures: TemperatureHistory,
     requests: Requests,
     nonlinear: bool,
     start: f64,
@@ -164,6 +167,7 @@ impl StepReader<'_> {
             procedure,
             settings: self.settings,
             interferences: self.interferences.list(is_last),
+            temperatures: self.temperatures.list(),
             frames: self.requests.frames(self.start, increments.period),
             ..Step::new(increments)
         };
@@ -178,6 +182,7 @@ impl StepReader<'_> {
         self.supports.end_step(period, all);
         self.loads.end_step(period, self.start, all);
         self.interferences.end_step(period, self.start, all);
+        self.temperatures.end_step(period, self.start, all);
     }
 
     fn check_nonlinear(&mut self, head: &Card, cx: &mut Context) {
@@ -250,6 +255,7 @@ impl StepReader<'_> {
                     self.loads
                         .card(card, context, self.targets, self.surfaces, cx);
                 }
+                "TEMPERATURE" => self.temperatures.card(card, context, self.targets, cx),
                 "CONTACT INTERFERENCE" => {
                     let pairs = Pairs {
                         surfaces: self.surfaces,

@@ -159,7 +159,7 @@ pub(super) fn factorize_anew(
     solved: &Solved,
 ) -> Result<(), Cause> {
     let u1 = sum(&start.u, &solved.d);
-    let motion = (problem.integration).motion(start, &u1, &solved.equilibrium.u_theta);
+    let motion = (problem.integration).motion(start, &u1, solved.equilibrium.place());
     let closed = ClosedConstraints {
         acting: solved.contact.forces.acting().collect(),
         at: problem.configurations(&start.u, &u1),

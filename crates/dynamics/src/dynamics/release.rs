@@ -97,7 +97,10 @@ impl Releasing<'_, '_> {
     /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.14), Pn of the complementarity problem of the gaps.
     fn newton_step(&mut self, u: &[f64]) -> Option<Vec<f64>> {
         let (problem, end) = (self.problem, self.interval.end);
-        let motion = Motion::at(u, &self.end.internal);
+        let motion = Motion {
+            end: u,
+            ..self.end.motion()
+        };
         let internal = problem.elements.internal_force(motion).ok()?;
         let load = (problem.loads).at(end, u);
         let mut constraints = self.constraints(u);
@@ -153,13 +156,19 @@ impl Releasing<'_, '_> {
     /// give energy.
     fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
         let (elements, end) = (self.problem.elements, self.interval.end);
-        let before = elements.evaluate(&self.end.u, &self.end.internal);
+        let before = elements.evaluate(self.end.motion());
         let internal = (elements.update(Motion {
             start: Some(&self.end.u),
-            ..Motion::at(u, &self.end.internal)
+            end: u,
+            ..self.end.motion()
         }))
         .variables;
-        let after = elements.evaluate(u, &internal);
+        let at_rest = Motion {
+            end: u,
+            committed: &internal,
+            ..self.end.motion()
+        };
+        let after = elements.evaluate(at_rest);
         let both = before.iter().zip(&*after);
         let of_springs = elements.spring_energy(&self.end.u) - elements.spring_energy(u);
         let taken = both.map(|(b, a)| b.energy - a.energy).sum::<f64>() + of_springs;

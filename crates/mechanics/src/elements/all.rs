@@ -300,9 +300,9 @@ impl Elements {
         updated
     }
 
-    /// Strain energy, mean stress and mean strain of every element at displacements `u`, with the
-    /// internal variables there.
-    pub fn evaluate(&self, u: &[f64], variables: &[f64]) -> Arc<[ElementResult]> {
+    /// Strain energy, mean stress and mean strain of every element at the end of a motion, with the internal variables
+    /// there.
+    pub fn evaluate(&self, motion: Motion) -> Arc<[ElementResult]> {
         let mut results: Arc<[_]> = vec![ElementResult::default(); self.len()].into();
         let all = Arc::make_mut(&mut results);
         let mut write = |chunk: &dyn Chunk, of_chunk: Vec<ElementResult>| {
@@ -310,7 +310,7 @@ impl Elements {
                 all[element] = result;
             }
         };
-        let evaluate = |chunk: &dyn Chunk| chunk.evaluate(u, variables);
+        let evaluate = |chunk: &dyn Chunk| chunk.evaluate(motion);
         if self.is_worth_threads() {
             let all_chunks = self.chunks.par_iter();
             let of_chunks: Vec<_> = all_chunks.map(|chunk| evaluate(&**chunk)).collect();
@@ -322,6 +322,39 @@ impl Elements {
                 .for_each(|chunk| write(&**chunk, evaluate(&**chunk)));
         }
         results
+    }
+
+    /// Whether a material expands with its temperature.
+    pub fn expand(&self) -> bool {
+        self.chunks.iter().any(|chunk| chunk.expands())
+    }
+
+    /// Potential of the elements that expand at the end of a motion (force length): the energy that they store there and
+    /// what is dissipated on the way to it. What the internal force does of work at one temperature is its change.
+    ///
+    /// ```text
+    /// Phi(U; T) = min over z of W(U, z; T) + D(z)
+    /// ```
+    pub fn potential(&self, motion: Motion) -> f64 {
+        let mut variables = motion.committed.to_vec();
+        let mut potential = 0.0;
+        for chunk in self.chunks.iter().filter(|chunk| chunk.expands()) {
+            potential += chunk.update(motion, &mut variables);
+            let updated = Motion {
+                committed: &variables,
+                ..motion
+            };
+            let energies = chunk.evaluate(updated).into_iter();
+            potential += energies.map(|result| result.energy).sum::<f64>();
+        }
+        potential
+    }
+
+    /// Energy that the elements that expand store at the end of a motion, with the internal variables there (force length).
+    pub fn stored_by_expanding(&self, motion: Motion) -> f64 {
+        let expanding = self.chunks.iter().filter(|chunk| chunk.expands());
+        let results = expanding.flat_map(|chunk| chunk.evaluate(motion));
+        results.map(|result| result.energy).sum()
     }
 
     /// Internal force F of elements and springs at the end of a motion, or its energy-momentum form from start to

@@ -20,7 +20,8 @@ use super::results::{ElementResult, PointResult, ResultPoint, Sums};
 use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{
-    AnyLaw, Elastic, Lanes, LawInLanes, Number, PlaneLaw, StressAtPoints, Viscosity,
+    AnyLaw, Elastic, Expanded, Expansion, Lanes, LawInLanes, Number, Plane, PlaneLaw,
+    StressAtPoints, Viscosity,
 };
 use crate::model::Thickness;
 
@@ -72,11 +73,14 @@ pub trait Chunk: Send + Sync {
     /// an element has no force.
     fn determinants(&self, motion: Motion) -> Vec<f64>;
 
-    /// Strain energy, stress and strain of every element at displacements `u`.
-    fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult>;
+    /// Strain energy, stress and strain of every element at the end of a motion.
+    fn evaluate(&self, motion: Motion) -> Vec<ElementResult>;
 
-    /// Results of the points of an element at displacements `u`.
-    fn at_points(&self, place: usize, u: &[f64], variables: &[f64]) -> SmallVec<[PointResult; 9]>;
+    /// Results of the points of an element at the end of a motion.
+    fn at_points(&self, place: usize, motion: Motion) -> SmallVec<[PointResult; 9]>;
+
+    /// Whether the material expands with its temperature.
+    fn expands(&self) -> bool;
 
     /// Writes the internal variables at the end of a motion into those of all elements, and gives the energy dissipated on
     /// the way to them (force length).
@@ -109,6 +113,23 @@ impl VariableLayout {
     }
 }
 
+/// Thermal expansion of the elements of a chunk.
+struct Heating<const P: usize> {
+    expansion: Expansion,
+    plane: Plane,
+    /// Temperatures of the start of the analysis at the points of every block.
+    initial: Vec<[Lanes; P]>,
+}
+
+/// What the elements of a chunk are made of.
+pub struct ChunkMaterial<'a> {
+    pub law: PlaneLaw,
+    pub viscosity: Option<Viscosity>,
+    /// How they expand, and the temperature of every node at the start of the analysis, none where it is zero.
+    pub expansion: Option<(Expansion, &'a [f64])>,
+    pub plane: Plane,
+}
+
 /// Elements of one shape, formulation and material.
 pub struct ShapeChunk<const N: usize, const P: usize, const HOOP: bool, S, F>
 where
@@ -128,6 +149,7 @@ where
     references: Vec<F::Reference>,
     law: PlaneLaw,
     viscosity: Option<Viscosity>,
+    heating: Option<Heating<P>>,
     layout: VariableLayout,
     /// Where the internal variables of the first element begin.
     first_variable: usize,
@@ -149,9 +171,15 @@ where
         of: &[[usize; N]],
         x: &[[f64; 2]],
         thickness: Thickness,
-        (law, viscosity): (PlaneLaw, Option<Viscosity>),
+        material: ChunkMaterial,
         first_variable: usize,
     ) -> Self {
+        let ChunkMaterial {
+            law,
+            viscosity,
+            expansion,
+            plane,
+        } = material;
         let mut nodes: Vec<usize> = of.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
@@ -194,7 +222,20 @@ where
                 viscous_tangent: viscous_tangent.as_ref(),
             })
         };
+        let heating = expansion.map(|(expansion, initial)| Heating {
+            expansion,
+            plane,
+            initial: firsts()
+                .map(|first| {
+                    temperatures::<S, N, P>(|a, lane| {
+                        let node = of[(first + lane).min(last)][a];
+                        initial.get(node).copied().unwrap_or_default()
+                    })
+                })
+                .collect(),
+        });
         ShapeChunk {
+            heating,
             references: firsts().zip(&blocks).map(reference).collect(),
             over_radius: match HOOP {
                 true => firsts().map(|first| over_radius(&places(first))).collect(),
@@ -207,7 +248,7 @@ where
             node_count,
             layout: VariableLayout {
                 of_points: F::POINTS * law.variables(),
-                own: F::own_variables(law.is_metal()),
+                own: F::own_variables(law.as_metal().is_some()),
             },
             first_variable,
             law,
@@ -295,18 +336,19 @@ where
         if !self.is_strained(motion) {
             return Positive::default();
         }
+        let is_for_each_law = F::FOR_EACH_LAW && !self.is_heated(motion);
         match (&self.law, viscosity) {
-            (PlaneLaw::SaintVenantKirchhoff(law), None) if F::FOR_EACH_LAW => {
+            (PlaneLaw::SaintVenantKirchhoff(law), None) if is_for_each_law => {
                 self.add_elastic(motion, &Elastic(law), &mut sums)
             }
-            (PlaneLaw::NeoHooke(law), None) if F::FOR_EACH_LAW => {
+            (PlaneLaw::NeoHooke(law), None) if is_for_each_law => {
                 self.add_elastic(motion, &Elastic(law), &mut sums)
             }
             _ => {
                 let mut positive = Positive::default();
                 for number in 0..self.blocks.len() {
                     let at = self.moved(number, motion);
-                    let law = self.law_of(number, motion.committed);
+                    let law = self.law_of(number, motion);
                     let of_block = match viscosity {
                         Some(viscosity) => Self::force(&at, viscosity),
                         None => Self::force(&at, law.any()),
@@ -346,13 +388,55 @@ where
         F::results::<S>(at, law)
     }
 
-    /// The law of a block, with the variables of its points among those of all elements.
-    fn law_of<'a>(&'a self, block: usize, variables: &'a [f64]) -> LawInLanes<'a> {
-        self.law.in_lanes(self.of_points(variables, block))
+    /// The law of a block in a motion, with the variables of its points among those of all elements.
+    fn law_of<'a>(&'a self, block: usize, motion: Motion<'a>) -> LawInLanes<'a> {
+        self.law_with(block, motion, self.of_points(motion.committed, block))
     }
 
-    /// Whether some nodes move otherwise than the others, or along the radius, or a material remembers more than its strain.
-    /// If not, no element is strained, as in bodies that are fixed.
+    /// The law of a block at the temperatures of a motion, with variables of its points.
+    fn law_with<'a>(
+        &'a self,
+        block: usize,
+        motion: Motion,
+        variables: [&'a [f64]; LANES],
+    ) -> LawInLanes<'a> {
+        match &self.heating {
+            Some(heating) if !motion.temperature.is_empty() => {
+                let strains = self.thermal_strains(heating, block, motion.temperature);
+                let law = Expanded::new(&self.law, variables, heating.plane, &strains);
+                LawInLanes::Expanded(Box::new(law))
+            }
+            _ => self.law.in_lanes(variables),
+        }
+    }
+
+    /// Thermal strains at the points of a block.
+    fn thermal_strains(
+        &self,
+        heating: &Heating<P>,
+        block: usize,
+        temperature: &[f64],
+    ) -> [Lanes; P] {
+        let nodes = &self.blocks[block].nodes;
+        let at_points =
+            temperatures::<S, N, P>(|a, lane| temperature[self.nodes[usize::from(nodes[a][lane])]]);
+        let initial = &heating.initial[block];
+        from_fn(|p| {
+            Lanes::of_lanes(|lane| {
+                heating
+                    .expansion
+                    .strain(initial[p].lane(lane), at_points[p].lane(lane))
+            })
+        })
+    }
+
+    /// Whether the elements expand in a motion.
+    fn is_heated(&self, motion: Motion) -> bool {
+        self.heating.is_some() && !motion.temperature.is_empty()
+    }
+
+    /// Whether some nodes move otherwise than the others, or along the radius, or a material remembers more than its strain or is
+    /// heated. If not, no element is strained, as in bodies that are fixed.
     fn is_strained(&self, motion: Motion) -> bool {
         let differs = |u: &[f64]| {
             let u = u.as_chunks::<2>().0;
@@ -361,7 +445,10 @@ where
             let is_wider = HOOP && first[0] != 0.0;
             is_wider || others.any(|u| u[0] - first[0] != 0.0 || u[1] - first[1] != 0.0)
         };
-        self.layout.of_points > 0 || differs(motion.end) || motion.start.is_some_and(differs)
+        self.layout.of_points > 0
+            || self.is_heated(motion)
+            || differs(motion.end)
+            || motion.start.is_some_and(differs)
     }
 
     /// Entries of a vector over all dofs at the nodes of a block.
@@ -385,7 +472,7 @@ where
 
     /// Writes the tangents of the elements of a block.
     fn write_tangents(&self, number: usize, sweep: &TangentSweep, tangents: &mut [f64]) {
-        let law = self.law_of(number, sweep.motion.committed);
+        let law = self.law_of(number, sweep.motion);
         let law: &AnyLaw<HOOP> = match &self.viscosity {
             Some(viscosity) if sweep.viscous => viscosity,
             _ => law.any(),
@@ -467,7 +554,7 @@ where
         for number in 0..self.blocks.len() {
             let at = self.moved(number, motion);
             let least = at.least_determinant::<S, HOOP>();
-            let law = self.law_of(number, motion.committed);
+            let law = self.law_of(number, motion);
             let positive = Self::force(&at, law.any()).1;
             for lane in 0..self.elements_of(number).len() {
                 all.push(match positive.at(lane) {
@@ -479,11 +566,14 @@ where
         all
     }
 
-    fn evaluate(&self, u: &[f64], variables: &[f64]) -> Vec<ElementResult> {
-        let motion = Motion::at(u, variables);
+    fn expands(&self) -> bool {
+        self.heating.is_some()
+    }
+
+    fn evaluate(&self, motion: Motion) -> Vec<ElementResult> {
         let mut results = Vec::with_capacity(self.elements.len());
         for number in 0..self.blocks.len() {
-            let (at, law) = (self.moved(number, motion), self.law_of(number, variables));
+            let (at, law) = (self.moved(number, motion), self.law_of(number, motion));
             let (points, mut sums) = (Self::results(&at, law.any()), Sums::new());
             for (p, point) in points[..F::POINTS].iter().enumerate() {
                 sums.add::<HOOP>(p, law.any(), point, point.weight);
@@ -499,10 +589,9 @@ where
         results
     }
 
-    fn at_points(&self, place: usize, u: &[f64], variables: &[f64]) -> SmallVec<[PointResult; 9]> {
+    fn at_points(&self, place: usize, motion: Motion) -> SmallVec<[PointResult; 9]> {
         let (number, lane) = (place / LANES, place % LANES);
-        let at = self.moved(number, Motion::at(u, variables));
-        let law = self.law_of(number, variables);
+        let (at, law) = (self.moved(number, motion), self.law_of(number, motion));
         let points = Self::results(&at, law.any());
         let of = |p: usize| {
             let mut sums = Sums::new();
@@ -525,7 +614,8 @@ where
             let z0 = self.of_points(motion.committed, number);
             let mut z1 = z0.map(<[f64]>::to_vec);
             let mut own = at.own_variables.map(<[f64]>::to_vec);
-            let (law, with) = (self.law.in_lanes(z0), |z| self.law.in_lanes(z));
+            let with = |z| self.law_with(number, motion, z);
+            let law = with(z0);
             let of_block = F::update::<S>(&at, law.any(), with, (&mut z1, &mut own));
             for (lane, _) in self.elements_of(number).iter().enumerate() {
                 let first = self.first_variable + (LANES * number + lane) * count;
@@ -602,6 +692,23 @@ fn add_force<const N: usize, const P: usize, R>(
         }
     }
     *positive
+}
+
+/// Temperatures at the points, from those of the nodes of every element. Linear elements have the mean of theirs, quadratic
+/// ones the linear or bilinear field between their corners: strains of the displacements are of these degrees.
+fn temperatures<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
+    of: impl Fn(usize, usize) -> f64,
+) -> [Lanes; P] {
+    let mut nodal: [Lanes; N] = from_fn(|a| Lanes::of_lanes(|lane| of(a, lane)));
+    let corners = if N > 4 { N / 2 } else { N };
+    if N == corners {
+        let sum = nodal.iter().fold(Lanes::ZERO, |sum, value| sum + *value);
+        return [sum * (1.0 / N as f64); P];
+    }
+    for side in 0..corners {
+        nodal[corners + side] = (nodal[side] + nodal[(side + 1) % corners]) * 0.5;
+    }
+    from_fn(|p| S::value(p, &nodal))
 }
 
 /// Place of a node in the list of a chunk, which has at most [`MAX_CHUNK`] elements.

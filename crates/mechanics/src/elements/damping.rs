@@ -81,6 +81,7 @@ mod tests {
             law,
             density: 1.5,
             damping,
+            expansion: None,
         });
         model.sections.push(Section {
             material: 0,

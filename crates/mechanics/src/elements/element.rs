@@ -4,7 +4,7 @@
 use nalgebra::SMatrix;
 
 use super::MAX_NODES;
-use super::chunk::{Chunk, ShapeChunk};
+use super::chunk::{Chunk, ChunkMaterial, ShapeChunk};
 use super::dilatation::Dilatation;
 use super::displacement::Displacement;
 use super::enhanced_strain::EnhancedStrain;
@@ -104,7 +104,13 @@ impl ChunkParts<'_> {
             &nodes,
             &mesh.coordinates,
             Thickness::new(element_type, section.thickness),
-            (self.law, viscosity),
+            ChunkMaterial {
+                law: self.law,
+                viscosity,
+                expansion: (material.expansion.clone())
+                    .map(|expansion| (expansion, self.model.initial_temperature.as_slice())),
+                plane: element_type.plane,
+            },
             self.first_variable,
         ))
     }
@@ -240,6 +246,7 @@ mod tests {
                 law: Law::elastic(1.0, 0.25),
                 density: 3.0,
                 damping: Damping::default(),
+                expansion: None,
             }],
             sections: vec![Section {
                 material: 0,

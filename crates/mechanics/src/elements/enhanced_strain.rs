@@ -429,9 +429,11 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         let (enhanced, strains, tangent_at): (_, [Strains<Lanes>; N], [Strains<Lanes>; N]);
         match self.at.motion {
             BlockMotion::At(_) => {
-                (_, _, enhanced) = solved(&compatible.end);
+                let (end, alpha, e1) = solved(&compatible.end);
+                enhanced = e1;
                 strains = from_fn(|p| Strains::At(strain(&enhanced[p])));
                 tangent_at = strains;
+                solutions = Some((None, (end, alpha)));
             }
             BlockMotion::Between(..) if self.law.is_viscous() => {
                 let end = self.measured(&compatible.end);
@@ -449,7 +451,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
                 tangent_at = from_fn(|p| Strains::At(strain(&enhanced[p])));
                 let ends = [(&start, &alpha0), (&end, &alpha1)];
                 work = Some(self.energy_change(ends, &compatible.change, ALL));
-                solutions = Some([(start, alpha0), (end, alpha1)]);
+                solutions = Some((Some((start, alpha0)), (end, alpha1)));
             }
         }
         let of_material: [SymmetricLanes; N] = from_fn(|p| self.law.stress_at(p, &tangent_at[p]));
@@ -514,8 +516,8 @@ struct States<const A: usize> {
     /// Whether det F is positive, and the local solution found.
     positive: Positive,
     compatible: Compatible,
-    /// Strains at the start and at the end of an increment of a material that stores energy.
-    solutions: Option<[(Measured, Alpha<A>); 2]>,
+    /// Strains at the start, between two configurations, and at the end of a motion of a material that stores energy.
+    solutions: Option<(Option<(Measured, Alpha<A>)>, (Measured, Alpha<A>))>,
 }
 
 impl<const A: usize> States<A> {
@@ -773,7 +775,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         for p in 0..N {
             dissipated += states.at(p).update(p, law, z1) * at.block.volume[p];
         }
-        let Some([(start, alpha0), (end, alpha1)]) = &states.solutions else {
+        let Some((start, (end, alpha1))) = &states.solutions else {
             return dissipated;
         };
         let (mut alpha, has_flown) = (*alpha1, dissipated.0.map(|dissipated| dissipated != 0.0));
@@ -788,9 +790,14 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
             for lane in (0..LANES).filter(|&lane| has_flown[lane] && is_found(lane)) {
                 (0..A).for_each(|k| alpha[k].0[lane] = flown[k].0[lane]);
             }
-            let stored = after.stored(end, &alpha) - before.stored(start, alpha0);
-            let work = states.work::<HOOP>(&at.block.volume);
-            dissipated = (work - stored).where_kept(|lane| has_flown[lane]);
+            let stored = after.stored(end, &alpha);
+            let potential = match start {
+                Some((start, alpha0)) => {
+                    before.stored(start, alpha0) + states.work::<HOOP>(&at.block.volume)
+                }
+                None => after.stored(end, alpha1) + dissipated,
+            };
+            dissipated = (potential - stored).where_kept(|lane| has_flown[lane]);
         }
         for (lane, own) in own.iter_mut().enumerate() {
             let alpha = alpha.iter().map(|alpha| alpha.0[lane]);

@@ -32,6 +32,8 @@ pub struct Motion<'a> {
     pub committed: &'a [f64],
     /// The increment in which damping acts; without it there is none.
     pub increment: Option<Increment<'a>>,
+    /// Temperature of every node at which the materials are evaluated; without any it is that of the start of the analysis.
+    pub temperature: &'a [f64],
 }
 
 /// What of the tangents of the elements a matrix is assembled from.
@@ -52,6 +54,15 @@ impl<'a> Motion<'a> {
             end,
             committed,
             increment: None,
+            temperature: &[],
+        }
+    }
+
+    /// The same at temperatures of the nodes.
+    pub fn heated(self, temperature: &'a [f64]) -> Self {
+        Motion {
+            temperature,
+            ..self
         }
     }
 }

@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use super::all::Elements;
 use super::mean_gradient::{logarithmic_of, logarithmic_strain};
+use super::motion::Motion;
 use super::results::{ElementResult, PointResult};
 use super::shapes::{CORNERS, DEGREE_5, GAUSS};
 use crate::model::Shape;
@@ -48,13 +49,13 @@ impl LocalResult {
 pub type LocalResults = SmallVec<[LocalResult; 9]>;
 
 impl Elements {
-    /// Results at the integration points of an element at displacements `u`, with the internal variables there; zero in
+    /// Results at the integration points of an element at the end of a motion, with the internal variables there; zero in
     /// elements of rigid bodies.
-    pub fn at_points(&self, element: usize, u: &[f64], variables: &[f64]) -> LocalResults {
+    pub fn at_points(&self, element: usize, motion: Motion) -> LocalResults {
         let Some((chunk, place)) = self.chunk_of(element) else {
             return SmallVec::from_elem(LocalResult::default(), self.points(element));
         };
-        let points = chunk.at_points(place, u, variables);
+        let points = chunk.at_points(place, motion);
         let local = |PointResult { result, gradient }: PointResult| LocalResult {
             logarithmic_strain: logarithmic_strain(&Matrix2::from(gradient).transpose()),
             logarithmic_around: logarithmic_of(result.strain_around),
@@ -64,8 +65,8 @@ impl Elements {
     }
 
     /// Results at the nodes of an element: those of the points by the linear or bilinear field that is nearest to them.
-    pub fn at_nodes(&self, element: usize, u: &[f64], variables: &[f64]) -> LocalResults {
-        let points = self.at_points(element, u, variables);
+    pub fn at_nodes(&self, element: usize, motion: Motion) -> LocalResults {
+        let points = self.at_points(element, motion);
         let (shape, nodes) = (self.shape(element), self.nodes(element).len());
         let at_node = |node: usize| {
             let factor = |(p, point)| (share(shape, points.len(), node, p), point);
@@ -104,8 +105,8 @@ impl ElementNodes {
 
     /// Results at the nodes, one after the other: plain means of the elements at a node, whose weights are positive
     /// whatever the shape.
-    pub fn results(&self, all: &Elements, u: &[f64], variables: &[f64]) -> Vec<LocalResult> {
-        let of = |&element: &usize| all.at_nodes(element, u, variables);
+    pub fn results(&self, all: &Elements, motion: Motion) -> Vec<LocalResult> {
+        let of = |&element: &usize| all.at_nodes(element, motion);
         let own: Vec<LocalResult> = self.elements.iter().flat_map(of).collect();
         let mean = |places: &Vec<usize>| {
             let part = 1.0 / places.len() as f64;

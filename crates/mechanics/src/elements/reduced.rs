@@ -188,12 +188,15 @@ impl<'a, const M: usize> Moved<'a, M> {
                 (amplitudes, [change.start, change.end])
             }
         };
-        let stiffness = match law.is_viscous() {
-            true => &one.viscous_stiffness,
-            false => &one.stiffness,
+        let mut stiffness = match law.is_viscous() {
+            true => one.viscous_stiffness,
+            false => one.stiffness,
         };
+        if let Some(factor) = law.stiffness_factor() {
+            stiffness = stiffness.map(|row| row.map(|k| k * factor));
+        }
         let metals = from_fn(|lane| law.metal(lane));
-        let potential = HourglassPotential::new(*stiffness, &metals, &at.own_variables);
+        let potential = HourglassPotential::new(stiffness, &metals, &at.own_variables);
         Moved {
             modes: ModesInMotion::new(potential, metals, one.volume, &strains, &amplitudes),
             deformation,

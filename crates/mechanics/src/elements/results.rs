@@ -258,7 +258,7 @@ impl ElementResult {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::elements::Elements;
+    use crate::elements::{Elements, Motion};
     use crate::materials::Law;
     use crate::model::{Damping, Element, ElementType, Material, Mesh, Model, Section};
 
@@ -276,6 +276,7 @@ mod tests {
             law: Law::elastic(100.0, 0.25),
             density: 1.0,
             damping: Damping::default(),
+            expansion: None,
         };
         Model {
             mesh: Mesh {
@@ -293,7 +294,7 @@ mod tests {
     }
 
     fn evaluate(model: &Model, u: &[f64]) -> Vec<ElementResult> {
-        Elements::new(model).evaluate(u, &[]).to_vec()
+        Elements::new(model).evaluate(Motion::at(u, &[])).to_vec()
     }
 
     #[test]

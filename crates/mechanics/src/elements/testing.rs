@@ -5,9 +5,11 @@ use nalgebra::{DMatrix, DVector, Matrix2};
 use super::enhanced_strain::alternating;
 use super::shapes::tests::{QUAD8, TRI6};
 use super::{ElementResult, Elements, Motion, TangentPart, Updated};
-use crate::materials::{Hencky, Law, NeoHooke, Ogden, Plastic, SmallStrainModuli, VolumeEnergy};
+use crate::materials::{
+    Expansion, Hencky, Law, NeoHooke, Ogden, Plastic, SmallStrainModuli, VolumeEnergy,
+};
 use crate::model::{
-    Damping, Element, ElementType, Formulation, Material, Mesh, Model, Section, Shape,
+    Damping, Element, ElementType, Formulation, Material, Mesh, Model, Plane, Section, Shape,
 };
 
 /// Corners of a distorted quadrilateral.
@@ -22,6 +24,8 @@ pub(super) struct Sample {
     pub x: Vec<[f64; 2]>,
     pub model: Model,
     elements: Elements,
+    /// Temperatures of its nodes; none where it does not expand.
+    temperature: Vec<f64>,
 }
 
 /// Steel and rubber.
@@ -72,12 +76,22 @@ fn displacements(n: usize, seed: usize) -> DVector<f64> {
     DVector::from_fn(2 * n, |k, _| value(k))
 }
 
+/// Samples of all named types with all laws, at temperatures that differ from node to node.
+fn for_each_heated_sample(mut check: impl FnMut(&Sample)) {
+    for_each_kind(|element_type, law| {
+        check(&Sample::new(element_type, law).heated(|node| 80.0 - 35.0 * node as f64));
+    });
+}
+
 /// Samples of all named types with all laws.
 fn for_each_sample(mut check: impl FnMut(&Sample)) {
+    for_each_kind(|element_type, law| check(&Sample::new(element_type, law)));
+}
+
+/// All named types with all laws.
+fn for_each_kind(mut check: impl FnMut(ElementType, Law)) {
     for element_type in ElementType::NAMED {
-        for law in laws() {
-            check(&Sample::new(element_type, law));
-        }
+        laws().into_iter().for_each(|law| check(element_type, law));
     }
 }
 
@@ -109,6 +123,7 @@ impl Sample {
             law,
             density: 3.0,
             damping,
+            expansion: None,
         });
         model.sections.push(Section {
             material: 0,
@@ -129,7 +144,24 @@ impl Sample {
             x,
             elements: Elements::new(&model),
             model,
+            temperature: Vec::new(),
         }
+    }
+
+    /// The same element of a material that expands by 1e-3 a degree, at temperatures of its nodes.
+    fn heated(mut self, temperature: impl Fn(usize) -> f64) -> Self {
+        self.model.materials[0].expansion = Some(Expansion {
+            zero: 0.0,
+            table: vec![[0.0, 1e-3]],
+        });
+        self.elements = Elements::new(&self.model);
+        self.temperature = (0..self.x.len()).map(temperature).collect();
+        self
+    }
+
+    /// The element at displacements.
+    fn at<'a>(&'a self, u: &'a DVector<f64>, committed: &'a [f64]) -> Motion<'a> {
+        Motion::at(u.as_slice(), committed).heated(&self.temperature)
     }
 
     fn displacements(&self, seed: usize) -> DVector<f64> {
@@ -156,22 +188,22 @@ impl Sample {
     }
 
     pub fn force_at(&self, u: &DVector<f64>) -> DVector<f64> {
-        self.force(Motion::at(u.as_slice(), &self.elements.initial_variables()))
+        self.force(self.at(u, &self.elements.initial_variables()))
     }
 
     fn force_between(&self, u0: &DVector<f64>, u1: &DVector<f64>) -> DVector<f64> {
         let none = self.elements.initial_variables();
-        self.force(between([u0, u1], &none))
+        self.force(between([u0, u1], &none).heated(&self.temperature))
     }
 
     pub fn energy(&self, u: &DVector<f64>) -> f64 {
         let none = self.elements.initial_variables();
-        self.elements.evaluate(u.as_slice(), &none)[0].energy
+        self.elements.evaluate(self.at(u, &none))[0].energy
     }
 
     pub fn tangent(&self, u: &DVector<f64>) -> DMatrix<f64> {
         let none = self.elements.initial_variables();
-        let k = self.elements.tangent(0, Motion::at(u.as_slice(), &none));
+        let k = self.elements.tangent(0, self.at(u, &none));
         DMatrix::from_vec(u.len(), u.len(), k)
     }
 }
@@ -193,7 +225,7 @@ fn moved(u: &DVector<f64>, j: usize, by: f64) -> DVector<f64> {
 
 #[test]
 fn the_force_is_the_derivative_of_the_energy_and_the_tangent_that_of_the_force() {
-    for_each_sample(|sample| {
+    let check = |sample: &Sample| {
         let (name, u, h) = (sample.element_type, sample.displacements(5), 1e-6);
         let (force, k) = (sample.force_at(&u), sample.tangent(&u));
         for j in 0..u.len() {
@@ -210,12 +242,14 @@ fn the_force_is_the_derivative_of_the_energy_and_the_tangent_that_of_the_force()
             assert!(error < 1e-7 * k.amax(), "{name} {j}: {error}");
         }
         assert!((&k - k.transpose()).amax() == 0.0, "{name}");
-    });
+    };
+    for_each_sample(check);
+    for_each_heated_sample(check);
 }
 
 #[test]
 fn between_two_configurations_the_force_does_the_work_of_the_energy() {
-    for_each_sample(|sample| {
+    let check = |sample: &Sample| {
         for size in [1.0, 1e-3, 1e-6] {
             let (name, u0) = (sample.element_type, sample.displacements(5) * 0.3);
             let u1 = &u0 + sample.displacements(11) * (0.3 * size);
@@ -241,7 +275,9 @@ fn between_two_configurations_the_force_does_the_work_of_the_energy() {
                 "{name} {sums:?}"
             );
         }
-    });
+    };
+    for_each_sample(check);
+    for_each_heated_sample(check);
 }
 
 #[test]
@@ -301,7 +337,7 @@ fn a_homogeneous_deformation_has_the_same_energy_stress_and_force_in_every_formu
             let u = exact.homogeneous(f);
             let [a, b] = [&found, &exact].map(|sample| {
                 let none = sample.elements.initial_variables();
-                sample.elements.evaluate(u.as_slice(), &none)[0]
+                sample.elements.evaluate(sample.at(&u, &none))[0]
             });
             let is_reduced = element_type.is_quadratic() && found.elements.points(0) == 4;
             // fewer points do not integrate curved sides exactly
@@ -416,7 +452,8 @@ fn check_metal(
             dissipated,
         } = elements.update(motion);
         let work = sample.force(motion).dot(&(&u1 - &u0));
-        let energy = |z: &[f64], u: &DVector<f64>| elements.evaluate(u.as_slice(), z)[0].energy;
+        let energy =
+            |z: &[f64], u: &DVector<f64>| elements.evaluate(Motion::at(u.as_slice(), z))[0].energy;
         let change = energy(&variables, &u1) - energy(&z, &u0) + dissipated;
         assert!(dissipated >= 0.0, "{name} {step}");
         assert!(
@@ -451,6 +488,111 @@ fn metals_keep_their_force_and_their_energy_when_an_increment_is_committed() {
                 let dissipated = check_metal(&sample, |part| &d * part, (20, most));
                 assert!(dissipated > 0.0, "{element_type}");
             }
+        }
+    }
+}
+
+#[test]
+fn a_body_that_may_expand_has_no_stress_at_any_temperature() {
+    // theta = 1 + 1e-3 * 120 in all directions; plane strain holds the thickness
+    for_each_kind(|element_type, law| {
+        if element_type.plane == Plane::Strain {
+            return;
+        }
+        let sample = Sample::new(element_type, law).heated(|_| 120.0);
+        let u = sample.homogeneous(Matrix2::identity() * 1.12);
+        let none = sample.elements.initial_variables();
+        let result = sample.elements.evaluate(sample.at(&u, &none))[0];
+        let stress = result
+            .stress
+            .map(f64::abs)
+            .into_iter()
+            .fold(result.across.abs(), f64::max);
+        assert!(
+            stress < 1e-11 && sample.force_at(&u).amax() < 1e-11,
+            "{element_type} {stress}"
+        );
+        assert!(
+            result.energy.abs() < 1e-24,
+            "{element_type} {}",
+            result.energy
+        );
+    });
+}
+
+#[test]
+fn plane_strain_holds_the_thermal_expansion_across() {
+    // free in the plane: sigma_33 = -E alpha T at small strains, the strain in the plane (1 + nu) alpha T
+    let (young, nu, t): (f64, f64, f64) = (1000.0, 0.3, 1e-4);
+    for element_type in ElementType::NAMED {
+        if element_type.plane != Plane::Strain {
+            continue;
+        }
+        for law in [Law::elastic(young, nu), laws()[3].clone(), metal(0.0)] {
+            let sample = Sample::new(element_type, law).heated(|_| t);
+            let u = sample.homogeneous(Matrix2::identity() * (1.0 + (1.0 + nu) * 1e-3 * t));
+            let none = sample.elements.initial_variables();
+            let result = sample.elements.evaluate(sample.at(&u, &none))[0];
+            let size = young * 1e-3 * t;
+            assert!(
+                (result.across + size).abs() < 1e-6 * size,
+                "{element_type} {}",
+                result.across
+            );
+            assert!(
+                result.stress.iter().all(|s| s.abs() < 1e-6 * size),
+                "{element_type}"
+            );
+        }
+    }
+}
+
+/// A metal that is drawn, bent and heated at once: in every increment the work of the force halfway and that of the
+/// temperature are what is stored and dissipated.
+#[test]
+fn heated_metals_keep_their_energy() {
+    for element_type in ElementType::NAMED {
+        for kinematic in [0.0, 0.5] {
+            let sample = Sample::new(element_type, metal(kinematic)).heated(|_| 0.0);
+            let elements = &sample.elements;
+            let d = DVector::from_fn(2 * sample.x.len(), |k, _| {
+                let (a, i) = (k / 2, k % 2);
+                let (x, side) = (sample.x[a], if a % 2 == 0 { 0.02 } else { -0.02 });
+                [0.03 * x[0] + side, -0.01 * x[1] + side / 3.0][i]
+            });
+            let temperature = |part: f64| -> Vec<f64> {
+                let own = (0..sample.x.len()).map(|a| (30.0 - 9.0 * a as f64) * (7.0 * part).sin());
+                own.collect()
+            };
+            let (mut z, mut total) = (elements.initial_variables(), 0.0);
+            for step in 0..12 {
+                let parts = [0.0, 0.5, 1.0].map(|k| (f64::from(step) + k) / 12.0);
+                let [t0, halfway, t1] = parts.map(temperature);
+                let [u0, u1] = [parts[0], parts[2]].map(|part| &d * part);
+                let at = |u: &'_ DVector<f64>, t: &[f64]| {
+                    elements.potential(Motion::at(u.as_slice(), &z).heated(t))
+                };
+                let stored = |u: &DVector<f64>, z: &[f64], t: &[f64]| {
+                    elements.stored_by_expanding(Motion::at(u.as_slice(), z).heated(t))
+                };
+                let start = stored(&u0, &z, &t0);
+                let heat = at(&u1, &t1) - at(&u1, &halfway) + at(&u0, &halfway) - start;
+                let force = sample.force(between([&u0, &u1], &z).heated(&halfway));
+                let Updated {
+                    variables,
+                    dissipated,
+                } = elements.update(Motion::at(u1.as_slice(), &z).heated(&t1));
+                let change = stored(&u1, &variables, &t1) - start + dissipated;
+                let work = force.dot(&(&u1 - &u0));
+                let scale = work.abs() + heat.abs();
+                assert!(dissipated >= 0.0, "{element_type} {step}");
+                assert!(
+                    (work + heat - change).abs() < 1e-9 * scale,
+                    "{element_type} {kinematic} {step}: {work} {heat} {change}"
+                );
+                (z, total) = (variables, total + dissipated);
+            }
+            assert!(total > 0.0, "{element_type}");
         }
     }
 }
@@ -528,7 +670,7 @@ fn a_uniform_stretch_of_a_ring_has_the_stress_of_the_law() {
         let sample = Sample::new(element_type, rubber());
         let u = sample.homogeneous(Matrix2::identity() * 1.1);
         let none = sample.elements.initial_variables();
-        let result = sample.elements.evaluate(u.as_slice(), &none)[0];
+        let result = sample.elements.evaluate(sample.at(&u, &none))[0];
         let p = 2.0 * (1.1_f64.powi(3) - 1.0) / 2e-3;
         for stress in [result.stress[0], result.stress[1], result.across] {
             assert!((stress - p).abs() < 1e-11 * p, "{stress} {p}");
@@ -578,7 +720,10 @@ fn elements_have_among_others_what_they_have_alone() {
             let z = all.initial_variables();
             let motion = between([&u0, &u1], &z);
             let force = all.internal_force(motion).expect("not turned inside out");
-            let (updated, results) = (all.update(motion), all.evaluate(u1.as_slice(), &z));
+            let (updated, results) = (
+                all.update(motion),
+                all.evaluate(Motion::at(u1.as_slice(), &z)),
+            );
             let mut tangents = vec![Vec::new(); 3];
             let add = |element: usize, k: &[f64]| tangents[element] = k.to_vec();
             all.for_each_tangent(motion, TangentPart::Whole, |_| true, add);
@@ -602,10 +747,10 @@ fn elements_have_among_others_what_they_have_alone() {
                 dissipated += of_one.dissipated;
                 assert_eq!(
                     results[element],
-                    alone.elements.evaluate(u1.as_slice(), &none)[0]
+                    alone.elements.evaluate(alone.at(&u1, &none))[0]
                 );
                 let at_points = |e: &Elements, at: usize, u: &DVector<f64>, z: &[f64]| {
-                    let points = e.at_points(at, u.as_slice(), z);
+                    let points = e.at_points(at, Motion::at(u.as_slice(), z));
                     points.iter().map(|p| p.result).collect::<Vec<_>>()
                 };
                 let found = at_points(&all, element, &among_others(&u1, element), &z);
@@ -628,7 +773,7 @@ fn principal_strain_by_hand() {
     let sample = Sample::new(ElementType::CPE4, Law::elastic(1000.0, 0.3));
     let principal_strain = |f: Matrix2<f64>| {
         let u = sample.homogeneous(f);
-        sample.elements.evaluate(u.as_slice(), &[])[0].principal_strain
+        sample.elements.evaluate(sample.at(&u, &[]))[0].principal_strain
     };
     // simple shear g: E = [[0, g/2], [g/2, g²/2]], turned by any angle
     let g = 0.3_f64;
@@ -656,7 +801,7 @@ fn homogeneous_deformation_by_hand() {
     assert!((sample.energy(&u) / volume - 68.209135).abs() < 1e-6);
     let p = Matrix2::new(380.769231, 226.442308, 183.173077, 73.557692);
     let sigma = p * f.transpose() / f.determinant();
-    let found = sample.elements.evaluate(u.as_slice(), &[])[0].stress;
+    let found = sample.elements.evaluate(sample.at(&u, &[]))[0].stress;
     for (found, exact) in found.iter().zip([sigma.m11, sigma.m22, sigma.m12]) {
         assert!((found - exact).abs() < 1e-5, "{found} {exact}");
     }

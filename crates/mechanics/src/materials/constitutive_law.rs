@@ -136,6 +136,11 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         StrainMeasure::Green
     }
 
+    /// Factor of the tangent at no strain, which the hourglass stiffness is made of; none where it is 1.
+    fn stiffness_factor(&self) -> Option<T> {
+        None
+    }
+
     /// The metal at the first point of an element.
     fn metal(&self, _lane: usize) -> Option<Metal<'_>> {
         None

@@ -12,9 +12,9 @@ use super::symmetric::{Symmetric, Tangent};
 #[cfg(any(test, feature = "testing"))]
 use super::yielding::Yielding;
 use super::{
-    Across, AnyLaw, Elastic, Flow, Hencky, LawCard, Metal, NeoHooke, Ogden, OneByOne, Plane,
-    PlanePlastic, PlaneSaintVenantKirchhoff, Plastic, Polynomial, SaintVenantKirchhoff,
-    SmallStrainModuli, StrainMeasure, StressAtPoints,
+    Across, AnyLaw, Elastic, Expanded, Flow, Hencky, LawCard, Metal, MetalLaw, NeoHooke, Ogden,
+    OneByOne, Plane, PlanePlastic, PlaneSaintVenantKirchhoff, Plastic, Polynomial,
+    SaintVenantKirchhoff, SmallStrainModuli, StrainMeasure, StressAtPoints,
 };
 
 /// Law of a material with the constants of the deck.
@@ -225,9 +225,12 @@ impl PlaneLaw {
         }
     }
 
-    /// Whether the law is that of a metal.
-    pub fn is_metal(&self) -> bool {
-        matches!(self, PlaneLaw::Plastic(_))
+    /// The law of a metal as one.
+    pub fn as_metal(&self) -> Option<&dyn MetalLaw> {
+        match self.kind() {
+            Kind::Elastic(_) => None,
+            Kind::Flow(law) => law.as_metal(),
+        }
     }
 }
 
@@ -239,6 +242,8 @@ pub enum LawInLanes<'a> {
     NeoHooke(Elastic<'a, NeoHooke>),
     /// A law that is evaluated for one element after the other.
     OneByOne(OneByOne<Committed<'a>>),
+    /// Any of these at temperatures.
+    Expanded(Box<Expanded<'a>>),
 }
 
 impl PlaneLaw {
@@ -261,6 +266,7 @@ impl LawInLanes<'_> {
             LawInLanes::SaintVenantKirchhoff(law) => law,
             LawInLanes::NeoHooke(law) => law,
             LawInLanes::OneByOne(law) => law,
+            LawInLanes::Expanded(law) => &**law,
         }
     }
 }
@@ -332,10 +338,7 @@ impl StressAtPoints for Committed<'_> {
     }
 
     fn metal(&self, _lane: usize) -> Option<Metal<'_>> {
-        let Kind::Flow(law) = self.law.kind() else {
-            return None;
-        };
-        law.as_metal().map(|law| Metal {
+        self.law.as_metal().map(|law| Metal {
             law,
             of_point: self.at(0),
         })

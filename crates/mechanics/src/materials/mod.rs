@@ -9,6 +9,7 @@
 //! of the deck, a [`PlaneLaw`] is the same in the plane of the elements.
 
 mod constitutive_law;
+mod expansion;
 mod hencky;
 mod hyperelastic;
 mod invariants;
@@ -33,6 +34,7 @@ pub mod yielding;
 pub use constitutive_law::{
     AnyLaw, BentTangent, Elastic, Flow, Metal, MetalLaw, OneByOne, StressAtPoints,
 };
+pub use expansion::{Expanded, Expansion};
 pub use hencky::Hencky;
 pub use hyperelastic::Hyperelastic;
 pub use invariants::{InvariantEnergy, VolumeEnergy};

@@ -20,7 +20,7 @@ mod tie;
 pub use crate::lcp::LcpMethod;
 pub use crate::linear::SolverChoice;
 pub use crate::materials::Plane;
-use crate::materials::{Law, SmallStrainModuli};
+use crate::materials::{Expansion, Law, SmallStrainModuli};
 pub use amplitude::{Amplitude, Curve, Signal, TimeBase};
 pub use connector::{Connector, ConnectorDirection, ConnectorLaw, ForceCurve};
 pub use contact::{
@@ -40,8 +40,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub use step::{
     BodyForce, CentrifugalForce, ContactChanges, ContactMass, Factorization, FormerFriction,
     Frames, FrictionChange, Impact, ImpactTime, Incrementation, Increments, Interference,
-    LandingRule, Load, PointLoad, Pressure, Procedure, Rate, RestartOutput, Scheme, Settings, Step,
-    Support, SupportMotion, Traction, Variation,
+    LandingRule, Load, NodeTemperature, PointLoad, Pressure, Procedure, Rate, RestartOutput,
+    Scheme, Settings, Step, Support, SupportMotion, Traction, Variation,
 };
 pub use thickness::Thickness;
 pub use tie::{Follows, Tie, TieReach, TiedLine, TiedNode, TiedSide};
@@ -77,6 +77,8 @@ pub struct Model {
     /// Initial velocity, `2 N` entries (length/time), then those of the bodies that turn, with their
     /// angular velocity (1/time).
     pub initial_velocity: Vec<f64>,
+    /// Temperature of every node at the start of the analysis (temperature); none where the deck gives none, which is zero.
+    pub initial_temperature: Vec<f64>,
     /// Steps in order.
     pub steps: Vec<Step>,
     /// Rigid surfaces with their reference nodes, and bodies that turn.
@@ -96,6 +98,7 @@ impl Model {
             law,
             density,
             damping: Damping::default(),
+            expansion: None,
         });
         self.sections.push(Section {
             material,
@@ -119,6 +122,20 @@ impl Model {
     /// What the deck calls an element: its number, or `Instance.number`.
     pub fn element_name(&self, element: usize) -> String {
         element_name(element, &self.mesh, &self.sets.instances)
+    }
+
+    /// Whether the deck gives temperatures.
+    pub fn has_temperatures(&self) -> bool {
+        let in_steps = self.steps.iter().any(|step| !step.temperatures.is_empty());
+        in_steps || !self.initial_temperature.is_empty()
+    }
+
+    /// Temperature of a node at the start of the analysis.
+    pub fn initial_temperature_of(&self, node: usize) -> f64 {
+        self.initial_temperature
+            .get(node)
+            .copied()
+            .unwrap_or_default()
     }
 
     /// Number of degrees of freedom: 2 of every node, and 4 of every rigid body.
@@ -336,6 +353,8 @@ pub struct Material {
     pub density: f64,
     /// Damping.
     pub damping: Damping,
+    /// Expansion with the temperature.
+    pub expansion: Option<Expansion>,
 }
 
 /// Damping of a material: none by default.

@@ -30,6 +30,8 @@ pub struct Step {
     pub tractions: Vec<Load<Traction>>,
     /// Overlaps that contacts allow, by contact.
     pub interferences: Vec<Load<Interference>>,
+    /// Temperatures, by increasing nodes, each at most once; others are those of the start of the analysis.
+    pub temperatures: Vec<Load<NodeTemperature>>,
     /// What it changes of the contacts.
     pub contacts: ContactChanges,
     /// When field frames are written.
@@ -51,6 +53,7 @@ impl Step {
             pressures: Vec::new(),
             tractions: Vec::new(),
             interferences: Vec::new(),
+            temperatures: Vec::new(),
             contacts: ContactChanges::default(),
             frames: Frames::default(),
         }
@@ -212,6 +215,11 @@ pub struct Load<T> {
 }
 
 impl<T> Load<T> {
+    /// Whether the magnitude changes linearly over the step.
+    pub fn ramps(&self) -> bool {
+        matches!(self.variation, Variation::Ramp { .. })
+    }
+
     /// Magnitudes at start and end of the step; none where an amplitude gives them.
     pub fn ends(&self) -> Option<[f64; 2]> {
         match self.variation {
@@ -290,6 +298,13 @@ pub struct Traction {
     pub face: Face,
     /// Direction; a unit vector.
     pub direction: [f64; 2],
+}
+
+/// Temperature of a node (magnitude: temperature).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeTemperature {
+    /// Index of the node.
+    pub node: usize,
 }
 
 /// Overlap that a contact allows (magnitude: length, the same for all its slave nodes; of a shrink fit the part of what

@@ -90,6 +90,7 @@ fn has_cause(step: &Step) -> bool {
         || acts(&step.pressures)
         || acts(&step.tractions)
         || !step.interferences.is_empty()
+        || !step.temperatures.is_empty()
 }
 
 fn acts<T>(loads: &[Load<T>]) -> bool {

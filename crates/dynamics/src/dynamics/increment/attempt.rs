@@ -243,7 +243,7 @@ impl DynamicAttempt<'_, '_> {
         } = self.passes;
         let workspace = &mut *self.passes.workspace;
         let fits = (workspace.stiffness).fits(interval.dt, length_tolerance(set));
-        let motion = (problem.integration).motion(start, u, &equilibrium.u_theta);
+        let motion = (problem.integration).motion(start, u, equilibrium.place());
         if fits && !factors.are_worn() {
             workspace.turn(problem, motion);
             return Ok(());

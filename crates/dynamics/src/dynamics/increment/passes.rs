@@ -14,10 +14,9 @@ use crate::contact::ConstraintSet;
 use crate::contact::tolerances::{KEPT_BEYOND_ENDS, KEPT_WHEN_SETTLED};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{
-    Equilibrium, HeldMotions, Interval, StartVelocity, StepProblem, Workspace, sum,
+    Committed, Equilibrium, HeldMotions, Interval, StartVelocity, StepProblem, Workspace, sum,
     write_difference, write_sum,
 };
-use crate::elements::{Motion, Updated};
 use crate::linear::larger;
 
 /// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
@@ -119,7 +118,7 @@ impl Passes<'_, '_> {
     fn move_supports(&mut self, pass: usize, vectors: &mut Vectors) {
         let (problem, integration) = (self.problem, &self.problem.integration);
         let Vectors {
-            equilibrium: Equilibrium { u_theta, .. },
+            equilibrium,
             u,
             d_p,
             support_force: force,
@@ -136,7 +135,7 @@ impl Passes<'_, '_> {
         force.clear();
         force.resize(u.len(), 0.0);
         if d_p.iter().any(|d| *d != 0.0) {
-            let motion = integration.motion(self.start, u, u_theta);
+            let motion = integration.motion(self.start, u, equilibrium.place());
             let product = (self.workspace).tangent_product(problem, motion, d_p);
             (force.iter_mut().zip(&product)).for_each(|(f, k)| *f = integration.theta2 * k);
         }
@@ -256,18 +255,18 @@ impl Passes<'_, '_> {
         let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);
         let a = equilibrium.acceleration.clone();
-        let Updated {
-            variables: internal,
-            dissipated,
-        } = (self.problem.elements).update(Motion {
-            start: Some(&self.start.u),
-            ..Motion::at(&u, &self.start.internal)
-        });
+        let temperature = self.problem.temperatures.at(self.interval.end);
+        let heating = [&equilibrium.temperature[..], &temperature];
+        let Committed {
+            updated,
+            thermal_work,
+        } = self.problem.commit(self.start, &u, heating);
         let end = State {
             u,
             v,
             a,
-            internal,
+            internal: updated.variables,
+            temperature,
             contact: contact.forces.closed.clone(),
         };
         Ok(Solved {
@@ -276,7 +275,8 @@ impl Passes<'_, '_> {
             equilibrium,
             contact,
             end,
-            material_dissipation: dissipated,
+            material_dissipation: updated.dissipated,
+            thermal_work,
             tangent,
             passes: Vec::new(),
             returned: Returned::default(),

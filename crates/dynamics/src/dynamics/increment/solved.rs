@@ -24,6 +24,8 @@ pub(crate) struct Solved {
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
+    /// Work of the temperature, and the larger of its parts.
+    pub thermal_work: [f64; 2],
     /// Displacement increment after the first pass, by the tangent of its start; where contact alone holds a body, after
     /// the first one with closed pairs.
     pub tangent: Vec<f64>,

@@ -248,7 +248,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         let at = problem.configurations(&start.u, u);
         let mut changes = (problem.loads).changes(interval.end, u);
         if is_new {
-            let motion = (problem.integration).motion(start, u, &equilibrium.u_theta);
+            let motion = (problem.integration).motion(start, u, equilibrium.place());
             let closed = ClosedConstraints {
                 acting: contact.acting().collect(),
                 at,

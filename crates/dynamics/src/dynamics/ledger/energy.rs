@@ -12,7 +12,7 @@ use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::increment::Solved;
 use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, difference, dot, sum};
-use crate::elements::{ElementResult, Motion, TangentPart};
+use crate::elements::{ElementResult, TangentPart};
 use crate::linear::{larger, largest};
 
 /// Normal work of contact in an increment up to which it is round-off, as a part of the largest energy
@@ -56,7 +56,7 @@ fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
     } = problem;
     let nodes: Vec<&[usize]> = elements.connected().collect();
     let mut most = vec![0.0; parts.of_parts().len()];
-    let motion = Motion::at(&start.u, &start.internal);
+    let motion = start.motion();
     elements.for_each_tangent(
         motion,
         TangentPart::Whole,
@@ -91,7 +91,7 @@ impl Ledger {
     pub fn new(problem: &StepProblem, start: &State) -> Self {
         let momentum = problem.mass.times(&start.v);
         let kinetic = dot(&start.v, &momentum) / 2.0;
-        let elements = problem.elements.evaluate(&start.u, &start.internal);
+        let elements = problem.elements.evaluate(start.motion());
         let strain = strain_energy(problem, start, &elements);
         let energy = Energy {
             kinetic,
@@ -210,7 +210,7 @@ impl Ledger {
 
     /// Takes in the energies and the momentum of the state at the end of an increment.
     fn enter_state(&mut self, problem: &StepProblem, end: &State) {
-        let elements = problem.elements.evaluate(&end.u, &end.internal);
+        let elements = problem.elements.evaluate(end.motion());
         problem.mass.write_product(&end.v, &mut self.momentum);
         self.enter_bodies(problem, end, &elements);
         self.elements = elements;
@@ -278,15 +278,16 @@ impl Ledger {
         };
         e.damping += damping;
         e.material_dissipation += solved.material_dissipation;
+        e.enter_thermal_work(solved.thermal_work);
         // (d - dt V_mid).M A, eq. (4.27)
         if problem.integration.backward_euler {
             let dissipation =
                 forces.euler_dissipation(&kinematics, &equilibrium.inertia, supports());
             e.numerical_dissipation += dissipation;
         }
-        // d.F - (W1 - W0) - d.F_d - int D dOmega, eq. (9.5)
+        // d.F + H - (W1 - W0) - d.F_d - int D dOmega, eq. (9.5), H being the work of the temperature
         e.numerical_dissipation += scheme_dissipation(
-            dot(d, &equilibrium.internal),
+            dot(d, &equilibrium.internal) + solved.thermal_work[0],
             [strain0, strain_before_rest(e.strain, &returned.release)],
             damping,
             solved.material_dissipation,
@@ -340,10 +341,12 @@ impl Ledger {
             *all += work;
             e.scale = larger(e.scale, all.abs());
         }
-        // d.(F0 + F1)/2 - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
+        // d.(F0 + F1)/2 + H - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;
+        e.enter_thermal_work(solved.thermal_work);
         e.numerical_dissipation += EndForces::trapezoid(&travel, [&before.internal, &end.internal])
+            + solved.thermal_work[0]
             - (e.strain - strain0)
             - dissipated
             - kept;
@@ -375,7 +378,7 @@ impl Ledger {
     fn close(&mut self, end: &State, contact_work0: f64) -> Result<Option<f64>, Cause> {
         let e = &mut self.energy;
         e.balance = balance(e, self.start);
-        for energy in [e.kinetic, e.strain, e.external_work] {
+        for energy in [e.kinetic, e.strain, e.external_work, e.thermal_work] {
             e.scale = larger(e.scale, energy.abs());
         }
         let work = e.normal_contact_work - contact_work0;
@@ -394,6 +397,7 @@ impl Ledger {
             ("the strain energy", e.strain, &state.u),
             ("the kinetic energy", e.kinetic, &state.v),
             ("the external work", e.external_work, &state.v),
+            ("the work of the temperature", e.thermal_work, &state.u),
             (
                 "the work of the contact forces",
                 e.normal_contact_work,

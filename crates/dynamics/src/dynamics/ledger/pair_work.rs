@@ -6,7 +6,6 @@ use crate::contact::{Constraint, ConstraintKey, SlaveKey, SurfaceParts};
 use crate::dynamics::increment::{ContactForces, PairReturn, Solved};
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, difference, dot};
-use crate::elements::Motion;
 
 /// Work of the contact forces of a pair in an increment.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -117,7 +116,7 @@ impl EndForces {
 
     /// Those of a state that no static increment has led to: what its internal force balances counts as load.
     pub fn at(problem: &StepProblem, state: &State) -> Result<Self, Cause> {
-        let motion = Motion::at(&state.u, &state.internal);
+        let motion = state.motion();
         let internal = problem.elements.internal_force(motion)?;
         Ok(EndForces {
             load: internal.clone(),

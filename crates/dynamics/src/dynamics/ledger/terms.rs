@@ -121,10 +121,11 @@ pub(super) fn impulse_support_work(
     supports.map(|p| v0[p] * reaction[p]).sum()
 }
 
-/// What the scheme dissipates (energy), of the work d.F of the internal force with that of damping:
+/// What the scheme dissipates (energy), of the work d.F of the internal force with that of damping, and of the work H of the
+/// temperature:
 ///
 /// ```text
-/// d.F - (W1 - W0) - d.F_d - int D dOmega      eq. (9.5)
+/// d.F + H - (W1 - W0) - d.F_d - int D dOmega      eq. (9.5)
 /// ```
 pub(super) fn scheme_dissipation(
     internal_work: f64,
@@ -184,12 +185,12 @@ pub(super) fn work_within(travel: &[f64], missing: &[f64], reactions: &[(usize, 
 /// The balance of all energies, `start` being T + W at the start of the analysis:
 ///
 /// ```text
-/// balance = T + W - (T + W)_start - external_work - normal_contact_work
+/// balance = T + W - (T + W)_start - external_work - thermal_work - normal_contact_work
 ///           + friction_dissipation + impact_loss - landing_return + release_loss
 ///           + damping + material_dissipation + numerical_dissipation      eq. (9.6)
 /// ```
 pub(super) fn balance(e: &Energy, start: f64) -> f64 {
-    e.kinetic + e.strain - start - e.external_work - e.normal_contact_work
+    e.kinetic + e.strain - start - e.external_work - e.thermal_work - e.normal_contact_work
         + e.friction_dissipation
         + e.impact_loss
         - e.landing_return

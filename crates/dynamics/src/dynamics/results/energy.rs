@@ -1,5 +1,7 @@
 //! Energies of the ledger. See docs/theory/impacts.md, Ledger.
 
+use crate::linear::larger;
+
 /// Energies; all but the first two are cumulative from the start of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Energy {
@@ -11,6 +13,8 @@ pub struct Energy {
     pub hourglass: f64,
     /// Work of the loads and of the supports' prescribed motion.
     pub external_work: f64,
+    /// Work of the temperature: energy that it brings into the materials that expand.
+    pub thermal_work: f64,
     /// Work of the normal contact forces.
     pub normal_contact_work: f64,
     /// Energy dissipated by friction.
@@ -34,4 +38,12 @@ pub struct Energy {
     pub scale: f64,
     /// Work that the round-off of the forces may have done in static steps.
     pub round_off: f64,
+}
+
+impl Energy {
+    /// Enters the work of the temperature in an increment, with the larger of its parts.
+    pub(crate) fn enter_thermal_work(&mut self, [work, part]: [f64; 2]) {
+        self.thermal_work += work;
+        self.scale = larger(self.scale, part);
+    }
 }

@@ -14,6 +14,8 @@ pub struct State {
     /// Internal variables of the materials at all integration points, element by element: accepted or
     /// dropped with the rest of the state.
     pub internal: Vec<f64>,
+    /// Temperature of every node of the mesh; none where the deck gives none.
+    pub temperature: Vec<f64>,
     /// The pairs that carry a force.
     pub contact: ClosedPairs,
 }

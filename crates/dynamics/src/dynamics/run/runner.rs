@@ -23,9 +23,9 @@ use crate::dynamics::results::{
 };
 use crate::dynamics::step::{
     ClosedConstraints, Discretization, Equilibrium, Interval, Seen, StepPlace, StepProblem,
-    TimePoint, Workspace,
+    TimePoint, Workspace, initial_temperatures,
 };
-use crate::elements::{Motion, most_strained};
+use crate::elements::most_strained;
 use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
@@ -172,6 +172,7 @@ impl<'m, 'o> Runner<'m, 'o> {
                 v: initial_velocity(discretization),
                 a: vec![0.0; model.dof_count()],
                 internal: elements.initial_variables(),
+                temperature: initial_temperatures(model),
                 contact: ClosedPairs::default(),
             },
             ledger: Ledger::default(),
@@ -587,7 +588,7 @@ impl<'m, 'o> Runner<'m, 'o> {
             out_of_balance: &solved.equilibrium.out_of_balance,
             held: &solved.held,
         };
-        let motion = Motion::at(&end.u, &end.internal);
+        let motion = end.motion();
         let stable = workspace.check_stability(problem, motion, &contact, solved.tells_stability);
         stable.map_err(|error| match problem.unsolvable(error) {
             Cause::Indefinite { node } => Cause::Unstable { node },

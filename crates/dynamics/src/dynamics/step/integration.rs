@@ -7,6 +7,17 @@ use crate::dynamics::results::State;
 use crate::elements::Motion;
 use crate::model::{Procedure, Scheme, Step};
 
+/// When the materials of an increment are heated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Heating {
+    /// Halfway at the start, and wholly at the end.
+    Halfway,
+    /// At the start.
+    First,
+    /// The mean of at the start and at the end.
+    Mean,
+}
+
 /// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule; a static
 /// step is SS22 with both weights 1 without rates, a quasi-static one that with the inertia of the backward Euler rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,19 +127,33 @@ impl Integration {
         }
     }
 
+    /// When the materials are heated: as their force is that of temperatures of the middle, of the end or of both ends.
+    pub fn heating(&self) -> Heating {
+        match (self.energy_momentum, self.backward_euler) {
+            (true, _) => Heating::Halfway,
+            (false, true) => Heating::First,
+            (false, false) => Heating::Mean,
+        }
+    }
+
     /// The motion at which internal force and tangent are evaluated: U_theta, in the energy-momentum form
-    /// from U0 to U1.
-    pub fn motion<'a>(&self, start: &'a State, u1: &'a [f64], u_theta: &'a [f64]) -> Motion<'a> {
+    /// from U0 to U1, at temperatures between those of the start and of the end.
+    pub fn motion<'a>(
+        &self,
+        start: &'a State,
+        u1: &'a [f64],
+        [u_theta, temperature]: [&'a [f64]; 2],
+    ) -> Motion<'a> {
         let increment = (self.has_rates).then_some([start.u.as_slice(), u1]);
         match self.energy_momentum {
             true => Motion {
                 start: Some(&start.u),
                 increment,
-                ..Motion::at(u1, &start.internal)
+                ..Motion::at(u1, &start.internal).heated(temperature)
             },
             false => Motion {
                 increment,
-                ..Motion::at(u_theta, &start.internal)
+                ..Motion::at(u_theta, &start.internal).heated(temperature)
             },
         }
     }

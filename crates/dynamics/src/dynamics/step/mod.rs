@@ -19,6 +19,7 @@ mod rank_update;
 mod seen;
 mod slave_faces;
 mod step_problem;
+mod temperatures;
 mod turning;
 mod unknowns;
 mod wear;
@@ -43,6 +44,7 @@ pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
     write_difference, write_sum,
 };
+pub(crate) use temperatures::{Committed, initial_temperatures};
 pub use turning::{TurningBody, rigid_inertia};
 pub(crate) use wear::FactoredState;
 pub(crate) use workspace::Workspace;

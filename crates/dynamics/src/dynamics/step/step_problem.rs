@@ -13,6 +13,7 @@ use super::integration::Integration;
 use super::loads::{Interval, Loads};
 use super::mass::Mass;
 use super::parts::{DofRun, Parts};
+use super::temperatures::Temperatures;
 use super::turning::TurningBody;
 use super::unknowns::Unknowns;
 use crate::contact::tolerances::COLLAPSED_LENGTH;
@@ -46,6 +47,7 @@ pub(crate) struct StepProblem<'m> {
     pub loads: Loads<'m>,
     pub fits: Fits<'m>,
     pub hinges: Hinges,
+    pub temperatures: Temperatures<'m>,
 }
 
 /// Velocity at the start of an increment.
@@ -61,6 +63,8 @@ pub(crate) struct StartVelocity<'a> {
 pub(crate) struct Equilibrium {
     /// Displacement U_theta.
     pub u_theta: Vec<f64>,
+    /// Temperature of every node at which the materials are evaluated; none where the deck gives none.
+    pub temperature: Vec<f64>,
     /// Forces lambda of the hinges.
     pub hinges: Vec<f64>,
     /// Forces that hold motions of a static step, each with its dof.
@@ -78,6 +82,11 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
+    /// U_theta and the temperatures there.
+    pub fn place(&self) -> [&[f64]; 2] {
+        [&self.u_theta, &self.temperature]
+    }
+
     /// Vectors over so many dofs.
     fn resize(&mut self, dofs: usize) {
         for vector in [
@@ -131,6 +140,7 @@ impl<'m> StepProblem<'m> {
             unknowns,
             hinges: Hinges::new(model, step),
             loads: Loads::new(model, step, elements, redistribution),
+            temperatures: Temperatures::new(model, step),
             fits: Fits::new(model, step, overlaps, |contact| {
                 discretization.contacts[contact].slaves.len()
             }),
@@ -245,8 +255,7 @@ impl StepProblem<'_> {
         if energy_momentum || [theta1, theta2] == [1.0; 2] {
             return Ok(());
         }
-        let motion = Motion::at(&end.u, &end.internal);
-        self.elements.internal_force(motion)?;
+        self.elements.internal_force(end.motion())?;
         Ok(())
     }
 
@@ -306,15 +315,18 @@ impl StepProblem<'_> {
         equilibrium.resize(u.len());
         let Equilibrium {
             u_theta,
+            temperature,
             hinges,
             held,
             load,
             internal,
             ..
         } = equilibrium;
+        let theta1 = self.integration.theta1;
+        (self.temperatures).write_weighted(theta1, start, interval, temperature);
         (self.integration).write_displacement([&start.u, d, v0p], interval.dt, u_theta);
         (self.unknowns.turning).correct_angles(d, self.integration.theta2, u_theta);
-        let motion = self.integration.motion(start, u, u_theta);
+        let motion = (self.integration).motion(start, u, [&*u_theta, &*temperature]);
         self.elements.write_internal_force(motion, internal)?;
         if self.has_damping() {
             let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
@@ -322,7 +334,6 @@ impl StepProblem<'_> {
         }
         // without loads it is zero as it was made
         if !self.loads.are_none() {
-            let theta1 = self.integration.theta1;
             (self.loads).write_weighted(theta1, interval, u_theta, load);
             self.unknowns.turning.scale_moments(d, load);
         } else if !self.hinges.are_none() || !held.is_empty() {
@@ -399,6 +410,11 @@ pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(
 }
 
 impl State {
+    /// Displacements with the internal variables and the temperatures there.
+    pub fn motion(&self) -> Motion<'_> {
+        Motion::at(&self.u, &self.internal).heated(&self.temperature)
+    }
+
     /// Displacement, velocity and acceleration must be finite.
     ///
     /// # Errors

@@ -309,7 +309,7 @@ impl<'m> Workspace<'m> {
         now: TimePoint,
     ) -> Vec<f64> {
         let mut a = vec![0.0; start.u.len()];
-        let motion = Motion::at(&start.u, &start.internal);
+        let motion = start.motion();
         let Ok(internal) = problem.elements.internal_force(motion) else {
             return a;
         };
