@@ -329,7 +329,7 @@ impl Elements {
         self.chunks.iter().any(|chunk| chunk.expands())
     }
 
-    /// Potential of the elements that expand at the end of a motion (force length): the energy that they store there and
+    /// Potential of the elements that expand at the end of a motion, eq. (2.55) (force length): the energy that they store there and
     /// what is dissipated on the way to it. What the internal force does of work at one temperature is its change.
     ///
     /// ```text

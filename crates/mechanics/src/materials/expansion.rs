@@ -1,5 +1,5 @@
 //! Thermal expansion: the stretch that a temperature gives a material, the same in all directions, and any law behind it.
-//! Section 2 of docs/theory.md, Temperature.
+//! See docs/theory/materials.md, Temperature.
 //!
 //! # Derivation
 //!
@@ -48,7 +48,7 @@ impl Expansion {
         }
     }
 
-    /// Strain of a free body whose temperature was another one at the start:
+    /// Strain of a free body whose temperature was another one at the start, eq. (2.52):
     ///
     /// ```text
     /// alpha(T) (T - T0) - alpha(T_I) (T_I - T0)
@@ -92,7 +92,7 @@ impl<T: Number> Stretch<T> {
         self.theta * self.theta * self.theta
     }
 
-    /// E_m of a strain. In plane stress the law gives the strain across.
+    /// E_m of a strain, eq. (2.53). In plane stress the law gives the strain across.
     fn relative(&self, e: &Symmetric<T>, plane: Plane) -> Symmetric<T> {
         let normal = |e: T| (e - self.strain) * self.over_square;
         Symmetric {
@@ -173,7 +173,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
         StressAtPoints::<Lanes, HOOP>::tangent_where(self, [true; LANES], point, strains)
     }
 
-    /// S = theta S_m
+    /// S = theta S_m, eq. (2.54)
     fn stress_where(
         &self,
         wanted: [bool; LANES],

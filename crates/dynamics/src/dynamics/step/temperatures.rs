@@ -1,5 +1,5 @@
-//! Temperatures of the nodes in a step, and what they bring into the elements that expand. Section 2 of docs/theory.md,
-//! Temperature.
+//! Temperatures of the nodes in a step, and what they bring into the elements that expand. See
+//! docs/theory/materials.md, Temperature.
 
 use super::integration::Heating;
 use super::loads::{Interval, TimePoint};
