@@ -25,7 +25,7 @@ fn flat(mut model: Model) -> Model {
 
 /// Writes a model, reads it and writes it again; returns the text.
 #[track_caller]
-fn round_trip(model: Model) -> String {
+pub fn round_trip(model: Model) -> String {
     let text = flat_deck(&model);
     let again = read(&text);
     assert_eq!(flat_deck(&again), text);

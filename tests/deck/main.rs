@@ -14,4 +14,5 @@ mod picture;
 mod reading;
 mod reference;
 mod syntax;
+mod temperatures;
 mod ties;
