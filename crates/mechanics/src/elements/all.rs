@@ -629,6 +629,7 @@ mod tests {
             law,
             density: 1.0,
             damping: Damping::default(),
+            expansion: None,
         });
         model.sections.push(Section {
             material: 0,

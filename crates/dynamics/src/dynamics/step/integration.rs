@@ -7,17 +7,6 @@ use crate::dynamics::results::State;
 use crate::elements::Motion;
 use crate::model::{Procedure, Scheme, Step};
 
-/// When the materials of an increment are heated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Heating {
-    /// Halfway at the start, and wholly at the end.
-    Halfway,
-    /// At the start.
-    First,
-    /// The mean of at the start and at the end.
-    Mean,
-}
-
 /// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule; a static
 /// step is SS22 with both weights 1 without rates, a quasi-static one that with the inertia of the backward Euler rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,15 +113,6 @@ impl Integration {
         let lag = (self.theta1 - self.theta2) * dt;
         for (u_theta, ((u0, d), v0p)) in u_theta.iter_mut().zip(u0.iter().zip(d).zip(v0p)) {
             *u_theta = u0 + self.theta2 * d + lag * v0p;
-        }
-    }
-
-    /// When the materials are heated: as their force is that of temperatures of the middle, of the end or of both ends.
-    pub fn heating(&self) -> Heating {
-        match (self.energy_momentum, self.backward_euler) {
-            (true, _) => Heating::Halfway,
-            (false, true) => Heating::First,
-            (false, false) => Heating::Mean,
         }
     }
 

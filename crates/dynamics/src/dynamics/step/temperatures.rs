@@ -1,7 +1,6 @@
 //! Temperatures of the nodes in a step, and what they bring into the elements that expand. See
 //! docs/theory/materials.md, Temperature.
 
-use super::integration::Heating;
 use super::loads::{Interval, TimePoint};
 use super::step_problem::StepProblem;
 use crate::dynamics::results::State;
@@ -82,12 +81,11 @@ impl StepProblem<'_> {
     /// end, and the work is what the potential of the elements changes by at displacements that stay,
     ///
     /// ```text
-    /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0       energy-momentum form, Tm halfway
-    /// Phi(U0; T1) - W0                                   backward Euler rule
-    /// half of that and of Phi(U1; T1) - Phi(U1; T0)      else                                eq. (9.18)
+    /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0                   energy-momentum form, Tm halfway
+    /// half of Phi(U0; T1) - W0 and of Phi(U1; T1) - Phi(U1; T0)      else                    eq. (9.18)
     /// ```
     ///
-    /// With the work of the internal force at one temperature they add up to W1 + D - W0.
+    /// The first adds up to W1 + D - W0 with the work of the internal force at Tm.
     pub fn commit(&self, start: &State, u1: &[f64], [halfway, t1]: [&[f64]; 2]) -> Committed {
         let committed = Motion::at(u1, &start.internal).heated(t1);
         if start.temperature == t1 || !self.elements.expand() {
@@ -108,10 +106,9 @@ impl StepProblem<'_> {
             potential(&start.u, temperature) - self.elements.stored_by_expanding(start.motion())
         };
         let last = |temperature| potential(u1, t1) - potential(u1, temperature);
-        let [first, last] = match self.integration.heating() {
-            Heating::Halfway => [first(halfway), last(halfway)],
-            Heating::First => [first(t1), 0.0],
-            Heating::Mean => [first(t1) / 2.0, last(&start.temperature) / 2.0],
+        let [first, last] = match self.integration.energy_momentum {
+            true => [first(halfway), last(halfway)],
+            false => [first(t1) / 2.0, last(&start.temperature) / 2.0],
         };
         Committed {
             updated: self.elements.update(committed),
