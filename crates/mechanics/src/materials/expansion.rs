@@ -314,15 +314,15 @@ mod tests {
             table: vec![[20.0, 1e-5], [120.0, 2e-5]],
         };
         // alpha(70) = 1.5e-5 and alpha(45) = 1.25e-5, constant beyond the table
-        let found = expansion.strain(45.0, 70.0);
-        assert!(
-            (found - (1.5e-5 * 50.0 - 1.25e-5 * 25.0)).abs() < 1e-19,
-            "{found}"
-        );
-        let found = expansion.strain(20.0, 220.0);
-        assert!((found - 2e-5 * 200.0).abs() < 1e-18, "{found}");
-        let found = expansion.strain(0.0, -30.0);
-        assert!((found + 1e-5 * 30.0).abs() < 1e-19, "{found}");
+        let rows = [
+            (45.0, 70.0, 1.5e-5 * 50.0 - 1.25e-5 * 25.0),
+            (20.0, 220.0, 2e-5 * 200.0),
+            (0.0, -30.0, -1e-5 * 30.0),
+        ];
+        for (initial, temperature, exact) in rows {
+            let found = expansion.strain(initial, temperature);
+            assert!((found - exact).abs() < 1e-15 * exact.abs(), "{found} {exact}");
+        }
         assert_eq!(expansion.strain(70.0, 70.0), 0.0);
     }
 

@@ -82,7 +82,7 @@ impl StepProblem<'_> {
     ///
     /// ```text
     /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0                   energy-momentum form, Tm halfway
-    /// half of Phi(U0; T1) - W0 and of Phi(U1; T1) - Phi(U1; T0)      else                    eq. (9.18)
+    /// (Phi(U0; T1) - W0 + Phi(U1; T1) - Phi(U1; T0))/2               else                    eq. (9.18)
     /// ```
     ///
     /// The first adds up to W1 + D - W0 with the work of the internal force at Tm.
