@@ -271,3 +271,31 @@ fn a_slave_of_nodes_follows_from_node_to_surface() {
         assert_eq!(count.count(), told, "{messages}");
     }
 }
+
+#[test]
+fn a_master_of_nodes_carries_each_slave_node_with_the_nearest_one() {
+    let rows = [
+        row("S", (SLAVE, 3), "CPE4", |x, y| [3.0 * x, 1.0 + y]),
+        row("M", (1, 3), "CPE4", |x, y| [3.0 * x + 0.01, y]),
+    ];
+    let text = tied(rows, "", "");
+    let text = text.replace(
+        "SBOTTOM, MTOP",
+        "SBOTTOM, MNODES\n*SURFACE, NAME=MNODES, TYPE=NODE\nNM",
+    );
+    let model = read(&text);
+    let label = |dof: usize| (model.mesh.node_labels[dof / 2], dof % 2);
+    let follows = |equation: &Equation| {
+        let [(to, factor)] = equation.terms[..] else {
+            panic!("{equation:?}");
+        };
+        assert_eq!(factor, 1.0);
+        (label(equation.dof), label(to))
+    };
+    let found: Vec<_> = model.equations.iter().map(follows).collect();
+    // nodes 1001, 1003, ... at the bottom of the slave, 15, 17, ... at the top of the master
+    let expected: Vec<_> = (0..4)
+        .flat_map(|k| [0, 1].map(|i| ((1001 + 2 * k, i), (15 + 2 * k, i))))
+        .collect();
+    assert_eq!(found, expected);
+}

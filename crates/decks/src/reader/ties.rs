@@ -12,11 +12,11 @@ use super::tied_sides;
 use crate::deck::{Card, Line, Name};
 use crate::diagnostics::{Code, Span, shown};
 use crate::model::{
-    Contact, ContactFormulation, Element, NEAR, Segment, Surface, SurfaceKind, Tie, TieReach,
+    Contact, ContactFormulation, Element, Mesh, NEAR, Segment, Surface, SurfaceKind, Tie, TieReach,
     TiedNode, TiedSide, nearest_of,
 };
 use crate::vectors::distance;
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Most nodes that a message names.
 const MOST_NAMES: usize = 10;
@@ -131,7 +131,7 @@ fn rows_of(
             master,
             reach,
             members: members.clone(),
-            formulation: formulation(card, &surfaces.all[slave], cx),
+            formulation: formulation(card, [slave, master].map(|s| &surfaces.all[s]), cx),
             adjusts,
             span: row.span(),
         });
@@ -160,17 +160,21 @@ fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     Some(TieReach::Within(tolerance))
 }
 
-/// What of a slave surface follows the master: nodes each by itself, or the points of its faces unless it is made of nodes.
-fn formulation(card: &Card, slave: &Surface, cx: &mut Context) -> ContactFormulation {
+/// What of a slave surface follows the master: nodes each by itself, or the points of its faces unless one of the two is
+/// made of nodes.
+fn formulation(card: &Card, both: [&Surface; 2], cx: &mut Context) -> ContactFormulation {
     let typed = card.choice("TYPE");
-    match slave.kind {
-        SurfaceKind::Nodes(_) if typed == Some("SURFACE TO SURFACE") => {
+    let has_nodes = both
+        .iter()
+        .any(|surface| matches!(surface.kind, SurfaceKind::Nodes(_)));
+    match has_nodes {
+        true if typed == Some("SURFACE TO SURFACE") => {
             let message = "TYPE=SURFACE TO SURFACE is taken as NODE TO SURFACE";
             cx.d.warning_once(Code::IgnoredParameter, card.span_of("TYPE"), message)
-                .help("the slave surface must be made of element faces");
+                .help("both surfaces must be made of element faces");
             ContactFormulation::NodeToSegment
         }
-        SurfaceKind::Nodes(_) => ContactFormulation::NodeToSegment,
+        true => ContactFormulation::NodeToSegment,
         _ if typed == Some("NODE TO SURFACE") => ContactFormulation::NodeToSegment,
         _ => ContactFormulation::SurfaceToSurface,
     }
@@ -196,12 +200,6 @@ fn pair(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<(usize, usiz
             "a rigid surface is a master: write the other surface first",
             slave.2,
         )
-    } else if let SurfaceKind::Nodes(_) = master.1.kind {
-        (
-            format!("the master surface {} is made of nodes", master.1.name),
-            "a master is made of element faces; the slave may be made of nodes",
-            master.2,
-        )
     } else {
         return Some((slave.0, master.0));
     };
@@ -220,7 +218,7 @@ struct Faced {
 impl Faced {
     fn new(row: &TieRow, surfaces: &[Surface], mesh_index: &MeshIndex) -> Self {
         let mesh = &mesh_index.mesh;
-        let segments = surfaces[row.master].segments(mesh);
+        let segments = lines(&surfaces[row.master], mesh);
         let of_master: HashSet<usize> = segments.as_flattened().iter().copied().collect();
         let is_meant = |node: &usize| match row.reach {
             TieReach::Nodes(_) => row.members.binary_search(node).is_ok(),
@@ -228,7 +226,7 @@ impl Faced {
         };
         let nodes = surfaces[row.slave].nodes(mesh).into_iter();
         let nodes = nodes.filter(|node| !of_master.contains(node) && is_meant(node));
-        let nearest = Nearest::new(&segments, &mesh.coordinates);
+        let nearest = Nearest::new(&segments, mesh);
         let (mut near, mut far) = (Vec::new(), Vec::new());
         for node in nodes {
             match nearest.of(node).filter(|found| found.is_within(row.reach)) {
@@ -275,28 +273,73 @@ impl NearestSegment {
     }
 }
 
+/// The segments of a surface; of one that is made of nodes each node is a segment without length.
+fn lines(surface: &Surface, mesh: &Mesh) -> Vec<Segment> {
+    match surface.kind {
+        SurfaceKind::Nodes(_) => surface
+            .nodes(mesh)
+            .into_iter()
+            .map(|node| [node; 2])
+            .collect(),
+        _ => surface.segments(mesh),
+    }
+}
+
+/// Shortest side of the elements at every node that a segment without length has.
+fn shortest_sides(segments: &[Segment], mesh: &Mesh) -> HashMap<usize, f64> {
+    let alone = segments.iter().filter(|[a, b]| a == b);
+    let mut shortest: HashMap<usize, f64> = alone.map(|[a, _]| (*a, f64::INFINITY)).collect();
+    if shortest.is_empty() {
+        return shortest;
+    }
+    for element in &mesh.elements {
+        let corners = &element.nodes[..element.element_type.shape.corners()];
+        let next = corners.iter().cycle().skip(1);
+        for (&a, &b) in corners.iter().zip(next) {
+            let length = distance(mesh.coordinates[a], mesh.coordinates[b]);
+            for node in [a, b] {
+                if let Some(known) = shortest.get_mut(&node) {
+                    *known = known.min(length);
+                }
+            }
+        }
+    }
+    shortest
+}
+
 /// Segments by their places.
 struct Nearest<'a> {
     segments: &'a [Segment],
     x: &'a [[f64; 2]],
     lines: NearestLines,
+    shortest_sides: HashMap<usize, f64>,
 }
 
 impl<'a> Nearest<'a> {
-    fn new(segments: &'a [Segment], x: &'a [[f64; 2]]) -> Self {
+    fn new(segments: &'a [Segment], mesh: &'a Mesh) -> Self {
+        let x = &mesh.coordinates[..];
         let places = segments.iter().map(|segment| segment.map(|node| x[node]));
         let lines = NearestLines::new(places.collect());
-        Nearest { segments, x, lines }
+        Nearest {
+            segments,
+            x,
+            lines,
+            shortest_sides: shortest_sides(segments, mesh),
+        }
     }
 
     /// The segment nearest to a node, of several the first.
     fn of(&self, node: usize) -> Option<NearestSegment> {
         let (k, off) = self.lines.of(self.x[node])?;
-        let [a, b] = self.segments[k].map(|n| self.x[n]);
+        let segment = self.segments[k];
+        let [a, b] = segment.map(|n| self.x[n]);
+        let of_node = self.shortest_sides.get(&segment[0]);
         Some(NearestSegment {
-            segment: self.segments[k],
+            segment,
             distance: off,
-            length: distance(a, b),
+            length: of_node
+                .filter(|size| size.is_finite())
+                .map_or(distance(a, b), |size| *size),
         })
     }
 }
@@ -404,7 +447,7 @@ fn covered(
     let mut segments = surfaces[row.slave].segments(mesh);
     segments.retain(|segment| segment.iter().all(|node| tied.contains(node)));
     let nodes: BTreeSet<usize> = own.iter().flat_map(|(_, segment)| *segment).collect();
-    let nearest = Nearest::new(&segments, x);
+    let nearest = Nearest::new(&segments, mesh);
     // tied nodes beside the same place are as far away
     let off = own.iter().map(|(node, segment)| {
         let [a, b] = segment.map(|node| x[node]);

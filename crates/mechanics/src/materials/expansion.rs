@@ -321,7 +321,10 @@ mod tests {
         ];
         for (initial, temperature, exact) in rows {
             let found = expansion.strain(initial, temperature);
-            assert!((found - exact).abs() < 1e-15 * exact.abs(), "{found} {exact}");
+            assert!(
+                (found - exact).abs() < 1e-15 * exact.abs(),
+                "{found} {exact}"
+            );
         }
         assert_eq!(expansion.strain(70.0, 70.0), 0.0);
     }

@@ -213,17 +213,25 @@ impl Tie {
     }
 }
 
-/// Coordinates of a point along and across a segment from a to b, positive to the left, in lengths of it.
+/// Coordinates of a point along and across a segment from a to b, positive to the left, in lengths of it; zero beside a
+/// segment without length, a node.
 pub fn beside(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     let (e, r) = (difference(a, b), difference(a, point));
     let square = dot(e, e);
+    if square == 0.0 {
+        return [0.0; 2];
+    }
     [dot(r, e) / square, cross(e, r) / square]
 }
 
-/// The part of a segment nearest to a point: coordinate along it, clamped to the segment, and distance.
+/// The part of a segment nearest to a point: its place and distance. A segment may have no length.
 pub fn nearest_of(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> ([f64; 2], f64) {
     let e = difference(a, b);
-    let xi = (dot(difference(a, point), e) / dot(e, e)).clamp(0.0, 1.0);
+    let square = dot(e, e);
+    let xi = match square == 0.0 {
+        true => 0.0,
+        false => (dot(difference(a, point), e) / square).clamp(0.0, 1.0),
+    };
     let foot = [0, 1].map(|i| a[i] + xi * (b[i] - a[i]));
     (foot, distance(point, foot))
 }
