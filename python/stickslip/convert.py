@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stickslip.arrays import Array
 from stickslip.errors import Fault
-from stickslip.fields import DIRECTIONS, VECTORS
+from stickslip.fields import DIRECTIONS, IN_SPACE, TENSOR, VECTORS
 from stickslip.quantity import Members
 from stickslip.result_file import ResultFile
 
@@ -60,7 +60,7 @@ def to_xarray(
     """All histories along `time`, named by their paths with dots, and some fields along `frame`.
 
     A name with a `/` could not be written with `to_netcdf`. `times` are those of the frames. Of each field are given the
-    dataset below /VTKHDF, and its values in all frames [F, N or E, ...].
+    path of its dataset, and its values in all frames [F, N or E, ...].
 
     Every variable has the attributes `description` and `dimension` of the result file.
     """
@@ -80,11 +80,10 @@ def to_xarray(
     if times is not None:
         coordinates["frame"] = times
     for name, (dataset, data) in fields.items():
-        where = "node" if dataset.startswith("PointData") else "element"
+        where = "node" if "/PointData/" in dataset else "element"
         labels = result.node_labels if where == "node" else result.element_labels
         coordinates[where] = labels
-        stored = result.file[f"VTKHDF/{dataset}"]
-        variables[name] = _variable(["frame", where], data, stored.attrs, coordinates)
+        variables[name] = _variable(["frame", where], data, result.item(dataset).attrs, coordinates)
     return xarray.Dataset(variables, coordinates, {"job": result.job})
 
 
@@ -122,8 +121,8 @@ def to_pyvista(
     for name, (kind, rows) in fields.items():
         data = grid.point_data if kind == "PointData" else grid.cell_data
         data[name] = rows
-        if rows.ndim == 2 and name not in VECTORS:  # for ParaView, which else shows the magnitude of a vector
-            for k, component in enumerate(DIRECTIONS[rows.shape[1]]):
+        if rows.ndim == 2 and name not in VECTORS:
+            for k, component in enumerate(IN_SPACE if rows.shape[1] == TENSOR else DIRECTIONS[rows.shape[1]]):
                 data.GetArray(name).SetComponentName(k, component)
     grid.field_data["TimeValue"] = [time]
     return grid

@@ -1,15 +1,17 @@
-"""Writes a result in the format of other programs: frames as .vtu, histories as .csv.
+"""Writes a result in the format of other programs.
 
-vtu  JOB_0000.vtu ... and JOB.pvd, which names them with their times (needs the package pyvista)
-csv  JOB.csv: all histories, a row for each increment
+vtu   JOB_0000.vtu ... and JOB.pvd, which names them with their times (needs the package pyvista)
+xdmf  JOB.xdmf: all frames as a series, which refers to the values in the result file
+frd   JOB.frd: mesh, displacements and stresses at nodes of all frames, for the programs around CalculiX
+csv   JOB.csv: all histories, a row for each increment
 """
 
 import argparse
 import csv
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-from stickslip import command
+from stickslip import command, frd, xdmf
 from stickslip.convert import columns_of
 from stickslip.errors import Fault
 from stickslip.result import Result
@@ -43,7 +45,29 @@ def histories(result: Result, folder: Path) -> Iterator[Path]:
     yield path
 
 
-FORMATS: dict[str, Callable[[Result, Path], Iterator[Path]]] = {"vtu": vtu, "csv": histories}
+def series(result: Result, folder: Path) -> Iterator[Path]:
+    """Writes the text that names the values of all frames."""
+    yield _lines(folder / f"{result.job}.xdmf", xdmf.text_of(result, folder))
+
+
+def of_calculix(result: Result, folder: Path) -> Iterator[Path]:
+    """Writes all frames as CalculiX does."""
+    yield _lines(folder / f"{result.job}.frd", frd.text_of(result))
+
+
+def _lines(path: Path, lines: Iterable[str]) -> Path:
+    """Writes a text line by line."""
+    with whole(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
+        file.writelines(f"{line}\n" for line in lines)
+    return path
+
+
+FORMATS: dict[str, Callable[[Result, Path], Iterator[Path]]] = {
+    "vtu": vtu,
+    "xdmf": series,
+    "frd": of_calculix,
+    "csv": histories,
+}
 
 
 def run() -> None:

@@ -34,20 +34,30 @@ WORDS = {
     "SP3": "largest principal stress",
     "PRESS": "pressure",
     "E": "Green-Lagrange strain",
-    "E33": "Green-Lagrange strain around the axis",
+    "E33": "Green-Lagrange strain across the thickness",
     "LE": "logarithmic strain",
-    "LE33": "logarithmic strain around the axis",
+    "LE33": "logarithmic strain across the thickness",
     "PEEQ": "accumulated plastic strain",
     "ENER": "strain energy density",
     "TEMPERATURE": "temperature",
 }
 """Fields in words; those of others are their names in small letters."""
 
-AROUND = {"S33": "stress around the axis"}
+AROUND = {
+    "S33": "stress around the axis",
+    "E33": "Green-Lagrange strain around the axis",
+    "LE33": "logarithmic strain around the axis",
+}
 """Words that differ in bodies of revolution."""
 
 AT_NODES = "_AT_NODES"
 """End of the names of fields of elements at nodes that the program has written, `S_AT_NODES` and others."""
+
+TENSOR = 6
+"""Columns of a tensor in the result file: xx yy zz xy yz xz."""
+
+Columns = list[int] | int | None
+"""Columns of a field in its dataset, None for all."""
 
 VECTORS = ("U", "V", "A", "RF", "CONTACT_FORCE", "CF")
 """Fields whose third component is 0."""
@@ -74,6 +84,9 @@ DIRECTIONS = {2: ("x", "y"), 3: ("xx", "yy", "xy")}
 
 IN_BODIES_OF_REVOLUTION = {2: ("r", "z"), 3: ("rr", "zz", "rz")}
 """The same in the half plane of bodies of revolution."""
+
+IN_SPACE = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+"""Names that ParaView gives to the components of a symmetric tensor, in the order of the result file."""
 
 Made = Callable[[Array], Array]
 """A number made of the components [..., k]."""
@@ -190,6 +203,12 @@ def part(name: str, count: int | None, axisymmetric: bool) -> Part:
 
 def _unique(names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(names))
+
+
+def tensor_columns(name: str) -> dict[str, Columns]:
+    """The fields that a tensor of the file holds, with their columns: `S` in the plane (xx yy xy) and `S33` across it."""
+    base = name.removesuffix(AT_NODES)
+    return {name: [0, 1, 3], f"{base}33{name[len(base):]}": 2}
 
 
 def without_third(name: str, rows: NDArray[np.generic]) -> NDArray[np.generic]:

@@ -10,7 +10,18 @@ from numpy.typing import NDArray
 from stickslip import convert
 from stickslip.arrays import Array
 from stickslip.errors import Fault, Missing
-from stickslip.fields import AT_NODES, INVARIANTS, VECTORS, Part, known, part, without_third
+from stickslip.fields import (
+    AT_NODES,
+    INVARIANTS,
+    TENSOR,
+    VECTORS,
+    Columns,
+    Part,
+    known,
+    part,
+    tensor_columns,
+    without_third,
+)
 from stickslip.result_file import ResultFile
 
 if TYPE_CHECKING:
@@ -91,10 +102,16 @@ class Frame(Mapping[str, Any]):
         return self.frames.part(spelled).of(rows) if colon else rows
 
     def full(self, name: str) -> NDArray[Any]:
-        """A field as it stands in the file: with third components and rigid segments."""
-        kind = self.frames.kind(name)
-        first = self.frames.first_row(kind, name, self.index)
-        return self.result.read(f"VTKHDF/{kind}/{name}", first, first + self.frames.sizes[kind])
+        """A field with third components of vectors and with rigid segments."""
+        stored, columns = self.frames.stored[self.frames.known(name)]
+        rows = self.rows(stored)
+        return rows if columns is None else rows[:, columns]
+
+    def rows(self, stored: str) -> NDArray[Any]:
+        """The rows of a dataset of fields as they stand in the file."""
+        kind = self.frames.fields[stored]
+        first = self.frames.first_row(kind, stored, self.index)
+        return self.result.read(f"VTKHDF/{kind}/{stored}", first, first + self.frames.sizes[kind])
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.frames.fields)
@@ -112,7 +129,8 @@ class Frame(Mapping[str, Any]):
 
         `grid.warp_by_vector("U")` is the deformed shape. Needs the package pyvista.
         """
-        fields = {name: (kind, self.full(name)) for name, kind in self.frames.fields.items()}
+        datasets = dict.fromkeys(stored for stored, _ in self.frames.stored.values())
+        fields = {name: (self.frames.fields[name], self.rows(name)) for name in datasets}
         return convert.to_pyvista(self.result, self.time, fields)
 
 
@@ -127,6 +145,8 @@ class Frames(Sequence[Frame]):
         """Rows of a frame in the nodal and in the element fields."""
         self.fields: dict[str, str] = {}
         """Fields by name, with the group that holds them: PointData or CellData."""
+        self.stored: dict[str, tuple[str, Columns]] = {}
+        """Fields by name, with the dataset that holds them and their columns there, None for all."""
         with result.reading("frames"):
             grid = result.file["VTKHDF"]
             steps = grid["Steps"]
@@ -138,7 +158,9 @@ class Frames(Sequence[Frame]):
             frames = min(int(steps.attrs["NSteps"]), len(steps["Values"]))
             for kind, size in self.sizes.items():
                 for name, data in grid[kind].items():
-                    self.fields[name] = kind
+                    own = tensor_columns(name) if data.shape[1:] == (TENSOR,) else {name: None}
+                    self.fields |= dict.fromkeys(own, kind)
+                    self.stored |= {field: (name, columns) for field, columns in own.items()}
                     if (kind, name) in self._offsets:
                         ends = self._offsets[kind, name] + size
                         frames = min(frames, int((ends <= len(data)).sum()))
@@ -163,14 +185,21 @@ class Frames(Sequence[Frame]):
         """What a name asks for of its field; a Fault where it has to say of which component."""
         spelled = self.known(name)
         field = spelled.partition(":")[0]
-        shape = self.result.item(f"VTKHDF/{self.fields[field]}/{field}").shape[1:]
+        shape = self.result.item(self.dataset(field)).shape[1:]
+        columns = self.stored[field][1]
         count = 2 if field in VECTORS else shape[0] if shape else None
+        if columns is not None:
+            count = None if isinstance(columns, int) else len(columns)
         return part(spelled, count, self.result.is_axisymmetric)
 
+    def dataset(self, field: str) -> str:
+        """Path of the dataset that holds a field of this very name."""
+        return f"VTKHDF/{self.fields[field]}/{self.stored[field][0]}"
+
     def field(self, name: str) -> tuple[str, NDArray[Any]]:
-        """Name of the dataset of a field below /VTKHDF, and its values in all frames [F, N or E, ...]."""
+        """Path of the dataset of a field, and its values in all frames [F, N or E, ...]."""
         field = self.known(name).partition(":")[0]
-        return f"{self.fields[field]}/{field}", np.stack([frame[name] for frame in self])
+        return self.dataset(field), np.stack([frame[name] for frame in self])
 
     def first_row(self, kind: str, name: str, index: int) -> int:
         """First row of a frame in a field; one that does not change is there once."""

@@ -45,7 +45,7 @@ VECTORS = (
 )
 STRAINS = ("E", "LE")
 TENSORS = (*STRAINS, "S", "S_AT_NODES", "E_AT_NODES", "LE_AT_NODES")
-"""Rows xx, yy, xy."""
+"""Rows xx, yy, xy of histories, xx, yy, zz, xy, yz, xz of fields."""
 
 HANDED = re.compile(r"\w*(tangential\w*|angle|angular|angular_velocity|moment)")
 """Scalars that a mirror turns round."""
@@ -309,10 +309,13 @@ def expected(old: Seen, name: str, change: Change, theta: float) -> NDArray | No
 
 
 def _turned_tensor(values: Array, turn: Array) -> Array:
-    xx, yy, xy = np.moveaxis(values, -1, 0)
+    in_plane = [0, 1, 3] if values.shape[-1] == 6 else [0, 1, 2]
+    xx, yy, xy = np.moveaxis(values[..., in_plane], -1, 0)
     full = np.stack([np.stack([xx, xy], -1), np.stack([xy, yy], -1)], -2)
     full = turn @ full @ turn.T
-    return np.stack([full[..., 0, 0], full[..., 1, 1], full[..., 0, 1]], -1)
+    new = values.copy()
+    new[..., in_plane] = np.stack([full[..., 0, 0], full[..., 1, 1], full[..., 0, 1]], -1)
+    return new
 
 
 def _energy(old: Seen, name: str, change: Change) -> Array:

@@ -92,8 +92,8 @@ struct FieldGroup<'m> {
 type RowShape = (&'static [usize], &'static [usize]);
 
 const SCALAR: RowShape = (&[], &[]);
-/// A symmetric tensor in the plane: xx yy xy.
-const PLANE_TENSOR: RowShape = (&[3], &[3]);
+/// A symmetric tensor xx yy zz xy yz xz, as VTK orders and ParaView names six components; the last two are zero.
+const TENSOR: RowShape = (&[6], &[4]);
 /// A vector in the plane, whose third component is zero.
 const IN_SPACE: RowShape = (&[3], &[2]);
 
@@ -193,17 +193,15 @@ impl<'m> FieldGroup<'m> {
         let members: Vec<usize> = (0..model.mesh.elements.len()).collect();
         let local = Rc::new(Local::at_nodes(elements, &members));
         let nodes: Rc<[usize]> = local.nodes().into();
-        let is_ring = model.mesh.is_axisymmetric();
-        let is_there = |name: &str| is_ring || !["E33_AT_NODES", "LE33_AT_NODES"].contains(&name);
         let own = (&local, &nodes);
         let tensors = AT_NODES.iter().filter(|field| asked.contains(&field.0));
         for &(_, name, meaning, of) in tensors {
-            self.add_at_nodes(name, PLANE_TENSOR, meaning, own, of)?;
+            self.add_at_nodes(name, TENSOR, meaning, own, of)?;
         }
         let scalars = SCALARS_AT_NODES
             .iter()
             .filter(|field| asked.contains(&field.0));
-        for &(_, name, meaning, of) in scalars.filter(|field| is_there(field.1)) {
+        for &(_, name, meaning, of) in scalars {
             self.add_at_nodes(name, SCALAR, meaning, own, move |e| [of(e)])?;
         }
         Ok(())
@@ -218,19 +216,17 @@ impl<'m> FieldGroup<'m> {
         // the same in all frames
         per_frame(&mut self.columns, at, "BODY", &[], FIRST_ROW, |_| 0_i64)?;
         for (name, meaning, of) in TENSORS {
-            self.add_to_elements(name, PLANE_TENSOR, meaning, move |frame, v| {
+            self.add_to_elements(name, TENSOR, meaning, move |frame, v| {
                 v.extend(frame.elements.iter().flat_map(of));
             })?;
         }
         let asked = &model.sets.fields;
-        let is_ring = model.mesh.is_axisymmetric();
         for (is_there, fields) in [
             (true, &SCALARS[..]),
             (asked.principal_stress, &PRINCIPAL),
             (asked.pressure, &PRESSURE),
             (model.writes_plastic_strain(), &PLASTIC),
             (model.has_hourglass_modes(), &HOURGLASS),
-            (is_ring, &AROUND),
         ] {
             for &(name, meaning, of) in fields.iter().filter(|_| is_there) {
                 self.add_to_elements(name, SCALAR, meaning, move |frame, v| {
@@ -250,16 +246,13 @@ impl<'m> FieldGroup<'m> {
         if asked.logarithmic_strain {
             let gradients = elements.iter().map(|e| MeanGradient::new(&model.mesh, e));
             let gradients: Vec<MeanGradient> = gradients.collect();
-            self.add_to_elements("LE", PLANE_TENSOR, LOGARITHMIC_STRAIN, move |frame, v| {
-                let u = &frame.state.u;
-                v.extend(gradients.iter().flat_map(|mean| mean.logarithmic_strain(u)));
+            self.add_to_elements("LE", TENSOR, LOGARITHMIC_STRAIN, move |frame, v| {
+                let elements = gradients.iter().zip(frame.elements.iter());
+                v.extend(elements.flat_map(|(mean, e)| {
+                    let in_plane = mean.logarithmic_strain(&frame.state.u);
+                    with_across(in_plane, logarithmic_of(e.strain_across))
+                }));
             })?;
-            if is_ring {
-                self.add_to_elements("LE33", SCALAR, LOGARITHMIC_AROUND, |frame, v| {
-                    let around = frame.elements.iter().map(|e| e.strain_around);
-                    v.extend(around.map(logarithmic_of));
-                })?;
-            }
         }
         Ok(())
     }
@@ -279,6 +272,11 @@ impl<'m> FieldGroup<'m> {
             v.resize(first + size, f64::NAN);
         })
     }
+}
+
+/// The components of a tensor that are written, from those in the plane and the one across it.
+fn with_across([xx, yy, xy]: [f64; 3], zz: f64) -> [f64; 4] {
+    [xx, yy, zz, xy]
 }
 
 /// Size of each part when `count` is divided evenly into as few parts as there can be of up to `most`.
@@ -355,26 +353,22 @@ const MASS: Meaning = (
     "mass: 0 own, 1 own at a contact surface, 2 carried by other nodes",
 );
 const BODY: Meaning = ("1", "body of the cell, -1 for rigid segments");
-pub(crate) const STRESS: Meaning = (
+const STRESS: Meaning = (
     "force/length^2",
-    "Cauchy stress xx yy xy, mean over the element",
+    "Cauchy stress xx yy zz xy yz xz, mean over the element",
 );
-pub(crate) const ACROSS: Meaning = (
-    "force/length^2",
-    "Cauchy stress across the thickness, mean over the element",
-);
-const VON_MISES: Meaning = ("force/length^2", "von Mises stress of S and S33");
-pub(crate) const STRAIN: Meaning = (
+const VON_MISES: Meaning = ("force/length^2", "von Mises stress of S");
+const STRAIN: Meaning = (
     "1",
-    "Green-Lagrange strain xx yy xy (xy: tensor component), mean over the element",
+    "Green-Lagrange strain xx yy zz xy yz xz (tensor components), mean over the element",
 );
 pub(crate) const ENERGY_DENSITY: Meaning = (
     "energy/length^3",
     "strain energy over the volume of the undeformed element",
 );
-pub(crate) const LOGARITHMIC_STRAIN: Meaning = (
+const LOGARITHMIC_STRAIN: Meaning = (
     "1",
-    "logarithmic strain xx yy xy (xy: tensor component) of the element's mean deformation gradient",
+    "logarithmic strain xx yy zz xy yz xz (tensor components) of the element's mean deformation gradient",
 );
 
 /// Datasets of `Steps` with the same number for all frames: name, shape of a row, meaning, number.
@@ -441,20 +435,20 @@ const FRICTION: [NodalField; 4] = [
 /// A field of the elements: name, meaning and value.
 type ElementField<T> = (&'static str, Meaning, fn(&ElementResult) -> T);
 
-const TENSORS: [ElementField<[f64; 3]>; 2] =
-    [("S", STRESS, |e| e.stress), ("E", STRAIN, |e| e.strain)];
-
-const SCALARS: [ElementField<f64>; 2] = [
-    ("S33", ACROSS, |e| e.across),
-    ("MISES", VON_MISES, ElementResult::von_mises),
+#[rustfmt::skip]
+const TENSORS: [ElementField<[f64; 4]>; 2] = [
+    ("S", STRESS, |e| with_across(e.stress, e.across)),
+    ("E", STRAIN, |e| with_across(e.strain, e.strain_across)),
 ];
+
+const SCALARS: [ElementField<f64>; 1] = [("MISES", VON_MISES, ElementResult::von_mises)];
 
 /// Fields that a deck has to ask for.
 #[rustfmt::skip]
 const PRINCIPAL: [ElementField<f64>; 3] = [
-    ("SP1", ("force/length^2", "smallest principal value of S and S33"), |e| e.principal_stresses()[0]),
-    ("SP2", ("force/length^2", "middle principal value of S and S33"), |e| e.principal_stresses()[1]),
-    ("SP3", ("force/length^2", "largest principal value of S and S33"), |e| e.principal_stresses()[2]),
+    ("SP1", ("force/length^2", "smallest principal value of S"), |e| e.principal_stresses()[0]),
+    ("SP2", ("force/length^2", "middle principal value of S"), |e| e.principal_stresses()[1]),
+    ("SP3", ("force/length^2", "largest principal value of S"), |e| e.principal_stresses()[2]),
 ];
 
 /// A field of models with metals.
@@ -467,28 +461,24 @@ const HOURGLASS: [ElementField<f64>; 1] = [(
     |e| e.hourglass_energy,
 )];
 
-/// A field of bodies of revolution.
-const AROUND: [ElementField<f64>; 1] = [("E33", STRAIN_AROUND, |e| e.strain_around)];
-
 /// A field of elements at nodes: what asks for it, name, meaning and value.
 type FieldAtNodes<T> = (NodalVariable, &'static str, Meaning, fn(&LocalResult) -> T);
 
 #[rustfmt::skip]
-const AT_NODES: [FieldAtNodes<[f64; 3]>; 3] = [
-    (NodalVariable::Stress, "S_AT_NODES", ("force/length^2", "Cauchy stress xx yy xy at nodes, mean of the elements there"),
-     |e| e.result.stress),
+const AT_NODES: [FieldAtNodes<[f64; 4]>; 3] = [
+    (NodalVariable::Stress, "S_AT_NODES",
+     ("force/length^2", "Cauchy stress xx yy zz xy yz xz at nodes, mean of the elements there"),
+     |e| with_across(e.result.stress, e.result.across)),
     (NodalVariable::Strain, "E_AT_NODES",
-     ("1", "Green-Lagrange strain xx yy xy (xy: tensor component) at nodes, mean of the elements there"),
-     |e| e.result.strain),
+     ("1", "Green-Lagrange strain xx yy zz xy yz xz (tensor components) at nodes, mean of the elements there"),
+     |e| with_across(e.result.strain, e.result.strain_across)),
     (NodalVariable::LogarithmicStrain, "LE_AT_NODES",
-     ("1", "logarithmic strain xx yy xy (xy: tensor component) at nodes, mean of the elements there"),
-     |e| e.logarithmic_strain),
+     ("1", "logarithmic strain xx yy zz xy yz xz (tensor components) at nodes, mean of the elements there"),
+     |e| with_across(e.logarithmic_strain, e.logarithmic_across)),
 ];
 
 #[rustfmt::skip]
-const SCALARS_AT_NODES: [FieldAtNodes<f64>; 10] = [
-    (NodalVariable::Stress, "S33_AT_NODES",
-     ("force/length^2", "Cauchy stress across the thickness at nodes, mean of the elements there"), |e| e.result.across),
+const SCALARS_AT_NODES: [FieldAtNodes<f64>; 7] = [
     (NodalVariable::Stress, "MISES_AT_NODES",
      ("force/length^2", "von Mises stress of the stresses at nodes"), |e| e.result.von_mises()),
     (NodalVariable::PrincipalStress, "SP1_AT_NODES",
@@ -504,23 +494,7 @@ const SCALARS_AT_NODES: [FieldAtNodes<f64>; 10] = [
      |e| e.result.energy),
     (NodalVariable::PlasticStrain, "PEEQ_AT_NODES",
      ("1", "accumulated plastic strain at nodes, mean of the elements there"), |e| e.result.plastic_strain),
-    (NodalVariable::Strain, "E33_AT_NODES",
-     ("1", "Green-Lagrange strain around the axis at nodes, mean of the elements there"), |e| e.result.strain_around),
-    (NodalVariable::LogarithmicStrain, "LE33_AT_NODES",
-     ("1", "logarithmic strain around the axis at nodes, mean of the elements there"), |e| e.logarithmic_around),
 ];
-
-/// Meaning of `LE33`.
-pub(super) const LOGARITHMIC_AROUND: Meaning = (
-    "1",
-    "logarithmic strain around the axis, of the element's mean E33",
-);
-
-/// Meaning of `E33`.
-pub(super) const STRAIN_AROUND: Meaning = (
-    "1",
-    "Green-Lagrange strain around the axis, mean over the element",
-);
 
 /// Meaning of `PEEQ`.
 pub(super) const PLASTIC_STRAIN: Meaning =
@@ -529,7 +503,7 @@ pub(super) const PLASTIC_STRAIN: Meaning =
 /// A field that a deck has to ask for.
 #[rustfmt::skip]
 const PRESSURE: [ElementField<f64>; 1] = [
-    ("PRESS", ("force/length^2", "pressure -(xx + yy + zz)/3 of S and S33"), ElementResult::pressure),
+    ("PRESS", ("force/length^2", "pressure -(xx + yy + zz)/3 of S"), ElementResult::pressure),
 ];
 
 #[cfg(test)]

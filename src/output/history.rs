@@ -9,8 +9,7 @@ use hdf5::Group;
 use super::column::{
     GrowingColumns, Layout, Meaning, Mostly, ROWS, constant, group, text_attribute,
 };
-use super::fields::{ACROSS, ENERGY_DENSITY, LOGARITHMIC_STRAIN, STRAIN, STRESS};
-use super::fields::{LOGARITHMIC_AROUND, PLASTIC_STRAIN, STRAIN_AROUND};
+use super::fields::{ENERGY_DENSITY, PLASTIC_STRAIN};
 use super::local::Local;
 use super::model_group::contact_names;
 use super::strain::SmallStrainElements;
@@ -516,10 +515,10 @@ impl<'m> History<'m> {
         })?;
         if self.model.mesh.is_axisymmetric() {
             self.add(at, "E33", &count, STRAIN_AROUND, |r, v| {
-                v.extend(elements.iter().map(|&e| r.elements[e].strain_around));
+                v.extend(elements.iter().map(|&e| r.elements[e].strain_across));
             })?;
             self.add(at, "LE33", &count, LOGARITHMIC_AROUND, |r, v| {
-                let around = elements.iter().map(|&e| r.elements[e].strain_around);
+                let around = elements.iter().map(|&e| r.elements[e].strain_across);
                 v.extend(around.map(logarithmic_of));
             })?;
         }
@@ -827,11 +826,25 @@ const MEANS_OF_NODES: [VectorEntry; 3] = [
     ("A", "length/time^2", "mean acceleration", |r| &r.state.a),
 ];
 
+/// Meanings of `LE`, `E33` and `LE33` of elements.
+const LOGARITHMIC_STRAIN: Meaning = (
+    "1",
+    "logarithmic strain xx yy xy (xy: tensor component) of the element's mean deformation gradient",
+);
+const STRAIN_AROUND: Meaning = (
+    "1",
+    "Green-Lagrange strain around the axis, mean over the element",
+);
+const LOGARITHMIC_AROUND: Meaning = (
+    "1",
+    "logarithmic strain around the axis, of the element's mean E33",
+);
+
 #[rustfmt::skip]
 const ELEMENT: [DatasetEntry<ElementResult>; 10] = [
-    ("S", STRESS.0, STRESS.1, Tensor(|e| e.stress)),
-    ("E", STRAIN.0, STRAIN.1, Tensor(|e| e.strain)),
-    ("S33", ACROSS.0, ACROSS.1, Real(|e| e.across)),
+    ("S", "force/length^2", "Cauchy stress xx yy xy, mean over the element", Tensor(|e| e.stress)),
+    ("E", "1", "Green-Lagrange strain xx yy xy (xy: the tensor component), mean over the element", Tensor(|e| e.strain)),
+    ("S33", "force/length^2", "Cauchy stress across the plane, or around the axis, mean over the element", Real(|e| e.across)),
     ("MISES", "force/length^2", "von Mises stress of the mean stresses", Real(ElementResult::von_mises)),
     ("SP1", "force/length^2", "smallest principal value of the mean stresses", Real(|e| e.principal_stresses()[0])),
     ("SP2", "force/length^2", "middle principal value of the mean stresses", Real(|e| e.principal_stresses()[1])),
@@ -847,8 +860,8 @@ const LOCAL: [DatasetEntry<LocalResult>; 13] = [
     ("E", "1", "Green-Lagrange strain xx yy xy (xy: the tensor component)", Tensor(|e| e.result.strain)),
     ("LE", "1", "logarithmic strain xx yy xy (xy: the tensor component)", Tensor(|e| e.logarithmic_strain)),
     ("S33", "force/length^2", "Cauchy stress across the plane, or around the axis", Real(|e| e.result.across)),
-    ("E33", "1", "Green-Lagrange strain around the axis of a body of revolution", Real(|e| e.result.strain_around)),
-    ("LE33", "1", "logarithmic strain around the axis of a body of revolution", Real(|e| e.logarithmic_around)),
+    ("E33", "1", "Green-Lagrange strain across the plane, or around the axis", Real(|e| e.result.strain_across)),
+    ("LE33", "1", "logarithmic strain across the plane, or around the axis", Real(|e| e.logarithmic_across)),
     ("MISES", "force/length^2", "von Mises stress", Real(|e| e.result.von_mises())),
     ("SP1", "force/length^2", "smallest principal stress", Real(|e| e.result.principal_stresses()[0])),
     ("SP2", "force/length^2", "middle principal stress", Real(|e| e.result.principal_stresses()[1])),

@@ -138,7 +138,7 @@ SPOILED: dict[str, tuple[Spoil, str]] = {
     "a strain": (add("VTKHDF/CellData/E", 1e-6), "strains"),
     "a stress beside its invariants": (add("VTKHDF/CellData/S", 1e-6), "invariants"),
     "a stress of von Mises": (add("VTKHDF/CellData/MISES", 1e-6), "invariants"),
-    "a stress across": (add("VTKHDF/CellData/S33", 1e-3, (-1,)), "invariants"),
+    "a stress across": (add("VTKHDF/CellData/S", 1e-3, (-1, 2)), "invariants"),
     "the time": (add("history/time", 1e-6), "time"),
     "an increment": (add("history/dt", 1e-6), "time"),
     "a pass": (add("history/solver/converged", -1.0), "time"),

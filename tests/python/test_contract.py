@@ -41,10 +41,9 @@ POINT_DATA = {
     "SLIP": ("f8", (), "length"),
 }
 CELL_DATA = {
-    "S": ("f8", (3,), "force/length^2"),
-    "S33": ("f8", (), "force/length^2"),
+    "S": ("f8", (6,), "force/length^2"),
     "MISES": ("f8", (), "force/length^2"),
-    "E": ("f8", (3,), "1"),
+    "E": ("f8", (6,), "1"),
 }
 CONTACT = {
     "force": (2,),

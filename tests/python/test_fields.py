@@ -1,5 +1,9 @@
 """Fields by the names that users know, at nodes, and the drawing of elements."""
 
+import shutil
+from pathlib import Path
+
+import h5py
 import numpy as np
 import pytest
 from bodies import FAMILIES, bent_bodies, two_materials
@@ -12,6 +16,7 @@ from stickslip.fields import ABAQUS, ALIASES, also, known, part, words
 from stickslip.quantity import find, force_against_displacement
 from stickslip.result import Result
 
+REVOLUTION = ROOT / "tests" / "decks" / "revolution.inp"
 DISC_SPRING = ROOT / "input" / "disc_spring" / "disc_spring_mu014.inp"
 
 
@@ -82,6 +87,31 @@ def test_bodies_of_revolution_have_a_radius_and_an_axis(job: Job) -> None:
         assert result.frames.part("S33").label == "stress around the axis"
         # the plate that is pressed down comes first
         assert force_against_displacement(result)[0] == ("nodes/PLATE/U:2", "nodes/PLATE/RF:2")
+
+
+@pytest.mark.parametrize("deck", [REVOLUTION, CANTILEVERS / "A_mu04.inp"], ids=lambda deck: deck.stem)
+def test_files_with_tensors_of_three_components_are_read(deck: Path, job: Job, tmp_path: Path) -> None:
+    """As the first programs wrote them: S [., 3] and S33 [.], and E33 in bodies of revolution only."""
+    path = job(shortened(deck, 20), "--frames", "3")
+    old = Path(shutil.copy(path, tmp_path / "old.vtkhdf"))
+    with h5py.File(old, "r+") as file:
+        cells, offsets = file["VTKHDF/CellData"], file["VTKHDF/Steps/CellDataOffsets"]
+        for name in ("S", "E"):
+            stored = cells[name]
+            rows, meanings = stored[()], dict(stored.attrs)
+            del cells[name]
+            for field, columns in ((name, [0, 1, 3]), (f"{name}33", 2)):
+                if field != "E33" or deck == REVOLUTION:
+                    cells.create_dataset(field, data=rows[:, columns], maxshape=(None, 3)[: 2 - (columns == 2)])
+                    cells[field].attrs.update(meanings)
+                    offsets.require_dataset(field, offsets["MISES"].shape, "i8", data=offsets["MISES"][()])
+    with Result(path) as result, Result(old) as read:
+        assert set(read.frames.fields) == set(result.frames.fields) - ({"E33"} if deck != REVOLUTION else set())
+        for frame, other in zip(result.frames, read.frames, strict=True):
+            assert all(np.array_equal(frame[name], other[name], equal_nan=True) for name in other)
+            assert np.array_equal(frame.nodal("MISES"), other.nodal("MISES"))
+        assert read.to_xarray("S").equals(result.to_xarray("S").assign_attrs(job="old"))
+        assert np.array_equal(read.frames[-1].to_pyvista()["S33"], result.frames[-1].to_pyvista()["S"][:, 2], equal_nan=True)
 
 
 # Values at nodes.

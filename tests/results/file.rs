@@ -53,8 +53,8 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/VTKHDF/Types", vec![E]),
         ("/VTKHDF/PointData/GAP", vec![F * N]),
         ("/VTKHDF/PointData/CONTACT_STATUS", vec![F * N]),
-        ("/VTKHDF/CellData/S", vec![F * E, 3]),
-        ("/VTKHDF/CellData/E", vec![F * E, 3]),
+        ("/VTKHDF/CellData/S", vec![F * E, 6]),
+        ("/VTKHDF/CellData/E", vec![F * E, 6]),
         ("/VTKHDF/Steps/Values", vec![F]),
         ("/VTKHDF/Steps/PartOffsets", vec![F]),
         ("/VTKHDF/Steps/NumberOfParts", vec![F]),
@@ -149,7 +149,6 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/history/elements/SQUARES/sum/ELKE", vec![I]),
         ("/VTKHDF/PointData/CONTACT_PRESSURE", vec![F * N]),
         ("/VTKHDF/PointData/SLIP", vec![F * N]),
-        ("/VTKHDF/CellData/S33", vec![F * E]),
         ("/VTKHDF/CellData/SP1", vec![F * E]),
         ("/VTKHDF/Steps/CellDataOffsets/SP1", vec![F]),
         ("/VTKHDF/CellData/SP2", vec![F * E]),
@@ -159,7 +158,7 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/VTKHDF/CellData/PRESS", vec![F * E]),
         ("/VTKHDF/Steps/CellDataOffsets/PRESS", vec![F]),
         ("/VTKHDF/CellData/ENER", vec![F * E]),
-        ("/VTKHDF/CellData/LE", vec![F * E, 3]),
+        ("/VTKHDF/CellData/LE", vec![F * E, 6]),
         ("/VTKHDF/Steps/CellDataOffsets/ENER", vec![F]),
         ("/VTKHDF/Steps/CellDataOffsets/LE", vec![F]),
         ("/VTKHDF/PointData/CF", vec![F * N, 3]),
@@ -168,7 +167,6 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
         ("/VTKHDF/CellData/BODY", vec![E]),
         ("/VTKHDF/Steps/PointDataOffsets/CONTACT_PRESSURE", vec![F]),
         ("/VTKHDF/Steps/PointDataOffsets/SLIP", vec![F]),
-        ("/VTKHDF/Steps/CellDataOffsets/S33", vec![F]),
         ("/VTKHDF/Steps/CellDataOffsets/MISES", vec![F]),
         ("/VTKHDF/Steps/CellDataOffsets/BODY", vec![F]),
         ("/model/bodies/node", vec![N]),
@@ -243,15 +241,9 @@ fn shapes() -> Vec<(&'static str, Vec<usize>)> {
             "/VTKHDF/PointData/S_AT_NODES",
             "/VTKHDF/PointData/LE_AT_NODES",
         ],
-        vec![F * N, 3],
+        vec![F * N, 6],
     ));
-    shapes.extend(each(
-        &[
-            "/VTKHDF/PointData/S33_AT_NODES",
-            "/VTKHDF/PointData/MISES_AT_NODES",
-        ],
-        vec![F * N],
-    ));
+    shapes.push(("/VTKHDF/PointData/MISES_AT_NODES", vec![F * N]));
     shapes.extend(each(&AT_NODES_OFFSETS, vec![F]));
     shapes.extend(each(&POINT_VECTORS, vec![F * N, 3]));
     shapes.extend(each(&POINT_VECTOR_OFFSETS, vec![F]));
@@ -268,9 +260,8 @@ const POINT_VECTORS: [&str; 5] = [
     "/VTKHDF/PointData/CONTACT_FORCE",
 ];
 
-const AT_NODES_OFFSETS: [&str; 4] = [
+const AT_NODES_OFFSETS: [&str; 3] = [
     "/VTKHDF/Steps/PointDataOffsets/S_AT_NODES",
-    "/VTKHDF/Steps/PointDataOffsets/S33_AT_NODES",
     "/VTKHDF/Steps/PointDataOffsets/MISES_AT_NODES",
     "/VTKHDF/Steps/PointDataOffsets/LE_AT_NODES",
 ];

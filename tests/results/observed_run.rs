@@ -70,7 +70,7 @@ fn the_file_shows_the_collision() {
     );
     let file = File::open(&files.result).expect("file");
     let stress = values(&file, "VTKHDF/CellData/S");
-    assert_eq!(stress.len(), 13 * model.mesh.elements.len() * 3);
+    assert_eq!(stress.len(), 13 * model.mesh.elements.len() * 6);
     assert!(stress.iter().all(|s| s.is_finite()));
     let step: Vec<i64> = (file.dataset("history/step").expect("step"))
         .read_raw()

@@ -234,7 +234,7 @@ def _fields(
             values = values[:, : len(result.element_labels)]
         count = int(np.prod(values.shape[2:]))
         values = values.reshape(*values.shape[:2], count)[:, :, : 2 if name in VECTORS else None]
-        attributes = result.file[f"VTKHDF/{kind}/{name}"].attrs
+        attributes = result.item(result.frames.dataset(name)).attrs
         described = _field(kind, name, attributes, values, packed)
         described["words"] = words(name, result.is_axisymmetric)
         described["also"] = also(name, described["components"])

@@ -19,8 +19,8 @@ pub struct LocalResult {
     pub result: ElementResult,
     /// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration.
     pub logarithmic_strain: [f64; 3],
-    /// Logarithmic strain around the axis of a body of revolution; 0 in the plane.
-    pub logarithmic_around: f64,
+    /// Logarithmic strain across the thickness, or around the axis of a body of revolution.
+    pub logarithmic_across: f64,
 }
 
 impl LocalResult {
@@ -32,7 +32,7 @@ impl LocalResult {
             ..LocalResult::default()
         };
         for (factor, term) in terms {
-            sum.logarithmic_around += factor * term.logarithmic_around;
+            sum.logarithmic_across += factor * term.logarithmic_across;
             for (sum, strain) in sum
                 .logarithmic_strain
                 .iter_mut()
@@ -58,7 +58,7 @@ impl Elements {
         let points = chunk.at_points(place, motion);
         let local = |PointResult { result, gradient }: PointResult| LocalResult {
             logarithmic_strain: logarithmic_strain(&Matrix2::from(gradient).transpose()),
-            logarithmic_around: logarithmic_of(result.strain_around),
+            logarithmic_across: logarithmic_of(result.strain_across),
             result,
         };
         points.into_iter().map(local).collect()

@@ -24,8 +24,8 @@ pub struct ElementResult {
     pub principal_strain: f64,
     /// Accumulated plastic strain, mean over the element.
     pub plastic_strain: f64,
-    /// Green-Lagrange strain around the axis of a body of revolution; 0 in the plane.
-    pub strain_around: f64,
+    /// Green-Lagrange strain zz across the thickness, or around the axis of a body of revolution.
+    pub strain_across: f64,
     /// The part of the strain energy in hourglass modes (force length).
     pub hourglass_energy: f64,
 }
@@ -105,7 +105,7 @@ pub struct Sums {
     /// Components 11, 22 and 12.
     strain: [Lanes; 3],
     volume: Lanes,
-    around: Lanes,
+    strain_across: Lanes,
     plastic: Lanes,
     /// Largest absolute principal strain so far.
     principal: [f64; LANES],
@@ -121,14 +121,14 @@ impl Sums {
             across: Lanes::ZERO,
             strain: [Lanes::ZERO; 3],
             volume: Lanes::ZERO,
-            around: Lanes::ZERO,
+            strain_across: Lanes::ZERO,
             plastic: Lanes::ZERO,
             principal: [0.0; LANES],
         }
     }
 
-    /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, and sigma_zz = F_zz S_zz F_zz/J. With all components F_zz
-    /// is 1 + h of the displacements; in the plane F_zz and S_zz are those of the material.
+    /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, sigma_zz = F_zz S_zz F_zz/J and E_zz = (F_zz² - 1)/2. With
+    /// all components F_zz is 1 + h of the displacements; in the plane F_zz and S_zz are those of the material.
     #[inline(always)]
     pub fn add<const HOOP: bool>(
         &mut self,
@@ -139,14 +139,15 @@ impl Sums {
     ) {
         let h = &point.gradient.h;
         let (f, e) = (deformation_gradient(h), point.gradient.strain::<HOOP>());
-        let (stretch, across) = match HOOP {
+        let (stretch, across, strain_across) = match HOOP {
             true => {
                 let stretch = point.gradient.stretch_around();
-                (stretch, point.s.z * stretch / determinant(h))
+                (stretch, point.s.z * stretch / determinant(h), e.z)
             }
             false => {
                 let Across { stretch, stress } = law.across_at(p, &point.strain);
-                (stretch, stress * stretch / point.determinant)
+                let strain = (stretch * stretch - 1.0) * 0.5;
+                (stretch, stress * stretch / point.determinant, strain)
             }
         };
         let sigma = times_transposed(&times_symmetric(&f, &point.s), &f);
@@ -159,7 +160,7 @@ impl Sums {
         for (sum, e) in self.strain.iter_mut().zip([e.x, e.y, e.w]) {
             *sum += e * weight;
         }
-        self.around += e.z * weight;
+        self.strain_across += strain_across * weight;
         self.plastic += Lanes::of_lanes(|lane| law.plastic_strain_at(lane, p)) * weight;
         self.volume += weight;
         self.take_principal(&e);
@@ -199,7 +200,7 @@ impl Sums {
             strain: means(&self.strain),
             principal_strain: self.principal[lane],
             plastic_strain: self.plastic.0[lane] / volume,
-            strain_around: self.around.0[lane] / volume,
+            strain_across: self.strain_across.0[lane] / volume,
             hourglass_energy: 0.0,
         }
     }
@@ -214,7 +215,7 @@ impl ElementResult {
             sum.across += factor * term.across;
             sum.principal_strain += factor * term.principal_strain;
             sum.plastic_strain += factor * term.plastic_strain;
-            sum.strain_around += factor * term.strain_around;
+            sum.strain_across += factor * term.strain_across;
             sum.hourglass_energy += factor * term.hourglass_energy;
             for i in 0..3 {
                 sum.stress[i] += factor * term.stress[i];
