@@ -750,6 +750,49 @@ def test_keys_reach_values_and_nodes(shown: Shown, job: Job, tmp_path: Path) -> 
     assert skipped == 0
 
 
+def test_keys_zoom_and_move_the_window_of_a_chart(shown: Shown, job: Job) -> None:
+    """Of one over the time, and of one whose abscissa goes to and fro, in both directions."""
+    page = shown(pressed_ring(job))
+    charts(page)
+    chart = "page.charts.find((chart) => chart.title === 'Energies')"
+
+    def ends(of: str, axis: str) -> tuple[float, float]:
+        page.wait_for_timeout(50)  # the chart draws in a later turn
+        return tuple(page.evaluate(f"[{of}.plot.scales.{axis}.min, {of}.plot.scales.{axis}.max]"))
+
+    page.evaluate(f"{chart}.plotted.focus()")
+    whole, frame = ends(chart, "x"), page.evaluate("page.view.frame")
+    page.keyboard.press("+")
+    low, high = ends(chart, "x")
+    assert high - low == pytest.approx(0.7 * (whole[1] - whole[0])) and low > whole[0]
+    page.keyboard.press("ArrowLeft")
+    assert ends(chart, "x") == pytest.approx((low - 0.1 * (high - low), high - 0.1 * (high - low)))
+    assert page.evaluate("page.view.frame") == frame, "the arrow moves no frame"
+    page.keyboard.press("0")
+    assert ends(chart, "x") == pytest.approx(whole)
+    page.keyboard.press("Shift+ArrowRight")
+    page.keyboard.press("Shift+ArrowRight")
+    time, value = page.evaluate(f"{chart}.plot.legend.values.slice(0, 2).map((each) => each._)")
+    times, kinetic = page.evaluate(f"{chart}.plot.data.slice(0, 2).map((column) => column[1])")
+    assert page.evaluate(f"{chart}.plot.cursor.idx") == 1
+    assert (time, value) == (page.evaluate(f"number({times}, 5)"), page.evaluate(f"number({kinetic}, 5)"))
+    page.keyboard.press("Enter")
+    assert page.evaluate("page.view.frame") == page.evaluate(f"page.result.nearestFrame({times})")
+
+    force = "page.charts[0]"
+    page.evaluate(f"{force}.plotted.focus()")
+    before = [ends(force, axis) for axis in "xy"]
+    page.keyboard.press("+")
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowRight")
+    for axis, (low, high) in zip("xy", before):
+        found = ends(force, axis)
+        assert found[1] - found[0] == pytest.approx(0.7 * (high - low))
+        assert found[0] + found[1] == pytest.approx(low + high + 0.2 * 0.7 * (high - low))
+    page.keyboard.press("0")
+    assert [ends(force, axis) for axis in "xy"] == [pytest.approx(each) for each in before]
+
+
 def test_values_of_elements_bands_and_marks_are_a_choice(shown: Shown, job: Job, tmp_path: Path) -> None:
     path = two_bodies(job, tmp_path)
     page = shown(path)

@@ -1,6 +1,7 @@
 // Charts of histories, drawn by uPlot. A chart has variants that are chosen above it.
 
 const CHART_HEIGHT = 250;
+const CHART_KEYS = "+ and − zoom, arrows move, 0 shows all, Shift and arrows read values, Enter goes to the time";
 
 /** Histories of a result by name; values are unpacked when they are asked for. */
 class Histories {
@@ -61,7 +62,7 @@ class Chart {
     this.variants = variants;
     this.select = make("select", { "aria-label": `${title}: what is shown`, onchange: () => this.build() });
     fillSelect(this.select, [["", variants.map(({ name }, i) => [i, name])]]);
-    this.plotted = make("div", { class: "plot" });
+    this.plotted = make("div", { class: "plot", tabIndex: 0, role: "group", "aria-label": `${title}: ${CHART_KEYS}`, onkeydown: (event) => this.key(event) });
     this.tools = make("div", { class: "tools" }, variants.length > 1 ? this.select : null);
     this.note = make("p", { class: "note" }, note);
     const heading = make("header", {}, make("h3", {}, title), this.tools);
@@ -99,10 +100,12 @@ class Chart {
     this.line = null;
     this.plotted.replaceChildren();
     this.note.textContent = shown.note ?? this.note.textContent;
+    this.ends = shown.way ? this.whole() : {};
     this.plot = new uPlot(this.options(shown, ordered, joined), data, this.plotted);
     this.line = make("div", { class: "now" });
     this.plot.over.append(this.line);
     this.plot.over.addEventListener("click", () => this.jump());
+    this.plot.over.addEventListener("dblclick", () => this.showAll());
     for (const name of this.plot.root.querySelectorAll(".u-series th")) {
       Object.assign(name, { tabIndex: 0, role: "button" });
       name.addEventListener("keydown", (event) => event.key === "Enter" && name.click());
@@ -127,7 +130,7 @@ class Chart {
       legend: { live: true },
       hooks: { draw: [() => this.mark()] },
       cursor: { sync: shown.along ? undefined : { key: "time" }, drag: { x: !shown.way, y: false }, points: { size: 6 }, ...(shown.way ? { dataIdx: nearestOnWay } : {}) },
-      scales: { x: { time: false, ...(shown.way ? { range: spanOf(shown.series.map(({ x }) => x)) } : {}) }, y: { distr: shown.log ? 3 : 1, range: shown.way ? spanOf(shown.series.map(({ values }) => values)) : shown.log ? undefined : span } },
+      scales: { x: { time: false, ...(shown.way ? { range: () => this.ends.x } : {}) }, y: { distr: shown.log ? 3 : 1, range: shown.way ? () => this.ends.y : shown.log ? undefined : span } },
       axes: [
         { ...axis, label: shown.along ?? "time", values: shorten, size: 34 },
         { ...axis, label: shown.axis, values: shorten, size: widest },
@@ -150,6 +153,63 @@ class Chart {
   /** Values of a chart that changes with the frame. */
   setValues(values) {
     this.plot?.setData([this.plot.data[0], ...values], false);
+  }
+
+  /** Zoom, window, cursor and time by keys. */
+  key(event) {
+    if (event.target !== this.plotted || !this.plot || event.ctrlKey || event.metaKey || event.altKey) return;
+    const { way } = this.made;
+    const ways = { ArrowLeft: ["x", -1], ArrowRight: ["x", 1], ...(way ? { ArrowUp: ["y", 1], ArrowDown: ["y", -1] } : {}) };
+    const factor = { "+": 0.7, "=": 0.7, "-": 1 / 0.7 }[event.key];
+    const [axis, sign] = ways[event.key] ?? [];
+    if (factor) this.window("xy", (low, high, at) => [at - (at - low) * factor, at + (high - at) * factor]);
+    else if (event.key === "0") this.showAll();
+    else if (event.key === "Enter") this.jump();
+    else if (axis && event.shiftKey) this.moveCursor(sign);
+    else if (axis) this.window(axis, (low, high) => [low, high].map((end) => end + 0.1 * sign * (high - low)));
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  /** Other ends of axes, each made of its ends and the place of the cursor or the middle between them. */
+  window(axes, made) {
+    const { plot } = this;
+    const { left, top } = plot.cursor;
+    for (const axis of axes) {
+      // the ordinate of curves over abscissae that grow follows what is in the window
+      if (axis === "y" && !this.made.way) continue;
+      const { min, max } = plot.scales[axis];
+      const at = left >= 0 ? plot.posToVal(axis === "x" ? left : top, axis) : 0.5 * (min + max);
+      const [low, high] = made(min, max, at, axis);
+      if (!(high > low)) continue;
+      this.ends[axis] = [low, high];
+      plot.setScale(axis, { min: low, max: high });
+    }
+  }
+
+  showAll() {
+    const whole = this.whole();
+    this.window("xy", (low, high, at, axis) => whole[axis]);
+  }
+
+  /** Ends of the axes that show all. */
+  whole() {
+    const { made, plot } = this;
+    if (made.way) return { x: spanOf(made.series.map(({ x }) => x)), y: spanOf(made.series.map(({ values }) => values)) };
+    return { x: [plot.data[0][0], plot.data[0].at(-1)] };
+  }
+
+  /** The cursor at a point before or after the one where it is. */
+  moveCursor(step) {
+    const { made, plot } = this;
+    const x = plot.data[0];
+    const row = Math.min(Math.max((plot.cursor.idx ?? (step > 0 ? -1 : x.length)) + step, 0), x.length - 1);
+    const series = plot.data.findIndex((column, at) => at > 0 && (column[row] ?? null) !== null);
+    const top = series > 0 ? plot.valToPos(plot.data[series][row], "y") : 0;
+    const [low, high] = [plot.scales.x.min, plot.scales.x.max];
+    if (x[row] < low || x[row] > high) this.window("x", () => [low, high].map((end) => end + x[row] - 0.5 * (low + high)));
+    plot.setCursor({ left: plot.valToPos(x[row], "x"), top });
   }
 
   /** The line at the time of the frame, or where a curve that goes to and fro is then. */
@@ -215,7 +275,9 @@ function wayPath(plot, series) {
     if (there) stroke[down ? "lineTo" : "moveTo"](plot.valToPos(x[row], "x", true), plot.valToPos(y[row], plot.series[series].scale, true));
     down = there;
   }
-  return { stroke, fill: null, clip: null, flags: 1 };
+  const clip = new Path2D();
+  clip.rect(plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height);
+  return { stroke, fill: null, clip, flags: 1 };
 }
 
 /** The row of a curve that is nearest to the mouse. */
