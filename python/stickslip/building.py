@@ -198,20 +198,72 @@ class Building(ABC):
         """A mass at a node of a rigid body."""
         return self._connect("MASS", "MASS", (node,), mass)
 
-    def spring(self, first: int, second: int, stiffness: float) -> Self:
-        """A spring between two nodes, by their numbers, along their line."""
-        return self._connect("SPRINGA", "SPRING", (first, second), stiffness)
+    def hinge(self, first: int, second: int) -> Self:
+        """A hinge between nodes at one place: of two rigid bodies, or of bodies that ride on reference nodes."""
+        if first == second:
+            raise Fault(f"a hinge has two nodes, not node {first} twice")
+        return self.add("MPC", ("PIN", first, second))
 
-    def dashpot(self, first: int, second: int, coefficient: float) -> Self:
-        """A dashpot between two nodes, by their numbers, along their line."""
-        return self._connect("DASHPOTA", "DASHPOT", (first, second), coefficient)
+    def coupling(self, name: str, surface: str, reference: str, distributing: bool = False) -> Self:
+        """The nodes of a surface ride on a reference node (`node`) as a rigid body, which turns and takes moments.
 
-    def _connect(self, kind: str, keyword: str, nodes: tuple[int, ...], value: float) -> Self:
-        """An element of its own set between nodes, with its constant."""
+        `distributing`: its displacement is the mean of theirs, and forces on it go to them in equal parts.
+        """
+        head = f"COUPLING, CONSTRAINT NAME={name}, REF NODE={reference}, SURFACE={surface}"
+        return self.add(head).add("DISTRIBUTING" if distributing else "KINEMATIC")
+
+    def pre_tension(self, surface: str, node: str, normal: tuple[float, float] | None = None) -> Self:
+        """Cuts a body, such as a bolt, along faces between its elements, for its preload.
+
+        In steps direction 1 of the node (`node`) is the overlap of the sides: `load` is the force of the bolt, tension being
+        positive, and `support` prescribes the overlap. `normal` is that of the section, if not the mean one of the faces.
+        """
+        if normal == (0.0, 0.0):
+            raise Fault(f"{surface}: the normal of the section has no length")
+        rows = [] if normal is None else [(*map(float, normal), 0.0)]
+        return self.add(f"PRE-TENSION SECTION, NODE={node}, SURFACE={surface}", *rows)
+
+    def equation(self, *terms: tuple[int | str, int, float]) -> Self:
+        """A linear equation a1 u1 + a2 u2 + ... = 0: of each term the node or node set, the direction and the factor.
+
+        The first term follows from the others. Sets give an equation for every node.
+        """
+        if len(terms) < 2:
+            raise Fault("an equation has two terms or more")
+        for node, direction, factor in terms:
+            if direction not in (1, 2):
+                raise Fault(f"node {node}: direction {direction} is not 1 or 2")
+            if factor == 0.0:
+                raise Fault(f"node {node}: the factor of a term is not 0")
+        lines = [terms[at : at + 4] for at in range(0, len(terms), 4)]
+        return self.add("EQUATION", (len(terms),), *([x for term in line for x in term] for line in lines))
+
+    def spring(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
+        """A spring between two nodes, by their numbers, along their line.
+
+        `law` is its stiffness, or pairs of force and elongation, which increases; beyond them the force stays.
+        """
+        return self._connect("SPRINGA", "SPRING", (first, second), law)
+
+    def dashpot(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
+        """A dashpot between two nodes, by their numbers, along their line.
+
+        `law` is its coefficient, or pairs of force and rate of the elongation, which increases.
+        """
+        return self._connect("DASHPOTA", "DASHPOT", (first, second), law)
+
+    def _connect(
+        self, kind: str, keyword: str, nodes: tuple[int, ...], law: Number | Sequence[tuple[float, float]]
+    ) -> Self:
+        """An element of its own set between nodes, with its constant or its table."""
         number = self._next_number("ELEMENT")
         name = f"{keyword}{number}"
+        is_table = not isinstance(law, (int, float, str))
+        rows = [tuple(map(float, row)) for row in law] if is_table else [(law,)]
+        if is_table and (len(rows) < 2 or any(a >= b for (_, a), (_, b) in zip(rows, rows[1:]))):
+            raise Fault(f"the table of {name} has two rows or more, and its second column increases")
         self.add(f"ELEMENT, TYPE={kind}, ELSET={name}", (number, *nodes))
-        return self.add(f"{keyword}, ELSET={name}", (value,))
+        return self.add(f"{keyword}, ELSET={name}{', NONLINEAR' if is_table else ''}", *rows)
 
     # Steps, supports, loads, output.
 
