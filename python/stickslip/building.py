@@ -105,7 +105,7 @@ class Building(ABC):
 
     def elastic(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
         """A St. Venant-Kirchhoff material, for strains below some 20 %; damping as `alpha`, `beta`."""
-        return self.extend(material(name, young, poisson, density, **damping))
+        return self.extend(material(name, young, poisson, density, "", **damping))
 
     def hencky(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
         """Hencky's material, for large strains: Kirchhoff stress over logarithmic strain; damping as `alpha`, `beta`."""
@@ -258,12 +258,13 @@ class Building(ABC):
         """An element of its own set between nodes, with its constant or its table."""
         number = self._next_number("ELEMENT")
         name = f"{keyword}{number}"
-        is_table = not isinstance(law, (int, float, str))
-        rows = [tuple(map(float, row)) for row in law] if is_table else [(law,)]
-        if is_table and (len(rows) < 2 or any(a >= b for (_, a), (_, b) in zip(rows, rows[1:]))):
-            raise Fault(f"the table of {name} has two rows or more, and its second column increases")
+        head = f"{keyword}, ELSET={name}"
+        if isinstance(law, (int, float, str)):
+            rows: Sequence[Sequence[object]] = [(law,)]
+        else:
+            head, rows = f"{head}, NONLINEAR", _table(name, law)
         self.add(f"ELEMENT, TYPE={kind}, ELSET={name}", (number, *nodes))
-        return self.add(f"{keyword}, ELSET={name}{', NONLINEAR' if is_table else ''}", *rows)
+        return self.add(head, *rows)
 
     # Steps, supports, loads, output.
 
@@ -343,6 +344,14 @@ def element_types(plane: Plane, formulation: str = "") -> dict[int, str]:
 
 def _with_amplitude(head: str, amplitude: str) -> str:
     return f"{head}, AMPLITUDE={amplitude}" if amplitude else head
+
+
+def _table(name: str, law: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """The rows of a table whose second column increases."""
+    rows = [(float(force), float(along)) for force, along in law]
+    if len(rows) < 2 or any(a >= b for (_, a), (_, b) in zip(rows, rows[1:])):
+        raise Fault(f"the table of {name} has two rows or more, and its second column increases")
+    return rows
 
 
 def _in_lines(numbers: Iterable[int]) -> list[list[int]]:

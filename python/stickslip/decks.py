@@ -45,7 +45,7 @@ def elastic(
     """A material and the sections of element sets that are made of it."""
     return "".join(
         [
-            material("ELASTIC", young, poisson, density, **damping),
+            material("ELASTIC", young, poisson, density, "", **damping),
             *(
                 card(f"SOLID SECTION, ELSET={name}, MATERIAL=ELASTIC", (thickness,))
                 for name in sets
