@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.tri import Triangulation
 
 from stickslip.arrays import Array, Flags, Integers
@@ -143,8 +144,10 @@ def draw_field(
     peak = colouring.peak
     if peak is not None and (peak.results, peak.frame) == (results, frame):
         place = at[peak.place] if field.of_nodes(results) else at[drawing.rings[peak.place]].mean(axis=0)
-        axes.scatter(place[0], place[1], s=22, marker="o", facecolor="none", edgecolor=ARROW, linewidth=0.9, zorder=7)
-        axes.annotate(f"{peak.value:.4g}", place, (4, 5), textcoords="offset points", fontsize=7, zorder=7, clip_on=True)
+        # with an edge, to be read on any colour
+        drawn: dict[str, Any] = {"zorder": 7, "path_effects": [withStroke(linewidth=2.0, foreground="white")]}
+        axes.scatter(place[0], place[1], s=22, marker="o", facecolor="none", edgecolor=ARROW, linewidth=0.9, **drawn)
+        axes.annotate(f"{peak.value:.4g}", place, (4, 5), textcoords="offset points", fontsize=7, **drawn)
 
 
 def mesh_line(axes: Axes, results: Result) -> float:

@@ -219,6 +219,14 @@ function nodeChart(page) {
   return chart;
 }
 
+/** The column of a history that is shown first: the second, or one that changes. */
+async function columnOf(histories, name) {
+  const columns = histories.columns(name).slice(0, 20).map((_, column) => column);
+  const order = columns.length > 1 ? [1, 0, ...columns.slice(2)] : columns;
+  for (const column of order) if ((await histories.column(name, column)).some((value, _, all) => value !== all[0])) return column;
+  return order[0];
+}
+
 /** Any history of the file, against the time or any other. */
 function anyChart(page) {
   const histories = page.histories[0];
@@ -232,7 +240,7 @@ function anyChart(page) {
   }
   const chosen = [];
   const start = ["rigid/", "nodes/", "bodies/center"].map((each) => histories.under(each).find((name) => !histories.zero(name) && !/node$/.test(name))).find(Boolean);
-  if (start) chosen.push(`${start}|${Math.min(1, histories.columns(start).length - 1)}`);
+  let ready = null;
   const described = (id) => {
     const [name, column] = [id.slice(0, id.lastIndexOf("|")), Number(id.slice(id.lastIndexOf("|") + 1))];
     const text = histories.columns(name)[column];
@@ -241,6 +249,8 @@ function anyChart(page) {
   };
   const across = make("select", { "aria-label": "abscissa" });
   const make_ = async () => {
+    ready ??= start && columnOf(histories, start).then((column) => chosen.push(`${start}|${column}`));
+    await ready;
     const wanted = chosen.map(described);
     const made = await curves(page, wanted);
     const dimensions = [...new Set(wanted.map(({ name }) => histories.dimension(name)))];

@@ -250,6 +250,11 @@ class Marks {
     const height = Math.min(240, view.seen.height - 120);
     const [x, top, width] = [view.seen.width - 84, 56, 14];
     const ink = styleColour("ink");
+    // rigid lines reach to the border of the picture
+    context.globalAlpha = 0.8;
+    context.fillStyle = styleColour("ground");
+    context.fillRect(x - 6, top - 12, view.seen.width - x + 6, height + 24);
+    context.globalAlpha = 1;
     for (let i = 0; i < height; i++) {
       const at = 4 * Math.round((1 - i / (height - 1)) * 255);
       context.fillStyle = `rgb(${table[at]} ${table[at + 1]} ${table[at + 2]})`;

@@ -1,5 +1,8 @@
 // Puts the page together: controls, charts, tables.
 
+/** Width of paper in pixels of the page. */
+const PAPER = 800;
+
 class Page {
   constructor(data) {
     this.results = data.results.map((each) => new Result(each));
@@ -239,9 +242,16 @@ class Page {
     document.querySelectorAll(".printed").forEach((each) => each.remove());
     this.view.draw();
     if (begins) this.view.element.append(printed(this.drawn()));
-    for (const { plot } of this.charts) {
-      plot?.redraw(false);
-      if (begins && plot) plot.root.querySelector(".u-wrap").append(printed(plot.ctx.canvas));
+    for (const chart of this.charts) {
+      const { plot } = chart;
+      if (!plot) continue;
+      // the text of a chart wider than the paper would be too small on it
+      plot.batch(() => {
+        if (begins && plot.width > PAPER) plot.setSize({ width: PAPER, height: plot.height });
+        else if (!begins) chart.fit();
+        plot.redraw(false);
+      });
+      if (begins) plot.root.querySelector(".u-wrap").append(printed(plot.ctx.canvas));
     }
   }
 

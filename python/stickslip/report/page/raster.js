@@ -5,6 +5,9 @@
 // and do not overlap: both find the crossing of a row with their edge from its lower end. An edge covers the pixels near
 // it in part, by their distance.
 
+/** Sum of red, green and blue of pixels that are dark. */
+const DARK = 330;
+
 /** A colour #rrggbb as bytes. */
 function bytesOf(hex) {
   return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
@@ -152,13 +155,15 @@ class Painter {
     }
   }
 
-  /** Edges of a layer with a width in pixels of the page, in one colour or coloured by the values at their ends. */
-  drawEdges(layer, name, width, { plain, opacity = 1, coloured = false, range }) {
+  /** Edges of a layer with a width in pixels of the page, in one colour and one on dark pixels, or coloured by the values at
+   * their ends. */
+  drawEdges(layer, name, width, { plain, onDark = plain, opacity = 1, coloured = false, range }) {
     const edges = layer.mesh[name];
     if (!edges?.length) return;
     const { values } = layer;
     const thick = width * this.camera.density;
     let colour = pixelOf(bytesOf(plain));
+    const lighter = coloured || onDark === plain ? null : pixelOf(bytesOf(onDark));
     for (let i = 0; i < edges.length; i += 2) {
       const a = edges[i];
       const b = edges[i + 1];
@@ -168,12 +173,12 @@ class Painter {
         const value = one && other ? 0.5 * (values[a] + values[b]) : one ? values[a] : values[b];
         colour = this.table[this.shade(value, range)];
       }
-      this.line(layer, a, b, thick, colour, opacity);
+      this.line(layer, a, b, thick, colour, opacity, lighter);
     }
   }
 
-  /** A line, row by row or column by column along its longer side. */
-  line(layer, a, b, thick, colour, opacity) {
+  /** A line, row by row or column by column along its longer side; `lighter` is its colour on dark pixels. */
+  line(layer, a, b, thick, colour, opacity, lighter = null) {
     const steep = Math.abs(layer.y[b] - layer.y[a]) > Math.abs(layer.x[b] - layer.x[a]);
     const x = steep ? layer.y : layer.x;
     const y = steep ? layer.x : layer.y;
@@ -205,8 +210,10 @@ class Painter {
         const cover = (near < 1 ? near * full : full) | 0;
         const index = steep ? at * width + side : side * width + at;
         const below = pixels[index];
-        const redBlue = ((below & 0xff00ff) * (256 - cover) + (colour & 0xff00ff) * cover) >>> 8;
-        const green = ((below & 0xff00) * (256 - cover) + (colour & 0xff00) * cover) >>> 8;
+        const isDark = lighter !== null && (below & 0xff) + ((below >>> 8) & 0xff) + ((below >>> 16) & 0xff) < DARK;
+        const own = isDark ? lighter : colour;
+        const redBlue = ((below & 0xff00ff) * (256 - cover) + (own & 0xff00ff) * cover) >>> 8;
+        const green = ((below & 0xff00) * (256 - cover) + (own & 0xff00) * cover) >>> 8;
         pixels[index] = 0xff000000 | (redBlue & 0xff00ff) | (green & 0xff00);
       }
     }

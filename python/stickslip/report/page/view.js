@@ -235,7 +235,7 @@ class View {
     painter.drawFaces(layer, { plain, coloured: coloured && !onEdges, atNodes, range });
     if (look.lines && this.edge * camera.scale >= LINES_FROM) {
       const opacity = Math.min(0.35, 0.08 + 0.008 * this.edge * camera.scale);
-      painter.drawEdges(layer, "inner", 0.8, { plain: ink, opacity });
+      painter.drawEdges(layer, "inner", 0.8, coloured ? { plain: "#101418", onDark: "#ffffff", opacity } : { plain: ink, opacity });
     }
     const thin = this.edge * camera.scale < 2 ? 0.7 : 1.2;
     painter.drawEdges(layer, "outline", thin, { plain: ink, opacity: 0.75 });
