@@ -791,6 +791,10 @@ def test_keys_zoom_and_move_the_window_of_a_chart(shown: Shown, job: Job) -> Non
         assert found[0] + found[1] == pytest.approx(low + high + 0.2 * 0.7 * (high - low))
     page.keyboard.press("0")
     assert [ends(force, axis) for axis in "xy"] == [pytest.approx(each) for each in before]
+    page.keyboard.press("+")
+    assert ends(force, "x") != pytest.approx(before[0])
+    page.locator(".chart .u-over").first.dblclick()
+    assert [ends(force, axis) for axis in "xy"] == [pytest.approx(each) for each in before]
 
 
 def test_values_of_elements_bands_and_marks_are_a_choice(shown: Shown, job: Job, tmp_path: Path) -> None:
