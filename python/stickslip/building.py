@@ -33,6 +33,9 @@ SHAPES = {"": (3, 4, 6, 8), "R": (4, 8), "I": (4,), "H": (4, 8), "RH": (8,)}
 ROUGH = "rough"
 """Friction of contacts that never slip."""
 
+MATERIAL_CARDS = ("DENSITY", "DAMPING", "PLASTIC")
+"""Last cards of materials."""
+
 Discretisation = Literal["", "node to surface", "surface to surface"]
 
 
@@ -152,6 +155,14 @@ class Building(ABC):
         rows = [constants[at : at + 8] for at in range(0, len(constants), 8)]
         self.add(f"MATERIAL, NAME={name}").add(f"HYPERELASTIC, {law}", *rows)
         return self.add("DENSITY", (density,))
+
+    def expansion(self, coefficient: Number | Sequence[tuple[float, float]], zero: float = 0.0) -> Self:
+        """Thermal expansion of the material before it: a coefficient, or pairs of coefficient and temperature; `zero` is the
+        temperature that the coefficient counts from."""
+        if not self.cards or self.cards[-1].keyword not in MATERIAL_CARDS:
+            raise Fault("expansion stands right behind the material that expands")
+        rows = [(coefficient,)] if isinstance(coefficient, (float, int, str)) else coefficient
+        return self.add(f"EXPANSION, ZERO={zero!r}", *rows)
 
     # Contact.
 
@@ -305,6 +316,14 @@ class Building(ABC):
     def velocity(self, nodes: str, x: float, y: float) -> Self:
         """Initial velocity of a node set; one of `add_mesh` may be that of an element set."""
         return self.add("INITIAL CONDITIONS, TYPE=VELOCITY", (nodes, 1, x), (nodes, 2, y))
+
+    def initial_temperature(self, nodes: str, value: Number) -> Self:
+        """Temperature of a node set at the start, at which it is free of stress; without any it is 0."""
+        return self.add("INITIAL CONDITIONS, TYPE=TEMPERATURE", (nodes, value))
+
+    def temperature(self, nodes: str, value: Number, amplitude: str = "") -> Self:
+        """Temperature of a node set, in a step."""
+        return self.add(_with_amplitude("TEMPERATURE", amplitude), (nodes, value))
 
     def support(self, nodes: str, *directions: int, value: Number = 0.0, amplitude: str = "") -> Self:
         """Holds a node set in directions (1, 2; both when none is given; 6 turns a rigid body) or, in a step, moves it."""

@@ -229,3 +229,23 @@ def test_ties_and_general_contact(tmp_path: Path) -> None:
         deck.pressure("TOPLID", 5.0)
     result = run(deck, tmp_path, threads=1)
     assert result.frames[-1]["U2"].min() < -0.001 and list(result.contact) == ["ALL_EXTERIOR"]
+
+
+def test_heat(tmp_path: Path) -> None:
+    """A block between two walls that lets its top move: S11 = -E (1/theta^2 - 1)/2 over the stretch along y, nu = 0."""
+    mesh = grid("CPE4", 2, 2, lambda x, y: (x, y))
+    deck = Deck.titled("heat")
+    deck.add_mesh(mesh, "stress")
+    deck.elastic("M", 1000.0, 0.0, 1.0).expansion([(1e-4, 0.0), (2e-4, 100.0)], zero=10.0)
+    deck.section("BODY", "M").initial_temperature("BODY", 10.0)
+    deck.support("NBOTTOM", 2).support("NLEFT", 1).support("NRIGHT", 1)
+    with deck.static_step():
+        deck.temperature("BODY", 60.0)
+    frame = run(deck, tmp_path, frames=1, threads=1).frames[-1]
+    theta = 1.0 + 1.6e-4 * 50.0
+    # sigma_11 = theta S_11 (E_m)_11/J, J = theta^2 with both free stretches
+    stress = theta * 1000.0 * (theta**-2 - 1.0) / 2.0 / theta**2
+    assert frame["S"][:, 0] == pytest.approx(stress, rel=1e-9)
+    assert frame["NT"].max() == 60.0
+    with pytest.raises(Fault, match="right behind the material"):
+        Deck.titled("late").expansion(1e-5)
