@@ -293,7 +293,7 @@ fn shortest_sides(segments: &[Segment], mesh: &Mesh) -> HashMap<usize, f64> {
         return shortest;
     }
     for element in &mesh.elements {
-        let corners = &element.nodes[..element.element_type.shape.corners()];
+        let corners = element.corners();
         let next = corners.iter().cycle().skip(1);
         for (&a, &b) in corners.iter().zip(next) {
             let length = distance(mesh.coordinates[a], mesh.coordinates[b]);
