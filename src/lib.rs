@@ -8,14 +8,14 @@
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list: `archive`, `linear`, `lcp`, `vectors`, `diagnostics`,
+//! A module imports only from modules before it in this list: `system`, `archive`, `linear`, `lcp`, `vectors`, `diagnostics`,
 //! `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `contact`, `prepare`, `dynamics`, `output`,
 //! `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Packages
 //!
 //! All layers but `output` and `cli` are in packages of their own (`crates`), so that a change of a file compiles
-//! little anew: `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks` and `stickslip_dynamics`. They stand
+//! little anew: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks` and `stickslip_dynamics`. They stand
 //! here under the names of their modules.
 //!
 //! # Equations
@@ -83,3 +83,4 @@ pub use stickslip_decks::{deck, flat_deck, reader};
 pub use stickslip_dynamics::{contact, dynamics, prepare};
 pub use stickslip_mechanics::{diagnostics, elements, materials, model, vectors};
 pub use stickslip_numerics::{archive, lcp, linear};
+pub use stickslip_system::system;

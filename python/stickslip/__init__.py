@@ -12,6 +12,8 @@ from stickslip.history import History
 from stickslip.program import DeckRejected, Diagnostic, Progress, RunFailed, RunStopped, check, run
 from stickslip.result import Result
 
+__version__ = "0.1.0"
+
 __all__ = [
     "Deck",
     "DeckRejected",

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
-from stickslip.errors import Fault, one_line
+from stickslip.errors import Fault, not_installed, one_line
 
 FAULT = 2
 """Exit code after a fault; argparse's own."""
@@ -15,23 +15,33 @@ FAULT = 2
 
 def finish(main: Callable[[], int | None]) -> NoReturn:
     """Runs a script's `main` and exits with its code, or with FAULT and one line."""
-    name = Path(sys.argv[0]).name
     try:
         code = main() or 0
         sys.stdout.flush()
     except Fault as fault:
-        print(f"{name}: error: {one_line(fault)}", file=sys.stderr)
+        complain(one_line(fault))
+        code = FAULT
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package in ("", "stickslip"):
+            raise
+        complain(str(not_installed(package)))
         code = FAULT
     except BrokenPipeError:
         sys.stderr.close()  # the reader of the output has gone: nobody to tell
         code = FAULT
     except OSError as error:
         text = f"{error.filename}: {error.strerror}" if error.filename else one_line(error)
-        print(f"{name}: error: {text}", file=sys.stderr)
+        complain(text)
         code = FAULT
     except KeyboardInterrupt:
         code = 130
     sys.exit(code)
+
+
+def complain(text: str) -> None:
+    """Writes an error with the name of the command."""
+    print(f"{Path(sys.argv[0]).name}: error: {text}", file=sys.stderr)
 
 
 def finite(text: str) -> float:

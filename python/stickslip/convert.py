@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.arrays import Array
-from stickslip.errors import Fault
+from stickslip.errors import not_installed
 from stickslip.fields import DIRECTIONS, IN_SPACE, TENSOR, VECTORS
 from stickslip.quantity import Members
 from stickslip.result_file import ResultFile
@@ -135,4 +135,4 @@ def _package(name: str) -> Any:
     try:
         return importlib.import_module(name)
     except ImportError:
-        raise Fault(f"the package {name} is needed for this: pip install {name}") from None
+        raise not_installed(name) from None

@@ -1,5 +1,19 @@
 """Errors that the user can correct."""
 
+EXTRAS = {
+    "PIL": "plot",
+    "dask": "sweep",
+    "distributed": "sweep",
+    "gmsh": "mesh",
+    "matplotlib": "plot",
+    "meshio": "mesh",
+    "pandas": "convert",
+    "pyarrow": "sweep",
+    "pyvista": "convert",
+    "xarray": "convert",
+}
+"""Packages that only some uses need, and the extra of this package that installs each."""
+
 
 class Fault(Exception):
     """An error that the user can correct; its text is one line."""
@@ -14,3 +28,9 @@ class Missing(Fault, KeyError):
 def one_line(error: BaseException) -> str:
     """The text of an error without line ends."""
     return " ".join(str(error).split()) or type(error).__name__
+
+
+def not_installed(name: str) -> Fault:
+    """The error of a package that is not installed: what to install."""
+    what = f'"stickslip[{EXTRAS[name]}]"' if name in EXTRAS else name
+    return Fault(f"this needs the package {name}: pip install {what}")

@@ -11,7 +11,7 @@ import csv
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-from stickslip import command, frd, xdmf
+from stickslip import frd, xdmf
 from stickslip.convert import columns_of
 from stickslip.errors import Fault
 from stickslip.result import Result
@@ -73,7 +73,7 @@ FORMATS: dict[str, Callable[[Result, Path], Iterator[Path]]] = {
 def run() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(
-        prog="stickslip-export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+        prog="stickslip export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
     parser.add_argument("--to", choices=FORMATS, required=True, help="format to write")
@@ -85,12 +85,3 @@ def run() -> None:
             raise Fault(f"{folder} is no folder")
         written = list(FORMATS[arguments.to](result, folder))
     print(f"wrote {written[-1]}" if len(written) == 1 else f"wrote {written[-1]} and {len(written) - 1} more")
-
-
-def main() -> None:
-    """Command `stickslip-export`."""
-    command.finish(run)
-
-
-if __name__ == "__main__":
-    main()

@@ -37,7 +37,7 @@ class Paged(Shown):
     def show(self, height: int = 780) -> None:
         """Puts the report page below the cell of a notebook."""
         if not runs_here():
-            raise Fault("show() is for notebooks: the command stickslip-report writes the page")
+            raise Fault("show() is for notebooks: the command stickslip report writes the page")
         from IPython.display import HTML, display
 
         display(HTML(self.pages[type(self)](self, height)))

@@ -5,7 +5,7 @@ deepest crossing of edges of bodies, the deepest corner of a rigid profile in a 
 and the message if the run has stopped. The gain is the largest rise of kinetic and strain energy
 above their least value before, without external work, beside the largest account of the ledger.
 SS22 does not promise that energy never rises: its gain is told, and not judged. Depths are those of
-stickslip-penetration in the frames. Contact keeps nodes out of bodies and profiles; it does not keep the
+stickslip penetration in the frames. Contact keeps nodes out of bodies and profiles; it does not keep the
 corners of profiles out of the edges of bodies.
 
 The exit code is 1 when a run has stopped or gained energy.

@@ -5,10 +5,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::io;
 use std::io::Write;
 
-use signal_hook::low_level;
-
 use super::error::Exit;
 use crate::output::memory_need;
+use crate::system::exit_now;
 
 /// The allocator of the system. Where it has no memory the program ends with [`Exit::FileSystem`]; of
 /// the results all is kept that is written, as after a kill.
@@ -61,5 +60,5 @@ fn end(size: usize) -> ! {
         screen,
         ": use a coarser mesh, end other programs, or raise the limit (ulimit -v)"
     );
-    low_level::exit(Exit::FileSystem as i32)
+    exit_now(Exit::FileSystem as i32)
 }

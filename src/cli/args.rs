@@ -1,14 +1,15 @@
 //! Subcommands and options of the command line (parsed by clap), and their translation into
 //! settings of the other layers.
 
+use std::ffi::OsString;
 use std::num::NonZero;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 use std::thread;
 use std::time::Duration;
 
-use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum};
-
+use clap::{ArgAction, Args as ClapArgs, Parser, Subcommand, ValueEnum, ValueHint};
+use clap_complete::Shell;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::Strictness;
@@ -23,7 +24,8 @@ use crate::output::{Verbosity, Window};
     long_version = LONG_VERSION.as_str(),
     after_help = "Exit codes: 0 finished, 1 stopped in the solve (results so far are valid), \
                   2 deck rejected, 3 command line, 4 file system; 129, 130, 143 stopped by the \
-                  signals HUP, INT, TERM (results so far are valid)."
+                  signals HUP, INT, TERM (results so far are valid).\n\
+                  The documents docs/NAME.md that messages name are in share/doc/stickslip of the installation."
 )]
 pub(super) struct Args {
     /// Subcommand.
@@ -49,6 +51,86 @@ pub(super) enum Command {
     /// The file holds {"M": [[..]], "q": [..], "mu": number or list, "n_contacts": number}; the
     /// answer is JSON too. Exit code 0 when it is solved, 1 otherwise.
     Lcp(LcpArgs),
+    /// A command of the Python package.
+    #[command(flatten)]
+    Package(PackageCommand),
+    /// Print what makes a shell complete the words of this program
+    ///
+    /// For the current bash: source <(stickslip completion bash)
+    Completion(CompletionArgs),
+    /// Print the manual page: stickslip manual | man -l -
+    Manual,
+}
+
+/// Commands of the Python package, to which their arguments are handed over as they are.
+#[derive(Debug, Subcommand)]
+pub(super) enum PackageCommand {
+    /// Write the page of a result: one HTML file that works offline
+    #[command(disable_help_flag = true)]
+    Report(Words),
+    /// Draw results
+    #[command(subcommand)]
+    Plot(PlotCommand),
+    /// Check what a result claims, from the file alone
+    #[command(disable_help_flag = true)]
+    Certify(Words),
+    /// Run a deck at many values of its parameters
+    #[command(disable_help_flag = true)]
+    Sweep(Words),
+    /// Write a result in the format of other programs
+    #[command(disable_help_flag = true)]
+    Export(Words),
+    /// Look for nodes inside bodies and for edges that cross, in every frame
+    #[command(disable_help_flag = true)]
+    Penetration(Words),
+}
+
+/// Pictures of results.
+#[derive(Debug, Subcommand)]
+pub(super) enum PlotCommand {
+    /// Draw deformed shapes at some times, or an animation
+    #[command(disable_help_flag = true)]
+    Motion(Words),
+    /// Draw histories: energies, momenta, forces, displacements
+    #[command(disable_help_flag = true)]
+    History(Words),
+    /// Draw a field along a line of nodes
+    #[command(disable_help_flag = true)]
+    Along(Words),
+}
+
+/// Arguments of a command of the Python package.
+#[derive(Debug, ClapArgs)]
+pub(super) struct Words {
+    /// Arguments of the command; --help tells them
+    #[arg(value_name = "ARGUMENTS", trailing_var_arg = true, allow_hyphen_values = true,
+          value_hint = ValueHint::AnyPath)]
+    pub words: Vec<OsString>,
+}
+
+impl PackageCommand {
+    /// Its name and its arguments.
+    pub fn words(&self) -> (&'static str, &[OsString]) {
+        let (name, words) = match self {
+            PackageCommand::Report(words) => ("report", words),
+            PackageCommand::Plot(PlotCommand::Motion(words)) => ("plot motion", words),
+            PackageCommand::Plot(PlotCommand::History(words)) => ("plot history", words),
+            PackageCommand::Plot(PlotCommand::Along(words)) => ("plot along", words),
+            PackageCommand::Certify(words) => ("certify", words),
+            PackageCommand::Sweep(words) => ("sweep", words),
+            PackageCommand::Export(words) => ("export", words),
+            PackageCommand::Penetration(words) => ("penetration", words),
+        };
+        (name, &words.words)
+    }
+}
+
+/// Arguments of `completion`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct CompletionArgs {
+    /// The shell
+    #[arg(value_name = "SHELL")]
+    pub shell: Shell,
 }
 
 /// A deck and how to read it.

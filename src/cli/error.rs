@@ -116,6 +116,21 @@ pub(super) enum CliError {
         /// The file that exists.
         path: PathBuf,
     },
+    /// No Python has the package, of which a command is asked for.
+    #[error(
+        "`stickslip {0}` is a command of the Python package, which is not found: {cure} installs it; or name in \
+         STICKSLIP_PYTHON the Python that has it",
+        cure = cure(.0)
+    )]
+    NoPackage(&'static str),
+    /// Python cannot be started.
+    #[error("cannot start {}: {source}", path.display())]
+    Python {
+        /// Its path.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -147,6 +162,17 @@ fn told(about: &[&str]) -> String {
         true => String::new(),
         false => format!("; keywords about it: {}", names.join(", ")),
     }
+}
+
+/// What installs the package with all that a command needs.
+fn cure(command: &str) -> String {
+    let extra = match command.split(' ').next() {
+        Some("plot") => "[plot]",
+        Some("sweep") => "[sweep]",
+        Some("export") => "[convert]",
+        _ => "",
+    };
+    format!("pip install \"stickslip{extra}\"")
 }
 
 fn after(kept: &Option<String>) -> String {

@@ -1,9 +1,11 @@
-//! Command line: `run`, `check`, `flatten`, `explain`, `info` and `lcp`.
+//! Command line: commands of the program, and those of the Python package, to which it hands over.
 
 mod allocator;
 mod args;
 mod commands;
 mod error;
+mod manual;
+mod package;
 mod run;
 mod signals;
 mod terminal;
@@ -19,7 +21,8 @@ use args::{Args, Command};
 use commands::Numerics;
 use error::CliError;
 pub use error::Exit;
-use terminal::{complain, on_screen};
+pub use manual::manual;
+use terminal::{complain, on_screen, print};
 
 /// Runs the program with its arguments, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
@@ -37,11 +40,20 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Explain(args) => commands::explain(args),
         Command::Info(args) => commands::info(args),
         Command::Lcp(args) => commands::lcp(args),
+        Command::Package(command) => package::run(command),
+        Command::Completion(args) => printed(&manual::completion(args.shell)),
+        Command::Manual => printed(&manual()),
     };
     done.unwrap_or_else(|error| {
         complain(&format!("error: {error}"));
         error.exit()
     })
+}
+
+/// Prints a text; the exit code.
+fn printed(text: &str) -> Result<Exit, CliError> {
+    print(&[text.trim_end().to_owned()])?;
+    Ok(Exit::Finished)
 }
 
 /// Prints help, version or the error of the command line; the exit code.

@@ -6,15 +6,13 @@
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::ErrorKind;
-use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
-
-use rustix::fs::OFlags;
 
 use super::draft::{self, Existing};
 use super::error::{FileError, OutputError, at};
 use crate::deck::not_regular;
+use crate::system::{is_at, without_links};
 
 /// The files of a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -263,9 +261,7 @@ fn locked_log(path: &Path, earlier: Earlier) -> Result<File, OutputError> {
             draft::remove(path).map_err(FileError::new("create", path))?;
         }
         let mut how = OpenOptions::new();
-        how.read(true)
-            .write(true)
-            .custom_flags(OFlags::NOFOLLOW.bits() as i32);
+        without_links(how.read(true).write(true));
         let (log, is_new) = match how.clone().create_new(true).open(path) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => match how.open(path) {
                 // The file was removed in between: try again.
@@ -288,15 +284,6 @@ fn locked_log(path: &Path, earlier: Earlier) -> Result<File, OutputError> {
         if is_at(&log, path) {
             return Ok(log);
         }
-    }
-}
-
-/// Whether the file still has that name.
-fn is_at(file: &File, path: &Path) -> bool {
-    let id = |data: fs::Metadata| (data.dev(), data.ino());
-    match (file.metadata(), fs::symlink_metadata(path)) {
-        (Ok(open), Ok(named)) => id(open) == id(named),
-        _ => false,
     }
 }
 

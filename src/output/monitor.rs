@@ -7,7 +7,6 @@ use std::mem::{Discriminant, discriminant};
 use super::balance::Balance;
 use super::checks::{self, Checks};
 use super::format::{bytes, counted, general, label, scientific, wrap};
-use super::memory::peak_memory;
 use super::model_group::{body_times, contact_names};
 use super::run_record::phases;
 use super::strain::StrainWatch;
@@ -19,6 +18,7 @@ use crate::dynamics::{
 use crate::elements::Strained;
 use crate::linear::larger;
 use crate::model::{Bodies, Model};
+use crate::system::peak_memory;
 
 /// Follows a run.
 pub(crate) struct Monitor {

@@ -8,8 +8,8 @@ use hdf5::{File, Group};
 use sha2::{Digest, Sha256};
 
 use super::column::{group, hdf5_text, new_attribute, text_attribute};
-use super::memory::peak_memory;
 use crate::dynamics::{RunSummary, Timings};
+use crate::system::peak_memory;
 
 /// Value of `exit_status` until the run ends.
 pub const UNFINISHED: i64 = -1;

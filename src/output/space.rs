@@ -2,14 +2,10 @@
 //! Source: HDF5 File Format Specification 3.0, section II.A (superblock, version 0).
 
 use std::fs::File;
-use std::io;
-use std::io::ErrorKind;
-use std::os::unix::fs::FileExt;
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use rustix::fs::{FallocateFlags, fallocate, fstatvfs};
-use rustix::io::Errno;
-use rustix::process::{Resource, getrlimit};
+use crate::system::{free_space, largest_file, reserve};
 
 /// Bytes for the attributes that complete the record of the run.
 const CLOSING: u64 = 1 << 16;
@@ -60,14 +56,12 @@ impl Space {
         if end <= self.kept {
             return Ok(());
         }
-        if getrlimit(Resource::Fsize)
-            .current
-            .is_some_and(|limit| end > limit)
-        {
+        if largest_file().is_some_and(|limit| end > limit) {
             return Err(ErrorKind::FileTooLarge.into());
         }
-        match fallocate(&self.file, FallocateFlags::KEEP_SIZE, size, room) {
-            Err(full @ (Errno::NOSPC | Errno::DQUOT | Errno::FBIG)) => return Err(full.into()),
+        use ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+        match reserve(&self.file, size, room).map_err(|error| (error.kind(), error)) {
+            Err((StorageFull | QuotaExceeded | FileTooLarge, full)) => return Err(full),
             Err(_) => self.ask(room)?,
             Ok(()) => {}
         }
@@ -77,10 +71,8 @@ impl Space {
 
     /// Where the file system cannot reserve space: checks that enough is free now.
     fn ask(&self, room: u64) -> io::Result<()> {
-        match fstatvfs(&self.file) {
-            Ok(disk) if disk.f_bavail.saturating_mul(disk.f_frsize) < room => {
-                Err(ErrorKind::StorageFull.into())
-            }
+        match free_space(&self.file) {
+            Some(free) if free < room => Err(ErrorKind::StorageFull.into()),
             _ => Ok(()),
         }
     }
@@ -89,7 +81,7 @@ impl Space {
     /// write in one go. None where the superblock is not of version 0.
     pub fn move_end_ahead(&self) -> io::Result<Option<End>> {
         let mut first = [0; SUPERBLOCK_0.len()];
-        self.file.read_exact_at(&mut first, 0)?;
+        self.read_at(0, &mut first)?;
         if first != SUPERBLOCK_0 {
             return Ok(None);
         }
@@ -116,12 +108,21 @@ impl Space {
 
     fn end(&self) -> io::Result<u64> {
         let mut bytes = [0; 8];
-        self.file.read_exact_at(&mut bytes, END_OF_FILE)?;
+        self.read_at(END_OF_FILE, &mut bytes)?;
         Ok(u64::from_le_bytes(bytes))
     }
 
+    /// Reads the bytes from a place of the file on.
+    fn read_at(&self, place: u64, bytes: &mut [u8]) -> io::Result<()> {
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(place))?;
+        file.read_exact(bytes)
+    }
+
     fn note_end(&self, end: u64) -> io::Result<()> {
-        self.file.write_all_at(&end.to_le_bytes(), END_OF_FILE)
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(END_OF_FILE))?;
+        file.write_all(&end.to_le_bytes())
     }
 
     /// Notes that the library has written, which may have released reserved space.

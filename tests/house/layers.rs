@@ -7,7 +7,8 @@ use crate::sources::{parse_sources, read_sources, within_package};
 use std::collections::BTreeMap;
 
 /// The layers, lowest first.
-const LAYERS: [&str; 16] = [
+const LAYERS: [&str; 17] = [
+    "system",
     "archive",
     "linear",
     "lcp",

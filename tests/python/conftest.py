@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMANDS = ROOT / "python" / "packaging" / "data" / "scripts"
-"""The commands of the package, which `scripts/venv` runs."""
+COMMAND = [sys.executable, "-m", "stickslip"]
+"""What the words of a command of the package follow."""
 
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts"), str(ROOT / "tests")]
 # of the scripts that tests start

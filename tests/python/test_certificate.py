@@ -2,14 +2,13 @@
 
 import shutil
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from conftest import ROOT, Job
+from conftest import COMMAND, ROOT, Job
 from decks import CANTILEVERS, parse, shortened
 from oracle.checks import TEXTS as OF_ORACLE
 from oracle.checks import assert_holds, recompute
@@ -443,7 +442,7 @@ def test_rigid_parts_of_bodies_hold(job: Job, mass: str) -> None:
 
 
 def test_command_line(result: Path, tmp_path: Path) -> None:
-    command = [sys.executable, "-m", "stickslip.certificate"]
+    command = [*COMMAND, "certify"]
 
     def run(*words: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(

@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import COMMANDS, Job
+from conftest import COMMAND, Job
 from decks import CANTILEVERS, shortened
 from stickslip import command, program
 from stickslip.command import FAULT
@@ -20,9 +20,9 @@ from stickslip.plot import motion as plot_motion
 from stickslip.result import Result
 
 MAINS = {
-    "stickslip-plot-motion": plot_motion.run,
-    "stickslip-plot-history": plot_history.run,
-    "stickslip-penetration": penetration.look,
+    "stickslip plot motion": plot_motion.run,
+    "stickslip plot history": plot_history.run,
+    "stickslip penetration": penetration.run,
 }
 
 Run = Callable[..., tuple[int, str]]
@@ -101,7 +101,7 @@ def test_a_file_that_cannot_be_read(
     assert words in errors and str(result) in errors
 
 
-@pytest.mark.parametrize("script", ["stickslip-plot-motion", "stickslip-penetration"])
+@pytest.mark.parametrize("script", ["stickslip plot motion", "stickslip penetration"])
 def test_a_file_without_frames(script: str, result: Path, run: Run) -> None:
     with h5py.File(result, "r+") as file:
         file["VTKHDF/Steps/Values"].resize(0, axis=0)
@@ -111,7 +111,7 @@ def test_a_file_without_frames(script: str, result: Path, run: Run) -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e200])
-@pytest.mark.parametrize("script", ["stickslip-plot-motion", "stickslip-penetration"])
+@pytest.mark.parametrize("script", ["stickslip plot motion", "stickslip penetration"])
 def test_positions_that_are_no_numbers(script: str, value: float, result: Path, run: Run) -> None:
     """A node nowhere is not a node outside of all bodies."""
     with h5py.File(result, "r+") as file:
@@ -132,9 +132,9 @@ def test_the_largest_energy_drops_no_nan(account: str, result: Path) -> None:
 def test_a_file_without_history(result: Path, run: Run) -> None:
     with h5py.File(result, "r+") as file:
         file["history/energy/kinetic"].resize(0, axis=0)
-    assert run("stickslip-plot-history", result) == (
+    assert run("stickslip plot history", result) == (
         FAULT,
-        f"stickslip-plot-history: error: {result} has no history yet\n",
+        f"stickslip plot history: error: {result} has no history yet\n",
     )
 
 
@@ -143,7 +143,7 @@ def test_a_running_job_is_looked_at(result: Path) -> None:
     with h5py.File(result, "r+") as file:
         file.flush()
         for name in MAINS:
-            words = [sys.executable, str(COMMANDS / name), str(result)]
+            words = [*COMMAND, *name.split()[1:], str(result)]
             done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True)
             assert (done.returncode, done.stderr) == (0, ""), name
 
@@ -186,7 +186,7 @@ def test_an_animation_that_cannot_be_written(
     name: str, words: str, result: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PATH", "")
-    code, errors = run("stickslip-plot-motion", result, "--animation", result.with_name(name))
+    code, errors = run("stickslip plot motion", result, "--animation", result.with_name(name))
     assert (code, errors.count("\n")) == (FAULT, 1)
     assert words in errors
     assert [path.name for path in result.parent.iterdir()] == [result.name]
@@ -208,7 +208,7 @@ def test_a_picture_that_cannot_be_drawn(
     with h5py.File(result, "r+") as file:
         for name in ("PointData/SLIP", "Steps/PointDataOffsets/SLIP"):
             file["VTKHDF"].pop(name, None)
-    code, errors = run("stickslip-plot-motion", result, *arguments)
+    code, errors = run("stickslip plot motion", result, *arguments)
     assert (code, errors.count("\n")) == (FAULT, 1)
     assert words in errors
 

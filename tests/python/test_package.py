@@ -20,7 +20,7 @@ from stickslip.certificate.own import write_table
 from stickslip.mesh import Mesh
 from stickslip.plot.style import save
 from stickslip.quantity import Members, find, listed
-from stickslip.report.__main__ import main as report_main
+from stickslip.__main__ import main
 from stickslip.sweep.table import Table
 from stickslip.whole import whole
 
@@ -200,10 +200,10 @@ def test_files_are_written_whole_and_through_no_link(
     ):
         with pytest.raises(Fault, match="is no regular file"):
             write()
-    line = ["stickslip-report", str(result.path), "-o", str(tmp_path / "page.html")]
+    line = ["stickslip", "report", str(result.path), "-o", str(tmp_path / "page.html")]
     monkeypatch.setattr(sys, "argv", line)
     with pytest.raises(SystemExit) as ended:
-        report_main()
+        main()
     assert ended.value.code == 2
     plt.close(figure)
     assert precious.read_text() == "precious"

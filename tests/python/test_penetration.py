@@ -1,13 +1,12 @@
 """The check for nodes inside bodies: known answers."""
 
 import subprocess
-import sys
 from math import cos, pi, sin
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import COMMANDS, ROOT, Job
+from conftest import COMMAND, ROOT, Job
 from decks import CANTILEVERS, parse, shortened
 from stickslip.bulges import straight
 from stickslip.errors import Fault
@@ -306,7 +305,7 @@ REF, 2, 2, -0.5
 
 def test_a_punch_without_contact_is_found(job: Job, tmp_path: Path) -> None:
     result = job(parse(PUNCH, tmp_path), "--frames", "10")
-    command = [sys.executable, str(COMMANDS / "stickslip-penetration"), str(result)]
+    command = [*COMMAND, "penetration", str(result)]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     assert done.returncode == 1, done.stderr
     assert "edges cross in 8 of them" in done.stdout
@@ -316,7 +315,7 @@ def test_a_punch_without_contact_is_found(job: Job, tmp_path: Path) -> None:
 
 def test_command_line(job: Job) -> None:
     result = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
-    command = [sys.executable, str(COMMANDS / "stickslip-penetration"), str(result), "--all"]
+    command = [*COMMAND, "penetration", str(result), "--all"]
     done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     # pairs in contact have a gap that is zero but for round-off

@@ -6,7 +6,6 @@ import json
 import re
 import shutil
 import subprocess
-import sys
 import zlib
 from collections.abc import Callable, Iterator
 from functools import cache
@@ -17,7 +16,7 @@ import h5py
 import numpy as np
 import pytest
 from bodies import FAMILIES, bent_bodies, rigid_only, two_materials
-from conftest import ROOT, Job
+from conftest import COMMAND, ROOT, Job
 from decks import CANTILEVERS, COLUMN, oblique_impact, shortened, spinning_bar
 from oracle.shapes import shape_functions
 from stickslip.deck import Deck
@@ -272,7 +271,7 @@ def test_fields_and_frames_are_chosen(job: Job, tmp_path: Path) -> None:
 
 def test_the_command(job: Job, tmp_path: Path) -> None:
     def command(*words: object) -> subprocess.CompletedProcess[str]:
-        line = [sys.executable, "-m", "stickslip.report", *map(str, words)]
+        line = [*COMMAND, "report", *map(str, words)]
         return subprocess.run(line, capture_output=True, text=True, cwd=tmp_path)
 
     path = stopped(job, tmp_path)

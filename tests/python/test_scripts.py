@@ -13,7 +13,7 @@ import matplotlib.image
 import matplotlib.pyplot as plt
 import pytest
 from compare import differences
-from conftest import COMMANDS, ROOT, Job
+from conftest import ROOT, Job
 from decks import (
     BAR,
     BLOCK,
@@ -33,6 +33,10 @@ from lab import public_decks
 from rescale import Units, rescale
 from stickslip import program
 from stickslip.deck import Deck
+
+
+PACKAGE = ROOT / "python" / "stickslip" / "__main__.py"
+"""The commands of the package."""
 
 
 def script(path: Path, *arguments: object) -> None:
@@ -58,17 +62,17 @@ def result(job: Job) -> Path:
 
 
 def test_plot_history(result: Path, tmp_path: Path) -> None:
-    script(COMMANDS / "stickslip-plot-history", result, result, "-o", tmp_path / "history.png")
+    script(PACKAGE, "plot", "history", result, result, "-o", tmp_path / "history.png")
     assert_picture(tmp_path / "history.png")
     names = ["--x", "nodes/UPPER_TIP/U:2", "--y", "energy/strain", "energy/kinetic"]
-    script(COMMANDS / "stickslip-plot-history", result, *names, "-o", tmp_path / "named.png")
+    script(PACKAGE, "plot", "history", result, *names, "-o", tmp_path / "named.png")
     assert_picture(tmp_path / "named.png")
 
 
 def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
     path = job(Deck.read(ROOT / "tests/decks/rigid_floor.inp"))
     for option in ("--forces", "--overlay"):
-        script(COMMANDS / "stickslip-plot-motion", path, option, "-o", tmp_path / "motion.png")
+        script(PACKAGE, "plot", "motion", path, option, "-o", tmp_path / "motion.png")
         assert_picture(tmp_path / "motion.png")
 
 
@@ -78,7 +82,7 @@ def test_plot_motion_draws_rigid_surfaces(job: Job, tmp_path: Path) -> None:
     ids=["panels", "overlay", "forces"],
 )
 def test_plot_motion(result: Path, tmp_path: Path, options: list[object]) -> None:
-    script(COMMANDS / "stickslip-plot-motion", result, *options, "-o", tmp_path / "motion.png")
+    script(PACKAGE, "plot", "motion", result, *options, "-o", tmp_path / "motion.png")
     assert_picture(tmp_path / "motion.png")
 
 
@@ -86,7 +90,7 @@ def test_an_animation_is_all_that_is_written(job: Job, tmp_path: Path) -> None:
     made = job(shortened(CANTILEVERS / "A_mu04.inp", 40), "--frames", "4")
     result = Path(shutil.copy(made, tmp_path / "JOB.vtkhdf"))
     film = tmp_path / "motion.gif"
-    script(COMMANDS / "stickslip-plot-motion", result, "--animation", film)
+    script(PACKAGE, "plot", "motion", result, "--animation", film)
     assert film.read_bytes()[:6] == b"GIF89a"
     assert {path.name for path in tmp_path.iterdir()} == {"JOB.vtkhdf", "motion.gif"}
 

@@ -14,14 +14,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import COMMAND, ROOT
 from decks import CANTILEVERS
 from stickslip import Deck, Fault, Result, run
 from stickslip.program import binary, settings
 from stickslip.sweep import Settings, latin_hypercube, product, read_points, sweep
-from stickslip.sweep.__main__ import main, memory
+from stickslip.__main__ import main
+from stickslip.sweep.command import memory
 from stickslip.sweep.engine import duration
-from stickslip.sweep.points import Point, varied
+from stickslip.sweep.plots import against, histories
+from stickslip.sweep.points import Point, point_name, varied
 from stickslip.sweep.quantities import Quantity
 
 psutil = pytest.importorskip("psutil")  # comes with distributed
@@ -75,12 +77,13 @@ def kill_a_run(told: list[int]) -> Callable[[str], None]:
     return tell
 
 
-def check_table(table: list[dict[str, str]], points: list[Point]) -> None:
+def check_table(folder: Path, table: list[dict[str, str]], points: list[Point]) -> None:
     """All points have ended, in their order, with results that agree with their parameters."""
     assert [{name: float(row[name]) for name in ("mu", "dt")} for row in table] == points
     for row in table:
         assert row["exit_status"] == "0" and row["message"] == "", row
-        with Result(row["result"]) as result:
+        assert row["result"].startswith(f"points/mu={float(row['mu']):g}_dt={float(row['dt']):g}/")
+        with Result(folder / row["result"]) as result:
             assert result.history.time[-1] == pytest.approx(END)
             assert result.history.dt[1] == pytest.approx(float(row["dt"]))
             assert f"mu={float(row['mu'])!r}" in result.run["command"]
@@ -113,10 +116,10 @@ Command = Callable[..., Done]
 
 @pytest.fixture
 def command(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Command:
-    """The command stickslip-sweep, run in this process."""
+    """The command `stickslip sweep`, run in this process."""
 
     def call(*words: object) -> Done:
-        monkeypatch.setattr(sys, "argv", ["stickslip-sweep", *map(str, words)])
+        monkeypatch.setattr(sys, "argv", ["stickslip", "sweep", *map(str, words)])
         with pytest.raises(SystemExit) as ended:
             main()
         return Done(int(ended.value.code or 0), *capfd.readouterr())
@@ -147,7 +150,7 @@ def test_a_study_is_whole_though_a_run_is_killed(arm: Deck, tmp_path: Path) -> N
     table.write(tmp_path)
     assert table.failed == 0
     assert len(list(tmp_path.glob("points/*"))) == 6
-    check_table(read_table(tmp_path), points)
+    check_table(tmp_path, read_table(tmp_path), points)
     first = ended(tmp_path)
     assert len(first) == 6
     again = sweep(arm, points, tmp_path, [TIP, WORK], settings)
@@ -218,7 +221,7 @@ def test_a_scheduler_of_its_own_loses_a_worker(
     line = [study / "arm.inp", *words, "--frames", 2, "-o", study / "out"]
     line += ["--scheduler", address]
     running = subprocess.Popen(
-        [sys.executable, "-m", "stickslip.sweep", *map(str, line)],
+        [*COMMAND, "sweep", *map(str, line)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -232,7 +235,7 @@ def test_a_scheduler_of_its_own_loses_a_worker(
     assert running.wait() == 0, said
     assert workers[0].wait() == -signal.SIGKILL
     assert any(re.fullmatch(r"20 of 33 points, 0 failed, .* left\n", text) for text in said)
-    check_table(read_table(study / "out"), product({"mu": MU, "dt": DT}))
+    check_table(study / "out", read_table(study / "out"), product({"mu": MU, "dt": DT}))
     pictures = {path.name for path in study.glob("out/plots/*.png")}
     assert {"nodes_UPPER_TIP_U_2.png", "energy_friction_dissipation@last_against_mu.png"} < pictures
     first = ended(study / "out")
@@ -284,6 +287,7 @@ def test_a_failing_point_is_a_row_with_its_message(
         (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "energy/heat"], "no history energy/heat"),
         (["--vary", "mu=0", "--vary", "dt=0.1", "-q", "nodes/UPPER_TIP/U"], "say which component"),
         (["--points", "no.csv"], "No such file"),
+        (["--vary", "mu=0", "--vary", "dt=0.1", "--colour", "e"], "the parameters are mu, dt"),
     ],
 )
 def test_a_wrong_command_is_told_before_anything_runs(
@@ -384,7 +388,7 @@ def test_names_of_files_are_parameters(arm: Deck, tmp_path: Path) -> None:
     assert table.failed == 0 and table.column("law") == ["1E1", "hi.inc"]
     table.write(tmp_path)
     for row, mu in zip(table.rows, (0.1, 0.9)):
-        with Result(row["result"]) as result:
+        with Result(table.folder / row["result"]) as result:
             (contact,) = result.file["model/contacts"].values()
             assert contact["friction"][0] == mu
     texts: list[str] = []
@@ -397,6 +401,89 @@ def test_names_of_files_are_parameters(arm: Deck, tmp_path: Path) -> None:
     with run(Deck.read(deck), tmp_path / "one", parameters={"law": "hi.inc"}) as result:
         (contact,) = result.file["model/contacts"].values()
         assert contact["friction"][0] == 0.8
+
+
+def frictions(folder: Path) -> dict[str, float]:
+    """The friction of each point of a study, from its result."""
+    found = {}
+    for path in folder.glob("points/*/*.vtkhdf"):
+        with Result(path) as result:
+            (contact,) = result.file["model/contacts"].values()
+            found[path.parent.name] = float(contact["friction"][0])
+    return found
+
+
+def test_a_value_takes_the_place_of_that_of_the_deck(arm: Deck, tmp_path: Path) -> None:
+    """Zero too, and in parameters that are computed from the varied one."""
+    arm.one("DYNAMIC").rows = [["0.1", "0.2"]]
+    text = arm.text()
+    for name, cards, row in (
+        ("own", "mu = 0.2\n", "<mu>"),
+        ("derived", "mu = 0.2\nm = 2*mu\n", "<m>"),
+    ):
+        deck = tmp_path / f"{name}.inp"
+        deck.write_text(f"*PARAMETER\n{cards}" + text.replace("*FRICTION\n<mu>", f"*FRICTION\n{row}"))
+        table = sweep(deck, product({"mu": varied("mu=0,0.4")[1]}), tmp_path / name, [WORK])
+        assert table.failed == 0
+        times = 2.0 if name == "derived" else 1.0
+        assert frictions(tmp_path / name) == {"mu=0": 0.0, "mu=0.4": 0.4 * times}
+    # a parameter that stands nowhere in the deck would vary nothing
+    deck.write_text("*PARAMETER\nmu = 0.2\n" + text.replace("<mu>", "0.2"))
+    with pytest.raises(Fault, match="nothing uses the parameter mu"):
+        sweep(deck, [{"mu": 0.0}], tmp_path / "unused", [WORK])
+
+
+def test_points_have_the_names_of_their_values(arm: Deck, tmp_path: Path) -> None:
+    assert point_name({"mu": 0.0, "n": 3, "file": "a/b c.inc"}).startswith("mu=0_n=3_file=a-b-c.inc-")
+    assert point_name({"mu": 0.1, "dt": 1.0 / 3.0}) == "mu=0.1_dt=0.3333333333333333"
+    names = {point_name({"file": text}) for text in ("a/b", "a-b", "a b", "ä" * 300, "ä" * 301)}
+    assert len(names) == 5 and max(map(len, names)) < 120
+    assert varied("mu=0:0.3:4")[1] == [0.0, 0.1, 0.2, 0.3]
+    arm.one("DYNAMIC").rows = [["<dt>", "0.2"]]
+    points = product({"mu": [0.1], "dt": [0.1]})
+    sweep(arm, points, tmp_path, [WORK])
+    # the folder of mu=0.1 begins like those of mu=0 and mu=0.1_dt=0.15, which leave it alone
+    sweep(arm, product({"mu": [0.0, 0.1], "dt": [0.15]}), tmp_path, [WORK])
+    assert len(list(tmp_path.glob("points/*"))) == len(ended(tmp_path)) == 3
+    # another deck has the same names: its results take the place of the old ones
+    arm.one("DYNAMIC").rows = [["<dt>", "0.3"]]
+    texts: list[str] = []
+    table = sweep(arm, points, tmp_path, [WORK], Settings(tell=texts.append))
+    assert texts[0] == "1 points, 0 have ended before"
+    with Result(table.folder / table.rows[0]["result"]) as result:
+        assert result.history.time[-1] == pytest.approx(0.3)
+
+
+def test_quantities_are_checked_though_the_first_point_fails(arm: Deck, tmp_path: Path) -> None:
+    points = product({"mu": [-1.0, 0.1], "dt": [0.015]})
+    with pytest.raises(Fault, match="no history energy/heat"):
+        sweep(arm, points, tmp_path, ["energy/heat"])
+    assert not ended(tmp_path)
+
+
+def test_tables_are_small_and_may_be_moved(arm: Deck, tmp_path: Path) -> None:
+    """A cell is a number or one line; a study that has been moved has the same pictures."""
+    arm.one("DYNAMIC").rows = [["<dt>", "0.2"]]
+    points = product({"mu": [-1.0, *MU[:7]], "dt": [0.1, 0.05]})
+    table = sweep(arm, points, tmp_path / "study", [WORK])
+    assert all("\n" not in str(value) for row in table.rows for value in row.values())
+    assert table.failed == 2
+    with Result(table.folder / table.rows[2]["result"]) as result:
+        assert table.rows[2]["warnings"] == len(result.warnings) > 0
+    assert table.rows[0]["message"].startswith("error[")
+    text = table.write(tmp_path / "study")[0].read_text()
+    (tmp_path / "study").rename(tmp_path / "moved")
+    assert str(tmp_path) not in text and len(text) < 150 * len(points)
+    moved = replace(table, folder=tmp_path / "moved")
+    figure = histories(moved, Quantity.parse(WORK), "dt")
+    lines = figure.axes[0].lines
+    colours = {line.get_label().partition("dt = ")[2]: line.get_color() for line in lines}
+    assert len(lines) == 14 and len(set(map(str, colours.values()))) == 2
+    assert figure.axes[1].get_ylabel() == "dt"  # the scale, in the place of a long legend
+    number = against(moved, Quantity.parse(WORK), "mu", ["dt"], "dt")
+    assert [tuple(line.get_color()) for line in number.axes[0].lines] == [
+        tuple(colours[text]) for text in ("0.1", "0.05")
+    ]
 
 
 def test_what_is_taken_of_a_history(study: Path) -> None:
@@ -452,9 +539,9 @@ def test_the_example_of_snakemake(shorter: Path) -> None:
 def test_the_commands_of_the_document(shorter: Path, here: str, command: Command) -> None:
     """Every command that needs no cluster of one's own runs as it stands."""
     lines = [line for block in examples("sh") for line in block.splitlines()]
-    ours = [line for line in lines if line.startswith("stickslip-sweep ") and "ADDRESS" not in line]
+    ours = [line for line in lines if line.startswith("stickslip sweep ") and "ADDRESS" not in line]
     assert len(ours) > 2
     (shorter / "points.csv").write_text("mu\n0.1\n0.3\n")
     for line in ours:
-        done = command(*line.replace(":11", ":2").split()[1:], "--scheduler", here)
+        done = command(*line.replace(":11", ":2").split()[2:], "--scheduler", here)
         assert done.returncode == 0, f"{line}\n{done.stderr}"

@@ -89,7 +89,7 @@ def test_rigid_surfaces_are_lines(job: Job) -> None:
 
 def exported(monkeypatch: pytest.MonkeyPatch, path: Path, kind: str, folder: Path) -> None:
     """Runs the command that exports a result."""
-    monkeypatch.setattr(sys, "argv", ["stickslip-export", str(path), "--to", kind, "-o", str(folder)])
+    monkeypatch.setattr(sys, "argv", ["stickslip export", str(path), "--to", kind, "-o", str(folder)])
     export.run()
 
 

@@ -7,3 +7,4 @@ pub mod flat_deck;
 pub mod reader;
 
 use stickslip_mechanics::{diagnostics, materials, model, vectors};
+use stickslip_system::system;

@@ -5,3 +5,5 @@
 pub mod archive;
 pub mod lcp;
 pub mod linear;
+
+use stickslip_system::system;

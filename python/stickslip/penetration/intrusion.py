@@ -23,7 +23,6 @@ from pathlib import Path
 
 import numpy as np
 
-from stickslip import command
 from stickslip.arrays import Array, Integers
 from stickslip.bulges import Bulges
 from stickslip.penetration.outlines import (
@@ -296,9 +295,9 @@ def _place(found: Intrusion, results: Result) -> str:
     return f"edge {one}-{two} of body {found.body + 1}"
 
 
-def look() -> int:
+def run() -> int:
     """Command line; returns the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="stickslip penetration", description=__doc__)
     parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
     parser.add_argument("--all", action="store_true", help="every frame, not only the deepest")
     arguments = parser.parse_args()
@@ -314,8 +313,3 @@ def look() -> int:
             for frame in frames:
                 print("  " + describe(results, frame, found[frame]))
     return 0 if limit_holds else 1
-
-
-def main() -> None:
-    """Command `stickslip-penetration`."""
-    command.finish(look)

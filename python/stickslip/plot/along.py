@@ -77,6 +77,7 @@ def draw(
 def run() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(
+        prog="stickslip plot along",
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
@@ -107,12 +108,3 @@ def run() -> None:
     figure = draw(results, lines, frames, arguments.field, arguments.against)
     path = arguments.output or results.path.with_name(f"{results.job}_along.png")
     style.save(figure, path, arguments.dpi)
-
-
-def main() -> None:
-    """Entry point."""
-    command.finish(run)
-
-
-if __name__ == "__main__":
-    main()

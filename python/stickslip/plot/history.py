@@ -5,7 +5,7 @@ where a force moves something, results side by side or, with --overlay, on top o
 histories, against the time or against the one of --x; all results stand in the same axes then, and every --y
 has axes of its own:
 
-    stickslip-plot-history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
+    stickslip plot history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
 
 A name is the path of a history in the result file, see --list; after a colon stands the component
 of a vector, from 1. Of a node set, displacements and velocities are means and reactions sums;
@@ -296,6 +296,7 @@ def span(all_results: list[Result]) -> tuple[float, float]:
 def run() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(
+        prog="stickslip plot history",
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
@@ -321,12 +322,3 @@ def run() -> None:
     first = arguments.result[0]
     path = arguments.output or first.with_name(f"{first.stem}_history.png")
     style.save(figure, path, arguments.dpi)
-
-
-def main() -> None:
-    """Entry point."""
-    command.finish(run)
-
-
-if __name__ == "__main__":
-    main()

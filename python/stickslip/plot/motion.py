@@ -288,7 +288,7 @@ def vector(text: str) -> str:
 
 def arguments_of_command_line() -> argparse.Namespace:
     """Options of the command line."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(prog="stickslip plot motion", description=__doc__)
     parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
     parser.add_argument(
         "--times", type=command.finite, nargs="+", help="times to show (nearest frames)"
@@ -349,12 +349,3 @@ def run() -> None:
         style.save(figure, path, arguments.dpi)
     if film:
         animate(all_results, look, film, arguments.fps)
-
-
-def main() -> None:
-    """Entry point."""
-    command.finish(run)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,6 +1,6 @@
 """The report page of a result: one HTML file that works offline (docs/report.md).
 
-`stickslip-report RESULT.vtkhdf` writes it, and so does `python -m stickslip.report`.
+`stickslip report RESULT.vtkhdf` writes it.
 """
 
 from stickslip.report.collect import Choice

@@ -432,7 +432,7 @@ def _checks(result: Result) -> list[dict[str, Any]]:
 def _certificate(result: Result) -> str:
     """The line of the certificate, or why there is none."""
     if len(result.cells) * len(result.frames) > CERTIFIED:
-        return "not made for a page of this size: stickslip-certify makes it"
+        return "not made for a page of this size: stickslip certify makes it"
     try:
         return certify(result).line
     except Fault as fault:

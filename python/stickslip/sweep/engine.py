@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from stickslip.deck import Deck
-from stickslip.errors import Fault, one_line
+from stickslip.errors import Fault, not_installed, one_line
 from stickslip.program import DeckRejected, binary, check, first_frame
 from stickslip.result import Result
-from stickslip.sweep.point import Task, point_name, solve, stop_runs
-from stickslip.sweep.points import Point, check_points
+from stickslip.sweep.point import Task, identity, solve, stop_runs
+from stickslip.sweep.points import Point, check_points, point_name
 from stickslip.sweep.quantities import Quantity, usual
 from stickslip.sweep.table import Table, columns
 
@@ -70,6 +70,8 @@ def sweep(
         raise Fault("a study needs points")
     check_points(points)
     columns(list(points[0]), chosen)
+    if settings.memory is not None and os.name != "posix":
+        raise Fault("the memory of a run can be bounded on Unix alone")
     folder = Path(output).resolve()
     template = deck if isinstance(deck, Deck) else Deck.read(deck)
     studies = _tasks(template, points, folder, settings)
@@ -77,7 +79,7 @@ def sweep(
     different = {task.name: task for task in tasks}
     waiting = [task for task in different.values() if settings.again or not task.has_ended]
     if chosen:
-        _check_quantities(chosen, *studies[0])
+        _check_quantities(chosen, studies)
     (folder / "points").mkdir(parents=True, exist_ok=True)
     template.write(folder / DECK)
     for task, own in {task.deck: (task, own) for task, own in studies}.values():
@@ -87,7 +89,7 @@ def sweep(
     if waiting:
         with _runs(settings, len(waiting)) as runs:
             lost = _run_all(runs, waiting, settings)
-    return Table.of(tasks, lost, chosen or usual())
+    return Table.of(folder, tasks, lost, chosen or usual())
 
 
 def _tasks(
@@ -105,20 +107,25 @@ def _tasks(
         if path not in checked:
             checked.add(path)
             _check_names(own, given)
-        name = point_name(own, given, settings.options)
-        task = Task(folder, path, name, values, given, options, settings.memory)
+        own_identity = identity(own, given, settings.options)
+        task = Task(
+            folder, path, point_name(values), own_identity, values, given, options, settings.memory
+        )
         studies.append((task, own))
     return studies
 
 
-def _check_quantities(chosen: Sequence[Quantity], task: Task, own: Deck) -> None:
-    """A Fault where the first point has no such history. One without a result is begun for that, up to its first frame."""
-    has_result = task.has_ended and task.result.exists()
-    with Result(task.result) if has_result else first_frame(own, task.given) as result:
-        if result is None:
-            return  # the row of the point tells why
-        for quantity in chosen:
-            quantity.series(result)
+def _check_quantities(chosen: Sequence[Quantity], studies: Sequence[tuple[Task, Deck]]) -> None:
+    """A Fault where the first point with a result has no such history. Points without one are begun, up to their first
+    frame."""
+    for task, own in studies:
+        has_result = task.has_ended and task.result.exists()
+        with Result(task.result) if has_result else first_frame(own, task.given) as result:
+            if result is None:
+                continue  # the row of the point tells why
+            for quantity in chosen:
+                quantity.series(result)
+            return
 
 
 def _check_names(template: Deck, values: Point) -> None:
@@ -199,7 +206,7 @@ def _cluster(scheduler: str) -> "Iterator[Client]":
         import dask
         from distributed import Client
     except ImportError:
-        raise Fault("a scheduler needs the package distributed: pip install distributed") from None
+        raise not_installed("distributed") from None
     dask.config.set({"distributed.scheduler.allowed-failures": FAILURES})
     try:
         with Client(scheduler, set_as_default=False) as client:

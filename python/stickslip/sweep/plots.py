@@ -9,7 +9,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
 from stickslip.errors import Fault
@@ -21,35 +21,39 @@ from stickslip.whole import whole
 MOST = 12
 """Instead of a legend with more entries there is a scale of colours."""
 
-SHADES = matplotlib.colormaps["viridis"]
+SHADES = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.88, 256)))
+"""From dark to light, but for what is too light to be seen on white."""
 
 
-def draw_all(table: Table, folder: Path | str) -> Iterator[Path]:
-    """Writes a picture of each history, and of each number against each parameter that varies."""
-    for history in dict.fromkeys(quantity.history for quantity in table.quantities):
-        if figure := histories(table, Quantity(history, "last")):
-            yield _save(figure, Path(folder) / f"{_file_name(history)}.png")
+def draw_all(table: Table, folder: Path | str, colour: str | None = None) -> Iterator[Path]:
+    """Writes a picture of each history, and of each number against each parameter that varies.
+
+    Curves are coloured by a parameter, the first that varies where none is chosen.
+    """
     varying = [name for name in table.parameters if len(set(table.column(name))) > 1]
+    colour = colour or [*varying, table.parameters[0]][0]
+    for history in dict.fromkeys(quantity.history for quantity in table.quantities):
+        if figure := histories(table, Quantity(history, "last"), colour):
+            yield _save(figure, Path(folder) / f"{_file_name(history)}.png")
     for quantity in table.quantities:
         for name in varying:
             others = [other for other in varying if other != name]
-            if figure := against(table, quantity, name, others):
+            if figure := against(table, quantity, name, others, colour):
                 yield _save(
                     figure, Path(folder) / f"{_file_name(str(quantity))}_against_{name}.png"
                 )
 
 
-def histories(table: Table, quantity: Quantity) -> Figure | None:
-    """A history of all points against the time, coloured by the first parameter; None without any."""
+def histories(table: Table, quantity: Quantity, by: str) -> Figure | None:
+    """A history of all points against the time, coloured by a parameter; None without any."""
     figure, axes = _axes("time", quantity.history)
-    first = table.column(table.parameters[0])
-    colours = _colours(first)
-    for row, colour in zip(table.rows, colours):
+    values = table.column(by)
+    for row, colour in zip(table.rows, _colours(values)):
         if not row["result"]:
             continue
         label = ", ".join(f"{name} = {_text(row[name])}" for name in table.parameters)
         try:
-            with Result(row["result"]) as result:
+            with Result(table.folder / row["result"]) as result:
                 axes.plot(
                     result.history.time, quantity.series(result), lw=0.9, color=colour, label=label
                 )
@@ -57,15 +61,14 @@ def histories(table: Table, quantity: Quantity) -> Figure | None:
             continue  # the table tells why
     if not axes.lines:
         return None
-    if len(axes.lines) > MOST and not any(isinstance(value, str) for value in first):
-        scale = ScalarMappable(Normalize(min(first), max(first)), SHADES)
-        figure.colorbar(scale, ax=axes, label=table.parameters[0])
-    _legend(axes)
+    _legend(axes, by, values)
     return figure
 
 
-def against(table: Table, quantity: Quantity, name: str, others: Sequence[str]) -> Figure | None:
-    """A number against a parameter: one line for each combination of the others.
+def against(
+    table: Table, quantity: Quantity, name: str, others: Sequence[str], by: str
+) -> Figure | None:
+    """A number against a parameter: one line for each combination of the others, coloured by one of them.
 
     Points that lie on no lattice make no lines. None where there is no number.
     """
@@ -79,11 +82,16 @@ def against(table: Table, quantity: Quantity, name: str, others: Sequence[str]) 
     is_lattice = len(groups) < len(table.rows)
     if not is_lattice:
         groups = {(): [point for points in groups.values() for point in points]}
+    if is_lattice and others:
+        by = by if by in others else others[0]
+        values = [key[others.index(by)] for key in groups]
+        axes.set_prop_cycle(color=_colours(values))
     for key, points in groups.items():
         points.sort(key=lambda point: (isinstance(point[0], str), point[0]))
         label = ", ".join(f"{other} = {_text(value)}" for other, value in zip(others, key))
         axes.plot(*zip(*points), "o-" if is_lattice else "o", ms=3, lw=0.9, label=label)
-    _legend(axes)
+    if is_lattice and others:
+        _legend(axes, by, values)
     return figure
 
 
@@ -95,11 +103,13 @@ def _axes(across: str, up: str) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _legend(axes: Axes) -> None:
-    """A legend beside the axes if it is short."""
-    labels = [line.get_label() for line in axes.lines]
-    if 1 < len(labels) <= MOST:
+def _legend(axes: Axes, by: str, values: list[Any]) -> None:
+    """A legend beside the axes if it is short, else the scale of the colours, where these are numbers."""
+    if 1 < len(axes.lines) <= MOST:
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
+    elif len(axes.lines) > MOST and not any(isinstance(value, str) for value in values):
+        scale = ScalarMappable(Normalize(min(values), max(values)), SHADES)
+        axes.figure.colorbar(scale, ax=axes, label=by)
 
 
 def _colours(values: list[Any]) -> list[Any]:

@@ -1,9 +1,10 @@
 """One point of a study, as a worker of the cluster runs it.
 
-A point has a folder named after its deck. A run has a folder of its own beside it, which gets the point's
+A point has a folder named by its values. A run has a folder of its own beside it, which gets the point's
 name when the run has ended: what a killed worker leaves is never taken for a result.
 """
 
+import glob
 import hashlib
 import json
 import os
@@ -22,7 +23,7 @@ from stickslip.result import Result
 from stickslip.sweep.points import Point
 
 ROW = "row.json"
-"""What is known of a point that has ended: exit status, warnings, message, seconds."""
+"""What is known of a point that has ended: identity, exit status, warnings, message, seconds."""
 
 RUNNING: set[subprocess.Popen[str]] = set()
 """Runs of this process."""
@@ -40,7 +41,9 @@ class Task:
     deck: Path
     """The deck, in which files whose names are parameters of the point are in place."""
     name: str
-    """Name of the point's folder."""
+    """Name of the point's folder and of its files."""
+    identity: str
+    """What changes with the deck, its parameters, the options that change the result, and the program."""
     values: Point
     """What tells the point from others."""
     given: Point
@@ -58,14 +61,21 @@ class Task:
     @property
     def result(self) -> Path:
         """The result file, where there is one."""
-        return self.place / f"{self.name}.vtkhdf"
+        return self.folder / self.relative_result
+
+    @property
+    def relative_result(self) -> str:
+        """Its path from the folder of the study."""
+        return f"points/{self.name}/{self.name}.vtkhdf"
 
     def row(self) -> dict[str, Any] | None:
-        """What is known of the point if it has ended."""
+        """What is known of the point if it has ended. That of another deck, of other options or of another program
+        does not count."""
         try:
-            return json.loads((self.place / ROW).read_text())
+            row = json.loads((self.place / ROW).read_text())
         except (OSError, ValueError):
             return None
+        return row if row.get("identity") == self.identity else None
 
     @property
     def has_ended(self) -> bool:
@@ -74,15 +84,15 @@ class Task:
         return row is not None and row["exit_status"] in ENDED
 
 
-def point_name(deck: Deck, values: Point, options: Sequence[str]) -> str:
-    """A name that changes with the deck, its parameters, the options that change the result, and the program."""
+def identity(deck: Deck, values: Point, options: Sequence[str]) -> str:
+    """What changes with the deck, its parameters, the options that change the result, and the program."""
     text = "\n".join([version(), *options, *settings(values), deck.text()])
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 def solve(task: Task) -> str:
     """Runs a point; what goes wrong with it stands in its row. Returns the point's name."""
-    own = task.place.with_name(f"{task.name}.{uuid.uuid4().hex[:8]}")
+    own = task.place.with_name(f".{task.name}~{uuid.uuid4().hex[:8]}")
     own.mkdir(parents=True)
     try:
         row = _run(task, own)
@@ -94,14 +104,14 @@ def solve(task: Task) -> str:
             if task.row() is None:  # else another worker has run the same point
                 raise
     finally:
-        for left in task.folder.glob(f"points/{task.name}.*"):  # also of workers that were killed
+        for left in task.place.parent.glob(f".{glob.escape(task.name)}~*"):  # also of workers that were killed
             shutil.rmtree(left, ignore_errors=True)
     return task.name
 
 
 def _run(task: Task, folder: Path) -> dict[str, Any]:
     """Runs the program in a folder."""
-    row: dict[str, Any] = {"values": task.values}
+    row: dict[str, Any] = {"identity": task.identity, "values": task.values}
     try:
         path = Path(shutil.copy(task.deck, folder / f"{task.name}.inp"))
         command = [str(binary()), "run", str(path), "-o", str(folder), "-q"]
@@ -116,7 +126,7 @@ def _run(task: Task, folder: Path) -> dict[str, Any]:
             warnings, seconds = result.warnings, float(result.run.get("seconds_total", "nan"))
     except Fault:
         pass  # there is none: the exit status tells why
-    message = said.strip().replace(str(folder), str(task.place))
+    message = said.strip().replace(str(folder), f"points/{task.name}")
     return {
         **row,
         "exit_status": code,

@@ -1,7 +1,9 @@
 """Points of a parameter study: values of the deck's parameters by name."""
 
 import csv
+import hashlib
 import itertools
+import math
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,6 +17,9 @@ Point = dict[str, Value]
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?")
 DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eEdD][-+]?\d+)?")
+
+LONGEST = 100
+"""Characters that the name of a point may have; a longer one is cut."""
 
 VARIED = re.compile(r"(?P<name>[A-Za-z]\w*)=(?P<values>.+)")
 
@@ -32,10 +37,12 @@ def latin_hypercube(
     M. D. McKay, R. J. Beckman, W. J. Conover, Technometrics 21 (1979) 239-245.
     """
     generator = np.random.default_rng(seed)
-    columns = {
-        name: low + (high - low) * (generator.permutation(count) + generator.random(count)) / count
-        for name, (low, high) in ranges.items()
-    }
+    columns = {}
+    for name, (low, high) in ranges.items():
+        parts = (generator.permutation(count) + generator.random(count)) / count
+        # digits beyond a hundred-millionth of the range would only lengthen names and tables
+        digits = 8 - math.floor(math.log10(abs(high - low) or 1.0))
+        columns[name] = np.round(low + (high - low) * parts, digits)
     return [{name: float(column[i]) for name, column in columns.items()} for i in range(count)]
 
 
@@ -70,6 +77,23 @@ def check_points(points: Sequence[Point]) -> None:
                 raise Fault(f"{name}: {fault}")
 
 
+def point_name(values: Point) -> str:
+    """The name of a point: its values, as far as they can stand in the name of a folder."""
+    text = "_".join(f"{name}={short(value)}" for name, value in values.items())
+    name = re.sub(r"[^\w.+=-]", "-", text)
+    if name == text and len(name) <= LONGEST:
+        return name
+    return f"{name[:LONGEST]}-{hashlib.sha256(text.encode()).hexdigest()[:8]}"
+
+
+def short(value: Value) -> str:
+    """A value with no more digits than tell it from all others."""
+    if not isinstance(value, float):
+        return str(value)
+    text = f"{value:.12g}"
+    return text if float(text) == value else repr(value)
+
+
 def varied(text: str) -> tuple[str, list[Value]]:
     """`mu=0:0.5:11` (from, to, how many), `mu=0,0.2,0.4` or `file=a.inc,b.inc`."""
     name, values = _split(text)
@@ -82,7 +106,8 @@ def varied(text: str) -> tuple[str, list[Value]]:
         count = 0
     if count < 1 or len(parts) != 3:
         raise Fault(f"{text}: FROM:TO:COUNT or values between commas are needed, as mu=0:0.5:11")
-    return name, [float(value) for value in np.linspace(low, high, count)]
+    between = [float(f"{value:.12g}") for value in np.linspace(low, high, count)[1:-1]]
+    return name, [low, *between, high][:count]
 
 
 def ranged(text: str) -> tuple[str, tuple[float, float]]:

@@ -30,15 +30,17 @@ class Table:
     parameters: list[str]
     quantities: list[Quantity]
     rows: list[dict[str, Any]]
-    """Parameters, exit_status, warnings, message, seconds, quantities, result (a path or empty)."""
+    """Parameters, exit_status, warnings, message, seconds, quantities, result (a path from the folder, or empty)."""
+    folder: Path = Path()
+    """Folder of the study."""
 
     @classmethod
     def of(
-        cls, tasks: Sequence[Task], lost: Mapping[str, str], quantities: list[Quantity]
+        cls, folder: Path, tasks: Sequence[Task], lost: Mapping[str, str], quantities: list[Quantity]
     ) -> "Table":
         """Reads what the runs have left. `lost` tells why there is no row for some."""
         rows = [_row(task, lost, quantities) for task in tasks]
-        return cls(list(tasks[0].values), quantities, rows)
+        return cls(list(tasks[0].values), quantities, rows, folder)
 
     @property
     def columns(self) -> list[str]:
@@ -90,18 +92,19 @@ def _row(task: Task, lost: Mapping[str, str], quantities: list[Quantity]) -> dic
     message = known.get("message", "the point was not run")
     path = ""
     if task.result.exists() and task.name not in lost:
-        path = str(task.result)
+        path = task.relative_result
         try:
             with Result(task.result) as result:
                 found = {str(quantity): quantity.of(result) for quantity in quantities}
         except Fault as fault:
             message = message or one_line(fault)
+    seconds = known.get("seconds")
     return {
         **task.values,
         "exit_status": known.get("exit_status", LOST),
-        "warnings": "; ".join(known.get("warnings", ())),
-        "message": message,
-        "seconds": known.get("seconds"),
+        "warnings": len(known.get("warnings", ())),
+        "message": message.partition("\n")[0],
+        "seconds": None if seconds is None else round(seconds, 3),
         **found,
         "result": path,
     }

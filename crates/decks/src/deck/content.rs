@@ -2,11 +2,10 @@
 
 use super::lines::overlong;
 use crate::diagnostics::{Code, Diagnostic, FileId, Span};
+use crate::system::without_waiting;
 use memchr::{memchr, memrchr};
-use rustix::fs::OFlags;
 use std::fs::{self, File};
 use std::io::{self, Read};
-use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 
 /// Longest line, in bytes.
@@ -33,8 +32,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     if !data.is_file() {
         return Err(not_regular());
     }
-    let flags = OFlags::NONBLOCK.bits().cast_signed();
-    let mut file = File::options().read(true).custom_flags(flags).open(path)?;
+    let mut file = without_waiting(File::options().read(true)).open(path)?;
     let data = file.metadata()?;
     let is_made_up = data.len() == 0 && !matches!(file.read(&mut [0]), Ok(0));
     match data.is_file() && !is_made_up {

@@ -8,6 +8,8 @@ use bytemuck::{cast_slice, cast_slice_mut};
 use memmap2::MmapMut;
 use rayon::prelude::*;
 
+use crate::system::in_large_pages;
+
 use super::supernodes::{Layout, Limb, Supernode, Supernodes, cut};
 
 /// Least entries of L for which a factorisation and a substitution are worth threads.
@@ -311,18 +313,6 @@ impl Entries {
             *self = Entries::zeros(count + count / SPARE);
         }
     }
-}
-
-/// Asks for large pages: without them all is as it was.
-#[cfg(target_os = "linux")]
-fn in_large_pages(memory: MmapMut) -> MmapMut {
-    let _ = memory.advise(memmap2::Advice::HugePage);
-    memory
-}
-
-#[cfg(not(target_os = "linux"))]
-fn in_large_pages(memory: MmapMut) -> MmapMut {
-    memory
 }
 
 impl Deref for Entries {

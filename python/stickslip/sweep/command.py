@@ -1,19 +1,20 @@
 """Runs a deck at many values of its parameters, `<name>` in its text, and tabulates the results.
 
-    stickslip-sweep arm.inp --vary mu=0:0.5:11 --vary dt=0.01,0.02 -q nodes/TIP/U:2@min -o study
-    stickslip-sweep arm.inp --points points.csv --scheduler tcp://head:8786 -o study
-    stickslip-sweep arm.inp --latin-hypercube 50 --vary mu=0:0.5 --vary E=1e3:2e3 -o study
+    stickslip sweep arm.inp --vary mu=0:0.5:11 --vary dt=0.01,0.02 -q nodes/TIP/U:2@min -o study
+    stickslip sweep arm.inp --points points.csv --scheduler tcp://head:8786 -o study
+    stickslip sweep arm.inp --latin-hypercube 50 --vary mu=0:0.5 --vary E=1e3:2e3 -o study
 
 The folder gets table.csv (and table.parquet), plots/ and points/, with a folder for each point. Points
 that have ended are not run again. The exit code is 1 when a point failed.
 """
 
 import argparse
+from importlib.util import find_spec
 from pathlib import Path
 
 from stickslip import command
 from stickslip.deck import Deck
-from stickslip.errors import Fault
+from stickslip.errors import Fault, not_installed
 from stickslip.sweep.engine import DECK, Settings, sweep, told_on_screen
 from stickslip.sweep.points import Point, latin_hypercube, product, ranged, read_points, varied
 from stickslip.sweep.table import TABLE
@@ -22,7 +23,7 @@ from stickslip.sweep.table import TABLE
 def arguments_of_command_line() -> argparse.Namespace:
     """Options of the command line."""
     parser = argparse.ArgumentParser(
-        prog="stickslip-sweep",
+        prog="stickslip sweep",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -58,6 +59,7 @@ def arguments_of_command_line() -> argparse.Namespace:
     add("--memory", type=memory, metavar="SIZE", help="bound on the memory of a run, as 2GB")
     add("--frames", type=command.positive_integer, help="frames of each result")
     add("--again", action="store_true", help="run points that have ended before, too")
+    add("--colour", metavar="NAME", help="parameter by which curves are coloured (default: the first that varies)")
     add("--no-plots", action="store_true", help="write no pictures")
     return parser.parse_args()
 
@@ -104,28 +106,22 @@ def run() -> int:
         if path is not None and path.resolve() == (arguments.output / own).resolve():
             raise Fault(f"{path} has the name of a file of the study: choose another folder with -o")
     deck = Deck.read(arguments.deck)
-    table = sweep(deck, points(arguments), arguments.output, arguments.quantity, settings)
+    chosen = points(arguments)
+    if arguments.colour is not None and chosen and arguments.colour not in chosen[0]:
+        raise Fault(f"--colour {arguments.colour}: the parameters are {', '.join(chosen[0])}")
+    if not arguments.no_plots and find_spec("matplotlib") is None:
+        raise Fault(f"{not_installed('matplotlib')}, or give --no-plots")
+    table = sweep(deck, chosen, arguments.output, arguments.quantity, settings)
     written = table.write(arguments.output)
     if not arguments.no_plots:
-        try:
-            from stickslip.sweep.plots import draw_all
-        except ImportError:
-            raise Fault("pictures need the package matplotlib, or --no-plots") from None
-        written += draw_all(table, arguments.output / "plots")
+        from stickslip.sweep.plots import draw_all
+
+        written += draw_all(table, arguments.output / "plots", arguments.colour)
     print()
     for path in written:
         print(f"wrote {path}")
     for row in table.rows:
         if row["message"]:
             values = ", ".join(f"{name} = {row[name]}" for name in table.parameters)
-            print(f"{values}: {row['message'].splitlines()[0]}")
+            print(f"{values}: {row['message']}")
     return 1 if table.failed else 0
-
-
-def main() -> None:
-    """Entry point `stickslip-sweep`."""
-    command.finish(run)
-
-
-if __name__ == "__main__":
-    main()

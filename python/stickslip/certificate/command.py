@@ -8,14 +8,13 @@ from pathlib import Path
 
 from stickslip.certificate.certify import certify
 from stickslip.certificate.own import write_table
-from stickslip.command import finish
 from stickslip.result import Result
 
 
 def run() -> int:
     """Certifies the results of the command line."""
     parser = argparse.ArgumentParser(
-        prog="stickslip-certify",
+        prog="stickslip certify",
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -41,12 +40,3 @@ def run() -> int:
         if not arguments.quiet:
             print("\n".join(found.table()))
     return 0 if holds else 1
-
-
-def main() -> None:
-    """Command `stickslip-certify`."""
-    finish(run)
-
-
-if __name__ == "__main__":
-    main()

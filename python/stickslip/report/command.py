@@ -3,7 +3,6 @@
 import argparse
 from pathlib import Path
 
-from stickslip.command import finish
 from stickslip.errors import Fault
 from stickslip.report.collect import Choice
 from stickslip.report.page import page_of
@@ -15,7 +14,7 @@ LARGE = 60e6
 
 def arguments_of_command_line() -> argparse.Namespace:
     """Options of the command line."""
-    parser = argparse.ArgumentParser(prog="stickslip-report", description=__doc__)
+    parser = argparse.ArgumentParser(prog="stickslip report", description=__doc__)
     parser.add_argument("result", type=Path, help="result file JOB.vtkhdf")
     parser.add_argument("other", type=Path, nargs="?", help="a second result, laid over the first")
     parser.add_argument(
@@ -45,7 +44,7 @@ def names(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-def report() -> None:
+def run() -> None:
     """Writes the page that the command line asks for."""
     arguments = arguments_of_command_line()
     paths = [each for each in (arguments.result, arguments.other) if each is not None]
@@ -58,12 +57,3 @@ def report() -> None:
     print(f"wrote {output} ({size / 1e6:.2f} MB)")
     if size > LARGE:
         print("note: the page is large; --frames and --fields make it smaller")
-
-
-def main() -> None:
-    """Command `stickslip-report`."""
-    finish(report)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,0 +1,1 @@
+stickslip completion fish | source
