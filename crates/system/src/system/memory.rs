@@ -3,7 +3,10 @@
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
-use super::here::memory_limits;
+#[cfg(not(unix))]
+use super::portable::memory_limits;
+#[cfg(unix)]
+use super::unix::memory_limits;
 
 /// Most bytes resident at a time in this process so far; none where the system does not tell.
 pub fn peak_memory() -> Option<u64> {

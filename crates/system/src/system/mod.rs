@@ -14,6 +14,7 @@
 mod memory;
 #[cfg(not(unix))]
 mod portable;
+mod signals;
 #[cfg(unix)]
 mod unix;
 
@@ -30,15 +31,7 @@ use std::process::Command;
 use memmap2::MmapMut;
 
 pub use memory::{free_memory, peak_memory};
-
-/// Number of the signal of a closed terminal.
-pub const HANG_UP: i32 = 1;
-
-/// Number of the signal of a user who interrupts.
-pub const INTERRUPT: i32 = 2;
-
-/// Number of the signal that asks for the end.
-pub const TERMINATE: i32 = 15;
+pub use signals::{HANG_UP, INTERRUPT, TERMINATE};
 
 /// Calls `handle` with the number of each signal [`HANG_UP`], [`INTERRUPT`] or [`TERMINATE`], in a thread of its own.
 /// Signals stay ignored that the program was started to ignore (as by `nohup`). A file beyond the limit of its size

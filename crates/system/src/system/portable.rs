@@ -12,7 +12,7 @@ use std::time::Duration;
 use same_file::Handle;
 use signal_hook::flag;
 
-use super::{INTERRUPT, TERMINATE};
+use super::signals::{INTERRUPT, TERMINATE};
 
 /// Time between two looks whether a signal has come.
 const POLL: Duration = Duration::from_millis(50);

@@ -16,7 +16,7 @@ use signal_hook::consts::SIGXFSZ;
 use signal_hook::flag;
 use signal_hook::iterator::Signals;
 
-use super::{HANG_UP, INTERRUPT, TERMINATE};
+use super::signals::{HANG_UP, INTERRUPT, TERMINATE};
 
 pub fn on_signals(mut handle: impl FnMut(i32) + Send + 'static) -> io::Result<()> {
     flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)))?;

@@ -1,0 +1,10 @@
+//! Numbers of signals, which are the same on all systems that have them.
+
+/// The terminal was closed.
+pub const HANG_UP: i32 = 1;
+
+/// The user interrupts.
+pub const INTERRUPT: i32 = 2;
+
+/// Somebody asks for the end.
+pub const TERMINATE: i32 = 15;
