@@ -8,7 +8,9 @@ use super::lines::{Line, LineKind, Lines, overlong};
 use super::parameters::Parameters;
 use super::resolve::{self, Piece};
 use super::text::Text;
-use crate::diagnostics::{Code, Diagnostics, EarlierDeck, FileId, Severity, Source, Sources, Span};
+use crate::diagnostics::{
+    Code, Diagnostics, EarlierDeck, FileId, Interrupt, Severity, Source, Sources, Span, whole_path,
+};
 use memchr::memchr;
 use std::collections::HashSet;
 use std::ops::Range;
@@ -28,6 +30,8 @@ pub struct Deck {
     pub suspects: HashSet<String>,
     /// Instances of parts; spans number them from 1.
     pub instances: Vec<Instance>,
+    /// Whether nobody waits for the deck any longer.
+    pub interrupt: Interrupt,
 }
 
 impl Deck {
@@ -75,7 +79,7 @@ const LONGEST_USUAL_LINE: usize = 256;
 /// Reads a deck and the files it includes.
 pub(super) fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     let name = path.display().to_string();
-    match content_of(path) {
+    match content_of(path, sources) {
         Ok(content) => collect(&name, content, vec![OpenFile::new(path)], sources, d),
         Err(why) => {
             d.error_without_place(Code::FileUnreadable, format!("cannot read {name}: {why}"));
@@ -129,7 +133,8 @@ fn collect(
     if !collector.deck.incomplete && !collector.deck.dropped {
         collector.parameters.finish(collector.d);
     }
-    let deck = collector.deck;
+    let mut deck = collector.deck;
+    deck.interrupt = sources.interrupt().clone();
     if deck.cards.is_empty() && !d.has_errors() {
         let start = Span::start_of(file);
         d.error(Code::EmptyDeck, start, format!("{name} holds no keyword"))
@@ -149,7 +154,7 @@ struct OpenFile {
 impl OpenFile {
     fn new(path: &Path) -> OpenFile {
         OpenFile {
-            identity: path.canonicalize().unwrap_or_else(|_| path.to_path_buf()),
+            identity: whole_path(path),
             folder: path.parent().unwrap_or(Path::new("")).to_path_buf(),
         }
     }
@@ -213,6 +218,7 @@ impl Collector<'_> {
         loop {
             let here = rest;
             let Some(line) = rest.next() else { return };
+            self.sources.interrupt().end_if_asked();
             match line.kind() {
                 LineKind::Blank | LineKind::Comment => {}
                 LineKind::Data => {
@@ -561,7 +567,7 @@ impl Collector<'_> {
         let kept = self.earlier_files.iter().find(|(kept, _)| *kept == name);
         let content = match kept {
             Some((_, text)) => Content::new(text),
-            None => content_of(&path).map_err(unreadable)?,
+            None => content_of(&path, self.sources).map_err(unreadable)?,
         };
         Ok((path, content))
     }
@@ -574,7 +580,8 @@ impl Collector<'_> {
         let [near, far] = [last, first].map(|open| open.folder.join(path));
         let exists = |path: &Path| {
             let name = path.display().to_string();
-            path.exists() || self.earlier_files.iter().any(|(kept, _)| *kept == name)
+            let is_open = self.sources.unsaved(path).is_some();
+            is_open || path.exists() || self.earlier_files.iter().any(|(kept, _)| *kept == name)
         };
         match (exists(&near), exists(&far)) {
             (true, _) => Ok(near),
@@ -607,7 +614,11 @@ fn begins_as_a_number(text: Text) -> bool {
     first.is_some_and(|c| c.is_ascii_digit() || "+-.".contains(c))
 }
 
-fn content_of(path: &Path) -> Result<Content, String> {
+/// The text of a file, or what an editor has in its place.
+fn content_of(path: &Path, sources: &Sources) -> Result<Content, String> {
+    if let Some(text) = sources.unsaved(path) {
+        return Ok(Content::new(text));
+    }
     Content::of(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::IsADirectory => "it is a folder".to_string(),
         std::io::ErrorKind::NotFound => "no such file".to_string(),

@@ -23,7 +23,7 @@ pub struct Line<'a> {
 
 /// What a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum LineKind {
+pub enum LineKind {
     /// It has nothing but blanks.
     Blank,
     /// It begins with two stars.
@@ -36,7 +36,7 @@ pub(crate) enum LineKind {
 
 impl<'a> Line<'a> {
     /// What kind of line it is.
-    pub(super) fn kind(self) -> LineKind {
+    pub fn kind(self) -> LineKind {
         // the first character of most lines
         if let Some(b'0'..=b'9') = self.text.as_bytes().first() {
             return LineKind::Data;
@@ -50,7 +50,7 @@ impl<'a> Line<'a> {
     }
 
     /// Whether its last visible character is a comma.
-    pub(super) fn ends_with_comma(self) -> bool {
+    pub fn ends_with_comma(self) -> bool {
         self.text.trim_end().ends_with(',')
     }
 

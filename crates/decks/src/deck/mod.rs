@@ -22,10 +22,12 @@ pub use change::first_change;
 pub use collect::Deck;
 pub use content::{not_regular, open_regular};
 pub use keywords::{
-    Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
-    Value, Word, dimensions_json, find_keyword, find_word, keyword_reference, keywords, words,
+    Data, DataLineForm, Field, Keyword, Kind, Level, Levels, Parameter, Quantity, Scope, Status,
+    Takes, Value, Word, dimensions_json, find_keyword, find_word, keyword_reference, keywords,
+    words,
 };
-pub use lines::Line;
+pub use lines::{Line, LineKind};
+pub use resolve::keyword_read_as;
 pub use text::{Name, Text};
 
 use crate::diagnostics::{Diagnostics, Sources};

@@ -39,6 +39,16 @@ pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
     Some(keyword)
 }
 
+/// The keyword that a typed word is read as: its name or a beginning of it.
+pub fn keyword_read_as(typed: &str) -> Option<&'static Keyword> {
+    find_keyword(typed).or_else(|| {
+        match find_known(typed, keywords().map(|keyword| keyword.name)) {
+            Match::Exact(name) | Match::Abbreviation(name) => find_keyword(name),
+            Match::Unknown(_) => None,
+        }
+    })
+}
+
 /// Whether an unknown keyword asks for output by its last word.
 fn asks_for_output(typed: &str) -> bool {
     let last = typed.split_whitespace().next_back().unwrap_or_default();

@@ -158,7 +158,7 @@ impl<'a> Text<'a> {
     }
 
     /// Name and value of a parameter, `NAME` or `NAME=value`.
-    pub(super) fn assignment(&self) -> (&'a str, Option<Text<'a>>) {
+    pub fn assignment(&self) -> (&'a str, Option<Text<'a>>) {
         let Some((name, value)) = self.text.split_once('=') else {
             return (self.text, None);
         };

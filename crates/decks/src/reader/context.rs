@@ -53,6 +53,11 @@ impl<'a> Context<'a> {
         read.filter(|_| !card.faulty && self.errors() == errors)
     }
 
+    /// Ends the reading where nobody waits for the deck any longer.
+    pub fn go_on(&self) {
+        self.deck.interrupt.end_if_asked();
+    }
+
     /// Number of errors so far.
     pub fn errors(&self) -> usize {
         self.d.errors_found()
@@ -236,19 +241,6 @@ fn name_before_blank<'t, 'n>(
     (is_number || is_known).then_some(before)
 }
 
-/// Keyword and parameter that define a name, and the kind of thing it is.
-const DEFINITIONS: [(&str, &str, &str); 9] = [
-    ("NODE", "NSET", "node set"),
-    ("NSET", "NSET", "node set"),
-    ("ELEMENT", "ELSET", "element set"),
-    ("ELSET", "ELSET", "element set"),
-    ("SURFACE", "NAME", "surface"),
-    ("MATERIAL", "NAME", "material"),
-    ("SURFACE INTERACTION", "NAME", "surface interaction"),
-    ("AMPLITUDE", "NAME", "amplitude"),
-    ("TIME POINTS", "NAME", "list of time points"),
-];
-
 /// Keys of the names of a deck, with the kinds of objects that have them.
 pub(super) struct Catalogue {
     kinds: BTreeMap<String, Vec<&'static str>>,
@@ -286,14 +278,13 @@ impl Catalogue {
 
 /// Key and kind of the object that a card defines.
 fn definitions(card: &Card, deck: &Deck) -> Option<(String, &'static str)> {
-    let defines = |&&(keyword, _, _): &&(&str, &str, &str)| keyword == card.keyword.name;
-    let (_, parameter, kind) = DEFINITIONS.iter().find(defines)?;
-    let key = card.value(parameter)?.name_key();
+    let (parameter, kind) = card.keyword.definition()?;
+    let key = card.value(parameter.name)?.name_key();
     let key = match deck.instance_of(card.span) {
         Some(instance) => format!("{}.{key}", instance.name.key),
         None => key,
     };
-    Some((key, kind))
+    Some((key, kind.name()))
 }
 
 /// A kind of object with its article.

@@ -85,15 +85,18 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
     let mut mesh_index = nodes_elements::read(&outline, cx);
+    cx.go_on();
     let at_nodes = ElementsAtNodes::new(&mesh_index.mesh);
     checks::mesh(&mesh_index, &at_nodes, cx);
     checks::half_plane(&mesh_index, cx);
+    cx.go_on();
     let sets = sets::read(&outline, &mesh_index, cx);
     let cuts = pretension::read(&outline, &mut mesh_index, &sets, cx);
     let at_nodes = match cuts.is_empty() {
         true => at_nodes,
         false => ElementsAtNodes::new(&mesh_index.mesh),
     };
+    cx.go_on();
     let mut surfaces = surfaces::read(&outline, &mesh_index, &sets, &at_nodes, cx);
     drop(at_nodes);
     mesh_index.add_points(&surfaces.rigid_points);
@@ -107,9 +110,11 @@ fn read(cx: &mut Context) -> Model {
     rigid_bodies::find_carried(&mut rigid_bodies, &mesh_index.mesh);
     let moves = couplings::moving_nodes(&links, lookup);
     let masses = rigid_bodies::point_masses(&mut rigid_bodies, &moves, &outline, lookup, cx);
+    cx.go_on();
     let properties = sections::read(&outline, &mut mesh_index, &sets, cx);
     checks::magnitudes(&mesh_index, &properties, cx);
     let ties = ties::read(&outline, &mut mesh_index, &sets, &surfaces, cx);
+    cx.go_on();
     let mut contacts = contact::read(&outline, &mesh_index, &sets, &mut surfaces, cx);
     ties.leave_out(&mut contacts, &surfaces.all, &mesh_index);
     let constraints = Constraints {
@@ -121,6 +126,7 @@ fn read(cx: &mut Context) -> Model {
     owners::check_names(&rigid_bodies, &ties, cx);
     let (sections, mesh) = (&properties.sections, &mesh_index.mesh);
     checks::thickness(&contacts, &surfaces.all, sections, mesh, cx);
+    cx.go_on();
     let edges = EdgeScales::new(mesh, sections, &properties.materials);
     let guide = Some(edges.time).filter(|time| time.is_finite() && *time > 0.0);
     let amplitudes = amplitudes::read(cx);
@@ -132,6 +138,7 @@ fn read(cx: &mut Context) -> Model {
         rigid_bodies: &rigid_bodies,
         has_element: &mesh.has_element(),
     };
+    cx.go_on();
     let connectors = connectors::read(&outline, targets, cx);
     let initial_temperature = temperatures::initial(&outline, targets, cx);
     let known = (
@@ -196,6 +203,7 @@ fn read(cx: &mut Context) -> Model {
     ];
     for check in all {
         if !cx.d.has_errors() {
+            cx.go_on();
             check(cx);
         }
     }

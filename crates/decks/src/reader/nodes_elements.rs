@@ -68,6 +68,7 @@ impl MeshReading {
         self.mesh_index.reserve_nodes(count);
         self.node_lines.reserve(count);
         for row in card.rows.iter() {
+            cx.go_on();
             match self.plain_node(row, cx).or_else(|| self.node(row, cx)) {
                 Some(label) => labels.push(label),
                 None => self.mesh_index.nodes.incomplete = true,
@@ -153,6 +154,7 @@ impl MeshReading {
             self.mesh_index.reserve_elements(card.rows.line_count());
             let mut rows = card.rows.iter();
             while let Some(row) = rows.next() {
+                cx.go_on();
                 let label = self.plain_element(row, kind).or_else(|| {
                     let fields = element_fields(row, &mut rows, kind.nodes() + 1);
                     self.element(row.span(), &fields, kind, cx)

@@ -368,6 +368,7 @@ impl<'a> SetFamily<'a> {
                 self.from_elements.push((index, source));
             }
             for row in card.rows.iter() {
+                cx.go_on();
                 match generate {
                     true => self.range(index, row, cx),
                     false => self.list(index, row, cx),

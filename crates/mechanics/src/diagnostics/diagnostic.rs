@@ -35,6 +35,8 @@ pub struct Diagnostic {
     pub message: String,
     /// Text beside the caret.
     pub label: Option<String>,
+    /// What was probably meant by the word at the caret.
+    pub suggestion: Option<String>,
     /// What to do about it.
     pub help: Option<String>,
     /// The other card that it is about, and its place.
@@ -64,6 +66,7 @@ impl Diagnostic {
             span,
             message: shortened(message),
             label: None,
+            suggestion: None,
             help: None,
             other: None,
         }
@@ -84,7 +87,10 @@ impl Diagnostic {
     /// The same with "did you mean ...?" beside the caret, if there is a suggestion.
     pub fn suggest(self, suggestion: Option<impl AsRef<str>>) -> Diagnostic {
         match suggestion {
-            Some(word) => self.label(format!("did you mean {}?", word.as_ref())),
+            Some(word) => Diagnostic {
+                suggestion: Some(word.as_ref().to_owned()),
+                ..self.label(format!("did you mean {}?", word.as_ref()))
+            },
             None => self,
         }
     }

@@ -12,6 +12,6 @@ mod words;
 
 pub use code::Code;
 pub use diagnostic::{Added, Diagnostic, Diagnostics, FileId, Severity, Span, Strictness};
-pub use sources::{EarlierDeck, Replaced, Source, Sources};
+pub use sources::{EarlierDeck, Interrupt, Replaced, Source, Sources, whole_path};
 pub use words::{WIDTH, in_lines, list_of, wrapped};
 pub use words::{closest, shown};

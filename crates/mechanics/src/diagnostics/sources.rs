@@ -4,6 +4,8 @@ use super::{FileId, Span};
 use memchr::memchr_iter;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
 /// Bytes of a piece of a text whose lines are counted together.
@@ -109,6 +111,33 @@ pub struct Sources {
     settings: Vec<String>,
     /// The deck that this one goes on from.
     earlier: Option<EarlierDeck>,
+    /// Texts of an editor that are read in place of files, by the whole paths of these.
+    unsaved: BTreeMap<PathBuf, String>,
+    /// Whether nobody waits for the deck any longer.
+    interrupt: Interrupt,
+}
+
+/// Asks the reading of a deck to end: nobody waits for what comes of it.
+#[derive(Debug, Clone, Default)]
+pub struct Interrupt(Arc<AtomicBool>);
+
+impl Interrupt {
+    /// Asks for the end.
+    pub fn ask(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the end is asked for.
+    pub fn is_asked(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    /// Unwinds where the end is asked for, up to the one who asked, who catches it. Nothing is printed.
+    pub fn end_if_asked(&self) {
+        if self.is_asked() {
+            std::panic::resume_unwind(Box::new(self.clone()));
+        }
+    }
 }
 
 /// A value that the reader sees in a line, and what was typed in its place.
@@ -120,6 +149,11 @@ pub struct Replaced {
     pub length: u32,
     /// What was typed.
     pub typed: Span,
+}
+
+/// The path of a file, the same for all paths to it; as given where there is no such file.
+pub fn whole_path(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
 
 impl Sources {
@@ -136,6 +170,28 @@ impl Sources {
             earlier,
             ..Sources::default()
         }
+    }
+
+    /// No files yet; texts of an editor that are read in place of files, by the whole paths of these.
+    pub fn with_unsaved(unsaved: BTreeMap<PathBuf, String>, interrupt: Interrupt) -> Sources {
+        Sources {
+            unsaved,
+            interrupt,
+            ..Sources::default()
+        }
+    }
+
+    /// The text that is read in place of a file.
+    pub fn unsaved(&self, path: &Path) -> Option<&str> {
+        if self.unsaved.is_empty() {
+            return None;
+        }
+        self.unsaved.get(&whole_path(path)).map(String::as_str)
+    }
+
+    /// What asks the reading of the deck to end.
+    pub fn interrupt(&self) -> &Interrupt {
+        &self.interrupt
     }
 
     /// The deck that this one goes on from.

@@ -162,10 +162,11 @@ impl Keyword {
         let mut text = format!("{}\n{}", wrapped(&head, 0), wrapped(self.text, 0));
         let forms = self.data.forms().iter();
         let forms: String = forms
-            .map(|one| wrapped(&format!("  {}", form(one).replace('`', "")), 2))
+            .map(|one| wrapped(&format!("  {}", one.explanation()), 2))
             .collect();
         push(&mut text, "data lines", &forms);
-        let parameters: String = self.parameters.iter().map(parameter).collect();
+        let parameters = self.parameters.iter().map(Parameter::explanation);
+        let parameters: String = parameters.collect();
         push(&mut text, "parameters", &parameters);
         let lines = self.example.lines();
         let example: String = lines.map(|line| format!("  {line}\n")).collect();
@@ -175,6 +176,20 @@ impl Keyword {
         };
         push(&mut text, title, &example);
         text
+    }
+}
+
+impl Parameter {
+    /// Text for the screen: treatment, meaning and values.
+    pub fn explanation(&self) -> String {
+        parameter(self)
+    }
+}
+
+impl DataLineForm {
+    /// The fields as the reference writes them, with the lines that are of this kind.
+    pub fn explanation(&self) -> String {
+        form(self).replace('`', "")
     }
 }
 
@@ -389,10 +404,10 @@ fn row(form: &DataLineForm) -> Json {
 
 fn quantity(quantity: Quantity) -> Json {
     match quantity {
-        Quantity::Plain => Json::Null,
+        Quantity::Plain | Quantity::Name(_) | Quantity::New(_) | Quantity::File => Json::Null,
         Quantity::Of(dimension) => json!(dimension),
         Quantity::OfOr(dimension, default) => json!({"dimension": dimension, "default": default}),
-        Quantity::OrName(dimension) => json!({"dimension": dimension, "or_name": true}),
+        Quantity::OrName(dimension, _) => json!({"dimension": dimension, "or_name": true}),
         Quantity::Unknown => json!("unknown"),
     }
 }

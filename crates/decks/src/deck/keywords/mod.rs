@@ -8,8 +8,8 @@ mod words;
 
 pub use documents::{dimensions_json, keyword_reference};
 pub use types::{
-    Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
-    Value,
+    Data, DataLineForm, Field, Keyword, Kind, Level, Levels, Parameter, Quantity, Scope, Status,
+    Takes, Value,
 };
 pub use words::{Word, find_word, words};
 

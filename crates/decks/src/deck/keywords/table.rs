@@ -7,6 +7,8 @@
 //! - TIME=: which time                         a parameter with a value; TIME alone takes none, TIME[=] may
 //!   = STEP TIME: since the start of the step  a word that its value may be
 //! - SMOOTH= [length] warned: they stay sharp  what its value measures, and that it is not read
+//! - NAME= [new amplitude]: name                 the name that the card defines
+//! - NSET= [node set]: nodes                     a name that another card defines; `[file]` is a path
 //! - INPUT as *NODE                            the parameter of a keyword before
 //! - SLAVE or SECONDARY=: a surface              a parameter with two names
 //! A function of time.                         what the keyword says
@@ -19,6 +21,9 @@
 //! all. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of parts that
 //! stands in a step, or one of the model in the first step, belongs to the model. `under *X` are places in the block of
 //! another keyword, `structure` is that of the assembly itself.
+//!
+//! A field that is called as a kind of things, alone or behind `or`, holds the name of one: `surface`, `node or node set`.
+//! Another field says so in brackets, as a parameter does: `slave [surface]`.
 //!
 //! A line that begins with four blanks continues the one before; lines with two stars are comments.
 

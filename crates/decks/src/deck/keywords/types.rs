@@ -1,7 +1,7 @@
 //! Types of the keyword table: keywords with their place, data lines, sentence and example; their
 //! parameters and values; the fields of data lines, and what numbers measure.
 
-use crate::deck::text::fold;
+use crate::deck::text::{Match, find_known, fold};
 
 /// A level of a deck. Parts, instances and the assembly are levels of decks that have them; in a flat deck their cards
 /// stand at the level of the model.
@@ -112,6 +112,94 @@ impl Data {
     }
 }
 
+/// A kind of things that have names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// Nodes.
+    NodeSet,
+    /// Elements.
+    ElementSet,
+    /// Faces or nodes for contact.
+    Surface,
+    /// A material.
+    Material,
+    /// Friction and other laws of contact.
+    SurfaceInteraction,
+    /// A function of time.
+    Amplitude,
+    /// Times for frames.
+    TimePoints,
+    /// A step.
+    Step,
+    /// A part.
+    Part,
+    /// A copy of a part.
+    Instance,
+    /// Axes.
+    Orientation,
+    /// Circles on which faces lie.
+    SurfaceSmoothing,
+    /// How nodes of general contact are moved at the start.
+    ContactInitialization,
+    /// A tie between surfaces.
+    Tie,
+    /// A coupling of nodes to a reference node.
+    Coupling,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Kind; 15] = [
+        Kind::NodeSet,
+        Kind::ElementSet,
+        Kind::Surface,
+        Kind::Material,
+        Kind::SurfaceInteraction,
+        Kind::Amplitude,
+        Kind::TimePoints,
+        Kind::Step,
+        Kind::Part,
+        Kind::Instance,
+        Kind::Orientation,
+        Kind::SurfaceSmoothing,
+        Kind::ContactInitialization,
+        Kind::Tie,
+        Kind::Coupling,
+    ];
+
+    /// What the table and messages call a thing of this kind.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::NodeSet => "node set",
+            Kind::ElementSet => "element set",
+            Kind::Surface => "surface",
+            Kind::Material => "material",
+            Kind::SurfaceInteraction => "surface interaction",
+            Kind::Amplitude => "amplitude",
+            Kind::TimePoints => "list of time points",
+            Kind::Step => "step",
+            Kind::Part => "part",
+            Kind::Instance => "instance",
+            Kind::Orientation => "orientation",
+            Kind::SurfaceSmoothing => "surface smoothing",
+            Kind::ContactInitialization => "contact initialization",
+            Kind::Tie => "tie",
+            Kind::Coupling => "coupling",
+        }
+    }
+
+    /// The kind with this name.
+    fn named(name: &str) -> Option<Kind> {
+        Kind::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// The kind that a text names alone, or behind ` or `.
+    fn at_end_of(text: &str) -> Option<Kind> {
+        let last = text.rsplit_once(" or ").map_or(text, |(_, last)| last);
+        Kind::named(last)
+    }
+}
+
 /// A known keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Keyword {
@@ -147,6 +235,23 @@ impl Keyword {
         let folded = fold(name);
         let is_meant = |p: &&Parameter| [p.name, p.other].map(fold).contains(&folded);
         self.parameters.iter().find(is_meant)
+    }
+
+    /// The parameter that a typed word is read as: its name or a beginning of it.
+    pub fn parameter_read_as(&self, typed: &str) -> Option<&'static Parameter> {
+        match find_known(typed, self.parameter_names()) {
+            Match::Exact(name) | Match::Abbreviation(name) => self.parameter(name),
+            Match::Unknown(_) => None,
+        }
+    }
+
+    /// Kind of the thing that a card of this keyword defines or adds to, and the parameter with its name.
+    pub fn definition(&self) -> Option<(&'static Parameter, Kind)> {
+        let mut parameters = self.parameters.iter();
+        parameters.find_map(|parameter| match parameter.holds() {
+            Quantity::New(kind) => Some((parameter, kind)),
+            _ => None,
+        })
     }
 }
 
@@ -229,6 +334,14 @@ impl Parameter {
             Takes::Nothing | Takes::Value | Takes::Optional => &[],
         }
     }
+
+    /// The word of its list that a typed value is read as.
+    pub fn value_read_as(&self, typed: &str) -> Option<&'static str> {
+        match find_known(typed, self.values().iter().map(|value| value.name)) {
+            Match::Exact(name) | Match::Abbreviation(name) => Some(name),
+            Match::Unknown(_) => None,
+        }
+    }
 }
 
 /// What a field or a parameter's value holds.
@@ -240,22 +353,36 @@ pub enum Quantity {
     Of(&'static str),
     /// A number of the given dimension, and its default.
     OfOr(&'static str, &'static str),
-    /// A number of this dimension or a name.
-    OrName(&'static str),
+    /// A number of this dimension, or the name of a thing of this kind.
+    OrName(&'static str, Kind),
+    /// The name of a thing of this kind, where a word or a label does not stand in its place.
+    Name(Kind),
+    /// The name of a thing of this kind that the card defines or adds to.
+    New(Kind),
+    /// The path of a file that is read in this place.
+    File,
     /// A number whose dimension is not known: other codes disagree on it.
     Unknown,
 }
 
 impl Quantity {
-    /// The quantity that the table writes as `length`, `length = 1` with its default, `length or name`, or
-    /// `?`.
+    /// The quantity that the table writes as `length`, `length = 1` with its default, `length or node set`,
+    /// `node set`, `new node set`, `file`, or `?`.
     fn written(text: &'static str) -> Quantity {
         if text == "?" {
             Quantity::Unknown
+        } else if text == "file" {
+            Quantity::File
+        } else if let Some(kind) = Kind::named(text) {
+            Quantity::Name(kind)
+        } else if let Some(kind) = text.strip_prefix("new ").and_then(Kind::named) {
+            Quantity::New(kind)
         } else if let Some((dimension, default)) = text.split_once(" = ") {
             Quantity::OfOr(dimension, default)
-        } else if let Some(dimension) = text.strip_suffix(" or name") {
-            Quantity::OrName(dimension)
+        } else if let Some((dimension, kind)) = text.split_once(" or ")
+            && let Some(kind) = Kind::named(kind)
+        {
+            Quantity::OrName(dimension, kind)
         } else {
             Quantity::Of(text)
         }
@@ -264,10 +391,18 @@ impl Quantity {
     /// The dimension, if it has a known one.
     pub fn dimension(self) -> Option<&'static str> {
         match self {
-            Quantity::Plain | Quantity::Unknown => None,
             Quantity::Of(dimension)
             | Quantity::OfOr(dimension, _)
-            | Quantity::OrName(dimension) => Some(dimension),
+            | Quantity::OrName(dimension, _) => Some(dimension),
+            _ => None,
+        }
+    }
+
+    /// The kind of the thing whose name it is or may be.
+    pub fn kind(self) -> Option<Kind> {
+        match self {
+            Quantity::Name(kind) | Quantity::New(kind) | Quantity::OrName(_, kind) => Some(kind),
+            _ => None,
         }
     }
 }
@@ -310,8 +445,40 @@ impl DataLineForm {
                 }
                 None => Field {
                     name: text,
-                    holds: Quantity::Plain,
+                    holds: Kind::at_end_of(text).map_or(Quantity::Plain, Quantity::Name),
                 },
             })
+    }
+
+    /// Field `index` of a line, from 0.
+    pub fn field(&self, index: usize) -> Option<Field> {
+        let count = self.fields().count();
+        let once = count.saturating_sub(self.repeating);
+        let index = match self.repeating {
+            0 => index,
+            _ if index < once => index,
+            repeating => once + (index - once) % repeating,
+        };
+        self.fields().nth(index)
+    }
+
+    /// Whether a line is of this kind: the words of its fields, whether it is the first of its card, and the word that a
+    /// parameter of the card has as its value, empty where it has none and the parameter is given.
+    pub fn fits<'w>(
+        &self,
+        fields: &[&str],
+        is_first: bool,
+        given: impl Fn(&str) -> Option<&'w str>,
+    ) -> bool {
+        let has_parameter = match self.parameter {
+            Some((name, "")) => given(name).is_some(),
+            Some((name, word)) => given(name) == Some(word),
+            None => true,
+        };
+        let says = |(index, words): (usize, &[&str])| {
+            let typed = fold(fields.get(index).unwrap_or(&""));
+            words.iter().any(|word| fold(word) == typed)
+        };
+        has_parameter && (is_first || !self.first) && self.word.is_none_or(says)
     }
 }
