@@ -9,13 +9,14 @@
 //! # Layers
 //!
 //! A module imports only from modules before it in this list: `system`, `archive`, `linear`, `lcp`, `vectors`, `diagnostics`,
-//! `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `contact`, `prepare`, `dynamics`, `output`,
+//! `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `editor`, `contact`, `prepare`, `dynamics`, `output`,
 //! `cli`. The rooms of a layer (its sub-folders) import one way as well.
 //!
 //! # Packages
 //!
 //! All layers but `output` and `cli` are in packages of their own (`crates`), so that a change of a file compiles
-//! little anew: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks` and `stickslip_dynamics`. They stand
+//! little anew: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`, `stickslip_editor` and
+//! `stickslip_dynamics`. They stand
 //! here under the names of their modules.
 //!
 //! # Equations
@@ -81,6 +82,7 @@ pub mod cli;
 pub mod output;
 pub use stickslip_decks::{deck, flat_deck, reader};
 pub use stickslip_dynamics::{contact, dynamics, prepare};
+pub use stickslip_editor::editor;
 pub use stickslip_mechanics::{diagnostics, elements, materials, model, vectors};
 pub use stickslip_numerics::{archive, lcp, linear};
 pub use stickslip_system::system;

@@ -46,6 +46,10 @@ pub(super) enum Command {
     Flatten(FlattenArgs),
     /// Describe a result file
     Info(InfoArgs),
+    /// Serve an editor: diagnostics of decks while typing, completion, explanations, names (docs/editor.md)
+    ///
+    /// It speaks the Language Server Protocol on standard input and output.
+    Lsp(LspArgs),
     /// Solve a complementarity problem, such as one that a stopped run has left behind
     ///
     /// The file holds {"M": [[..]], "q": [..], "mu": number or list, "n_contacts": number}; the
@@ -314,6 +318,14 @@ pub(super) struct InfoArgs {
     /// The result file
     #[arg(value_name = "RESULT.vtkhdf")]
     pub result: PathBuf,
+}
+
+/// Arguments of `lsp`.
+#[derive(Debug, ClapArgs)]
+pub(super) struct LspArgs {
+    /// Standard input and output, which are always taken: many editors give this option
+    #[arg(long)]
+    pub stdio: bool,
 }
 
 /// Arguments of `lcp`.

@@ -1,4 +1,4 @@
-//! The subcommands `check`, `explain`, `flatten`, `info` and `lcp`, and the reading of a deck, which they
+//! The subcommands `check`, `explain`, `flatten`, `info`, `lsp` and `lcp`, and the reading of a deck, which they
 //! share with `run`.
 
 use std::fs;
@@ -6,13 +6,14 @@ use std::io::{self, ErrorKind};
 use std::path::Path;
 
 use super::args::{
-    CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs, VERSION,
+    CheckArgs, DeckArgs, ExplainArgs, FlattenArgs, Format, InfoArgs, LcpArgs, LspArgs, VERSION,
 };
 use super::error::{CliError, Exit};
 use super::terminal::{coloured, complain, print};
 use crate::deck::{Keyword, Status, find_keyword, find_word, keywords, not_regular, open_regular};
 use crate::diagnostics::{Code, Diagnostics, EarlierDeck, Severity, Sources, closest, wrapped};
 use crate::dynamics::{Observer, RunError, RunSummary};
+use crate::editor::{Program, serve};
 use crate::flat_deck::{difference, flat_deck};
 use crate::lcp::solve_json;
 use crate::output::{
@@ -244,6 +245,23 @@ pub(super) fn info(args: &InfoArgs) -> Result<Exit, CliError> {
     Ok(Exit::Finished)
 }
 
+/// Serves an editor until it ends.
+pub(super) fn lsp(_: &LspArgs) -> Result<Exit, CliError> {
+    let program = Program {
+        check: |path, sources| {
+            let mut d = Diagnostics::new();
+            prepared(path, sources, &mut d);
+            d
+        },
+        explain: explanation,
+        version: VERSION,
+    };
+    match serve(program).map_err(CliError::Editor)? {
+        true => Ok(Exit::Finished),
+        false => Ok(Exit::Stopped),
+    }
+}
+
 /// Solves a complementarity problem given as JSON and prints the answer as JSON.
 pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
     let text = open_regular(&args.problem).and_then(io::read_to_string);
@@ -329,16 +347,24 @@ impl Numerics {
     }
 }
 
-/// Reads and prepares a deck.
+/// Reads and prepares a deck; none where it has errors.
+fn prepared(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<PreparedModel> {
+    let model = reader::read_model(path, sources, d);
+    let model = model.and_then(|model| prepare(model, d))?;
+    match check_names(&model.model) {
+        Ok(()) => Some(model),
+        Err(error) => {
+            d.error_without_place(Code::BadName, error.to_string());
+            None
+        }
+    }
+}
+
+/// Reads a deck for the screen.
 fn read_deck(deck: &DeckArgs, earlier: Option<EarlierDeck>, colour: bool) -> Loaded {
     let mut sources = Sources::with_settings(&deck.settings, earlier);
     let mut d = Diagnostics::with_strictness(deck.strictness());
-    let model = reader::read_model(&deck.path, &mut sources, &mut d);
-    let mut model = model.and_then(|model| prepare(model, &mut d));
-    if let Some(Err(error)) = model.as_ref().map(|model| check_names(&model.model)) {
-        d.error_without_place(Code::BadName, error.to_string());
-        model = None;
-    }
+    let model = prepared(&deck.path, &mut sources, &mut d);
     let ours = d.without(Code::LongNumber);
     Loaded {
         model,

@@ -93,6 +93,9 @@ pub(super) enum CliError {
     /// Signals cannot be received.
     #[error("cannot receive signals: {0}")]
     Signals(io::Error),
+    /// The editor says what is not the protocol, or is gone.
+    #[error("the connection to the editor is broken: {0}")]
+    Editor(String),
     /// The result file cannot be read.
     #[error(transparent)]
     Summary(#[from] SummaryError),

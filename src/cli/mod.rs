@@ -39,6 +39,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
         Command::Check(args) => commands::check(args, &numerics),
         Command::Explain(args) => commands::explain(args),
         Command::Info(args) => commands::info(args),
+        Command::Lsp(args) => commands::lsp(args),
         Command::Lcp(args) => commands::lcp(args),
         Command::Package(command) => package::run(command),
         Command::Completion(args) => printed(&manual::completion(args.shell)),

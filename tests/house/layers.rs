@@ -7,7 +7,7 @@ use crate::sources::{parse_sources, read_sources, within_package};
 use std::collections::BTreeMap;
 
 /// The layers, lowest first.
-const LAYERS: [&str; 17] = [
+const LAYERS: [&str; 18] = [
     "system",
     "archive",
     "linear",
@@ -20,6 +20,7 @@ const LAYERS: [&str; 17] = [
     "deck",
     "reader",
     "flat_deck",
+    "editor",
     "contact",
     "prepare",
     "dynamics",

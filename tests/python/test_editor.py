@@ -1,8 +1,10 @@
-"""The grammar of decks and the problem matcher of editors."""
+"""The grammar of decks, the extension of VS Code and the problem matcher of editors."""
 
 import json
 import re
+import shutil
 import subprocess
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -103,3 +105,27 @@ def test_the_problem_matcher_reads_messages(tmp_path: Path) -> None:
         if (one := head.match(first)) and (two := place.match(second))
     ]
     assert ("error", "D103", str(deck), "3", "1") in found
+
+
+@pytest.mark.skipif(shutil.which("npm") is None, reason="npm is not there")
+def test_the_extension_is_built(tmp_path: Path) -> None:
+    source, folder = ROOT / "docs" / "editor", tmp_path / "editor"
+    shutil.copytree(source, folder, ignore=shutil.ignore_patterns("node_modules", "dist", "*.vsix"))
+    for words in (["ci", "--no-audit", "--no-fund"], ["run", "package"]):
+        done = subprocess.run(
+            ["npm", *words],
+            cwd=folder / "vscode",
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=900,
+        )
+        assert done.returncode == 0, done.stdout + done.stderr
+    with zipfile.ZipFile(folder / "vscode" / "stickslip.vsix") as package:
+        names = set(package.namelist())
+        manifest = json.loads(package.read("extension/package.json"))
+        [colours] = manifest["contributes"]["grammars"]
+        inside = f"extension/{colours['path'].removeprefix('./')}"
+        assert package.read(inside).decode() == grammar.GRAMMAR.read_text()
+        assert b"lsp" in package.read(f"extension/{manifest['main'].removeprefix('./')}")
+    assert "extension/language-configuration.json" in names

@@ -1,0 +1,393 @@
+//! The cards of a deck as they stand in its files, whether they are right or not: keyword lines with their pieces, data lines
+//! that hold words, and the part or instance that each belongs to.
+
+use super::document::{Document, Mark, Spot, as_line};
+use super::files::Files;
+use crate::deck::{
+    Data, Field, Keyword, LineKind, Name, Parameter, Quantity, Takes, Text, keyword_read_as,
+};
+use crate::diagnostics::{Span, whole_path};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Deepest nesting of included files, and most files of a deck.
+const MOST: (usize, usize) = (20, 1000);
+
+/// Where the names of a card belong.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) enum Scope {
+    /// The whole deck.
+    Deck,
+    /// The part with this key.
+    Part(Arc<str>),
+    /// The instance with this key.
+    Instance(Arc<str>),
+}
+
+/// A piece of a keyword line: `NAME` or `NAME=value`.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    /// The whole piece.
+    pub spot: Spot,
+    /// The parameter that is meant.
+    pub parameter: Option<&'static Parameter>,
+    /// The value and its place.
+    pub value: Option<(String, Spot)>,
+}
+
+/// A keyword line with the lines that continue it.
+#[derive(Debug, Clone)]
+pub(super) struct Head {
+    /// The keyword with its star.
+    pub spot: Spot,
+    /// The keyword that is meant.
+    pub keyword: Option<&'static Keyword>,
+    /// Its other pieces.
+    pub pieces: Vec<Piece>,
+    /// Last line.
+    pub last: usize,
+}
+
+impl Head {
+    /// The keyword line at a line of a document.
+    pub fn new(document: &Document, line: usize) -> Head {
+        let mut head = Head {
+            spot: Spot {
+                line,
+                start: 0,
+                end: 0,
+            },
+            keyword: None,
+            pieces: Vec::new(),
+            last: line,
+        };
+        loop {
+            let text = document.line(head.last);
+            let all = as_line(&text);
+            let mut fields = all.fields();
+            if head.last == line
+                && let Some(field) = fields.next()
+            {
+                head.spot = spot(line, field);
+                head.keyword = keyword_read_as(field.text.trim_start_matches('*').trim());
+            }
+            for field in fields.filter(|field| !field.is_empty()) {
+                head.pieces.push(Piece::new(head.keyword, field, head.last));
+            }
+            let next = all
+                .ends_with_comma()
+                .then(|| next_said(document, head.last));
+            match next.flatten() {
+                Some(next) if document.kind(next) == LineKind::Data => head.last = next,
+                _ => return head,
+            }
+        }
+    }
+
+    /// The value of a parameter, empty where it has none.
+    pub fn value(&self, name: &str) -> Option<&str> {
+        let piece = self.piece(name)?;
+        Some(piece.value.as_ref().map_or("", |(value, _)| value))
+    }
+
+    /// The piece of a parameter.
+    pub fn piece(&self, name: &str) -> Option<&Piece> {
+        let is_meant = |piece: &&Piece| piece.parameter.is_some_and(|p| p.name == name);
+        self.pieces.iter().find(is_meant)
+    }
+
+    /// Name of the keyword; empty where it is unknown.
+    pub fn name(&self) -> &'static str {
+        self.keyword.map_or("", |keyword| keyword.name)
+    }
+
+    /// What becomes of its data lines.
+    pub fn data(&self) -> Data {
+        self.keyword.map_or(Data::Skipped, |keyword| keyword.data)
+    }
+
+    /// The name that the card defines, and its parameter.
+    pub fn defined(&self) -> Option<&Piece> {
+        let (parameter, _) = self.keyword?.definition()?;
+        self.piece(parameter.name)
+    }
+}
+
+impl Piece {
+    fn new(keyword: Option<&Keyword>, field: Text, line: usize) -> Piece {
+        let (typed, value) = field.assignment();
+        Piece {
+            spot: spot(line, field),
+            parameter: keyword.and_then(|keyword| keyword.parameter_read_as(typed)),
+            value: value.map(|value| (value.text.to_owned(), spot(line, value))),
+        }
+    }
+}
+
+/// Characters of a text of a line.
+pub(super) fn spot(line: usize, text: Text) -> Spot {
+    let start = text.span.column as usize - 1;
+    Spot {
+        line,
+        start,
+        end: start + text.text.chars().count(),
+    }
+}
+
+/// The next line that is neither blank nor a comment.
+fn next_said(document: &Document, line: usize) -> Option<usize> {
+    let mut after = line + 1..document.line_count();
+    after.find(|&line| !matches!(document.kind(line), LineKind::Blank | LineKind::Comment))
+}
+
+/// A card.
+#[derive(Debug, Clone)]
+pub(super) struct Card {
+    /// Its file, by its number in the deck.
+    pub file: usize,
+    /// Its keyword line.
+    pub head: Head,
+    /// Where its names belong.
+    pub scope: Scope,
+    /// Its data lines that hold words, with their files.
+    pub rows: Vec<(usize, usize)>,
+    /// Line behind its last one in its file.
+    pub end: usize,
+}
+
+/// A file of a deck.
+#[derive(Debug, Clone)]
+pub(super) struct DeckFile {
+    /// Its whole path.
+    pub path: PathBuf,
+    /// What it was read as.
+    revision: u64,
+    /// The card that its first data lines belong to.
+    pub continues: Option<usize>,
+}
+
+/// An instance of a part.
+#[derive(Debug, Clone)]
+pub(super) struct Instance {
+    /// Its name.
+    pub name: Name,
+    /// Key of its part.
+    pub part: Arc<str>,
+}
+
+/// All cards of a deck, included files in their places.
+#[derive(Debug, Clone)]
+pub(super) struct Cards {
+    /// The main deck and the files that it includes.
+    pub files: Vec<DeckFile>,
+    /// The cards in order.
+    pub all: Vec<Card>,
+    /// Instances of parts.
+    pub instances: Vec<Instance>,
+    /// Files that could not be read.
+    missing: Vec<PathBuf>,
+    scope: Scope,
+}
+
+impl Cards {
+    /// The cards of the deck at a path.
+    pub fn new(root: &Path, files: &mut Files) -> Cards {
+        let mut cards = Cards {
+            files: Vec::new(),
+            all: Vec::new(),
+            instances: Vec::new(),
+            missing: Vec::new(),
+            scope: Scope::Deck,
+        };
+        cards.read(root, files, &mut Vec::new());
+        cards
+    }
+
+    /// Whether they are those of the files as they are.
+    pub fn are_of(&self, files: &Files) -> bool {
+        let is_same = |file: &DeckFile| {
+            let known = files.get(&file.path);
+            known.is_some_and(|known| known.revision == file.revision)
+        };
+        let is_missing = |path: &PathBuf| files.get(path).is_none() && !path.exists();
+        self.files.iter().all(is_same) && self.missing.iter().all(is_missing)
+    }
+
+    /// Number of a file in the deck.
+    pub fn file(&self, path: &Path) -> Option<usize> {
+        self.files.iter().position(|file| file.path == path)
+    }
+
+    /// The card that a line of a file belongs to.
+    pub fn at(&self, file: usize, line: usize) -> Option<&Card> {
+        let of_file = |card: &&Card| card.file == file && card.head.spot.line <= line;
+        let own = self.all.iter().rposition(|card| of_file(&card));
+        let continued = || self.files.get(file)?.continues;
+        let mut index = own.or_else(continued)?;
+        // data lines behind a file that is included belong to the card before
+        while let Some(card) = self.all.get(index)
+            && card.head.name() == "INCLUDE"
+            && (card.file != file || card.head.last < line)
+        {
+            index = index.checked_sub(1)?;
+        }
+        self.all.get(index)
+    }
+
+    /// Cards of a file, in order.
+    pub fn of_file(&self, file: usize) -> impl Iterator<Item = &Card> {
+        self.all.iter().filter(move |card| card.file == file)
+    }
+
+    /// Reads a file, seen from the folders of the main deck and of the files that include it.
+    fn read(&mut self, path: &Path, files: &mut Files, open: &mut Vec<PathBuf>) {
+        let whole = whole_path(path);
+        let is_open = open.iter().any(|open| whole_path(open) == whole);
+        if is_open || open.len() > MOST.0 || self.files.len() > MOST.1 {
+            return;
+        }
+        let Some(file) = files.load(&whole) else {
+            self.missing.push(whole);
+            return;
+        };
+        let number = self.files.len();
+        self.files.push(DeckFile {
+            path: whole,
+            revision: file.revision,
+            continues: self.owner(),
+        });
+        let document = &file.document;
+        let head = |(line, mark)| {
+            let head = (mark == Mark::Keyword).then(|| Head::new(document, line));
+            (line, head)
+        };
+        let marked: Vec<(usize, Option<Head>)> = document.marks().map(head).collect();
+        let count = document.line_count();
+        open.push(path.to_owned());
+        let (mut own, mut last) = (None, None);
+        for (line, head) in marked {
+            if let Some(head) = head {
+                last = Some(head.last);
+                self.end(own, line);
+                own = Some(self.all.len());
+                self.add(number, head, files, open);
+            } else if last.is_none_or(|last| line > last)
+                && let Some(owner) = self.owner()
+            {
+                self.all[owner].rows.push((number, line));
+            }
+        }
+        self.end(own, count);
+        open.pop();
+    }
+
+    fn end(&mut self, card: Option<usize>, line: usize) {
+        if let Some(card) = card.and_then(|card| self.all.get_mut(card)) {
+            card.end = line;
+        }
+    }
+
+    /// Adds a card, and the file that it names.
+    fn add(&mut self, file: usize, head: Head, files: &mut Files, open: &mut Vec<PathBuf>) {
+        let key = |name: &str| key(head.value(name).unwrap_or_default());
+        let outside = match head.name() {
+            "PART" => {
+                self.scope = Scope::Part(key("NAME"));
+                true
+            }
+            "INSTANCE" => {
+                self.scope = Scope::Instance(key("NAME"));
+                let typed = head.value("NAME").unwrap_or_default();
+                let name = Name {
+                    typed: typed.trim_matches('"').to_owned(),
+                    key: key("NAME").to_string(),
+                };
+                let part = key("PART");
+                self.instances.push(Instance { name, part });
+                true
+            }
+            "END PART" | "ASSEMBLY" | "END INSTANCE" | "END ASSEMBLY" | "STEP" => {
+                self.scope = Scope::Deck;
+                true
+            }
+            _ => false,
+        };
+        let scope = match outside {
+            true => Scope::Deck,
+            false => self.scope.clone(),
+        };
+        let included = included(&head).map(str::to_owned);
+        self.all.push(Card {
+            file,
+            head,
+            scope,
+            rows: Vec::new(),
+            end: 0,
+        });
+        let Some(included) = included else { return };
+        let folders = [open.last(), open.first()];
+        let paths = folders.map(|path| {
+            let folder = path.and_then(|path| path.parent()).unwrap_or(Path::new(""));
+            folder.join(&included)
+        });
+        let is_there = |path: &&PathBuf| files.get(&whole_path(path)).is_some() || path.exists();
+        let found = paths.iter().find(is_there).or(paths.first());
+        if let Some(path) = found.cloned() {
+            self.read(&path, files, open);
+        }
+    }
+
+    /// The card that data lines belong to now.
+    fn owner(&self) -> Option<usize> {
+        let is_owner = |card: &Card| card.head.name() != "INCLUDE";
+        self.all.iter().rposition(is_owner)
+    }
+}
+
+/// The path of the file that a keyword line names.
+pub(super) fn included(head: &Head) -> Option<&str> {
+    let mut pieces = head.pieces.iter();
+    pieces.find_map(|piece| match piece.parameter?.holds() {
+        Quantity::File => Some(piece.value.as_ref()?.0.trim_matches('"')),
+        _ => None,
+    })
+}
+
+/// The key by which a text is compared as a name.
+pub(super) fn key(text: &str) -> Arc<str> {
+    let span = Span::default();
+    Text { text, span }.name_key().into()
+}
+
+/// The fields of a data line of a card that may hold something known, by their places, with what they are.
+pub(super) fn fields_of<'t>(
+    card: &Card,
+    text: &'t str,
+    is_first: bool,
+) -> Vec<(Text<'t>, Option<Field>)> {
+    let fields: Vec<Text> = as_line(text).fields().collect();
+    let words: Vec<&str> = fields.iter().map(|field| field.text).collect();
+    let given = |name: &str| given(&card.head, name);
+    let mut forms = card.head.data().forms().iter();
+    let form = forms.find(|form| form.fits(&words, is_first, given));
+    let with_form = fields.into_iter().enumerate();
+    with_form
+        .map(|(index, field)| (field, form.and_then(|form| form.field(index))))
+        .collect()
+}
+
+/// The word that a parameter of a keyword line has as its value, empty where it has none.
+pub(super) fn given<'h>(head: &'h Head, name: &str) -> Option<&'h str> {
+    let piece = head.piece(name)?;
+    let value = piece.value.as_ref().map_or("", |(value, _)| value);
+    match piece.parameter?.takes {
+        Takes::Choice(_) | Takes::OptionalChoice(_) => piece.parameter?.value_read_as(value),
+        Takes::Nothing | Takes::Value | Takes::Optional => Some(value),
+    }
+}
+
+/// Whether a line is the first data line of a card.
+pub(super) fn is_first_row(document: &Document, card: &Card, line: usize) -> bool {
+    let may_matter = card.head.data().forms().iter().any(|form| form.first);
+    may_matter && next_said(document, card.head.last) == Some(line)
+}

@@ -1,0 +1,205 @@
+//! Diagnostics of decks as `stickslip check` finds them, in a thread of their own: the texts of the editor stand for files
+//! that are not saved, and a check that nobody waits for any longer ends early.
+
+use super::document::position;
+use super::files::path_of;
+use crate::diagnostics::{
+    Diagnostic as Finding, Diagnostics, Interrupt, Severity, Sources, Span, whole_path,
+};
+use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
+use lsp_types::{
+    Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range,
+    Url,
+};
+use ropey::Rope;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::thread;
+
+/// Reads a deck and adds what `check` says about it.
+pub type Check = fn(&Path, &mut Sources) -> Diagnostics;
+
+/// Most diagnostics of a file that the editor gets.
+const MOST: usize = 1000;
+
+/// A deck that is to be checked.
+pub(super) struct Job {
+    /// Its main file.
+    pub root: PathBuf,
+    /// Texts of the editor by the whole paths of their files.
+    pub unsaved: BTreeMap<PathBuf, Rope>,
+    /// What the editor calls these files.
+    pub addresses: BTreeMap<PathBuf, Url>,
+    /// Ends the check.
+    pub interrupt: Interrupt,
+}
+
+/// What a check has found.
+pub(super) struct Outcome {
+    /// Main file of the deck.
+    pub root: PathBuf,
+    /// Diagnostics by file; every file of the deck has an entry. None where the check was ended early.
+    pub found: Option<BTreeMap<PathBuf, Vec<Diagnostic>>>,
+}
+
+/// What a quick fix has to know of a diagnostic.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Fix {
+    /// What the text of its range was.
+    pub found: String,
+    /// What was probably meant.
+    pub meant: String,
+}
+
+/// A thread that checks one deck after the other.
+pub(super) fn start(check: Check) -> (Sender<Job>, Receiver<Outcome>) {
+    let (to_do, jobs) = bounded::<Job>(1);
+    let (done, outcomes) = unbounded();
+    thread::spawn(move || {
+        for job in jobs {
+            let (root, interrupt) = (job.root.clone(), job.interrupt.clone());
+            let found = catch_unwind(AssertUnwindSafe(|| run(check, job)));
+            let found = match found {
+                Ok(found) => found,
+                Err(_) if interrupt.is_asked() => None,
+                Err(_) => Some(BTreeMap::from([(root.clone(), vec![broken()])])),
+            };
+            if done.send(Outcome { root, found }).is_err() {
+                return;
+            }
+        }
+    });
+    (to_do, outcomes)
+}
+
+/// What the editor is told of a check that has a fault itself.
+fn broken() -> Diagnostic {
+    let message = "stickslip has a fault: this deck could not be checked".to_owned();
+    Diagnostic {
+        source: Some("stickslip".to_owned()),
+        ..Diagnostic::new_simple(Range::default(), message)
+    }
+}
+
+fn run(check: Check, job: Job) -> Option<BTreeMap<PathBuf, Vec<Diagnostic>>> {
+    let texts = job.unsaved.into_iter();
+    let texts = texts.map(|(path, rope)| (path, rope.to_string())).collect();
+    let mut sources = Sources::with_unsaved(texts, job.interrupt.clone());
+    let d = check(&job.root, &mut sources);
+    if job.interrupt.is_asked() {
+        return None;
+    }
+    let texts = Texts {
+        sources: &sources,
+        addresses: &job.addresses,
+    };
+    let mut found: BTreeMap<PathBuf, Vec<Diagnostic>> = BTreeMap::new();
+    found.insert(job.root.clone(), Vec::new());
+    for source in sources.files() {
+        found
+            .entry(whole_path(Path::new(source.name())))
+            .or_default();
+    }
+    for item in d.sorted() {
+        let file = item.span.and_then(|span| sources.get(span.file));
+        let path = file.map_or(job.root.clone(), |file| whole_path(Path::new(file.name())));
+        found.entry(path).or_default().push(texts.diagnostic(item));
+    }
+    found.values_mut().for_each(shorten);
+    Some(found)
+}
+
+/// Cuts a list that is too long for an editor, and says so.
+fn shorten(all: &mut Vec<Diagnostic>) {
+    let more = all.len().saturating_sub(MOST);
+    all.truncate(MOST);
+    if more > 0
+        && let Some(last) = all.last_mut()
+    {
+        last.message += &format!("\n{more} more of this file are not shown");
+    }
+}
+
+/// The texts that diagnostics are about.
+struct Texts<'s> {
+    sources: &'s Sources,
+    addresses: &'s BTreeMap<PathBuf, Url>,
+}
+
+impl Texts<'_> {
+    fn diagnostic(&self, item: &Finding) -> Diagnostic {
+        let parts = [item.label.as_ref(), item.help.as_ref()];
+        let parts = [Some(&item.message)].into_iter().chain(parts).flatten();
+        let message = parts.map(String::as_str).collect::<Vec<_>>().join("\n");
+        let span = item.span.map(|span| self.sources.typed(span));
+        let fix = span.zip(item.suggestion.clone()).map(|(span, meant)| Fix {
+            found: self.text(span),
+            meant,
+        });
+        Diagnostic {
+            range: span.map(|span| self.range(span)).unwrap_or_default(),
+            severity: Some(match item.severity {
+                Severity::Error => DiagnosticSeverity::ERROR,
+                Severity::Warning => DiagnosticSeverity::WARNING,
+                Severity::Note => DiagnosticSeverity::INFORMATION,
+            }),
+            code: Some(NumberOrString::String(item.code.id().to_owned())),
+            source: Some("stickslip".to_owned()),
+            message,
+            related_information: Some(self.related(item)).filter(|all| !all.is_empty()),
+            data: fix.and_then(|fix| serde_json::to_value(fix).ok()),
+            ..Diagnostic::default()
+        }
+    }
+
+    /// Where the file is included and the instance is placed, and the other card.
+    fn related(&self, item: &Finding) -> Vec<DiagnosticRelatedInformation> {
+        let chain = item.span.map(|span| self.sources.include_chain(span));
+        let chain = chain.into_iter().flatten();
+        let included = chain.map(|span| ("included here".to_owned(), span));
+        let instance = item.span.and_then(|span| self.sources.instance_of(span));
+        let instance = instance.map(|(name, span)| (format!("in the instance {name}"), span));
+        let all = included.chain(instance).chain(item.other.clone());
+        all.filter_map(|(message, span)| {
+            let location = self.location(span)?;
+            Some(DiagnosticRelatedInformation { location, message })
+        })
+        .collect()
+    }
+
+    fn location(&self, span: Span) -> Option<Location> {
+        let path = whole_path(Path::new(self.sources.get(span.file)?.name()));
+        let open = self.addresses.get(&path).cloned();
+        let uri = open.or_else(|| Url::from_file_path(&path).ok())?;
+        let range = self.range(span);
+        Some(Location { uri, range })
+    }
+
+    fn line(&self, span: Span) -> &str {
+        let source = self.sources.get(span.file);
+        source
+            .and_then(|source| source.line(span.line))
+            .unwrap_or("")
+    }
+
+    fn range(&self, span: Span) -> Range {
+        let (text, line) = (self.line(span), span.line as usize - 1);
+        let start = span.column as usize - 1;
+        let [start, end] = [start, start + span.length as usize];
+        let [start, end] = [start, end].map(|column| position(text, line, column));
+        Range { start, end }
+    }
+
+    fn text(&self, span: Span) -> String {
+        let characters = self.line(span).chars();
+        let skipped = characters.skip(span.column as usize - 1);
+        skipped.take(span.length as usize).collect()
+    }
+}
+
+/// The path of a file by what the editor calls it, for the diagnostics of a deck.
+pub(super) fn addresses<'u>(open: impl Iterator<Item = &'u Url>) -> BTreeMap<PathBuf, Url> {
+    open.map(|uri| (path_of(uri), uri.clone())).collect()
+}

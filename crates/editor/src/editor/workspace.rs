@@ -1,0 +1,131 @@
+//! The decks of the editor: which file belongs to which deck, and what each deck holds.
+
+use super::cards::Cards;
+use super::document::{Document, Spot};
+use super::files::{Files, neighbours};
+use super::symbols::{Occurrence, Symbols};
+use lsp_types::{Location, Position, Url};
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Deepest chain of files that include each other.
+const DEEPEST: usize = 20;
+
+/// What a deck holds.
+#[derive(Debug)]
+pub(super) struct View {
+    /// Its cards.
+    pub cards: Cards,
+    /// Its names.
+    pub symbols: Symbols,
+}
+
+/// All files and decks.
+#[derive(Debug, Default)]
+pub(super) struct Workspace {
+    /// The files.
+    pub files: Files,
+    views: HashMap<PathBuf, Arc<View>>,
+    /// Decks of the disk that include an open file.
+    parents: BTreeSet<PathBuf>,
+}
+
+/// A character of a file of a deck.
+#[derive(Debug)]
+pub(super) struct Place {
+    /// The deck.
+    pub view: Arc<View>,
+    /// Number of the file in it.
+    pub file: usize,
+    /// Line, from 0.
+    pub line: usize,
+    /// Character of the line, from 0.
+    pub column: usize,
+}
+
+impl Place {
+    /// The name that stands there.
+    pub fn occurrence(&self) -> Option<&Occurrence> {
+        self.view.symbols.at(self.file, self.line, self.column)
+    }
+}
+
+impl Workspace {
+    /// Takes a file that the editor has opened, and looks for a deck that includes it.
+    pub fn open(&mut self, uri: &Url, text: &str) -> PathBuf {
+        let path = self.files.open(uri, text);
+        if self.root_of(&path) == path {
+            for deck in neighbours(&path) {
+                if self.view(&deck).cards.file(&path).is_some() {
+                    self.parents.insert(deck);
+                    break;
+                }
+            }
+        }
+        path
+    }
+
+    /// Gives a file back to the disk.
+    pub fn close(&mut self, path: &Path) {
+        self.files.close(path);
+        self.views.remove(path);
+    }
+
+    /// What the deck with this main file holds.
+    pub fn view(&mut self, root: &Path) -> Arc<View> {
+        let known = self.views.get(root);
+        if let Some(view) = known.filter(|view| view.cards.are_of(&self.files)) {
+            return Arc::clone(view);
+        }
+        let cards = Cards::new(root, &mut self.files);
+        let symbols = Symbols::new(&cards, &self.files);
+        let view = Arc::new(View { cards, symbols });
+        self.views.insert(root.to_owned(), Arc::clone(&view));
+        view
+    }
+
+    /// The main file of the deck that a file belongs to: itself where no deck includes it.
+    pub fn root_of(&mut self, path: &Path) -> PathBuf {
+        let mut root = path.to_owned();
+        for _ in 0..DEEPEST {
+            let known = self.files.open_paths().into_iter();
+            let mut known = known.chain(self.parents.iter().cloned().collect::<Vec<_>>());
+            let includes =
+                |deck: &PathBuf| *deck != root && self.view(deck).cards.file(&root).is_some();
+            match known.find(includes) {
+                Some(deck) => root = deck,
+                None => break,
+            }
+        }
+        root
+    }
+
+    /// A position of a file.
+    pub fn place(&mut self, path: &Path, position: Position) -> Option<Place> {
+        let root = self.root_of(path);
+        let view = self.view(&root);
+        let file = view.cards.file(path)?;
+        let document = &self.files.get(path)?.document;
+        Some(Place {
+            file,
+            line: position.line as usize,
+            column: document.column(position),
+            view,
+        })
+    }
+
+    /// The document of a file of a deck.
+    pub fn document(&self, view: &View, file: usize) -> Option<&Document> {
+        let path = &view.cards.files.get(file)?.path;
+        Some(&self.files.get(path)?.document)
+    }
+
+    /// Characters of a file of a deck, as the editor calls them.
+    pub fn location(&self, view: &View, file: usize, spot: Spot) -> Option<Location> {
+        let path = &view.cards.files.get(file)?.path;
+        let uri = self.files.uri(path)?;
+        let range = self.files.get(path)?.document.range(spot);
+        Some(Location { uri, range })
+    }
+}
