@@ -98,15 +98,17 @@ class Editor:
             "position": self.at(marked, occurrence),
         }
 
-    def replace(self, old: str, new: str) -> None:
-        """Replaces a text, as typing does."""
+    def replace(self, old: str, new: str) -> float:
+        """Replaces a text, as typing does; the time of the keystroke."""
         start = self.at(f"|{old}")
         end = self.at(f"{old}|")
         self.text = self.text.replace(old, new, 1)
-        change = types.TextDocumentContentChangePartial(types.Range(start, end), new)
-        self._send(change)
+        begin = time.perf_counter()
+        self.send(types.TextDocumentContentChangePartial(types.Range(start, end), new))
+        return begin
 
-    def _send(self, *changes: types.TextDocumentContentChangeEvent) -> None:
+    def send(self, *changes: types.TextDocumentContentChangeEvent) -> None:
+        """Tells the server of changes."""
         self.version += 1
         identifier = types.VersionedTextDocumentIdentifier(self.version, self.uri)
         self.client.text_document_did_change(
@@ -131,15 +133,13 @@ class Editor:
         found = await self.client.text_document_completion_async(
             types.CompletionParams(**self.place(marked))
         )
-        assert isinstance(found, types.CompletionList) or isinstance(found, list)
+        assert isinstance(found, (types.CompletionList, list))
         items = found if isinstance(found, list) else found.items
         return {item.label: item.text_edit.new_text for item in items if item.text_edit}
 
     async def hover(self, marked: str) -> str:
         """What is said at a position."""
-        found = await self.client.text_document_hover_async(
-            types.HoverParams(**self.place(marked))
-        )
+        found = await self.client.text_document_hover_async(types.HoverParams(**self.place(marked)))
         return found.contents.value if found else ""
 
     async def definition(self, marked: str) -> list[tuple[str, int, str]]:
@@ -163,7 +163,11 @@ class Editor:
         path = Path(location.uri.removeprefix("file://"))
         text = self.text if path == self.path else path.read_text()
         start, end = location.range.start, location.range.end
-        return path.name, start.line + 1, text.split("\n")[start.line][start.character : end.character]
+        return (
+            path.name,
+            start.line + 1,
+            text.split("\n")[start.line][start.character : end.character],
+        )
 
     async def rename(self, marked: str, new: str) -> dict[str, str]:
         """Texts of the files after a change of a name."""
@@ -442,45 +446,54 @@ async def test_answers_after_a_keystroke_are_quick(
     editor = Editor(client, tmp_path / "mesh.inp", mesh(nodes))
     clean = await editor.until(lambda _: True, 300.0)
     assert not [one for one in clean if one.severity == types.DiagnosticSeverity.Error]
-    worst = 0.0
-    # one keystroke in the middle of the nodes, one in a name; while the deck is being checked
-    for old, new in [("*NSET, NSET=NFIX", "*NSET, NSET=NFIXA"), ("NFIX, 1, 2", "NFIXA, 1, 2")]:
-        position = editor.at(f"|{old}")
-        end = types.Position(position.line, position.character + len(old))
-        editor.text = editor.text.replace(old, new, 1)
-        begin = time.perf_counter()
-        editor._send(types.TextDocumentContentChangePartial(types.Range(position, end), new))
-        at = types.TextDocumentPositionParams(
-            types.TextDocumentIdentifier(editor.uri), types.Position(position.line, 13)
+    slowest = {"hover": 0.0, "completion": 0.0, "outline": 0.0}
+    # keystrokes in a name that is defined before the nodes and used behind them, and among the nodes
+    for old, new in [
+        ("NSET=NALL", "NSET=NALLA"),
+        (f"\n{nodes // 3}, ", f"\nA{nodes // 3}, "),
+        ("NFIX, 1, 2", "NFIXA, 1, 2"),
+    ]:
+        line = editor.at("MATERIAL=|STEEL")
+        at = {"text_document": types.TextDocumentIdentifier(editor.uri), "position": line}
+        begin = editor.replace(old, new)
+        assert await client.text_document_hover_async(types.HoverParams(**at))
+        hovered = time.perf_counter()
+        assert await client.text_document_completion_async(types.CompletionParams(**at))
+        completed = time.perf_counter()
+        assert await client.text_document_document_symbol_async(
+            types.DocumentSymbolParams(at["text_document"])
         )
-        await client.text_document_hover_async(
-            types.HoverParams(text_document=at.text_document, position=at.position)
-        )
-        worst = max(worst, time.perf_counter() - begin)
-        begin = time.perf_counter()
-        names = await client.text_document_completion_async(
-            types.CompletionParams(text_document=at.text_document, position=at.position)
-        )
-        worst = max(worst, time.perf_counter() - begin)
-        begin = time.perf_counter()
-        entries = await client.text_document_document_symbol_async(
-            types.DocumentSymbolParams(at.text_document)
-        )
-        worst = max(worst, time.perf_counter() - begin)
-        assert names is not None and entries
-    print(f"{nodes} nodes: slowest answer after a keystroke {1e3 * worst:.0f} ms")
-    assert worst < 0.2
-    begin = time.perf_counter()
-    editor.replace("NFIXA, 1, 2", "NFIXB, 1, 2")
-    await editor.until(lambda found: any(one.severity == 1 for one in found), 300.0)
-    print(f"{nodes} nodes: diagnostics after {time.perf_counter() - begin:.2f} s")
+        outlined = time.perf_counter()
+        times = (hovered - begin, completed - hovered, outlined - completed)
+        for what, seconds in zip(slowest, times, strict=True):
+            slowest[what] = max(slowest[what], seconds)
+    told = ", ".join(f"{what} {1e3 * seconds:.0f} ms" for what, seconds in slowest.items())
+    print(f"{nodes} nodes: slowest answers after a keystroke: {told}")
+    assert max(slowest.values()) < 0.2
+    # the check that runs after a keystroke ends at the next one
+    await asyncio.sleep(1.0)
+    begin = editor.replace("NFIXA, 1, 2", "NFIXB, 1, 2")
+    await editor.until(lambda found: any("NFIXB" in one.message for one in found), 300.0)
+    print(f"{nodes} nodes: all diagnostics after {time.perf_counter() - begin:.2f} s")
 
 
 @pytest.mark.asyncio
 async def test_random_edits_end_nothing(client: LanguageClient, tmp_path: Path) -> None:
     rng = random.Random(3)
     editor = Editor(client, tmp_path / "random.inp", ASSEMBLY)
-    pieces = ["*", ",", "=", '"', "<", ".", "\n", "ä😀", "*NSET, NSET=A\n", "*INCLUDE, INPUT=", "1, 2\n"]
+    pieces = [
+        "*",
+        ",",
+        "=",
+        '"',
+        "<",
+        ".",
+        "\n",
+        "ä😀",
+        "*NSET, NSET=A\n",
+        "*INCLUDE, INPUT=",
+        "1, 2\n",
+    ]
     for _ in range(150):
         lines = editor.text.split("\n")
         line = rng.randrange(len(lines))
@@ -490,7 +503,7 @@ async def test_random_edits_end_nothing(client: LanguageClient, tmp_path: Path) 
         change = types.Range(*(types.Position(line, units(lines[line], at)) for at in (start, end)))
         lines[line] = lines[line][:start] + text + lines[line][end:]
         editor.text = "\n".join(lines)
-        editor._send(types.TextDocumentContentChangePartial(change, text))
+        editor.send(types.TextDocumentContentChangePartial(change, text))
         at = {
             "text_document": types.TextDocumentIdentifier(editor.uri),
             "position": types.Position(line, rng.randrange(20)),
@@ -502,7 +515,9 @@ async def test_random_edits_end_nothing(client: LanguageClient, tmp_path: Path) 
     path = tmp_path / "saved.inp"
     path.write_text(editor.text)
     wanted = [one[:4] for one in checked(path)]
-    await editor.until(lambda found: [one[:3] for one in told(found)] == [one[:3] for one in wanted])
+    await editor.until(
+        lambda found: [one[:3] for one in told(found)] == [one[:3] for one in wanted]
+    )
 
 
 def units(line: str, at: int) -> int:
@@ -511,5 +526,7 @@ def units(line: str, at: int) -> int:
 
 
 def test_an_end_of_input_ends_the_server() -> None:
-    done = subprocess.run([str(program.binary()), "lsp"], input=b"", capture_output=True, timeout=20)
+    done = subprocess.run(
+        [str(program.binary()), "lsp"], input=b"", capture_output=True, timeout=20
+    )
     assert done.returncode == 1 and not done.stdout

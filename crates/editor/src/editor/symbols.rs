@@ -183,16 +183,23 @@ impl Collector<'_> {
             let place = spot(line, field);
             if field.text.contains('<') {
                 self.parameters_in(file, place, field.text);
-            } else if let Some(kind) = known.and_then(|known| known.holds.kind())
-                && !field.is_empty()
-            {
-                self.uses.push(Use {
-                    file,
-                    spot: place,
-                    typed: field.text.to_owned(),
-                    what: What::Thing(kind),
-                    scope: scope.clone(),
-                });
+                continue;
+            }
+            let kind = known.and_then(|known| known.holds.kind());
+            let one = Use {
+                file,
+                spot: place,
+                typed: field.text.to_owned(),
+                what: What::Thing(kind.unwrap_or(Kind::Instance)),
+                scope: scope.clone(),
+            };
+            // a number may have the name of its instance before it
+            let is_use = match kind {
+                Some(_) => !field.is_empty(),
+                None => is_numbered(field.text) && !self.split(&one).is_empty(),
+            };
+            if is_use {
+                self.uses.push(one);
             }
         }
     }
@@ -442,6 +449,13 @@ fn key_of(what: What, text: &str) -> Arc<str> {
         What::Thing(_) => key(text),
         What::Parameter => text.into(),
     }
+}
+
+/// Whether a text ends with a dot and a number.
+fn is_numbered(text: &str) -> bool {
+    let parts = text.rsplit_once('.');
+    let is_digits = |number: &str| number.bytes().all(|byte| byte.is_ascii_digit());
+    parts.is_some_and(|(_, number)| !number.is_empty() && is_digits(number))
 }
 
 fn is_number(text: &str) -> bool {
