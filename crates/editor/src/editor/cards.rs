@@ -347,7 +347,7 @@ impl Cards {
 /// The path of the file that a keyword line names.
 pub(super) fn included(head: &Head) -> Option<&str> {
     let mut pieces = head.pieces.iter();
-    pieces.find_map(|piece| match piece.parameter?.holds() {
+    pieces.find_map(|piece| match piece.parameter?.holds {
         Quantity::File => Some(piece.value.as_ref()?.0.trim_matches('"')),
         _ => None,
     })

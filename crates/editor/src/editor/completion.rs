@@ -104,7 +104,7 @@ fn choices<'t>(
             let parameter = keyword.and_then(|keyword| keyword.parameter_read_as(name));
             let value = value.trim_start();
             let values = parameter.map(|one| values(workspace, place, card, one, value));
-            let typed = match parameter.map(Parameter::holds) {
+            let typed = match parameter.map(|one| one.holds) {
                 Some(Quantity::File) => value.rsplit('/').next().unwrap_or(value),
                 _ => value,
             };
@@ -188,7 +188,7 @@ fn values(
     let mut all: Vec<Choice> = read
         .map(|value| Choice::new(value.name, CompletionItemKind::ENUM_MEMBER, value.text))
         .collect();
-    match parameter.holds() {
+    match parameter.holds {
         Quantity::Name(kind)
         | Quantity::OrName(_, kind)
         | Quantity::New(kind @ (Kind::NodeSet | Kind::ElementSet)) => {

@@ -85,7 +85,7 @@ impl Files {
     }
 
     /// The document of an open file, which is about to change.
-    pub fn to_change(&mut self, path: &Path) -> Option<&mut Document> {
+    pub fn changing(&mut self, path: &Path) -> Option<&mut Document> {
         let file = self.all.get_mut(path).filter(|file| file.open.is_some())?;
         self.changes += 1;
         file.revision = self.changes;

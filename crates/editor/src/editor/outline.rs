@@ -83,7 +83,7 @@ fn close(open: &mut Vec<Open>, end: Option<Position>) {
 fn entry(card: &Card, document: &Document) -> DocumentSymbol {
     let head = &card.head;
     let last = card.end.max(head.last + 1) - 1;
-    let start = document.position(head.spot.line, 0);
+    let start = Position::new(head.spot.line as u32, 0);
     let end = document.position(last, usize::MAX);
     let typed = document.line(head.spot.line);
     let keyword = typed.chars().take(head.spot.end).collect::<String>();

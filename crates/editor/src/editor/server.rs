@@ -269,7 +269,7 @@ impl Server {
             notification::DidChangeTextDocument::METHOD => {
                 if let Some(params) = params::<notification::DidChangeTextDocument>(one) {
                     let path = path_of(&params.text_document.uri);
-                    if let Some(document) = self.workspace.files.to_change(&path) {
+                    if let Some(document) = self.workspace.files.changing(&path) {
                         for change in params.content_changes {
                             document.change(change.range, &change.text);
                         }

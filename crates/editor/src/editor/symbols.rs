@@ -151,7 +151,7 @@ impl Collector<'_> {
             if text.contains('<') || parameter.status == Status::Refused {
                 continue;
             }
-            match parameter.holds() {
+            match parameter.holds {
                 Quantity::New(kind) => self.define(What::Thing(kind), card, *place, text),
                 Quantity::Name(kind) | Quantity::OrName(_, kind) => self.uses.push(Use {
                     file: card.file,

@@ -189,7 +189,7 @@ proptest! {
         let mut workspace = Workspace::default();
         let path = workspace.open(&uri, SEEDS[seed]);
         for (line, start, lines, end, text) in changes {
-            let document = workspace.files.to_change(&path).expect("an open file");
+            let document = workspace.files.changing(&path).expect("an open file");
             let count = document.line_count();
             let line = line.index(count) as u32;
             let range = Range {

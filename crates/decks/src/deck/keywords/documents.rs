@@ -310,7 +310,7 @@ pub(super) fn written(parameter: &Parameter) -> String {
 
 /// What a parameter means, with its dimension.
 pub(super) fn meaning(parameter: &Parameter) -> String {
-    match parameter.holds().dimension() {
+    match parameter.holds.dimension() {
         Some(dimension) => format!("{} ({dimension})", parameter.text),
         None => parameter.text.to_string(),
     }
@@ -360,7 +360,7 @@ fn entry(keyword: &Keyword) -> Option<String> {
     let taken = |status: Status| status != Status::Refused;
     let parameters = keyword.parameters.iter().filter(|p| taken(p.status));
     let measure = |parameter: &Parameter| match parameter.values() {
-        [] => quantity(parameter.holds()),
+        [] => quantity(parameter.holds),
         values => {
             let taken = values.iter().filter(|value| taken(value.status));
             taken.map(|value| value.name).collect()

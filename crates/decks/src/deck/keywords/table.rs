@@ -30,7 +30,8 @@
 use std::collections::HashMap;
 
 use super::types::{
-    Data, DataLineForm, Keyword, Level, Levels, Parameter, Scope, Status, Takes, Value,
+    Data, DataLineForm, Field, Keyword, Level, Levels, Parameter, Quantity, Scope, Status, Takes,
+    Value,
 };
 
 /// The keywords of a text, in its order.
@@ -171,12 +172,12 @@ fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter]
         }
         let (head, text) = line.split_once(": ").unwrap_or((line, ""));
         let (head, status) = with_status(head);
-        let (head, measures) = match head
+        let (head, holds) = match head
             .strip_suffix(']')
             .and_then(|head| head.split_once(" ["))
         {
-            Some(measured) => measured,
-            None => (head, ""),
+            Some((head, quantity)) => (head, Quantity::written(quantity)),
+            None => (head, Quantity::Plain),
         };
         let words = lines
             .iter()
@@ -207,7 +208,7 @@ fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter]
             name,
             other,
             takes,
-            measures,
+            holds,
             status,
             text,
         });
@@ -229,7 +230,11 @@ fn form(line: &'static str) -> DataLineForm {
         parameter: None,
         word: None,
         first: false,
-        fields,
+        fields: fields
+            .split(", ")
+            .map(Field::written)
+            .collect::<Vec<_>>()
+            .leak(),
         repeating: 0,
     };
     for condition in conditions.split(" | ") {

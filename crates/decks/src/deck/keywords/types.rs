@@ -240,7 +240,10 @@ impl Keyword {
     /// The parameter that a typed word is read as: its name or a beginning of it.
     pub fn parameter_read_as(&self, typed: &str) -> Option<&'static Parameter> {
         match find_known(typed, self.parameter_names()) {
-            Match::Exact(name) | Match::Abbreviation(name) => self.parameter(name),
+            Match::Exact(name) | Match::Abbreviation(name) => {
+                let is_meant = |p: &&Parameter| [p.name, p.other].contains(&name);
+                self.parameters.iter().find(is_meant)
+            }
             Match::Unknown(_) => None,
         }
     }
@@ -248,7 +251,7 @@ impl Keyword {
     /// Kind of the thing that a card of this keyword defines or adds to, and the parameter with its name.
     pub fn definition(&self) -> Option<(&'static Parameter, Kind)> {
         let mut parameters = self.parameters.iter();
-        parameters.find_map(|parameter| match parameter.holds() {
+        parameters.find_map(|parameter| match parameter.holds {
             Quantity::New(kind) => Some((parameter, kind)),
             _ => None,
         })
@@ -310,8 +313,8 @@ pub struct Parameter {
     pub other: &'static str,
     /// Its values.
     pub takes: Takes,
-    /// What a value measures, written as for fields; empty where it measures nothing.
-    pub measures: &'static str,
+    /// What a value holds.
+    pub holds: Quantity,
     /// What the program does with it.
     pub status: Status,
     /// One sentence.
@@ -319,14 +322,6 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// What a value holds.
-    pub fn holds(&self) -> Quantity {
-        match self.measures {
-            "" => Quantity::Plain,
-            written => Quantity::written(written),
-        }
-    }
-
     /// The words this parameter can take; empty if it takes anything.
     pub fn values(&self) -> &'static [Value] {
         match self.takes {
@@ -368,7 +363,7 @@ pub enum Quantity {
 impl Quantity {
     /// The quantity that the table writes as `length`, `length = 1` with its default, `length or node set`,
     /// `node set`, `new node set`, `file`, or `?`.
-    fn written(text: &'static str) -> Quantity {
+    pub(super) fn written(text: &'static str) -> Quantity {
         if text == "?" {
             Quantity::Unknown
         } else if text == "file" {
@@ -416,6 +411,24 @@ pub struct Field {
     pub holds: Quantity,
 }
 
+impl Field {
+    /// The field that the table writes as `node` or `x [length]`.
+    pub(super) fn written(text: &'static str) -> Field {
+        let measured = text.strip_suffix(']');
+        let (name, holds) = match measured {
+            Some(text) => {
+                let (name, quantity) = text.split_once(" [").unwrap_or((text, "?"));
+                (name, Quantity::written(quantity))
+            }
+            None => {
+                let kind = Kind::at_end_of(text);
+                (text, kind.map_or(Quantity::Plain, Quantity::Name))
+            }
+        };
+        Field { name, holds }
+    }
+}
+
 /// The fields of a kind of data line; the conditions say which lines are of this kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataLineForm {
@@ -426,8 +439,8 @@ pub struct DataLineForm {
     pub word: Option<(usize, &'static [&'static str])>,
     /// Whether it is the first data line only.
     pub first: bool,
-    /// The fields between commas, with what a number measures in brackets: `node, x [length]`.
-    pub fields: &'static str,
+    /// The fields between commas.
+    pub fields: &'static [Field],
     /// Number of the last fields that repeat along the line.
     pub repeating: usize,
 }
@@ -435,31 +448,18 @@ pub struct DataLineForm {
 impl DataLineForm {
     /// The fields.
     pub fn fields(&self) -> impl Iterator<Item = Field> {
-        self.fields
-            .split(", ")
-            .map(|text| match text.strip_suffix(']') {
-                Some(text) => {
-                    let (name, quantity) = text.split_once(" [").unwrap_or((text, "?"));
-                    let holds = Quantity::written(quantity);
-                    Field { name, holds }
-                }
-                None => Field {
-                    name: text,
-                    holds: Kind::at_end_of(text).map_or(Quantity::Plain, Quantity::Name),
-                },
-            })
+        self.fields.iter().copied()
     }
 
     /// Field `index` of a line, from 0.
     pub fn field(&self, index: usize) -> Option<Field> {
-        let count = self.fields().count();
-        let once = count.saturating_sub(self.repeating);
+        let once = self.fields.len().saturating_sub(self.repeating);
         let index = match self.repeating {
             0 => index,
             _ if index < once => index,
             repeating => once + (index - once) % repeating,
         };
-        self.fields().nth(index)
+        self.fields.get(index).copied()
     }
 
     /// Whether a line is of this kind: the words of its fields, whether it is the first of its card, and the word that a
