@@ -3,7 +3,7 @@
 //!
 //! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in
 //! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`],
-//! node-to-segment [`contact`] posed as a linear complementarity problem ([`lcp`]) at every pass, and
+//! node to surface or surface to surface [`contact`] posed as a linear complementarity problem ([`lcp`]) at every pass, and
 //! sparse factorisations ([`linear`]); [`output`] observes the run and writes the result file.
 //!
 //! # Layers

@@ -394,7 +394,7 @@ fn read_open(at: &Group) -> hdf5::Result<Vec<String>> {
 fn read_contacts(at: &Group) -> hdf5::Result<Vec<(String, f64)>> {
     let read = |name: String| {
         let normal: Vec<f64> = column(at, &format!("{name}/normal"))?;
-        // a file from before there was this attribute has nodes on segments
+        // a file from before there was this attribute is node to surface
         let formulation = text(&at.group(&name)?, "formulation").unwrap_or_default();
         let shown = match formulation == ContactFormulation::SurfaceToSurface.name() {
             true => format!("{name}, surface to surface"),

@@ -203,11 +203,11 @@ const MUCH: f64 = 0.01;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Losses {
     /// Taken by the normal contact forces: nodes that land within increments.
-    pub clipping: f64,
-    /// The part of the clipping of nodes that land where others of the same bodies have opened.
+    pub landing_forces: f64,
+    /// The part of these losses of nodes that land where others of the same bodies have opened.
     pub handover: f64,
     /// Taken by the impact impulses: the mass of the nodes that land.
-    pub node_mass: f64,
+    pub node_impacts: f64,
     /// Taken from nodes without mass as they come to rest after a release.
     pub release: f64,
     /// Given back after landings and releases, as a negative loss.
@@ -231,9 +231,9 @@ impl Losses {
             false => part(loss, largest),
         };
         Losses {
-            clipping: part(-energy.normal_contact_work, largest),
+            landing_forces: part(-energy.normal_contact_work, largest),
             handover: part(-handover_work, largest),
-            node_mass: part(energy.impact_loss, largest),
+            node_impacts: part(energy.impact_loss, largest),
             release: part(energy.release_loss, largest),
             returned: part(-energy.landing_return, largest),
             damping: part(energy.damping, largest),
@@ -246,8 +246,8 @@ impl Losses {
     /// The losses that count, in percent, in lines of the screen; none where nothing is lost.
     pub fn lines(&self) -> Vec<String> {
         let all = [
-            ("clipping", self.clipping),
-            ("node mass", self.node_mass),
+            ("landing forces", self.landing_forces),
+            ("node impacts", self.node_impacts),
             ("release", self.release),
             ("returned", self.returned),
             ("damping", self.damping),
@@ -266,7 +266,7 @@ impl Losses {
 
     /// What takes less, and its price, for each loss that is more than a hundredth.
     pub fn advice(&self) -> Vec<String> {
-        let landings = self.clipping + self.release + self.returned;
+        let landings = self.landing_forces + self.release + self.returned;
         let landed = match self.is_handover() {
             true => (
                 "nodes that take each other's place in lasting contact, as in rolling and sliding, took",
@@ -297,7 +297,7 @@ impl Losses {
                 "choose smaller increments, or SCHEME=ENERGY-MOMENTUM",
             ),
             (
-                self.node_mass,
+                self.node_impacts,
                 "impulses that stop the mass of landing nodes took",
                 "choose CONTACT MASS=REDISTRIBUTED with LANDING=RETURN (shifts the highest \
                  frequencies; bodies go on bouncing and ringing; layers of one or two elements keep \
@@ -323,7 +323,7 @@ impl Losses {
 
     /// Whether most of what landings take is that of nodes that take each other's place.
     fn is_handover(&self) -> bool {
-        self.handover > self.clipping / 2.0
+        self.handover > self.landing_forces / 2.0
     }
 }
 
@@ -441,7 +441,7 @@ mod tests {
         Findings {
             balance: 1e-10,
             losses: Losses {
-                clipping: 0.001,
+                landing_forces: 0.001,
                 ..Losses::default()
             },
             strain: Some(0.1),
@@ -514,7 +514,7 @@ mod tests {
         warns(|f| f.balance = 2e-8, "off by 2.0e-08 of the largest");
         warns(|f| f.balance = f64::NAN, "off by nan");
         warns(
-            |f| f.losses.clipping = 0.45,
+            |f| f.losses.landing_forces = 0.45,
             "4.5e-01 of the largest energy",
         );
         warns(|f| f.strain = Some(0.35), "strain is 0.35, above 0.2");
@@ -536,7 +536,7 @@ mod tests {
     #[test]
     fn losses_are_told_in_percent_without_round_off() {
         let lines = Losses::new(&energy(), 0.0, 10.0).lines();
-        assert_eq!(lines, ["lost     clipping 20 %   node mass 5 %"]);
+        assert_eq!(lines, ["lost     landing forces 20 %   node impacts 5 %"]);
         assert!(Losses::new(&Energy::default(), 0.0, 0.0).lines().is_empty());
         let lost = Energy {
             numerical_dissipation: f64::NAN,

@@ -16,27 +16,35 @@ const ENDS: [usize; 2] = [8, 32];
 const HEAD: &str = "\
 # Messages
 
-Generated from the table of codes (`crates/mechanics/src/diagnostics/code.rs`) and the decks of `tests/deck/errors.rs`;
-do not edit by hand. `stickslip explain CODE` prints what a code means, its cause and its cure.
+`stickslip explain CODE` prints what a code means, its cause and its cure. This page is generated from the table of codes
+(`crates/mechanics/src/diagnostics/code.rs`) and the decks of `tests/deck/errors.rs`.
 
-A message has a severity, a code, what is wrong, the line with a caret and, where there is something
-to do, help. Errors reject the deck; `--strict` makes errors of the warnings. `--lenient` makes
-warnings of unknown keywords and parameters. All errors that do not follow from others are reported
-in one run, at most 20 of each severity and then their number. A message in an included file names
-the lines that include it. The exit code of a rejected deck is 2.
+A message says what is wrong, shows the line with a caret, and says what to do. In an included file it names the
+lines that include it.
 
-D1 is about files, lines and fields, D2 about keywords and where they stand, D3 about the mesh, sets
-and surfaces, D4 about materials, sections and contact, D5 about supports, loads, steps and output.
+* Errors reject the deck (exit code 2). `--strict` makes errors of the warnings.
+* `--lenient` makes warnings of unknown keywords and parameters.
+* One run reports all errors that do not follow from others: at most 20 of each severity, and then their number.
 
-The examples are changes of three decks: a line with `-` is replaced by those with `+` after it.
+| codes | subject |
+|---|---|
+| D1 | files, lines and fields |
+| D2 | keywords and where they stand |
+| D3 | mesh, sets and surfaces |
+| D4 | materials, sections and contact |
+| D5 | supports, loads, steps and output |
+
+Each example changes one of [three decks](#the-deck-of-one-square) at the end of this page: lines with `+` stand in place of
+lines with `-`.
+
 ";
 
 /// The page holds these entries; with `BLESS` it is made to.
 pub fn check(entries: &str) {
     let wanted = format!(
-        "{HEAD}\n## The deck of one square\n\n```\n{SQUARE}```\n\n\
+        "{HEAD}## Codes\n{entries}\n## The deck of one square\n\n```\n{SQUARE}```\n\n\
          ## The deck of a block on its base\n\n```\n{SHARED}```\n\n\
-         ## The assembly of two blocks\n\n```\n{BLOCKS}```\n\n## Codes\n{entries}"
+         ## The assembly of two blocks\n\n```\n{BLOCKS}```\n"
     );
     if std::env::var_os("BLESS").is_some() {
         std::fs::write(PAGE, &wanted).expect("the page can be written");

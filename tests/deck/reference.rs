@@ -100,7 +100,7 @@ fn keywords_and_codes_are_explained() {
     }
     let (_, text, _) = explain(&["d103"]);
     assert!(
-        text.starts_with("D103: A keyword that no code knows"),
+        text.starts_with("D103: A keyword that no program knows"),
         "{text}"
     );
 }

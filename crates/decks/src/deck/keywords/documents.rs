@@ -9,38 +9,75 @@ use crate::diagnostics::wrapped;
 use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
 
-/// Markdown text of the keyword reference: a table of what is read, each keyword by itself, and
+/// Markdown text of the keyword reference: tables of what is read by task, an index by name, each keyword by itself, and
 /// tables of what is not read.
 pub fn keyword_reference() -> String {
     let read: Vec<&Keyword> = keywords().filter(|k| k.status == Status::Read).collect();
     let mut text = String::from(HEAD);
-    text.push_str("## Keywords that are read\n\n| keyword | level | |\n|---|---|---|\n");
-    for keyword in &read {
-        push_entry(&mut text, keyword);
+    text.push_str("## Keywords that are read\n");
+    for family in read.chunk_by(|one, next| one.task == next.task) {
+        let title = family[0].task;
+        let _ = write!(
+            text,
+            "\n### {title}\n\n| keyword | level | what it does |\n|---|---|---|\n"
+        );
+        for keyword in family {
+            push_entry(&mut text, keyword);
+        }
     }
+    push_names(&mut text);
     text.push_str("\n## Each keyword\n");
     for keyword in &read {
         push_keyword(&mut text, keyword);
     }
-    let others = [
-        (Status::Refused, "Keywords that stop with an error"),
-        (Status::Warned, "Keywords that are left out with a warning"),
-        (
-            Status::Ignored,
-            "Keywords that are left out without a warning",
-        ),
-    ];
-    for (status, title) in others {
+    for (status, title) in OTHERS {
         push_list(&mut text, status, title);
     }
     text
+}
+
+/// Titles of the keywords that are not read.
+const OTHERS: [(Status, &str); 3] = [
+    (Status::Refused, "Keywords that stop with an error"),
+    (Status::Warned, "Keywords that are left out with a warning"),
+    (
+        Status::Ignored,
+        "Keywords that are left out without a warning",
+    ),
+];
+
+/// The anchor of a heading.
+fn anchor(heading: &str) -> String {
+    heading.to_lowercase().replace(' ', "-")
+}
+
+/// All keywords in the order of the alphabet, each with a link to what stands about it.
+fn push_names(text: &mut String) {
+    let mut all: Vec<&Keyword> = keywords().collect();
+    all.sort_unstable_by_key(|keyword| keyword.name);
+    let link = |keyword: &Keyword| {
+        let (name, status) = (keyword.name, keyword.status);
+        let other = OTHERS.iter().find(|(of, _)| *of == status);
+        format!(
+            "[{name}](#{})",
+            anchor(other.map_or(name, |(_, title)| title))
+        )
+    };
+    text.push_str("\n### All keywords by name\n");
+    for letter in
+        all.chunk_by(|one, next| one.name.as_bytes().first() == next.name.as_bytes().first())
+    {
+        let links: Vec<String> = letter.iter().map(|keyword| link(keyword)).collect();
+        let _ = write!(text, "\n{}\n", links.join(" \u{b7} "));
+    }
 }
 
 const HEAD: &str = "\
 # Keywords
 
 This page is generated from the table that the reader uses (`crates/decks/src/deck/keywords/`).
-`stickslip explain KEYWORD` prints what it says about one keyword.
+`stickslip explain KEYWORD` prints what it says about one keyword. [By task](#bodies-nodes-elements-sets-surfaces-parts),
+[by name](#all-keywords-by-name).
 
 A deck is a text file, ASCII or UTF-8.
 
@@ -51,7 +88,7 @@ A deck is a text file, ASCII or UTF-8.
 * A keyword or parameter may be cut to a unique beginning of at least four letters; a warning says so.
 * Keywords of the model stand before the first step. A keyword that belongs to another one stands
   directly below it.
-* A deck may have parts, instances of them in an assembly, and cards behind the assembly. The table below gives
+* A deck may have parts, instances of them in an assembly, and cards behind the assembly. The tables below give
   the levels at which a keyword may stand: `part` (in a part, or between `*INSTANCE` and `*END INSTANCE`),
   `assembly`, `model` (outside both) and `step`. In a deck without parts, keywords of parts and the assembly stand before
   the first step.
@@ -60,13 +97,12 @@ A deck is a text file, ASCII or UTF-8.
 * What a part says moves and turns with its instances: points, normals, and the directions of springs, dashpots and
   equations. The directions of `*BOUNDARY`, loads and initial conditions are those of the whole deck.
 * Node and element numbers run from 1 to 999 999 999, as in Abaqus. Numbers have a decimal point.
-* Units are up to the user: any consistent set gives the same results. `scripts/rescale.py` writes a
-  deck in another set.
+* Any consistent set of units gives the same results. `scripts/rescale.py` writes a deck in another set.
 
 An error stops the run before it begins. These are errors:
 
-* a keyword, parameter or value that this page does not list; of output requests they are left out with a warning, also
-  keywords that end in `OUTPUT`, `PRINT` or `FILE`;
+* a keyword, parameter or value that this page does not list. In output requests, and in keywords that end in `OUTPUT`,
+  `PRINT` or `FILE`, it is left out with a warning;
 * a data line with more fields than its keyword reads;
 * a NUL byte, or a line of more than 65536 bytes (Abaqus reads 256);
 * a wave speed, or the area, stiffness or mass of an element, that overflows or vanishes in
@@ -84,16 +120,19 @@ fn push_entry(text: &mut String, keyword: &Keyword) {
         .iter()
         .filter_map(|end| sentence.find(end));
     let first = &sentence[..ends.min().unwrap_or(sentence.len())].replace('\u{a0}', " ");
-    let anchor = keyword.name.to_lowercase().replace(' ', "-");
     let (name, first, levels) = (keyword.name, plain(first), levels(keyword).join(", "));
-    let _ = writeln!(text, "| [`*{name}`](#{anchor}) | {levels} | {first} |");
+    let _ = writeln!(
+        text,
+        "| [`*{name}`](#{}) | {levels} | {first} |",
+        anchor(name)
+    );
 }
 
 fn push_keyword(text: &mut String, keyword: &Keyword) {
     let (name, sentence) = (keyword.name, plain(keyword.text));
     let _ = write!(text, "\n### `*{name}`\n\n{sentence}\n");
-    let (place, data) = (place(keyword), data(keyword.data));
-    let _ = write!(text, "\nIt stands {place}, with {data}.\n");
+    let (place, lines) = (place(keyword), data_lines(keyword.data));
+    let _ = write!(text, "\n*Place:* {place}. *Data lines:* {lines}.\n");
     let forms = keyword.data.forms().iter();
     let forms: String = forms.map(|one| format!("\n* {}", form(one))).collect();
     if !forms.is_empty() {
@@ -282,6 +321,17 @@ pub(super) fn data(data: Data) -> &'static str {
         Data::Required(_) => "at least one data line",
         Data::Text => "free text",
         Data::Words | Data::Skipped => "data lines that are not looked at",
+    }
+}
+
+/// The same in a word or two.
+fn data_lines(data: Data) -> &'static str {
+    match data {
+        Data::None => "none",
+        Data::Rows(_) => "any number",
+        Data::Required(_) => "one or more",
+        Data::Text => "free text",
+        Data::Words | Data::Skipped => "not looked at",
     }
 }
 

@@ -17,21 +17,34 @@ use super::text::fold;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
-    let texts = [
+/// The families of keywords: what they are for, and their texts.
+const FAMILIES: [(&str, &str); 6] = [
+    (
+        "Bodies: nodes, elements, sets, surfaces, parts",
         include_str!("mesh.txt"),
+    ),
+    (
+        "Materials, sections, springs",
         include_str!("materials.txt"),
-        include_str!("contact.txt"),
-        include_str!("conditions.txt"),
-        include_str!("steps.txt"),
-    ];
-    let output = table::read(include_str!("output.txt"));
-    let output = output.into_iter().map(|keyword| Keyword {
-        is_output: true,
-        ..keyword
+    ),
+    ("Contact, friction, ties", include_str!("contact.txt")),
+    ("Supports, loads, couplings", include_str!("conditions.txt")),
+    ("Steps and restart", include_str!("steps.txt")),
+    (RESULTS, include_str!("output.txt")),
+];
+
+/// The family of output requests.
+const RESULTS: &str = "Results";
+
+static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
+    let families = FAMILIES.into_iter().flat_map(|(task, text)| {
+        table::read(text).into_iter().map(move |keyword| Keyword {
+            task,
+            is_output: task == RESULTS,
+            ..keyword
+        })
     });
-    let all = texts.into_iter().flat_map(table::read).chain(output);
-    table::with_levels(all.collect())
+    table::with_levels(families.collect())
 });
 
 /// All known keywords.

@@ -65,6 +65,7 @@ pub(super) fn read(text: &'static str) -> Vec<Keyword> {
             text: of_entry.iter().find(is_sentence).unwrap_or(&""),
             example: with("> ").collect::<Vec<_>>().join("\n").leak(),
             is_output: false,
+            task: "",
         };
         all.extend(names.split(", ").map(|name| Keyword {
             name: name.trim_start_matches('*'),

@@ -221,6 +221,8 @@ pub struct Keyword {
     pub example: &'static str,
     /// Whether it asks for output: what is not known of it is left out, as the answer does not depend on it.
     pub is_output: bool,
+    /// What it is for: the title of its family.
+    pub task: &'static str,
 }
 
 impl Keyword {
