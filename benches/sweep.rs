@@ -226,7 +226,7 @@ fn main() {
             });
         });
         group.bench_function(BenchmarkId::new("evaluate", n), |bencher| {
-            bencher.iter(|| elements.evaluate(black_box(&u1), &[]));
+            bencher.iter(|| elements.evaluate(black_box(Motion::at(&u1, &[]))));
         });
     }
     group.finish();

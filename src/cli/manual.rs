@@ -18,6 +18,7 @@ const APOSTROPHE: [&str; 2] = [r".ie \n(.g .ds Aq \(aq", ".el .ds Aq '"];
 pub fn manual() -> String {
     let mut command = Args::command()
         .version(NUMBER)
+        .long_version(NUMBER)
         .disable_help_subcommand(true);
     command.build();
     let mut page = Vec::new();

@@ -21,12 +21,13 @@ const VALUES: [&str; 11] = [
 ];
 
 /// Parameters that need not change the model of their example, and why.
-const ALLOWED: [(&str, &str, &str); 12] = [
+const ALLOWED: [(&str, &str, &str); 13] = [
     ("NSET", "UNSORTED", "only *EQUATION asks for an order"),
     ("BOUNDARY", "OP=NEW", "nothing was given before"),
     ("CLOAD", "OP=NEW", "nothing was given before"),
     ("DSLOAD", "OP=NEW", "nothing was given before"),
     ("CONTACT INTERFERENCE", "OP=NEW", "nothing was given before"),
+    ("TEMPERATURE", "OP=NEW", "nothing was given before"),
     ("DSLOAD", "FOLLOWER=YES", "a pressure follows in any case"),
     (
         "TIME POINTS",
@@ -53,7 +54,7 @@ const ALLOWED: [(&str, &str, &str); 12] = [
 ];
 
 /// Keywords that say that what they give replaces what another card has given.
-const REPLACING: [&str; 1] = ["INITIAL CONDITIONS"];
+const REPLACING: [&str; 2] = ["INITIAL CONDITIONS", "TEMPERATURE"];
 
 /// What a deck is read as: its messages, and the model unless it is refused.
 #[derive(PartialEq)]

@@ -13,7 +13,7 @@ const LEVELS: [char; 6] = ['P', 'I', 'A', 'M', 'S', 'L'];
 /// like), and the levels at which they are taken. Beyond the manual, sets and surfaces may stand behind the assembly and
 /// in steps, and what joins parts behind the assembly. Contacts in a step behind the first are refused: they hold from the
 /// start.
-const MANUAL: [(&str, &str, &str); 69] = [
+const MANUAL: [(&str, &str, &str); 71] = [
     ("HEADING", "M", "M"),
     ("NODE", "PIA", "PIA"),
     ("ELEMENT", "PIA", "PIA"),
@@ -40,6 +40,7 @@ const MANUAL: [(&str, &str, &str); 69] = [
     ("HYPERELASTIC", "M", "M"),
     ("PLASTIC", "M", "M"),
     ("DENSITY", "M", "M"),
+    ("EXPANSION", "M", "M"),
     ("DAMPING", "M", "M"),
     ("INITIAL CONDITIONS", "M", "M"),
     ("SURFACE SMOOTHING", "M", "M"),
@@ -68,6 +69,7 @@ const MANUAL: [(&str, &str, &str); 69] = [
     ("DLOAD", "SL", "SL"),
     ("DSLOAD", "SL", "SL"),
     ("CONTACT INTERFERENCE", "SL", "SL"),
+    ("TEMPERATURE", "SL", "SL"),
     ("CHANGE FRICTION", "SL", "SL"),
     ("MODEL CHANGE", "SL", "SL"),
     ("OUTPUT", "SL", "SL"),

@@ -295,7 +295,7 @@ const VECTOR_PER_INCREMENT: [&str; 18] = [
     "/history/nodes/TIP/mean/A",
 ];
 
-const PER_INCREMENT: [&str; 85] = [
+const PER_INCREMENT: [&str; 86] = [
     "/history/contact/BOTTOM_TOP/normal_work",
     "/history/contact/BOTTOM_TOP/friction_dissipation",
     "/history/contact/BOTTOM_TOP/normal_impulse",
@@ -332,6 +332,7 @@ const PER_INCREMENT: [&str; 85] = [
     "/history/energy/kinetic",
     "/history/energy/strain",
     "/history/energy/external_work",
+    "/history/energy/thermal_work",
     "/history/energy/normal_contact_work",
     "/history/energy/friction_dissipation",
     "/history/energy/impact_loss",

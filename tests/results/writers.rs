@@ -79,6 +79,7 @@ pub fn model() -> Model {
         hinges: vec![],
         equations: vec![],
         initial_velocity: vec![0.0; 14],
+        initial_temperature: Vec::new(),
         steps: vec![step()],
         rigid_bodies: vec![],
     }

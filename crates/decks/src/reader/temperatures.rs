@@ -31,6 +31,9 @@ pub(super) fn initial(outline: &Outline, targets: Targets, cx: &mut Context) -> 
     all
 }
 
+/// Gradients that a row of shells and beams may have behind its temperature.
+const GRADIENTS: usize = 4;
+
 /// `node or node set, temperature`; gradients, which shells and beams have, must be zero.
 fn row_of_nodes(row: Line, targets: Targets, cx: &mut Context) -> Option<(Vec<usize>, f64)> {
     let Targets {
@@ -39,7 +42,8 @@ fn row_of_nodes(row: Line, targets: Targets, cx: &mut Context) -> Option<(Vec<us
     let target = row.required(0, "a node or node set", cx.d);
     let nodes = target.map(|field| sets.nodes_of(field, mesh_index, cx));
     let value = row.real(1, "the temperature", cx.d);
-    for index in (2..).take_while(|&index| row.get(index).is_some()) {
+    row.at_most(2 + GRADIENTS, cx.d);
+    for index in 2..2 + GRADIENTS {
         if row.real_or(index, 0.0, cx.d)? != 0.0 {
             let message = "plane elements have one temperature, without gradients across them";
             cx.error(Code::StrayData, row.span_at(index), message);

@@ -20,8 +20,8 @@ use super::results::{ElementResult, PointResult, ResultPoint, Sums};
 use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{
-    AnyLaw, Elastic, Expanded, Expansion, Lanes, LawInLanes, Number, Plane, PlaneLaw,
-    StressAtPoints, Viscosity,
+    AnyLaw, Elastic, Expansion, Lanes, LawInLanes, Number, Plane, PlaneLaw, StressAtPoints,
+    Viscosity,
 };
 use crate::model::Thickness;
 
@@ -403,8 +403,7 @@ where
         match &self.heating {
             Some(heating) if !motion.temperature.is_empty() => {
                 let strains = self.thermal_strains(heating, block, motion.temperature);
-                let law = Expanded::new(&self.law, variables, heating.plane, &strains);
-                LawInLanes::Expanded(Box::new(law))
+                self.law.expanded(variables, heating.plane, &strains)
             }
             _ => self.law.in_lanes(variables),
         }
@@ -615,7 +614,7 @@ where
             let mut z1 = z0.map(<[f64]>::to_vec);
             let mut own = at.own_variables.map(<[f64]>::to_vec);
             let with = |z| self.law_with(number, motion, z);
-            let law = with(z0);
+            let law = self.law_with(number, motion, z0);
             let of_block = F::update::<S>(&at, law.any(), with, (&mut z1, &mut own));
             for (lane, _) in self.elements_of(number).iter().enumerate() {
                 let first = self.first_variable + (LANES * number + lane) * count;

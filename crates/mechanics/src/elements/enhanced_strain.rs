@@ -501,6 +501,9 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 }
 
+/// Strains of the displacements with the alpha of the least energy: at the start, between two configurations, and at the end.
+type Solutions<const A: usize> = (Option<(Measured, Alpha<A>)>, (Measured, Alpha<A>));
+
 /// What a motion gives at all points.
 struct States<const A: usize> {
     /// Strains at which the material has its tangent, with those of the element.
@@ -517,7 +520,7 @@ struct States<const A: usize> {
     positive: Positive,
     compatible: Compatible,
     /// Strains at the start, between two configurations, and at the end of a motion of a material that stores energy.
-    solutions: Option<(Option<(Measured, Alpha<A>)>, (Measured, Alpha<A>))>,
+    solutions: Option<Solutions<A>>,
 }
 
 impl<const A: usize> States<A> {

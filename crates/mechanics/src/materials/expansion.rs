@@ -14,8 +14,7 @@
 //!
 //! F S F^T/J is then F_m S_m F_m^T/J_m: the law gives the true stress of the heated body.
 
-use super::constitutive_law::{BentTangent, Metal, MetalLaw};
-use super::law::{LawInLanes, PlaneLaw};
+use super::constitutive_law::{AnyLaw, BentTangent, Metal, MetalLaw};
 use super::number::{LANES, Lanes, Number};
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
@@ -127,17 +126,17 @@ impl<T: Number> Stretch<T> {
 
 /// The law of elements side by side, each with a thermal stretch at every point.
 pub struct Expanded<'a> {
-    law: LawInLanes<'a>,
+    law: Box<AnyLaw<'a, true>>,
     plane: Plane,
     stretches: [Stretch<Lanes>; MAX_POINTS],
     metals: [Option<(ExpandedMetal<'a>, &'a [f64])>; LANES],
 }
 
 impl<'a> Expanded<'a> {
-    /// A law with the variables of all points of the elements, in a plane, and the thermal strain theta - 1 at every point.
+    /// A law in a plane, with the thermal strain theta - 1 at every point; metals with the variables of their first points.
     pub fn new(
-        law: &'a PlaneLaw,
-        variables: [&'a [f64]; LANES],
+        law: Box<AnyLaw<'a, true>>,
+        metals: [Option<(&'a dyn MetalLaw, &'a [f64])>; LANES],
         plane: Plane,
         strains: &[Lanes],
     ) -> Self {
@@ -147,15 +146,19 @@ impl<'a> Expanded<'a> {
         }
         let metal = |lane: usize| {
             let first = strains.first().map_or(0.0, |strain| strain.lane(lane));
-            let metal = ExpandedMetal {
-                law: law.as_metal()?,
-                plane,
-                stretch: Stretch::of(first),
-            };
-            Some((metal, variables[lane].get(..law.variables())?))
+            let (law, of_point) = metals[lane]?;
+            let stretch = Stretch::of(first);
+            Some((
+                ExpandedMetal {
+                    law,
+                    plane,
+                    stretch,
+                },
+                of_point,
+            ))
         };
         Expanded {
-            law: law.in_lanes(variables),
+            law,
             plane,
             stretches,
             metals: std::array::from_fn(metal),
@@ -182,7 +185,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     ) -> Symmetric<Lanes> {
         let stretch = &self.stretches[point];
         let strains = stretch.relative_strains(strains, self.plane);
-        let s = self.law.any::<true>().stress_where(wanted, point, &strains);
+        let s = self.law.stress_where(wanted, point, &strains);
         s.times(stretch.theta)
     }
 
@@ -195,10 +198,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     ) -> Tangent<Lanes> {
         let stretch = &self.stretches[point];
         let strains = stretch.relative_strains(strains, self.plane);
-        let c = self
-            .law
-            .any::<true>()
-            .tangent_where(wanted, point, &strains);
+        let c = self.law.tangent_where(wanted, point, &strains);
         let over = Lanes::all(1.0) / stretch.theta;
         Tangent::of(|i, j| c.0[i][j] * over)
     }
@@ -207,13 +207,13 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     fn energy_at(&self, point: usize, e: &Symmetric<Lanes>) -> Lanes {
         let stretch = &self.stretches[point];
         let e = stretch.relative(e, self.plane);
-        self.law.any::<true>().energy_at(point, &e) * stretch.volume()
+        self.law.energy_at(point, &e) * stretch.volume()
     }
 
     fn across_at(&self, point: usize, e: &Symmetric<Lanes>) -> Across<Lanes> {
         let stretch = &self.stretches[point];
         let e = stretch.relative(e, self.plane);
-        let across = self.law.any::<true>().across_at(point, &e);
+        let across = self.law.across_at(point, &e);
         Across {
             stretch: across.stretch * stretch.theta,
             stress: across.stress * stretch.theta,
@@ -221,7 +221,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     }
 
     fn convex_in(&self) -> StrainMeasure {
-        self.law.any::<true>().convex_in()
+        self.law.convex_in()
     }
 
     fn stiffness_factor(&self) -> Option<Lanes> {
@@ -234,13 +234,13 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     }
 
     fn plastic_strain_at(&self, lane: usize, point: usize) -> f64 {
-        self.law.any::<true>().plastic_strain_at(lane, point)
+        self.law.plastic_strain_at(lane, point)
     }
 
     fn update_at(&self, lane: usize, point: usize, strains: &Strains, z1: &mut [f64]) -> f64 {
         let stretch = Stretch::of(self.stretches[point].theta.lane(lane) - 1.0);
         let strains = stretch.relative_strains(strains, self.plane);
-        self.law.any::<true>().update_at(lane, point, &strains, z1) * stretch.volume()
+        self.law.update_at(lane, point, &strains, z1) * stretch.volume()
     }
 }
 
@@ -335,7 +335,7 @@ mod tests {
         let plane_law = Law::elastic(1000.0, 0.3).in_plane(Plane::Revolution);
         let none: [&[f64]; LANES] = [&[]; LANES];
         let theta = 1.1_f64;
-        let heated = Expanded::new(&plane_law, none, Plane::Revolution, &[Lanes::all(0.1)]);
+        let heated = plane_law.expanded(none, Plane::Revolution, &[Lanes::all(0.1)]);
         let cold = plane_law.in_lanes(none);
         let stretches = [1.2_f64, 0.9, 1.05];
         let strain = |factor: f64| {
@@ -348,7 +348,7 @@ mod tests {
             let j: f64 = l.iter().product();
             [s.x.lane(0) * l[0] * l[0] / j, s.z.lane(0) * l[2] * l[2] / j]
         };
-        let (found, exact) = (of(&heated, theta), of(cold.any::<true>(), 1.0));
+        let (found, exact) = (of(heated.any::<true>(), theta), of(cold.any::<true>(), 1.0));
         for (found, exact) in found.iter().zip(exact) {
             assert!(
                 (found - exact).abs() < 1e-12 * exact.abs(),
@@ -357,7 +357,7 @@ mod tests {
         }
         // and stores theta^3 of its energy per reference volume
         let energies = [
-            StressAtPoints::<Lanes, true>::energy_at(&heated, 0, &strain(theta)),
+            heated.any::<true>().energy_at(0, &strain(theta)),
             cold.any::<true>().energy_at(0, &strain(1.0)),
         ];
         let [found, exact] = energies.map(|energy| energy.lane(0));

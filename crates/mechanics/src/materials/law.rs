@@ -12,8 +12,8 @@ use super::symmetric::{Symmetric, Tangent};
 #[cfg(any(test, feature = "testing"))]
 use super::yielding::Yielding;
 use super::{
-    Across, AnyLaw, Elastic, Expanded, Flow, Hencky, LawCard, Metal, MetalLaw, NeoHooke, Ogden,
-    OneByOne, Plane, PlanePlastic, PlaneSaintVenantKirchhoff, Plastic, Polynomial,
+    Across, AnyLaw, Elastic, Expanded, Flow, Hencky, Lanes, LawCard, Metal, MetalLaw, NeoHooke,
+    Ogden, OneByOne, Plane, PlanePlastic, PlaneSaintVenantKirchhoff, Plastic, Polynomial,
     SaintVenantKirchhoff, SmallStrainModuli, StrainMeasure, StressAtPoints,
 };
 
@@ -255,6 +255,22 @@ impl PlaneLaw {
             PlaneLaw::NeoHooke(law) => LawInLanes::NeoHooke(Elastic(law)),
             law => LawInLanes::OneByOne(Committed::side_by_side(law, variables)),
         }
+    }
+
+    /// The same law with the thermal strain at every point, in a plane.
+    pub fn expanded<'a>(
+        &'a self,
+        variables: [&'a [f64]; LANES],
+        plane: Plane,
+        strains: &[Lanes],
+    ) -> LawInLanes<'a> {
+        let law: Box<AnyLaw<'a, true>> = match self {
+            PlaneLaw::SaintVenantKirchhoff(law) => Box::new(Elastic(law)),
+            PlaneLaw::NeoHooke(law) => Box::new(Elastic(law)),
+            law => Box::new(Committed::side_by_side(law, variables)),
+        };
+        let metals = variables.map(|all| Some((self.as_metal()?, all.get(..self.variables())?)));
+        LawInLanes::Expanded(Box::new(Expanded::new(law, metals, plane, strains)))
     }
 }
 

@@ -430,6 +430,7 @@ mod tests {
             kinetic: 1.0,
             strain: 2.0,
             external_work: 4.0,
+            thermal_work: 4096.0,
             normal_contact_work: 8.0,
             friction_dissipation: 16.0,
             impact_loss: 32.0,
@@ -446,7 +447,7 @@ mod tests {
         let lost = 16.0 + 32.0 - 64.0 + 128.0 + 256.0 + 512.0 + 1024.0;
         assert_eq!(
             balance(&energy, 2048.0),
-            1.0 + 2.0 - 2048.0 - 4.0 - 8.0 + lost
+            1.0 + 2.0 - 2048.0 - 4.0 - 4096.0 - 8.0 + lost
         );
     }
 }

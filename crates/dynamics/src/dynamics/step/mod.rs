@@ -2,6 +2,7 @@
 //! workspace of its increments.
 
 mod bodies;
+mod committed;
 mod fits;
 mod free_motions;
 mod friction;
@@ -26,6 +27,7 @@ mod wear;
 mod workspace;
 
 pub(crate) use bodies::{Hold, holds};
+pub(crate) use committed::Committed;
 pub(crate) use free_motions::{FreeMotions, Loose};
 pub(crate) use friction::BeforeIterate;
 pub(crate) use held_motions::HeldMotions;
@@ -44,7 +46,7 @@ pub(crate) use step_problem::{
     Discretization, Equilibrium, StartVelocity, StepProblem, check_finite, difference, sum,
     write_difference, write_sum,
 };
-pub(crate) use temperatures::{Committed, initial_temperatures};
+pub(crate) use temperatures::initial_temperatures;
 pub use turning::{TurningBody, rigid_inertia};
 pub(crate) use wear::FactoredState;
 pub(crate) use workspace::Workspace;

@@ -1,11 +1,7 @@
-//! Temperatures of the nodes in a step, and what they bring into the elements that expand. See
-//! docs/theory/materials.md, Temperature.
+//! Temperatures of the nodes in a step. See docs/theory/materials.md, Temperature.
 
 use super::loads::{Interval, TimePoint};
-use super::step_problem::StepProblem;
 use crate::dynamics::results::State;
-use crate::elements::{Motion, Updated};
-use crate::linear::larger;
 use crate::model::{Load, Model, NodeTemperature, Step};
 
 /// Temperatures of one step.
@@ -63,56 +59,5 @@ pub(crate) fn initial_temperatures(model: &Model) -> Vec<f64> {
             .map(|node| model.initial_temperature_of(node))
             .collect(),
         false => Vec::new(),
-    }
-}
-
-/// What the materials are at the end of an increment.
-#[derive(Debug, Default)]
-pub(crate) struct Committed {
-    /// Internal variables, and what is dissipated on the way to them.
-    pub updated: Updated,
-    /// Work of the temperature, and the larger of its parts, which cancel where a body may expand (force length).
-    pub thermal_work: [f64; 2],
-}
-
-impl StepProblem<'_> {
-    /// Internal variables at the end of an increment to displacements `u1` and temperatures T1, what is dissipated, and the work
-    /// of the temperature. Where the temperature changes, the materials follow it at once: their variables are those of the
-    /// end, and the work is what the potential of the elements changes by at displacements that stay,
-    ///
-    /// ```text
-    /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0                   energy-momentum form, Tm halfway
-    /// (Phi(U0; T1) - W0 + Phi(U1; T1) - Phi(U1; T0))/2               else                    eq. (9.18)
-    /// ```
-    ///
-    /// The first adds up to W1 + D - W0 with the work of the internal force at Tm.
-    pub fn commit(&self, start: &State, u1: &[f64], [halfway, t1]: [&[f64]; 2]) -> Committed {
-        let committed = Motion::at(u1, &start.internal).heated(t1);
-        if start.temperature == t1 || !self.elements.expand() {
-            let between = Motion {
-                start: Some(&start.u),
-                ..committed
-            };
-            return Committed {
-                updated: self.elements.update(between),
-                thermal_work: [0.0; 2],
-            };
-        }
-        let potential = |u, temperature| {
-            let motion = Motion::at(u, &start.internal).heated(temperature);
-            self.elements.potential(motion)
-        };
-        let first = |temperature| {
-            potential(&start.u, temperature) - self.elements.stored_by_expanding(start.motion())
-        };
-        let last = |temperature| potential(u1, t1) - potential(u1, temperature);
-        let [first, last] = match self.integration.energy_momentum {
-            true => [first(halfway), last(halfway)],
-            false => [first(t1) / 2.0, last(&start.temperature) / 2.0],
-        };
-        Committed {
-            updated: self.elements.update(committed),
-            thermal_work: [first + last, larger(first.abs(), last.abs())],
-        }
     }
 }
