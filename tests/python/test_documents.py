@@ -14,7 +14,11 @@ LISTED = subprocess.run(
     text=True,
     check=True,
 ).stdout
-PAGES = [ROOT / name for name in sorted(set(LISTED.splitlines())) if (ROOT / name).exists()]
+PAGES = [
+    path
+    for path in (ROOT / name for name in sorted(set(LISTED.splitlines())))
+    if path.exists() and not path.is_symlink()
+]
 
 LINK = re.compile(r'!?\[[^\]\[]*\]\(([^()\s]+)\)|<img src="([^"]+)"')
 
