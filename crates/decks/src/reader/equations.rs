@@ -209,7 +209,8 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
     }
 }
 
-/// A dof with the terms that it follows; `Err` with one that the others cancel.
+/// The dependent dof with its terms in other dofs. `Err` holds a dof for which the equation cannot be solved: it
+/// stands among the other terms, or its terms cancel.
 type Solution = Result<(usize, Vec<(usize, f64)>), usize>;
 
 /// An equation solved for its first term, which must not stand among the others.

@@ -36,7 +36,7 @@ const PARALLEL_BLOCKS: usize = 64;
 pub struct TangentSweep<'a> {
     pub motion: Motion<'a>,
     pub part: TangentPart,
-    /// Whether the stress is that of the viscosity.
+    /// Whether the viscous stress (`*DAMPING`) is differentiated, in place of that of the material.
     pub viscous: bool,
     /// Whether the tangent of an element is needed.
     pub wanted: &'a (dyn Fn(usize) -> bool + Sync),

@@ -731,8 +731,8 @@ impl Flow for PlanePlastic {
     }
 }
 
-/// In plane stress the strain across changes with m: with S_m = dS/dm at that strain, d²W/dm² has -S_m33²/C_33 and dS/dm has
-/// -C_i3 S_m33/C_33 beside what the stress at fixed strain gives.
+/// In plane stress S_33 = 0 determines the strain across the plane, which therefore changes with m. With S_m = dS/dm at fixed
+/// strain across, this adds -S_m33²/C_33 to d²W/dm² and -C_i3 S_m33/C_33 to dS/dm.
 impl MetalLaw for PlanePlastic {
     fn moduli(&self) -> [f64; 2] {
         [3.0 * self.law.shear(), self.law.kinematic]

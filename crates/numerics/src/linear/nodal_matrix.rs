@@ -78,7 +78,7 @@ impl NodalMatrix {
     }
 }
 
-/// The part of a product from the node `first` on.
+/// The product of the matrix with v; `part` holds its rows from node `first` on.
 struct Product<'a> {
     matrix: &'a NodalMatrix,
     v: &'a [[f64; 2]],

@@ -270,7 +270,8 @@ fn floor(x: f64) -> f64 {
     if cut > x { cut - 1.0 } else { cut }
 }
 
-/// What joins two nodes: contacts one of each side; equations, hinges and rigid bodies any of theirs.
+/// Pairs of node sets whose nodes are joined: slave and master of a contact, and each with itself the nodes of all
+/// equations, of a hinge and of a rigid body.
 struct Joined(Vec<[BTreeSet<usize>; 2]>);
 
 impl Joined {

@@ -143,7 +143,7 @@ struct Runner<'m, 'o> {
     /// State and energies at the end of the last increment.
     state: State,
     ledger: Ledger,
-    /// What the steps before have seen.
+    /// Largest displacements and forces of the steps before, the base of tolerances.
     seen: Seen,
     /// The static increment before that has led too far.
     rejected: Option<RejectedTravel>,

@@ -26,7 +26,7 @@ pub(crate) struct Workspace<'m> {
     pub meter: Meter,
     /// What holds rigid motions in K*.
     pub pins: Pins,
-    /// What the run has seen so far.
+    /// Largest displacements and forces of the run so far, the base of tolerances.
     pub seen: Seen,
     /// How the factors of K* wear in dynamic increments.
     pub wear: Wear,

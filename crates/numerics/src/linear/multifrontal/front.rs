@@ -50,8 +50,9 @@ struct Panel<'a> {
 struct PanelSpot {
     first: usize,
     width: usize,
-    /// Start of its tiles in the values of the supernode, and in -L D.
+    /// Start of its tiles in the values of the supernode.
     tiles: usize,
+    /// Start of its tiles in -L D.
     scaled: usize,
 }
 
