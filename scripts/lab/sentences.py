@@ -8,6 +8,7 @@ grade for the dash: A clear at once, B at the second reading, C not clear. Of a 
 
 Groups are drawn by their shares: the guide (README.md and docs/), the reference (keywords, messages, result file),
 READMEs of examples, cases and scripts, doc comments of the source, and `--help`. Within a group all sentences are alike.
+The list of books and papers (docs/references.md) has none.
 """
 
 import argparse
@@ -23,7 +24,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 REFERENCE = ("docs/keywords.md", "docs/messages.md", "docs/output.md")
-COMMANDS = ("run", "check", "flatten", "info", "explain")
+BOOKS = "docs/references.md"
+COMMANDS = ("run", "check", "explain", "flatten", "info", "lsp", "lcp")
 SHARES = {"guide": 0.45, "reference": 0.15, "readme": 0.2, "comment": 0.15, "help": 0.05}
 ABBREVIATIONS = ("eq.", "St.", "Fig.", "No.", "cf.", "e.g.", "i.e.", "J.", "H.", "B.", "M.")
 
@@ -68,13 +70,14 @@ def of_markdown(path: str, text: str) -> Sentences:
             if said:
                 found.extend((f"{path}:{number}", one) for one in sentences(said[1]))
             continue
-        if re.match(r"\* |\d+\. |\||#|<!--|!\[", stripped) or not stripped:
+        if re.match(r"\* |\d+\. |\|.*\|$|#|<!--|!\[", stripped) or not stripped:
             close()
-        if stripped.startswith("|") and not re.match(r"\|[-| :]+$", stripped):
+        is_row = re.match(r"\|.*\|$", stripped)
+        if is_row and not re.match(r"\|[-| :]+$", stripped):
             cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", stripped)[1:-1]]
             if sum(len(re.findall(r"[A-Za-z]{3,}", cell)) for cell in cells) > 4:
                 found.append((f"{path}:{number}", " | ".join(cells)))
-        elif stripped and not re.match(r"\||#|<!--|!\[", stripped):
+        elif stripped and not is_row and not re.match(r"#|<!--|!\[", stripped):
             start = start if paragraph else number
             paragraph.append(stripped)
     close()
@@ -113,7 +116,7 @@ def of_help(program: str) -> Sentences:
     found: Sentences = []
     for command in ((), *((name,) for name in COMMANDS)):
         text = subprocess.run([program, *command, "--help"], capture_output=True, text=True, check=True).stdout
-        blocks = re.split(r"\n\s*\n|\n(?=\s+-)|  +(?=[A-Z])", text)
+        blocks = re.split(r"\n\s*\n|\n(?=\s+-)|\n(?=  [a-z]+  )|  +(?=[A-Z])", text)
         at = " ".join(["--help", *command])
         found.extend((at, one) for block in blocks for one in sentences(block))
     return found
@@ -127,7 +130,7 @@ def groups(program: str) -> dict[str, Sentences]:
         text = (ROOT / path).read_text() if path.endswith((".md", ".rs", ".py")) else ""
         if path in REFERENCE:
             found["reference"] += of_markdown(path, text)
-        elif path == "README.md" or path.startswith("docs/") and path.endswith(".md"):
+        elif path == "README.md" or path.startswith("docs/") and path.endswith(".md") and path != BOOKS:
             found["guide"] += of_markdown(path, text)
         elif path.endswith("README.md"):
             found["readme"] += of_markdown(path, text)

@@ -28,8 +28,9 @@ pub(crate) struct Monitor {
     /// Whether each contact has closed, or been struck.
     closed: Vec<bool>,
     touches: Vec<Touch>,
-    /// Length of the longest increment at whose end something moves, not that of a static step, and the last time.
+    /// Length of the longest increment at whose end something moves, without static steps.
     dt: f64,
+    /// Time at the end of the last increment.
     time: f64,
     /// Failed attempts since the last increment.
     failed_attempts: usize,

@@ -114,8 +114,8 @@ impl RigidBodies {
         bodies
     }
 
-    /// V_s over all dofs: in each direction the mean velocity of the supports of the body, or where it has none that of
-    /// its mass, when the velocities are `v`.
+    /// V_s over all dofs, if the dofs have the velocities `v`. V_s is one vector for each body. Its component in a
+    /// direction is the mean velocity of the supports in this direction; without supports, that of the mass.
     pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let body_of = problem.parts.of_nodes();
         // sums of the velocities and their number, and of the momenta and masses

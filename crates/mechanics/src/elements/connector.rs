@@ -56,7 +56,7 @@ pub struct PlacedConnector {
     connector: Connector,
     /// Its nodes; between angles the pairs of dofs that the angles belong to.
     nodes: SmallVec<[usize; 2]>,
-    /// Between angles the lengths L of their bodies: dofs hold L theta.
+    /// The lengths L of the bodies of both angles: the dof of an angle theta holds L theta.
     lengths: [f64; 2],
     /// X_2 - X_1 of the reference configuration (length).
     reference: Vector2<f64>,

@@ -22,7 +22,7 @@ const LEFT_OVER: f64 = 1e-6;
 const REJECTIONS: u32 = 2;
 /// Least part of a rejected increment that is tried next.
 const LEAST_PART: f64 = 0.3;
-/// Part of the length with an error of the tolerance that is tried after a rejection, and that an increment grows to.
+/// Safety factors on the length whose truncation error would equal the tolerance: after a rejection, and in growth.
 const SAFE: f64 = 0.85;
 const SAFE_GROWTH: f64 = 0.9;
 /// Growth that is worth new factors of K*.

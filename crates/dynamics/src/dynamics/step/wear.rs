@@ -29,9 +29,10 @@ pub(crate) enum FactoredState {
 
 /// Passes of the increments with the factors at hand.
 ///
-/// Factors of K* are rented: every pass beyond those that new ones have needed is rent, and once it comes to the price of new
-/// ones, they are bought. If passes grow evenly with the age of the factors, that is the best age. What is bought is on
-/// trial: strains that have changed by the next increments make it worse than factors of the unstrained bodies.
+/// The choice between old and new factors of K* is that between rent and purchase. Every pass beyond the number that new
+/// factors have needed is rent; when the rent reaches the cost of a factorisation, K* is factorised. If passes grow evenly
+/// with the age of the factors, this age is the best one. New factors are on trial: if strains change in the next
+/// increments, they can be worse than those of the unstrained bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wear {
     /// Increments since the last factorisation.
