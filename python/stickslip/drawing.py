@@ -94,6 +94,6 @@ class Drawing:
         return np.concatenate([np.empty((0, 3), np.int64), *fans])
 
     def with_middles(self, vertices: Array) -> Array:
-        """Numbers at the vertices [V + E, ...], those at the middles of elements behind the others."""
+        """Numbers at the vertices [V, ...], followed by their means at the middles of the elements: [V + E, ...]."""
         middles = [vertices[ring].mean(axis=0, keepdims=True) for ring in self.rings]
         return np.concatenate([vertices, *middles])

@@ -127,6 +127,8 @@ def groups(program: str) -> dict[str, Sentences]:
     found: dict[str, Sentences] = {group: [] for group in SHARES}
     tracked = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     for path in tracked.splitlines():
+        if (ROOT / path).is_symlink():
+            continue
         text = (ROOT / path).read_text() if path.endswith((".md", ".rs", ".py")) else ""
         if path in REFERENCE:
             found["reference"] += of_markdown(path, text)

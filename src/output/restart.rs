@@ -111,7 +111,7 @@ impl Checkpoint {
     /// Reads a checkpoint that `program` has written.
     ///
     /// # Errors
-    /// There is none, it is not whole, or it is of another program.
+    /// The file is missing, incomplete, or written by another program.
     pub fn read(path: &Path, program: &str) -> Result<Self, CheckpointError> {
         let mut bytes = Vec::new();
         open_regular(path)

@@ -310,7 +310,7 @@ fn linear(
     Some(ForceCurve::Linear(factor))
 }
 
-/// `force, elongation or its rate`, which increases.
+/// The curve of the rows `force, elongation` or `force, rate of elongation`; the second field increases from row to row.
 fn table<'a>(
     first: Line<'a>,
     rest: impl Iterator<Item = Line<'a>>,

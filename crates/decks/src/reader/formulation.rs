@@ -29,9 +29,9 @@ const LYING_PART: f64 = 0.1;
 /// Length of the segments of a surface, in that of another one, below which it is the finer one.
 const FINER: f64 = 0.99;
 
-/// Gives contacts whose nodes are slaves on both sides their formulation where the deck does not: from surface to surface where
-/// faces lie on other bodies, since conditions of nodes depend on each other there. Two pairs of the same surfaces, one in each
-/// order, become one then, as they do where both are from surface to surface.
+/// Chooses the formulation of contacts that the deck leaves open, if their nodes are slaves on both sides. Contacts with faces
+/// that lie on other bodies are surface to surface, because the conditions of nodes depend on each other there. Then two
+/// pairs of the same surfaces, one in each order, become one pair, as do two pairs that the deck makes surface to surface.
 pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     warn_of_two_laws(model, cx);
     choose_for_general(model);

@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-/// Change of the shares, as a part of them, at which sweeps end: their total is exact in any case.
+/// Relative change of the shares at which the sweeps end. The total of the shares is exact in any case.
 const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
 const MOST_SWEEPS: usize = 1000;

@@ -183,7 +183,8 @@ pub fn solved<const A: usize, const M: usize>(
     all
 }
 
-/// -|K|^-1 g, where |K| has the eigenvalues of K without their signs; no numbers of an element where they are zero or none.
+/// -|K|^-1 g, where |K| has the absolute eigenvalues of K. The lane of an element without such a step, because an eigenvalue
+/// is zero or not finite, holds NaN.
 fn descent<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     let mut step = positive(k, g).map(|x| x * -1.0);
     for lane in 0..LANES {

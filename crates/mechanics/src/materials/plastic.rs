@@ -393,7 +393,7 @@ struct Trial {
 struct PlasticFlow {
     /// da = w p + z p_h of eq. (2.49), p_h = r_h H/(3 mu): with this sum of the parts that flow, their round-off does no work.
     slip: f64,
-    /// p = r Q/(3 mu), da without modes, and zero without a strain.
+    /// p = r Q/(3 mu): da of an element without modes, zero without a strain.
     own: f64,
     /// dE_p = r xi/(2 mu).
     strain: Symmetric,

@@ -52,8 +52,8 @@ impl FrictionalLcp {
         eliminated
     }
 
-    /// The motion of the free unknowns with the most negative stiffness (8.10), if one is negative but for what E covers, with
-    /// contacts in the given states, those with friction held along the surface too.
+    /// The motion of the free unknowns with the most negative stiffness (8.10). `None` if no stiffness is more negative than
+    /// E makes up for. Contacts have the given states; closed ones with friction stick.
     pub(crate) fn unstable_motion(&self, states: &[ContactState]) -> Option<DVector<f64>> {
         if self.free.is_empty() {
             return None;

@@ -18,7 +18,7 @@ pub struct CheckedSolver {
     matrix: Assembled,
     /// Sum of the matrix and the last blocks that were added to it.
     sum: Option<BlockSum>,
-    /// Whether these are part of the matrix at present.
+    /// Whether the blocks of `sum` are part of the matrix at present.
     has_blocks: bool,
     factorized: bool,
     /// Right-hand side that the last solve began with.

@@ -668,8 +668,8 @@ mod tests {
         });
     }
 
-    /// A node slides and falls on to ground that turns from pass to pass: impulses stay where their rows have moved by
-    /// round-off alone.
+    /// A node slides and falls on to ground that turns from pass to pass. Impulses whose rows have moved by round-off alone
+    /// are kept.
     #[test]
     fn impulses_are_those_of_the_rows_of_the_iterate() {
         let settings = Settings {

@@ -42,7 +42,7 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// The trace of passes, of which there may be as many as given.
+    /// An empty trace, with room for the passes that an increment may take.
     pub fn new(most_passes: usize) -> Self {
         Trace {
             passes: Vec::with_capacity(most_passes.min(ROOM)),

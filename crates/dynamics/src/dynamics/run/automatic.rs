@@ -16,7 +16,7 @@ const EASY_INCREMENTS: u32 = 2;
 const GROWTH: f64 = 1.5;
 /// Part of an increment that is tried after it has failed.
 const CUT: f64 = 0.25;
-/// Part of an increment that is not left over for one of its own.
+/// A rest of the step below this part of an increment is added to the increment.
 const LEFT_OVER: f64 = 1e-6;
 /// Rejections in a row because of the truncation error.
 const REJECTIONS: u32 = 2;

@@ -24,7 +24,7 @@ const AGREES: f64 = 1e-9;
 /// Least stiffness of the pins of a rigid body, beside the largest force over its size: what moves them is to be little beside
 /// the body.
 const STIFF: f64 = 1e3;
-/// Round-off of the resultant of the forces of many nodes beside that of one of them.
+/// Round-off of the resultant of many nodal forces, in multiples of the round-off of one of them.
 const RESULTANT: f64 = 10.0;
 
 /// The pins of a step.
