@@ -117,8 +117,8 @@ impl<'m> ResultFile<'m> {
         }
     }
 
-    /// Transfers how far the file is written, after [`Self::write_through`]; what is read is copied from the `earlier`
-    /// file of the same run, with its id.
+    /// Transfers the numbers of rows that the file has, after [`Self::write_through`]. When a checkpoint is read, these rows
+    /// are copied from `earlier`: the file of the stopped run, and its id.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,

@@ -200,7 +200,7 @@ def disc_gap(contact: Contact, disc: Disc, start: Array, x: Array) -> float:
 
 @dataclass(frozen=True)
 class Places:
-    """Some nodes beside all segments of a contact [n, S]."""
+    """Where n nodes lie with respect to each of the S segments of a contact [n, S]."""
 
     nodes: Integers
     gap: Array

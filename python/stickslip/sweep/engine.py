@@ -217,7 +217,7 @@ def _cluster(scheduler: str) -> "Iterator[Client]":
 
 
 def _run_all(runs: Runs, tasks: Sequence[Task], settings: Settings) -> dict[str, str]:
-    """Runs the tasks; returns why there is no row for some, by their names."""
+    """Runs the tasks. Returns the reason for each task that has no row, by its name."""
     start = time.monotonic()
     futures: dict[Any, Task] = {runs.submit(task): task for task in tasks}
     lost = {}

@@ -293,7 +293,7 @@ impl Labels {
         cx.d.push(error);
     }
 
-    /// Adds what has this number instead, or how numbers in instances are written.
+    /// Adds to the error what else has the number, or how numbers in instances are written.
     fn with_what_is_meant(&self, error: Diagnostic, label: u64, cx: &Context) -> Diagnostic {
         let (other, keyword, help) = match self.what {
             "node" => (

@@ -143,7 +143,7 @@ pub(crate) const CORNER_PATH_DEPTH: f64 = 0.05;
 pub(crate) const VERTEX_COSINE: f64 = 0.94;
 /// Part of the weight of the largest mean of a slave node, below which another may be a sliver.
 pub(crate) const SLIVER: f64 = 1e-2;
-/// Cosine of the angle between a slave face and a master segment, turned to each other, up to which they take part.
+/// Least cosine of the angle between a slave face and the reversed master segment at which both take part.
 pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Part of the depth of a face behind a segment at which it is behind another, through which it has come in.
 pub(crate) const NEARER_DEPTH: f64 = 0.5;

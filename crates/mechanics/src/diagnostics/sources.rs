@@ -105,7 +105,7 @@ pub struct Sources {
     files: Vec<Source>,
     /// Names of the instances of parts, and where each is placed.
     instances: Vec<(String, Span)>,
-    /// Values that stand for something else in lines, which the reader sees in its place.
+    /// Values that the reader sees in place of what stands in a line, such as those of parameters.
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
     /// Values of parameters in place of those of the deck.
     settings: Vec<String>,

@@ -170,7 +170,7 @@ pub(super) enum JointPath<const M: usize> {
 }
 
 impl<const M: usize> JointPath<M> {
-    /// Those of strains with the amplitudes of the modes, of one element.
+    /// The path from the strains and amplitudes of the modes at the start to those at the end, in the element of a lane.
     fn new(strains: &[SymmetricLanes; 2], amplitudes: &Amplitudes<M>, lane: usize) -> Self {
         let ends = amplitudes.ends();
         let [start, end] = from_fn(|end| {

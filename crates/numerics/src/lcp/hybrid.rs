@@ -108,7 +108,7 @@ fn solve_in(
     }
 }
 
-/// What solves problems of which free unknowns ask.
+/// The solvers of the complementarity problems within a problem with free unknowns.
 const SOLVERS: Solvers = Solvers {
     resisted: |problem, known| {
         let kept = &mut KeptFactors::default();

@@ -28,7 +28,7 @@ impl<'k> Joints<'k> {
         Joints::of(&Vec::new)
     }
 
-    /// Joints of contacts with the same numbers.
+    /// Contacts with equal `numbers` form a joint.
     pub const fn of(numbers: &'k dyn Fn() -> Vec<usize>) -> Self {
         Joints {
             numbers,

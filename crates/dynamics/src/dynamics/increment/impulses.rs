@@ -485,8 +485,9 @@ impl Steady<'_> {
     }
 }
 
-/// What the rows of `now` in place of those `before` change of the velocity that the impulses of a constraint in a state
-/// make: approach and slip rate, as far as they stop them, and the turn of the jump that stops them.
+/// How much the velocity after the impulses of a constraint changes when its rows change from `before` to `now`. The sum of
+/// three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and of the direction
+/// of the jump that stops them.
 fn change(
     before: &Constraint,
     now: &Constraint,

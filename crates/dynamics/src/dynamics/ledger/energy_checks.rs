@@ -10,7 +10,7 @@ use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{StepProblem, Workspace};
 use crate::linear::larger;
 
-/// Energy balance, as a part of the largest energy, beyond which a run says nothing any more.
+/// Energy balance, as a part of the largest energy, beyond which the results of a run mean nothing: it stops.
 const UNBALANCED: f64 = 1e-3;
 
 /// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside

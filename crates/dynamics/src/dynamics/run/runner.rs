@@ -30,12 +30,12 @@ use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
-/// Displacement of a static increment, beside that at the rate of the last one, from which on it may be a jump.
+/// A static increment may be a jump if its displacement is this many times what the rate of the last increment gives.
 const FAR: f64 = 5.0;
-/// Displacement increment beside the displacements from which on it counts.
+/// Smaller displacement increments, as parts of the displacements, are no jump.
 const COUNTS: f64 = 0.01;
-/// Largest ratio of the rates of displacement of an increment and of a longer one, which was rejected, at which the shorter
-/// one is no jump.
+/// An increment that is repeated with a shorter length is no jump if its rate of displacement is at most this multiple of
+/// the rate of the longer, rejected one.
 const SHRINKS: f64 = 1.5;
 
 /// Errors that end a run, apart from a failed increment.

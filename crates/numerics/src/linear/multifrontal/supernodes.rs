@@ -1,7 +1,6 @@
-//! The supernodes of L, from the analysis of groups of unknowns that are eliminated together; the elimination of
-//! their columns from a right-hand side, and back, in panels of columns with vector instructions (docs/numerics.md,
-//! Solves of a pass); the elimination forest, cut into branches that do not depend on each other and the trunks they
-//! stand on (docs/numerics.md, Branches).
+//! The supernodes of L: groups of unknowns that are eliminated together. Their columns are eliminated from a right-hand side,
+//! and back, in panels with vector instructions (docs/numerics.md, Solves of a pass). The elimination forest is cut into
+//! branches that do not depend on each other, and the trunks that they stand on (docs/numerics.md, Branches).
 
 use std::array::from_fn;
 use std::ops::Range;
