@@ -84,7 +84,7 @@ class Overlap:
 
 
 def intrusions(position: Array, host: Outline, guests: Integers, number: int) -> list[Intrusion]:
-    """The guests, nodes, inside the host, body `number`; they may be all of the host's own."""
+    """Where the nodes `guests` are inside the outline `host` of the body `number`, which may be their own."""
     start, end = position[host.nodes], position[host.after]
     own = guests is host.nodes
     point = position[guests]

@@ -159,7 +159,7 @@ pub(crate) const POINT_TILT: f64 = 0.3;
 
 // Preparation of a model.
 
-/// Initial penetration that is a fault of the mesh; below it, of the digits of the coordinates.
+/// A larger initial penetration is a fault of the mesh; a smaller one comes from the digits of the coordinates.
 pub(crate) const PENETRATION_FAULT: f64 = 1e-3;
 /// Gap of a node that lies on its master up to round-off of the coordinates.
 pub(crate) const COORDINATE_ROUND_OFF: f64 = 1e-9;

@@ -4,8 +4,8 @@
 //!
 //! # Derivation
 //!
-//! The flow starts where the mean square of q over the element is that of the yield stress, and the energy of the modes is
-//! taken as one of shape, q²/(6 mu). Strain and modes are then one strain of more components, with one radial return:
+//! The element flows when the root mean square of q over it reaches the yield stress. The energy of the modes is taken as
+//! an energy of shape, q²/(6 mu). Strain and modes are then one strain of more components, with one radial return:
 //!
 //! ```text
 //! q² = 3/2 xi:xi + m,   m = 3 mu/V x.Kh x,   x = y - (1 + k) y_p,   k = H_k/(3 mu)

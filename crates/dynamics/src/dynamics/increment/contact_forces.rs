@@ -108,9 +108,9 @@ impl ContactForces {
     /// dU = d_p + W (r + Bn^T Pn + Bt^T Pt), d_p being the motion of the supports and r the other forces
     /// (all dofs).
     ///
-    /// Constraints that were open before (or without any before, that y = d_p + W r leaves open) stay out
-    /// of the problem first; those that would overlap with the forces of the others enter afterwards, so
-    /// that the answer is that of all constraints. With a `weight` of the equal-force rule, which there is
+    /// Constraints that were open in the pass before stay out of the problem at first; in a first pass those
+    /// that y = d_p + W r leaves open do. Those that the forces of the others make overlap enter
+    /// afterwards, so the answer is that of all constraints. With a `weight` of the equal-force rule, which there is
     /// when the passes have settled, they enter only if they would overlap by more than round-off: two
     /// nodes that face each other may carry the same force, and it must not go to and fro between them.
     pub fn solve(

@@ -130,7 +130,7 @@ pub struct ReturnedImpulse {
     pub tangential: f64,
     /// Normal impulse that gives back (force time).
     pub returned_normal: f64,
-    /// Tangential impulse with it (force time).
+    /// Tangential impulse that comes with `returned_normal` (force time).
     pub returned_tangential: f64,
 }
 

@@ -171,7 +171,8 @@ impl HeldMotions {
         is_new
     }
 
-    /// Largest force that holds a body, beside what facets resolve and errors: a part of the normal forces, and a force.
+    /// The largest ratio, over the held bodies, of the force of the pins to the largest one that facets and errors explain.
+    /// Errors are `tolerance` times the normal forces, and the force `noise`.
     pub fn beside_facets(
         &self,
         pins: &Pins,
