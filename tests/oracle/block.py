@@ -56,8 +56,8 @@ class Block:
     """C10, C20, C30, C01."""
     compressibility: Array
     """D1, D2, D3; zero for no term."""
-    theta: Array | None = field(default=None, init=False)
-    """Thermal stretch at the points [E, G], eq. (2.52); none without a temperature."""
+    heat: Array | None = field(default=None, init=False)
+    """Thermal strain e = theta - 1 at the points [E, G], eq. (2.52); none without a temperature."""
     material: int = field(default=-1, init=False)
     """Index of the material."""
     at_points: Array = field(default_factory=lambda: np.zeros(0), init=False)
@@ -119,14 +119,19 @@ class Block:
     @property
     def softening(self) -> Array | float:
         """theta of elements with one point, which divides their hourglass stiffness."""
-        return 1.0 if self.theta is None else self.theta[:, :1]
+        return 1.0 if self.heat is None else 1.0 + self.heat[:, :1]
+
+    @property
+    def doubled_heat(self) -> Array | float:
+        """2 E_theta = theta^2 - 1 of eq. (2.53) from the thermal strain, whose digits it keeps."""
+        return 0.0 if self.heat is None else self.heat * (2.0 + self.heat)
 
     def mechanical(self, e: Array) -> tuple[Array, Array]:
         """E_m of eq. (2.53) in the plane, and theta."""
-        if self.theta is None:
+        if self.heat is None:
             return e, np.ones(e.shape[:2])
-        theta = self.theta
-        return (e - identity_times(0.5 * (theta**2 - 1.0))) / theta[..., None, None] ** 2, theta
+        theta = 1.0 + self.heat
+        return (e - identity_times(0.5 * self.doubled_heat)) / theta[..., None, None] ** 2, theta
 
     def energy_density(self, e: Array) -> Array:
         """W(E) = theta^3 W_m(E_m), eq. (2.54)."""
@@ -180,7 +185,7 @@ class Block:
     @property
     def is_polynomial(self) -> bool:
         """Whether the law is one of eq. (2.23), as a neo-Hookean one in plane stress is, or at a temperature."""
-        is_general = self.plane_stress or self.theta is not None
+        is_general = self.plane_stress or self.heat is not None
         return self.law == POLYNOMIAL or (self.law == NEO_HOOKE and is_general)
 
     @property
@@ -231,7 +236,7 @@ class Block:
         """2 (E_m)_33: that of E_33 = 0 in plane strain, and with S_33 = 0 in plane stress, eq. (2.25)."""
         trace = trace_of(e)
         if not self.plane_stress:
-            return np.zeros_like(trace) if self.theta is None else self.theta**-2 - 1.0
+            return np.zeros_like(trace) if self.heat is None else -self.doubled_heat / (1.0 + self.heat) ** 2
         if self.law == SAINT_VENANT_KIRCHHOFF:
             return -2.0 * self.poisson / (1.0 - self.poisson) * trace
         squared = 2.0 * trace + 4.0 * determinant_of(e)

@@ -49,13 +49,13 @@ class Elements:
             if block.material in self.expansions:
                 strain = self.expansions[block.material]
                 ends = block.temperature(temperature), block.temperature(self.initial)
-                block.theta = 1.0 + strain(ends[0]) - strain(ends[1])
-                block.theta[rigid[block.elements]] = 1.0
+                block.heat = strain(ends[0]) - strain(ends[1])
+                block.heat[rigid[block.elements]] = 0.0
 
     @property
     def heated(self) -> Integers:
         """Nodes of elements that are heated."""
-        nodes = [block.nodes.ravel() for block in self.blocks if block.theta is not None]
+        nodes = [block.nodes.ravel() for block in self.blocks if block.heat is not None]
         return np.unique(np.concatenate(nodes)) if nodes else np.zeros(0, np.int64)
 
     def mass(self) -> Array:

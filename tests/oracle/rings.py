@@ -36,7 +36,7 @@ class RingBlock(Block):
         """E_m of eq. (2.53) and theta."""
         e, z = strain
         own, theta = self.mechanical(e)
-        return (own, (1.0 + z) / theta**2 - 1.0), theta
+        return (own, (z - self.doubled_heat) / theta**2), theta
 
     def density_of(self, strain: Strain) -> Array:
         """W = theta^3 W_m, eq. (2.54), with eqs (2.13) and (2.23)."""

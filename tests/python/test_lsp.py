@@ -316,7 +316,7 @@ async def test_hover(client: LanguageClient, tmp_path: Path) -> None:
     assert name.startswith("material STEEL, used in 1 place\nbar.inp:19: *MATERIAL, NAME=STEEL")
     assert await editor.hover("2, 1|., 0.") == "*NODE: x (length)"
     await editor.until(bool)
-    assert "D103: A keyword that no code knows" in await editor.hover("*DEN|STY")
+    assert "D103: A keyword that no program knows" in await editor.hover("*DEN|STY")
     assert await editor.hover("ba|r") == ""
 
 
