@@ -88,7 +88,7 @@ struct FieldGroup<'m> {
     chunk: usize,
 }
 
-/// Shape of a row of a field, and of the part of it that is written; the rest is zero.
+/// The shape of a row of a field, and the shape of its first entries that are written; all others are zero.
 type RowShape = (&'static [usize], &'static [usize]);
 
 const SCALAR: RowShape = (&[], &[]);

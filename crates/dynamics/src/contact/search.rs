@@ -55,7 +55,7 @@ impl<'m> Search<'m> {
         Search::within(PAIRING_REACH, contacts, x)
     }
 
-    /// The same of nodes without velocities, which go farther in an increment than they tell.
+    /// The search of static and quasi-static steps. No velocity tells how far a node will go, so it looks farther.
     pub fn without_velocities(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search::within(PAIRING_REACH_WITHOUT_VELOCITIES, contacts, x)
     }

@@ -150,8 +150,8 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
     }
 }
 
-/// Whether the nodes of a slave surface lie behind the segments of the master that they project into,
-/// of which there are some; a few nodes stand for all.
+/// Whether the nodes of a slave surface project onto segments of the master and lie behind them. A few nodes are examined
+/// for all.
 fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
     let x = &model.mesh.coordinates;
     let (nodes, segments) = (slave.nodes(&model.mesh), master.segments(&model.mesh));

@@ -72,7 +72,7 @@ mod tests {
     const X: [[f64; 2]; 5] = [[0.0, 0.0], [1.0, 0.1], [1.2, 1.1], [-0.1, 0.9], [0.6, 1.8]];
     const DOFS: usize = 2 * X.len();
 
-    /// A quadrilateral and a triangle on it.
+    /// A quadrilateral with a triangle on its upper side.
     fn elements(law: Law, quad: ElementType, damping: Damping) -> Elements {
         let mut model = Model::default();
         let name = "M".into();

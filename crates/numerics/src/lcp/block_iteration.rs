@@ -19,11 +19,11 @@ const CONVERGED: f64 = 1e-14;
 /// Iterations at most.
 const MOST: usize = 60;
 
-/// Iterations by which the difference must have fallen to [`FALLEN`] of the first, or the coupling of the
-/// blocks is too strong.
+/// Number of iterations in which the difference must fall to [`FALLEN`] of the first; otherwise the coupling of the blocks
+/// is too strong.
 const TRIAL: usize = 15;
 
-/// Iterations from which on the difference must be on its way there.
+/// Number of iterations after which the difference must fall fast enough for that.
 const FIRST_TRIAL: usize = 6;
 
 /// See [`TRIAL`].

@@ -618,8 +618,8 @@ impl PinnedBody {
     }
 }
 
-/// Dofs of nodes without elements by which equations move parts of a body beside each other, as the tightening of a
-/// pre-tension section does: with them an equation forbids rigid motions that it allows without.
+/// Dofs of nodes without elements that move parts of a body relative to each other by equations, as the tightening of a
+/// pre-tension section does. With such a dof an equation forbids rigid motions that it allows without the dof.
 fn tightening(
     equations: &[Equation],
     has_elements: &[bool],
