@@ -90,7 +90,7 @@ impl Owner<'_> {
         }
     }
 
-    /// Reports, at this one, what another one contradicts.
+    /// Reports at the place of this owner that it contradicts the `other` one.
     pub fn contradicts<'d>(self, other: Owner, message: String, cx: &'d mut Context) -> Added<'d> {
         cx.error(self.code(), self.span(), message)
             .other(other.title(), other.span())

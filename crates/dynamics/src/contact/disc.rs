@@ -169,7 +169,7 @@ impl NodePositions {
         }
     }
 
-    /// The vectors at start and end that a map gives.
+    /// What a linear map gives for the positions of the nodes: the vector at the start and that at the end.
     fn vectors(&self, map: &Map) -> [Vector2<f64>; 2] {
         self.nodes
             .map(|x| map * DiscRow::from_iterator(x.into_iter().flatten()))

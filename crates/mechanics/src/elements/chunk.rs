@@ -434,8 +434,8 @@ where
         self.heating.is_some() && !motion.temperature.is_empty()
     }
 
-    /// Whether some nodes move otherwise than the others, or along the radius, or a material remembers more than its strain or is
-    /// heated. If not, no element is strained, as in bodies that are fixed.
+    /// Whether an element may be strained: nodes have unlike displacements or move along the radius, or the material is heated
+    /// or has internal variables. In bodies that are fixed none is.
     fn is_strained(&self, motion: Motion) -> bool {
         let differs = |u: &[f64]| {
             let u = u.as_chunks::<2>().0;

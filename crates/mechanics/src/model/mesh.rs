@@ -198,7 +198,7 @@ pub fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
 /// The elements at every node of a mesh, in the order of the deck.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ElementsAtNodes {
-    /// Where those of every node start among all, `N + 1` entries.
+    /// Index in `elements` at which those of each node start; `N + 1` entries.
     starts: Vec<u32>,
     elements: Vec<u32>,
 }

@@ -30,7 +30,7 @@ pub(crate) struct EqualForces {
 }
 
 impl EqualForces {
-    /// Before the passes, `tolerance` being theirs.
+    /// The state before the first pass; the passes have the `tolerance`.
     pub fn new(tolerance: f64) -> Self {
         EqualForces {
             tolerance,
