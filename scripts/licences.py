@@ -25,7 +25,7 @@ BUNDLED = {
 
 HEAD = """\
 The program of a wheel of stickslip contains the libraries below, which have other authors and licences. Their sources are
-at https://crates.io. Of several licences that a library offers, MIT applies, or else Apache-2.0.
+in the public registry of Rust. Of several licences that a library offers, MIT applies, or else Apache-2.0.
 
 sprs-ldl is under the LGPL 2.1: you may change it and build the program with what you have changed (docs/install.md).
 """

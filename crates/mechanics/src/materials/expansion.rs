@@ -75,6 +75,17 @@ struct Stretch<T> {
     strain: T,
 }
 
+impl Stretch<Lanes> {
+    /// That of one element.
+    fn lane(&self, lane: usize) -> Stretch<f64> {
+        Stretch {
+            theta: self.theta.lane(lane),
+            over_square: self.over_square.lane(lane),
+            strain: self.strain.lane(lane),
+        }
+    }
+}
+
 impl<T: Number> Stretch<T> {
     /// That of a thermal strain theta - 1: E_theta = e + e²/2.
     fn of(strain: T) -> Self {
@@ -145,17 +156,14 @@ impl<'a> Expanded<'a> {
             *stretch = Stretch::of(*strain);
         }
         let metal = |lane: usize| {
-            let first = strains.first().map_or(0.0, |strain| strain.lane(lane));
             let (law, of_point) = metals[lane]?;
-            let stretch = Stretch::of(first);
-            Some((
-                ExpandedMetal {
-                    law,
-                    plane,
-                    stretch,
-                },
-                of_point,
-            ))
+            let stretch = stretches[0].lane(lane);
+            let metal = ExpandedMetal {
+                law,
+                plane,
+                stretch,
+            };
+            Some((metal, of_point))
         };
         Expanded {
             law,
@@ -166,7 +174,7 @@ impl<'a> Expanded<'a> {
     }
 }
 
-/// Plane strain has a strain across that the temperature brings: the law is asked with all components.
+/// In plane strain the temperature causes a strain of the law across the plane, so the law is evaluated with all components.
 impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     fn stress_at(&self, point: usize, strains: &Strains<Lanes>) -> Symmetric<Lanes> {
         StressAtPoints::<Lanes, HOOP>::stress_where(self, [true; LANES], point, strains)
@@ -238,7 +246,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     }
 
     fn update_at(&self, lane: usize, point: usize, strains: &Strains, z1: &mut [f64]) -> f64 {
-        let stretch = Stretch::of(self.stretches[point].theta.lane(lane) - 1.0);
+        let stretch = self.stretches[point].lane(lane);
         let strains = stretch.relative_strains(strains, self.plane);
         self.law.update_at(lane, point, &strains, z1) * stretch.volume()
     }
