@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from form import Curve, Order
 from runner import Study, curve_points, errors, observed_order
+from stickslip.plot import style
 
 LARGEST = 3
 """Panels of a picture."""
@@ -31,7 +32,7 @@ def draw(study: Study, path: Path) -> None:
             ax.set_title(f"{type(error).__name__}: {error}", fontsize=6)
         ax.tick_params(labelsize=7)
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=80)
+    style.save(figure, path, dpi=80)
     plt.close(figure)
 
 
