@@ -27,7 +27,8 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Study]:
 def certificates(studies: dict[str, Study]) -> dict[tuple[str, str], set[str]]:
     """The checks of the certificate and of the oracle that do not hold, by case and run."""
     found = {(name, run): result for name, study in studies.items() for run, result in study.results.items()}
-    with multiprocessing.get_context("fork").Pool(2) as pool:
+    # Closing a file looks at all objects that its process has open: forked ones would have those of all studies.
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
         return dict(zip(found, pool.map(broken, [result.path for result in found.values()], chunksize=1)))
 
 
