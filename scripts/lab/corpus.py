@@ -129,8 +129,8 @@ def difference(program, deck, tables, scale):
 
 def compared(program, decks):
     """Lines about the models, each beside the result of CalculiX."""
-    lines = ["", "The models, run unchanged: the largest difference of their displacements from those of "
-             "CalculiX, as a part of the largest. CalculiX takes displacements for small; the last column "
+    lines = ["", "The table compares the models, run unchanged, with CalculiX: the largest difference of the "
+             "displacements, divided by the largest displacement. CalculiX assumes small displacements; the last column "
              f"has loads of {SMALL:g} times these.", "",
              "| deck | increments | difference | small loads |", "|---|---|---|---|"]
     for deck in decks:
