@@ -19,11 +19,11 @@ const HEAD: &str = "\
 `stickslip explain CODE` prints what a code means, its cause and its cure. This page is generated from the table of codes
 (`crates/mechanics/src/diagnostics/code.rs`) and the decks of `tests/deck/errors.rs`.
 
-A message says what is wrong, shows the line with a caret, and says what to do. In an included file it names the
-lines that include it.
+A message says what is wrong, shows the line with a caret, and says what to do. In an included file it also names the
+lines that include this file.
 
-* Errors reject the deck (exit code 2). `--strict` makes errors of the warnings.
-* `--lenient` makes warnings of unknown keywords and parameters.
+* Errors reject the deck (exit code 2). `--strict` turns warnings into errors.
+* `--lenient` turns errors about unknown keywords and parameters into warnings.
 * One run reports all errors that do not follow from others: at most 20 of each severity, and then their number.
 
 | codes | subject |
@@ -34,7 +34,7 @@ lines that include it.
 | D4 | materials, sections and contact |
 | D5 | supports, loads, steps and output |
 
-Each example changes one of [three decks](#the-deck-of-one-square) at the end of this page: lines with `+` stand in place of
+Each example changes one of [three decks](#the-deck-of-one-square) at the end of this page: lines with `+` replace
 lines with `-`.
 
 ";

@@ -76,8 +76,8 @@ const HEAD: &str = "\
 # Keywords
 
 This page is generated from the table that the reader uses (`crates/decks/src/deck/keywords/`).
-`stickslip explain KEYWORD` prints what it says about one keyword. [By task](#bodies-nodes-elements-sets-surfaces-parts),
-[by name](#all-keywords-by-name).
+`stickslip explain KEYWORD` prints the part about one keyword. The keywords are listed
+[by task](#bodies-nodes-elements-sets-surfaces-parts) and [by name](#all-keywords-by-name).
 
 A deck is a text file, ASCII or UTF-8.
 
@@ -85,24 +85,24 @@ A deck is a text file, ASCII or UTF-8.
   separate their fields. Empty lines are skipped. An empty field has its default.
 * A keyword line that ends with a comma continues on the next line.
 * Case and blanks in keywords, parameters and names do not matter. A name in quotation marks keeps both.
-* A keyword or parameter may be cut to a unique beginning of at least four letters; a warning says so.
+* A keyword or parameter may be abbreviated to a unique beginning of at least four letters (warning).
 * Keywords of the model stand before the first step. A keyword that belongs to another one stands
   directly below it.
 * A deck may have parts, instances of them in an assembly, and cards behind the assembly. The tables below give
   the levels at which a keyword may stand: `part` (in a part, or between `*INSTANCE` and `*END INSTANCE`),
   `assembly`, `model` (outside both) and `step`. In a deck without parts, keywords of parts and the assembly stand before
   the first step.
-* A name is looked up at the level where it is used, then outside: in a part, the assembly, the model. From outside,
+* A name is looked up at the level where it is used, then at the levels outside it (part, assembly, model). From outside,
   a set, surface, node or element of an instance has the instance's name before it: `Block-1.Top`, `Block-1.12`.
-* What a part says moves and turns with its instances: points, normals, and the directions of springs, dashpots and
-  equations. The directions of `*BOUNDARY`, loads and initial conditions are those of the whole deck.
+* Points, normals, and the directions of springs, dashpots and equations of a part move and turn with its instances.
+  The directions of `*BOUNDARY`, loads and initial conditions are those of the whole deck.
 * Node and element numbers run from 1 to 999 999 999, as in Abaqus. Numbers have a decimal point.
 * Any consistent set of units gives the same results. `scripts/rescale.py` writes a deck in another set.
 
 An error stops the run before it begins. These are errors:
 
 * a keyword, parameter or value that this page does not list. In output requests, and in keywords that end in `OUTPUT`,
-  `PRINT` or `FILE`, it is left out with a warning;
+  `PRINT` or `FILE`, such words are left out with a warning;
 * a data line with more fields than its keyword reads;
 * a NUL byte, or a line of more than 65536 bytes (Abaqus reads 256);
 * a wave speed, or the area, stiffness or mass of an element, that overflows or vanishes in
