@@ -1,5 +1,5 @@
-//! Nodes without mass that carry no contact force, with the stiffness that holds them.
-//! See docs/theory/impacts.md, Releases.
+//! Nodes without mass that carry no contact force, and the stiffness of the elements at them. See
+//! docs/theory/impacts.md, Releases.
 
 use std::collections::BTreeSet;
 
@@ -12,16 +12,16 @@ use crate::linear::{Assembled, Transformation, linear_solver};
 
 /// The free nodes without mass of some bodies.
 pub(super) struct FreeNodes {
-    /// Their dofs as unknowns.
+    /// Map from the dofs of these nodes to unknowns.
     pub map: Transformation,
-    /// Elements at them.
+    /// Elements at these nodes.
     elements: Vec<usize>,
-    /// Pattern of their stiffness.
+    /// Pattern of the stiffness of these elements.
     pattern: Assembled,
 }
 
 impl FreeNodes {
-    /// Those of the bodies of the pairs `opened` that no closed pair holds at the end of an increment.
+    /// The free nodes of the bodies of the pairs `opened`: no closed pair acts on them at the end of an increment.
     pub fn new(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Self {
         let is_free = free(problem, solved, opened);
         let touches = |&element: &usize| {
@@ -50,7 +50,7 @@ impl FreeNodes {
         }
     }
 
-    /// Their stiffness K_ii in the configuration of a motion.
+    /// Stiffness K_ii of the free nodes in the configuration of a motion.
     pub fn stiffness(&self, problem: &StepProblem, motion: Motion) -> FactoredMatrix {
         let mut k = self.pattern.clone();
         for (list, &element) in self.elements.iter().enumerate() {
@@ -63,7 +63,7 @@ impl FreeNodes {
         )
     }
 
-    /// Whether the gap of a constraint depends on them.
+    /// Whether the gap of a constraint depends on free nodes.
     pub fn open(&self, constraint: &Constraint) -> bool {
         let rows = &constraint.derivative_rows().normal;
         let mut entries = constraint.dofs.iter().zip(rows);
@@ -71,7 +71,8 @@ impl FreeNodes {
     }
 }
 
-/// Which nodes are without mass, of the bodies of the pairs `opened`, and held by no closed pair.
+/// For every node whether it is without mass, belongs to a body of the pairs `opened`, and has no
+/// closed pair.
 fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<bool> {
     let body_of = problem.parts.of_nodes();
     let nodes = opened.iter().flat_map(|closed| closed.pair().nodes);

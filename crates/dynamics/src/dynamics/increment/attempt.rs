@@ -21,14 +21,14 @@ use crate::dynamics::step::{
     ClosedConstraints, FactoredState, HeldMotions, Interval, StepProblem, Workspace,
 };
 
-/// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
+/// Number of passes that an attempt makes in any case; it goes on only if the passes will end within MAX PASSES.
 const PATIENCE: usize = 25;
 
-/// Relative difference of lengths between which subincrements between impacts share the factors of K*.
+/// Relative difference of lengths up to which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
 
-/// Relative difference of lengths within which factors of K* are kept: the trials for the time of an impact differ
-/// by little.
+/// Relative difference of lengths within which factors of K* are kept; trials for the time of an impact differ by
+/// little.
 fn length_tolerance(set: ConstraintSet) -> f64 {
     match set {
         ConstraintSet::All => 0.0,
@@ -43,7 +43,7 @@ pub(crate) struct Attempt<'a, 'm> {
     pub start: &'a State,
     pub interval: Interval,
     pub set: ConstraintSet<'a>,
-    /// What the passes start from, in place of the rigid motion of the bodies.
+    /// The path from which the passes start, in place of the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
@@ -80,7 +80,7 @@ struct DynamicAttempt<'a, 'm> {
 }
 
 impl DynamicAttempt<'_, '_> {
-    /// Solves the increment: with the factors of K* at hand as long as they pay, then with new ones in every pass.
+    /// Solves the increment with the available factors of K* as long as this pays, then with new factors in every pass.
     fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
@@ -109,8 +109,8 @@ impl DynamicAttempt<'_, '_> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Slave nodes whose constraints the passes begin with. They are the near ones where velocities tell how far nodes go, and
-    /// all of them with the last rule.
+    /// The slave nodes whose constraints the passes find at first. These are the near nodes if velocities tell how far
+    /// nodes go, and all nodes with the last rule.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.passes.set, rule) {
             (ConstraintSet::All, FactorRule::Kept)
@@ -122,8 +122,8 @@ impl DynamicAttempt<'_, '_> {
         }
     }
 
-    /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49), with the constraints of the chosen
-    /// slave nodes; all of them take part before they end.
+    /// Predictor and correctors, which have the same form (paper eqs 27, 29 and 36 to 49), with the constraints of the
+    /// chosen slave nodes. Before the passes end, all slave nodes take part.
     fn solve_with(
         &mut self,
         choice: SlaveChoice,
@@ -214,7 +214,8 @@ impl DynamicAttempt<'_, '_> {
         Err(Cause::NotConverged)
     }
 
-    /// Contact forces and correction of a pass; gives the forces by which hinges close their gaps.
+    /// Contact forces and correction of a pass; returns the forces by which hinges close their
+    /// gaps.
     fn balance(
         &mut self,
         contact: &mut ContactForces,
@@ -227,7 +228,7 @@ impl DynamicAttempt<'_, '_> {
         Ok(closing)
     }
 
-    /// Factorises K* anew when the rules say so, else turns its factors with the bodies.
+    /// Factorises K* anew if the rules demand it, else turns its factors with the bodies.
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
@@ -273,7 +274,7 @@ impl DynamicAttempt<'_, '_> {
         factorized.map_err(|error| problem.unsolvable(error))
     }
 
-    /// The end of the increment, with the velocities of the nodes of rigid bodies.
+    /// State at the end of the increment, with the velocities of the nodes of rigid bodies.
     fn finish(
         &mut self,
         d: &[f64],

@@ -7,13 +7,13 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
 use crate::linear::largest;
 
-/// Change of N dU beside the other forces that is none.
+/// Change of N dU, relative to the other forces, that counts as zero.
 const NO_CHANGE: f64 = 1e-13;
-/// Part of the first change that is left to the next pass at most.
+/// Largest part of the first change that is left to the next pass.
 const MOST_LEFT: f64 = 1e-3;
-/// Changes in a pass at most.
+/// Largest number of changes in a pass.
 const MOST_CHANGES: usize = 3;
-/// Part of the last change to which the next one falls, unless it is round-off.
+/// Factor below which successive changes must fall, unless they are round-off.
 const FALLS: f64 = 0.5;
 
 /// Vectors of the passes of an increment.
@@ -23,11 +23,11 @@ pub(super) struct Vectors {
     pub equilibrium: Equilibrium,
     /// Displacement U of the iterate.
     pub u: Vec<f64>,
-    /// What the predictor leaves of the supports' motion, d_p.
+    /// Prescribed motion d_p of the supports that the predictor leaves to the passes.
     pub d_p: Vec<f64>,
-    /// Its force theta2 K d_p.
+    /// Force theta2 K d_p of this motion.
     pub support_force: Vec<f64>,
-    /// r - theta2 K d_p
+    /// Load r - theta2 K d_p.
     pub load: Vec<f64>,
     /// d_p with the motion that closes the hinges.
     pub closing: Vec<f64>,
