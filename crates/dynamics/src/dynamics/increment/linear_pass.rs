@@ -29,7 +29,7 @@ pub(super) struct Vectors {
     pub support_force: Vec<f64>,
     /// Load r - theta2 K d_p.
     pub load: Vec<f64>,
-    /// d_p with the motion that closes the hinges.
+    /// d_p plus the motion that closes the gaps of the hinges.
     pub closing: Vec<f64>,
     /// Correction dU.
     pub du: Vec<f64>,
@@ -39,17 +39,17 @@ pub(super) struct Vectors {
     pub skew: SkewPart,
 }
 
-/// What K* leaves out of the change of the forces in a static step: N dU, N being the skew parts of the changes of contact
-/// forces and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
+/// The part N dU of the change of the forces in a static step that K* omits. N are the skew parts of the changes of
+/// contact forces, and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
 #[derive(Default)]
 pub(super) struct SkewPart {
-    /// Dofs, with N over them.
+    /// Dofs of each skew part, and N over these dofs.
     parts: Vec<(Vec<usize>, DMatrix<f64>)>,
     /// N dU (all dofs).
     force: Vec<f64>,
     /// Part of the first change of N dU that is left to the next pass.
     left: f64,
-    /// Changes of N dU so far, and the first and the last one (force).
+    /// Number of changes of N dU so far, and the first and the last change (force).
     changes: (usize, [f64; 2]),
 }
 
@@ -81,7 +81,8 @@ impl SkewPart {
         force
     }
 
-    /// Takes in another dU; whether N dU has become as good as it was, beside the other forces, or as round-off lets it.
+    /// Enters another dU. Returns whether N dU has converged, relative to the other forces, or cannot converge further
+    /// because of round-off.
     pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
         let force = self.product(du);
         self.force.resize(du.len(), 0.0);
@@ -97,7 +98,8 @@ impl SkewPart {
     }
 }
 
-/// Writes d_p with the motion that closes the gaps of the hinges; gives the forces that make it.
+/// Writes d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of this
+/// motion.
 ///
 /// ```text
 /// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.10)

@@ -1,5 +1,5 @@
-//! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact lets
-//! them. See docs/theory/bodies.md, Static steps.
+//! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact
+//! allows. See docs/theory/bodies.md, Static steps.
 
 use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;
@@ -20,27 +20,27 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{ClosedConstraints, ForceChange, HeldMotions, StiffnessForm};
 use crate::model::Factorization;
 
-/// Passes that are made in any case; further ones, once corrections are small, only while they will end within MAX PASSES: they
-/// converge quadratically.
+/// Number of passes that are made in any case while corrections are small. Passes converge quadratically, so an attempt
+/// goes on only if they will end within MAX PASSES.
 const PATIENCE: usize = 8;
-/// The same while corrections are large.
+/// Number of passes that are made in any case while corrections are large.
 const LARGE_PATIENCE: usize = 25;
-/// Passes after which slave nodes keep their targets.
+/// Number of passes after which slave nodes keep their targets.
 const SEARCHING_PASSES: usize = 3;
-/// Passes after which forces of pairs settle.
+/// Number of passes after which forces of pairs settle.
 const SETTLED_PASSES: usize = 4;
 
 /// An attempt at one static increment.
 pub(super) struct StaticAttempt<'a, 'm> {
     pub passes: Passes<'a, 'm>,
-    /// What the passes start from, in place of the rigid motion of the bodies.
+    /// The path from which the passes start, in place of the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
 impl<'m> StaticAttempt<'_, 'm> {
-    /// Solves the increment: from the motion of the last one, with factors that are kept as long as they pay, then with new ones in
-    /// every pass; then from rest; then with K* stiffened by closed pairs, since K alone, soft in bending, leaves the contact forces
-    /// of slender bodies few digits.
+    /// Solves the increment, starting from the motion of the last one, with factors that are kept as long as they pay,
+    /// then with new factors in every pass. If that fails, it starts from rest, and then with K* stiffened by closed
+    /// pairs: K alone is soft in bending and leaves the contact forces of slender bodies few digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
@@ -80,7 +80,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Whether closed pairs stiffen K*, and which factors the passes have, in the order in which it is tried.
+    /// Attempts in their order: whether closed pairs stiffen K*, and the rule for the factors of the passes.
     fn orders(&self) -> &'static [(bool, FactorRule)] {
         use FactorRule::{EveryPass, Kept};
         let may_keep = self.passes.problem.settings.factorization == Factorization::Keep;
@@ -99,7 +99,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// The passes, with K* stiffened by closed pairs or not, and factors that may be kept.
+    /// Solves with passes in which closed pairs stiffen K* or not, and factors may be kept.
     fn solve_with(
         &mut self,
         pairs_stiffen: bool,
@@ -216,7 +216,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(Cause::NotConverged)
     }
 
-    /// The motions of bodies that no support holds.
+    /// The passes with the motions of bodies that no support holds.
     fn pins(&mut self) -> PinIteration<'_, 'm> {
         PinIteration {
             problem: self.passes.problem,
@@ -224,14 +224,15 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Whether the factors at hand are of a K* of the same kind as the next one.
+    /// Whether the available factors belong to a K* of the kind that the next pass needs.
     fn fits(&self, pairs_stiffen: bool) -> bool {
         let stiffness = &self.passes.workspace.stiffness;
         let is_tangent = stiffness.form == StiffnessForm::Tangent && !pairs_stiffen;
         is_tangent && stiffness.k.solver.is_factorized()
     }
 
-    /// C of loads and pairs at the iterate, and K - (C + C^T)/2, factorised where it `is_new`.
+    /// Computes the changes C of the forces of loads and pairs at the iterate; factorises K - (C +
+    /// C^T)/2 if it `is_new`.
     fn tangent(
         &mut self,
         (pairs_stiffen, is_new): (bool, bool),
@@ -269,7 +270,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         Ok(changes)
     }
 
-    /// What K* leaves out of the changes C: N.
+    /// The part N of the changes C that K* omits.
     fn skew_part(&self, changes: Vec<ForceChange>, correction: f64) -> SkewPart {
         match self.passes.workspace.stiffness.form {
             StiffnessForm::Positive => SkewPart::default(),
@@ -277,7 +278,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// The end of the increment, at rest.
+    /// State at the end of the increment, at rest.
     fn finish(
         &mut self,
         d: &[f64],

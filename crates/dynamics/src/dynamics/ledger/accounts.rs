@@ -1,6 +1,6 @@
-//! Results of a converged increment besides its energies: momentum, motion of the bodies,
-//! resultants of the contacts, nodal quantities and reactions of rigid surfaces.
-//! See docs/theory/impacts.md, Ledger.
+//! Results of a converged increment other than energies: momentum, motion of the bodies, resultants
+//! of the contacts, nodal quantities and reactions of rigid surfaces. See docs/theory/impacts.md,
+//! Ledger.
 
 use super::bodies::{BodyMasses, Moving, momentum, rigid_reactions};
 use super::contact_ledger::ContactLedger;
@@ -20,16 +20,16 @@ use crate::dynamics::step::{Discretization, Interval, Mass, SlaveFaces, StepProb
 use crate::model::Contact;
 use crate::prepare::Redistribution;
 
-/// Accounts of a run besides the energy ledger: bodies and contacts.
+/// Accounts of a run other than the energy ledger: bodies and contacts.
 pub(crate) struct Accounts {
     bodies: BodyMasses,
     faces: SlaveFaces,
     contacts: ContactLedger,
     touches: Touches,
     surface_work: SurfaceWork,
-    /// The consistent mass, where the mass is redistributed.
+    /// The consistent mass, if the mass is redistributed.
     consistent: Option<Mass>,
-    /// Momentum that mass-proportional damping has taken.
+    /// Momentum that mass-proportional damping has removed.
     damped: Momentum,
     /// Largest normal force of contact on a node so far (force).
     largest_normal: f64,
@@ -111,7 +111,7 @@ impl Accounts {
         }
     }
 
-    /// Enters a converged increment from a start: results at nodes, of contacts, bodies and rigid surfaces.
+    /// Enters a converged increment that began at `start`: results at nodes, of contacts, bodies and rigid surfaces.
     pub fn enter(
         &mut self,
         problem: &StepProblem,
@@ -159,8 +159,8 @@ impl Accounts {
         }
     }
 
-    /// Adds the momentum that mass-proportional damping takes in an increment: alpha M d, which acts
-    /// halfway, eq. (9.10).
+    /// Adds the momentum that mass-proportional damping removes in an increment: alpha M d, which acts at
+    /// mid-increment, eq. (9.10).
     fn enter_damping(&mut self, problem: &StepProblem, solved: &Solved) {
         if !problem.has_damping() {
             return;
