@@ -1,12 +1,12 @@
-//! Fixed grid: a nominal increment in halves, quarters ... that join again as soon as they align.
-//! See docs/theory/time.md, Cutback.
+//! Fixed grid: a nominal increment is divided into halves, quarters ... that join again as soon as
+//! they align. See docs/theory/time.md, Cutback.
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::Interval;
 
-/// A nominal increment of which the parts up to number `part` of 2^`halvings` are done.
+/// A nominal increment whose parts up to number `part` of 2^`halvings` are done.
 pub(crate) struct Bisection {
     nominal: NominalIncrement,
     part: u32,

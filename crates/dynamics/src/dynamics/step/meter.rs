@@ -6,7 +6,7 @@ use crate::dynamics::results::{ContactViolation, SolverCounts, Timings};
 use crate::lcp::Counters;
 use crate::linear::larger;
 
-/// Time and work spent, per phase.
+/// Time and work of each phase.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Meter {
     pub timings: Timings,
@@ -57,7 +57,7 @@ impl Timings {
 }
 
 impl SolverCounts {
-    /// The counts of the start: no work, converged.
+    /// Counts at the start: no work, converged.
     pub(crate) fn at_start() -> Self {
         SolverCounts {
             converged: true,
@@ -83,7 +83,7 @@ impl SolverCounts {
 }
 
 impl ContactViolation {
-    /// The larger of two, of each kind.
+    /// The larger value of two violations, for each kind.
     pub(crate) fn larger(self, other: Self) -> Self {
         ContactViolation {
             overlap: larger(self.overlap, other.overlap),

@@ -1,31 +1,32 @@
-//! Faces of the slave surfaces, and the area that a slave node has on them. See docs/theory/impacts.md, Ledger.
+//! Faces of the slave surfaces, and the area of a slave node on them. See docs/theory/impacts.md, Ledger.
 
 use std::collections::BTreeSet;
 
 use crate::model::{ContactFormulation, Face, Model, Segment, SurfaceKind, Thickness};
 
-/// A segment of a face on which a slave node takes pressure.
+/// A segment of a face on which a slave node has a part of the pressure.
 struct SlaveFace {
     node: usize,
     segment: Segment,
     thickness: Thickness,
-    /// Place of the node on the segment's line at whose distance from the axis its part is: 0 at itself.
+    /// Place along the segment, from the node (0) to the other end (1), at whose distance from the axis the node's part
+    /// lies.
     place: f64,
-    /// Part of the segment that the node has.
+    /// Part of the segment that belongs to the node.
     part: f64,
 }
 
 /// The slave nodes of all contacts with their faces.
 pub(crate) struct SlaveFaces {
-    /// 0 at slave nodes, and at master nodes of contact from surface to surface, NaN at others, `N` entries.
+    /// 0 at slave nodes and at master nodes of contact from surface to surface, NaN at other nodes, `N` entries.
     pub start: Vec<f64>,
-    /// With increasing nodes.
+    /// The faces, with increasing nodes.
     faces: Vec<SlaveFace>,
 }
 
 impl SlaveFaces {
-    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their elements. Master
-    /// nodes of contact from surface to surface that are no slaves have those of the master surfaces.
+    /// Faces of the slave surfaces; slave nodes without such a face get the exterior faces of their elements. Master
+    /// nodes of contact from surface to surface that are not slave nodes get the faces of the master surfaces.
     pub fn new(model: &Model) -> Self {
         let mesh = &model.mesh;
         let (mut start, mut own) = (vec![f64::NAN; mesh.node_count()], BTreeSet::new());
@@ -89,7 +90,7 @@ impl SlaveFaces {
         SlaveFaces { start, faces }
     }
 
-    /// Area of a node against a force N on it, with the given positions of nodes.
+    /// Area of a node for a force N on it, at the given positions of nodes.
     ///
     /// ```text
     /// A = sum over its segments max(-n.N/|N|, 0) t l w    eq. (9.8)
