@@ -96,10 +96,10 @@ impl SlaveFaces {
     /// A = sum over its segments max(-n.N/|N|, 0) t l w    eq. (9.8)
     /// ```
     ///
-    /// n, l and t are outward normal, current length and thickness of a segment, w the part of it that the node has:
-    /// 1/2, and on a side with a node between its corners 1/3 at a corner and 2/3 between, so that the forces of a
-    /// uniform pressure give this pressure. In a body of revolution t is 2 pi r at a third of the segment from the node,
-    /// eq. (2.35), and at the node itself where the side has a node between its corners.
+    /// n, l and t are the outward normal, current length and thickness of a segment, and w is the node's part of it:
+    /// 1/2, or on a side with a mid-side node 1/3 at a corner and 2/3 at the mid-side node. The forces of a uniform
+    /// pressure then give this pressure. In a body of revolution t is 2 pi r, evaluated at a third of the segment from
+    /// the node, eq. (2.35); on a side with a mid-side node it is evaluated at the node itself.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let size = force[0].hypot(force[1]);
         // n l = (e_y, -e_x): on the right of the direction from a to b
@@ -108,7 +108,7 @@ impl SlaveFaces {
         })
     }
 
-    /// Area of a node whatever its faces are turned to.
+    /// Area of a node, whatever the direction of its faces.
     pub fn whole_area(&self, node: usize, at: impl Fn(usize) -> [f64; 2]) -> f64 {
         self.sum(node, at, |e| e[0].hypot(e[1]))
     }
@@ -124,7 +124,7 @@ impl SlaveFaces {
         all.take_while(move |face| face.node == node)
     }
 
-    /// Sum over the segments of a node of t w l, with a length l of the way from one end to the other.
+    /// Sum of t w l over the segments of a node, where `length` gives l for the vector from one end to the other.
     fn sum(
         &self,
         node: usize,
