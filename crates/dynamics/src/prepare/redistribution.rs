@@ -269,8 +269,8 @@ const LEAST_WIDTH: f64 = 1e-3;
 /// w_j = phi_j p_j.G^-1 e1,  G = sum phi_j p_j p_j^T                           eq. (2.18)
 /// ```
 ///
-/// where the multipliers make sum w_j = 1 and sum w_j X_j = X. Returns `None` if the donors are too few, lie nearly on
-/// a line, or lie only on one side far away. Neither a rigid motion of all points nor their order changes this.
+/// These weights satisfy sum w_j = 1 and sum w_j X_j = X. Returns `None` if the donors are too few, lie nearly on a
+/// line, or lie only on one side far away. Neither a rigid motion of all points nor their order changes this.
 pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     if donors.len() < LEAST_DONORS {
         return None;

@@ -184,8 +184,7 @@ impl Elements {
         elements.chain(self.connectors.iter().map(PlacedConnector::nodes))
     }
 
-    /// Sets the lengths by which angles are multiplied, of bodies that turn, by the pairs of dofs
-    /// of their angles.
+    /// Sets the lengths L of bodies that turn, each with the pair of dofs of its angle.
     pub fn measure_angles(&mut self, lengths: impl Iterator<Item = (usize, f64)>) {
         for (pair, length) in lengths {
             let connectors = self.connectors.iter_mut();

@@ -59,7 +59,7 @@ pub trait Chunk: Send + Sync {
     /// Whether the material has viscosity.
     fn is_viscous(&self) -> bool;
 
-    /// Adds the viscous forces in a motion, divided by the length of the increment, to the sums, eq. (4.16).
+    /// Adds the viscous impulses in a motion, forces times the length of the increment, to the sums, eq. (4.16).
     fn sum_viscous(&self, motion: Motion);
 
     /// Viscous work in a motion, times the length of the increment, eq. (4.18) (force length time).
@@ -391,12 +391,12 @@ where
         F::results::<S>(at, law)
     }
 
-    /// The law of a block in a motion, with the variables of its points among those of all elements.
+    /// The law of a block in a motion, with the variables of its points, which are a part of those of all elements.
     fn law_of<'a>(&'a self, block: usize, motion: Motion<'a>) -> LawInLanes<'a> {
         self.law_with(block, motion, self.of_points(motion.committed, block))
     }
 
-    /// The law of a block at the temperatures of a motion, with variables of its points.
+    /// The law of a block at the temperatures of a motion, with the variables of its points.
     fn law_with<'a>(
         &'a self,
         block: usize,
@@ -437,8 +437,8 @@ where
         self.heating.is_some() && !motion.temperature.is_empty()
     }
 
-    /// Whether an element may be strained: nodes have unlike displacements or move along the radius, or the material is heated
-    /// or has internal variables. In bodies that are fixed none is.
+    /// Whether an element may be strained: its nodes have different displacements or move along the radius, or the
+    /// material is heated or has internal variables. In bodies that are fixed no element is strained.
     fn is_strained(&self, motion: Motion) -> bool {
         let differs = |u: &[f64]| {
             let u = u.as_chunks::<2>().0;
@@ -466,7 +466,7 @@ where
         values
     }
 
-    /// Elements (indices) of a block.
+    /// Indices of the elements of a block.
     fn elements_of(&self, block: usize) -> &[usize] {
         let first = LANES * block;
         &self.elements[first..(first + LANES).min(self.elements.len())]
@@ -680,7 +680,7 @@ where
     }
 }
 
-/// Adds the internal forces of a block to sums over the nodes of a chunk, and gives whether det F is positive.
+/// Adds the internal forces of a block to sums over the nodes of a chunk, and returns whether det F is positive.
 #[inline(always)]
 fn add_force<const N: usize, const P: usize, R>(
     at: &MovedBlock<N, P, R>,
@@ -696,8 +696,9 @@ fn add_force<const N: usize, const P: usize, R>(
     *positive
 }
 
-/// Temperatures at the points, from those of the nodes of every element. Linear elements have the mean of theirs, quadratic
-/// ones the linear or bilinear field between their corners: strains of the displacements are of these degrees.
+/// Temperatures at the points, from the temperatures of the nodes of every element. Linear elements have the mean of
+/// their nodes, quadratic ones the linear or bilinear field between their corners: strains of displacements have the
+/// same degrees.
 fn temperatures<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     of: impl Fn(usize, usize) -> f64,
 ) -> [Lanes; P] {
@@ -718,7 +719,7 @@ fn place(nodes: &[usize], node: usize) -> u16 {
     nodes.partition_point(|&other| other < node) as u16
 }
 
-/// Writes the symmetric matrix of one element of which the lanes have the entries [a][b] with a <= b.
+/// Writes the symmetric matrix of one element; the lanes contain the entries [a][b] with a <= b.
 fn write_matrix<const N: usize>(lane: usize, k: &MatrixLanes<N>, matrix: &mut [f64]) {
     for b in 0..N {
         for a in 0..b + 1 {

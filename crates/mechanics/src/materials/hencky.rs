@@ -7,9 +7,9 @@ use super::strains::StrainChange;
 use super::symmetric::{Symmetric, Tangent, contract};
 use super::{LawCard, SmallStrainModuli};
 
-/// Hencky's material, `*ELASTIC, TYPE=HENCKY`: the elasticity of metals without their flow.
+/// Hencky's material, `*ELASTIC, TYPE=HENCKY`: the elasticity of metals without plastic flow.
 ///
-/// With the principal stretches l_i, the logarithmic strain E_h of the values ln l_i, and ln J = tr E_h:
+/// The logarithmic strain E_h has the values ln l_i for the principal stretches l_i, and ln J = tr E_h:
 ///
 /// ```text
 /// energy   W = mu sum_i (ln l_i)² + lambda/2 (ln J)²
@@ -20,7 +20,7 @@ use super::{LawCard, SmallStrainModuli};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hencky {
-    /// E and nu.
+    /// Young's modulus E and Poisson's ratio nu.
     pub moduli: SmallStrainModuli,
 }
 
@@ -42,7 +42,7 @@ impl Hyperelastic for Hencky {
         contract(&self.moduli.stress(&strain), &strain) / 2.0
     }
 
-    /// W(E1) - W(E0) = T(E_h0 + dE_h/2) : dE_h
+    /// W(E1) - W(E0) = T(E_h0 + dE_h/2) : dE_h.
     fn energy_change(&self, change: &StrainChange) -> f64 {
         let StrainChange {
             start, end, half, ..
@@ -80,7 +80,7 @@ mod tests {
         },
     };
 
-    /// E_ii of a principal stretch.
+    /// Green-Lagrange strain E_ii of a principal stretch.
     fn green(l: f64) -> f64 {
         (l * l - 1.0) / 2.0
     }

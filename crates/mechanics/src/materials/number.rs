@@ -1,15 +1,15 @@
-//! Numbers in which a law is written: one number, or those of several elements side by side, on which one instruction of
-//! the processor acts. docs/numerics.md, Sweeps over elements.
+//! Numbers for which a law is written: one number, or those of several elements, on which one instruction of the
+//! processor acts. See docs/numerics.md, Sweeps over elements.
 
 use std::array::from_fn;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Elements side by side: as many numbers as an instruction of any x86-64 processor takes. More would
-/// not fit its registers.
+/// Number of elements that are evaluated together: as many numbers as an instruction of any x86-64 processor handles.
+/// With more the numbers would not fit into its registers.
 pub const LANES: usize = 2;
 
-/// What formulas of laws and elements are written in.
+/// Numbers for which formulas of laws and elements are written.
 pub trait Number:
     Copy
     + Debug
