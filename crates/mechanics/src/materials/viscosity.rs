@@ -1,5 +1,5 @@
-//! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
-//! of its shape and of its volume. See docs/theory/time.md, Damping.
+//! Viscosity of a material (`*DAMPING, BETA=`): a stress, added to that of the law, that depends on the rates of
+//! distortion and volume. See docs/theory/time.md, Damping.
 
 use super::number::Number;
 use super::strains::{StrainChange, Strains};
@@ -16,14 +16,14 @@ use super::{Across, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoin
 /// S_d : dE >= 0                                                what it dissipates
 /// ```
 ///
-/// D is the mean of the cofactors of C on the straight way from C0 to C1, and so positive definite. mu and lambda are the moduli
-/// at small strains. With the part dJ/2 G (in the plane) of the first term the stress is one of the shape and one of the
-/// volume, each without the modulus of the other.
+/// D is the mean of the cofactors of C on the straight path from C0 to C1, and so is positive definite. mu and lambda
+/// are the moduli at small strains. With the part dJ/2 G (in the plane) of the first term, the stress splits into one
+/// of distortion and one of volume; each depends on only one of the two moduli.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
-    /// 2 beta mu (force time/length^2).
+    /// Viscosity of distortion, 2 beta mu (force time/length^2).
     shape: f64,
-    /// beta lambda (force time/length^2).
+    /// Viscosity of volume, beta lambda (force time/length^2).
     volume: f64,
 }
 
@@ -48,12 +48,12 @@ fn halfway<T: Number, const HOOP: bool>(change: &StrainChange<T>) -> (Symmetric<
 }
 
 impl Viscosity {
-    /// Viscosity as of [`Self::new`] where `beta` is positive.
+    /// Viscosity as from [`Self::new`] if `beta` is positive, else `None`.
     pub fn of(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Option<Self> {
         (beta > 0.0).then(|| Self::new(beta, moduli, plane))
     }
 
-    /// Viscosity of `beta` (time) of a material with these moduli at small strains.
+    /// Viscosity with the factor `beta` (time) for a material with these moduli at small strains.
     pub fn new(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Self {
         let SmallStrainModuli { young, poisson } = moduli;
         let (lambda, mu) = SaintVenantKirchhoff { young, poisson }
@@ -67,17 +67,17 @@ impl Viscosity {
 }
 
 impl Viscosity {
-    /// Tangent of no change of the strains (force time/length^2).
+    /// Tangent for a zero change of the strains (force time/length^2).
     pub fn initial_tangent(&self) -> Tangent {
         let none = Strains::Between(StrainChange::default());
         StressAtPoints::<f64, true>::tangent_at(self, 0, &none)
     }
 }
 
-/// Stresses are taken over the length of the increment (force time/length^2). There are none at a strain that does not
-/// change, nothing is stored, and there is no stress across the plane.
+/// Stresses are multiplied by the length of the increment (force time/length^2). They are zero if the strain does not
+/// change; nothing is stored, and there is no stress across the plane.
 impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
-    /// S_d dt, eq. (4.17)
+    /// S_d dt, eq. (4.17).
     #[inline(always)]
     fn stress_at(&self, _point: usize, strains: &Strains<T>) -> Symmetric<T> {
         let Strains::Between(change) = strains else {
@@ -101,7 +101,7 @@ impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
         gdeg.with(&g, |gdeg, g| (gdeg * self.shape + dj * g) * inverse)
     }
 
-    /// 2 V of eq. (4.19), positive definite: without the change of G and J_m, which is of first order in dE.
+    /// 2 V of eq. (4.19), which is positive definite. It omits the change of G and J_m, which is of first order in dE.
     #[inline(always)]
     fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {
         let Strains::Between(change) = strains else {
@@ -137,7 +137,7 @@ mod tests {
 
     const BETA: f64 = 0.3;
 
-    /// Viscosity with these moduli of shear and volume in plane strain.
+    /// Viscosity in plane strain with these moduli of shear and volume.
     fn viscosity(mu: f64, bulk: f64) -> Viscosity {
         let moduli = SmallStrainModuli {
             young: 9.0 * bulk * mu / (3.0 * bulk + mu),
