@@ -84,8 +84,8 @@ struct Touching {
 
 impl ActiveConstraints {
     /// Active constraints at the displacements `u0`, which the search covers: the pairs that touch there. `means` are
-    /// the constraints with surface to surface there, `before` the pairs that carried forces up to the start. Discs are
-    /// always active: they land within the subincrement.
+    /// the constraints of contact from surface to surface at `u0`, `before` the pairs that carried forces up to the
+    /// start. Discs are always active: they land within the subincrement.
     pub fn new(search: &Search, u0: &[f64], means: &[Constraint], before: &ClosedPairs) -> Self {
         let start = Positions::new(search.coordinates(), u0);
         let mean = |c: &Constraint| MeanAtStart {

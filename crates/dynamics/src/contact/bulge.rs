@@ -15,9 +15,9 @@ use crate::vectors::length;
 pub struct Bulge {
     /// The coefficients c0 to c3 of b(xi).
     coefficients: [f64; 4],
-    /// Whether the face goes on as a straight line beyond the ends of the segment. For nodes it does: they come over an
-    /// end before they change their segment. For points of faces it does not: they change their segment at the
-    /// bisector, and a quantity that is integrated over them must be one cubic.
+    /// Whether the face goes on as a straight line beyond the ends of the segment. For nodes the face goes straight on:
+    /// a node comes over an end before it changes its segment. For points of faces the cubic goes on: a point changes
+    /// its segment at the bisector, and a quantity that is integrated over points must be one cubic.
     goes_straight_on: bool,
 }
 
@@ -35,10 +35,10 @@ impl Bulge {
     /// b = l (tau_a xi (1 - xi)² + tau_b xi² (1 - xi)),  tau = t - t³/5 + 3 t⁵/35
     /// ```
     ///
-    /// With tau = t the cubic would have the slopes of the face, and on the mean 8/15 of the greatest distance from an
-    /// arc. With these tau the area between chord and arc is right to the seventh order, tau = 3 ((1 + t²) atan t -
-    /// t)/(2 t²). The greatest distance from the arc is a fifth of that with tau = t, and the slopes are right to the
-    /// third order.
+    /// With tau = t the cubic would have the slopes of the face; its mean distance from an arc would be 8/15 of the
+    /// greatest distance. With these tau the area between chord and arc is right to the seventh order, tau = 3 ((1 +
+    /// t²) atan t - t)/(2 t²). The greatest distance from the arc is a fifth of that with tau = t, and the slopes are
+    /// right to the third order.
     pub(super) fn of_slopes(length: f64, slopes: [f64; 2]) -> Self {
         let [start, end] = slopes.map(|t| {
             let square = t * t;
@@ -197,8 +197,8 @@ impl Bulge {
     }
 }
 
-/// Lift: the amount by which the gap of a node counts more than its gap to the chord of the segment. It is the overlap
-/// that a fit allows, less the bulge of the face.
+/// Lift: the amount by which the gap of a node counts more than its gap to the chord of the segment. The lift is the
+/// overlap that a fit allows, less the bulge of the face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lift {
     /// The overlap that a fit allows (length).

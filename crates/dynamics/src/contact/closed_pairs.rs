@@ -26,7 +26,7 @@ pub struct ClosedPair {
 }
 
 impl ClosedPair {
-    /// The closed pair of a constraint that carries a force.
+    /// Closed pair of a constraint, with its force and state.
     pub fn new(constraint: &Constraint, force: [f64; 2], state: ContactState) -> Self {
         ClosedPair {
             key: constraint.key,
@@ -87,7 +87,8 @@ impl ClosedPairs {
         assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
     }
 
-    /// Says which of the pairs at their limits have slipped. Without friction a pair always slips.
+    /// Marks which of the pairs at their friction limits have slipped. Without friction a pair
+    /// always slips.
     pub fn mark_slips(&mut self, has_moved: impl Fn(ConstraintKey) -> bool) {
         for pair in &mut self.0 {
             pair.slips =
@@ -105,7 +106,7 @@ impl ClosedPairs {
         self.0.clear();
     }
 
-    /// The pairs, in the order of increasing keys.
+    /// The closed pairs, in the order of increasing keys.
     pub fn iter(&self) -> impl Iterator<Item = &ClosedPair> + Clone {
         self.0.iter()
     }
@@ -116,12 +117,12 @@ impl ClosedPairs {
         means.any(|mean| mean.has(node))
     }
 
-    /// Keys of the pairs, increasing.
+    /// Keys of the closed pairs, increasing.
     pub fn keys(&self) -> impl Iterator<Item = ConstraintKey> {
         self.0.iter().map(|pair| pair.key)
     }
 
-    /// Number of pairs.
+    /// Number of closed pairs.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -131,7 +132,7 @@ impl ClosedPairs {
         self.0.is_empty()
     }
 
-    /// Number of pairs that do not slip.
+    /// Number of closed pairs that do not slip.
     pub fn sticking(&self) -> usize {
         self.0.iter().filter(|pair| !pair.slips).count()
     }
@@ -175,7 +176,7 @@ impl ClosedPairs {
         })
     }
 
-    /// The pairs of a slave node.
+    /// The closed pairs of a slave node.
     pub fn of_slave(&self, slave: SlaveKey) -> &[ClosedPair] {
         let from = self.0.partition_point(|pair| pair.key.slave < slave);
         let is_own = |pair: &&ClosedPair| pair.key.slave == slave;

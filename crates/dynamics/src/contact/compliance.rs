@@ -94,11 +94,11 @@ impl Compliance {
         self.inverses.clear();
     }
 
-    /// Transfers the rotation and the unknowns at which the inverse is known. After reading, the `solver` computes the
-    /// inverse anew, with the same bits.
+    /// Transfers the rotation and the unknowns at which the inverse is known. After the archive is read, the `solver`
+    /// computes the inverse anew, with the same bits.
     ///
     /// # Errors
-    /// The archive is of another model.
+    /// Returns an error if the archive is of another model.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,
@@ -177,11 +177,12 @@ impl Compliance {
         ConstraintGroup::Bodies(bodies)
     }
 
-    /// Computes the inverse of a scope also at those unknowns of `constraints` where it is missing. The inverse of the
-    /// scope of all constraints is checked here. With the scopes of bodies, the caller must check the resulting forces.
+    /// Computes the inverse of a scope also at those unknowns of `constraints` where it is missing. This function
+    /// checks the inverse of the scope of all constraints; with the scopes of bodies, the caller must check the
+    /// resulting forces.
     ///
     /// # Errors
-    /// The error of the solver.
+    /// Returns the error of the solver.
     pub fn prepare(
         &mut self,
         scope: &ConstraintGroup,
@@ -234,7 +235,7 @@ impl Compliance {
         &self.map
     }
 
-    /// T to be changed: its rows of bodies that turn depend on the iterate.
+    /// Mutable T: its rows of bodies that turn depend on the iterate.
     pub fn map_mut(&mut self) -> &mut Transformation {
         &mut self.map
     }
@@ -291,12 +292,12 @@ impl Compliance {
         [normal, tangential]
     }
 
-    /// The blocks of a scope.
+    /// The blocks of the inverse of a scope.
     fn blocks(&self, scope: &ConstraintGroup) -> &[InverseBlock] {
         self.inverses.get(scope).map_or(&[], Vec::as_slice)
     }
 
-    /// Number of blocks of a scope.
+    /// Number of blocks of the inverse of a scope.
     pub(super) fn block_count(&self, scope: &ConstraintGroup) -> usize {
         self.blocks(scope).len()
     }
@@ -397,7 +398,7 @@ pub(super) struct Responses {
     columns: [[Vec<f64>; 2]; TOGETHER],
 }
 
-/// Number of constraints whose responses are written to the rows together.
+/// Number of constraints whose responses are written to the rows of a block together.
 const TOGETHER: usize = 4;
 
 impl Responses {
@@ -461,7 +462,7 @@ impl Responses {
     }
 
     /// (B_l T) Y of eq. (5.1), Y being the rows: gaps and slips of the constraints under a unit normal and a unit
-    /// tangential force of l. With `adds` the result is added to the sums, else written.
+    /// tangential force of l. With `adds` the result is added to the sums, otherwise it replaces them.
     #[inline(always)]
     pub fn product<S: Simd>(&self, simd: S, l: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
         let terms = Terms {
@@ -490,7 +491,8 @@ struct Terms<'a, F: Fn(&UnknownEntry) -> [f64; 2]> {
 }
 
 impl<F: Fn(&UnknownEntry) -> [f64; 2]> Terms<'_, F> {
-    /// The two sums of the vectors of some entries times their factors; they are added to the values there, or written.
+    /// The two sums of the vectors of some entries times their factors; they are added to the values there, or replace
+    /// them.
     #[inline(always)]
     fn combine<S: Simd>(
         &self,

@@ -1,6 +1,6 @@
 //! A contact constraint, linearised at the current iterate: gap and slip, the rows of its force,
-//! and the derivatives of gap and slip. Complementarity problem, contact forces, impulses,
-//! convergence and ledger know nothing else of contact. See docs/theory/contact.md and
+//! and the derivatives of gap and slip. The complementarity problem, contact forces, impulses,
+//! convergence and ledger know only this constraint of contact. See docs/theory/contact.md and
 //! docs/theory/complementarity.md.
 //!
 //! The configurations between which contact constraints are linearised, and the form of their
@@ -28,7 +28,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Rows with the values of two slices of the same length.
+    /// Row pair with the values of two slices of the same length.
     #[inline]
     pub fn new(normal: &[f64], tangential: &[f64]) -> Self {
         Rows {
@@ -110,7 +110,7 @@ pub struct Constraint {
 
 impl Constraint {
     /// The constraint of some nodes, slave node first, with its force rows and derivative rows over their N dofs; its
-    /// slip is Bt d. Its gap contains the overlaps `allowed` at start and end.
+    /// slip is Bt d. The gap of the constraint contains the overlaps `allowed` at start and end.
     #[inline]
     pub(super) fn of_nodes<const N: usize>(
         source: PairTarget,
@@ -170,7 +170,7 @@ impl Constraint {
         }
     }
 
-    /// Derivative rows G.
+    /// Derivative rows Gn and Gt.
     pub fn derivative_rows(&self) -> &Rows {
         let other = self.other_derivative_rows.as_ref();
         other.unwrap_or(&self.force_rows)
@@ -250,7 +250,7 @@ impl Constraint {
         numbered.map(move |(k, node)| (node, [force(2 * k), force(2 * k + 1)]))
     }
 
-    /// Whether its slave node is a corner of the contact's master.
+    /// Whether the slave node of the constraint is a corner of the contact's master.
     pub fn is_of_master(&self) -> bool {
         self.source.pair.is_of_master
     }
@@ -267,7 +267,8 @@ impl Constraint {
         own.map(|(_, force)| force)
     }
 
-    /// The parts of its normal force on the nodes of the contact's slave surface, and on those of its master.
+    /// The parts of the constraint's normal force on the nodes of the contact's slave surface, and on those of its
+    /// master.
     pub fn surface_parts(&self) -> [SurfaceParts; 2] {
         let all: SmallVec<[(usize, [f64; 2]); 8]> = self.nodal_forces([1.0, 0.0]).collect();
         let (slaves, others) = all.split_at(self.slave_dofs / 2);
@@ -293,7 +294,7 @@ impl Constraint {
 /// f_k = Bn_k.N/(N.N),  N = sum_k Bn_k,  sum_k f_k = 1    eq. (9.15)
 /// ```
 ///
-/// With surface to surface these are the weights of the mean; a node without normal force, such as a node that only
+/// With surface to surface the parts are the weights of the mean; a node without normal force, such as a node that only
 /// turns a disc, has no part.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct SurfaceParts {

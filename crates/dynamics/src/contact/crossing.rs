@@ -241,7 +241,7 @@ fn size(c: &[[f64; 2]; 3]) -> f64 {
 /// Number of halvings after which an interval of [0, 1] is no longer than its round-off.
 const HALVINGS: usize = 60;
 
-/// A polynomial c0 + c1 t + ... + c4 t^4 on [0, 1].
+/// A polynomial with the coefficients c0 to c4 on [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Quartic {
     /// Coefficients.
@@ -250,7 +250,8 @@ pub(crate) struct Quartic {
     pub tolerance: f64,
 }
 
-/// A zero with the signs of the polynomial before and after it; 0 beyond the ends of [0, 1].
+/// A zero with the signs of the polynomial before and after it; the sign is 0 beyond the ends of
+/// [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Zero {
     /// Position t.
@@ -339,8 +340,9 @@ impl Quartic {
         b.iter().all(|b| *b > self.tolerance) || b.iter().all(|b| *b < -self.tolerance)
     }
 
-    /// 0, 1 and the extrema between them, among other points, in increasing order. The zeros of the
-    /// third derivative separate those of the second, which separate those of the first.
+    /// Increasing list of points that contains 0, 1 and the extrema of the polynomial between them.
+    /// The zeros of the third derivative separate those of the second, which separate those of the
+    /// first.
     fn extrema(&self) -> Vec<f64> {
         let first = derivative(&self.c);
         let second = derivative(&first);

@@ -66,8 +66,8 @@ const PANEL: usize = 128;
 const PIECE: usize = 16;
 const THREADS: usize = 64;
 
-/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. It is the sum over the groups
-/// of unknowns, each of which couples the constraints that act on it.
+/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. Q is the sum over the groups of
+/// unknowns, each of which couples the constraints that act on it.
 fn delassus(
     constraints: &[&Constraint],
     compliance: &Compliance,
@@ -163,7 +163,7 @@ struct GroupSum<'a> {
     responses: &'a [Responses],
     /// Number of all constraints.
     n: usize,
-    /// Whether the part is added to Q, or written.
+    /// Whether the part is added to the entries of Q, or replaces them.
     adds: bool,
 }
 

@@ -73,14 +73,14 @@ struct Finder<'a> {
     positions: [Positions<'a>; 2],
 }
 
-/// Features, each with the number of its constraint, which increase, and with a segment of the
+/// Features in the order of their constraints' numbers, each with this number and a segment of the
 /// feature.
 type Over = SmallVec<[(usize, usize, MasterFeature); 4]>;
 
 impl Finder<'_> {
-    /// Features near the centre that it lies over, at the start (`k` = 0) or in the iterate (`k` = 1). It lies over
-    /// segments and arcs between their ends, and over vertices between the ends of two of them or at the ends of the
-    /// surface.
+    /// Features over which the centre lies, among those near it, at the start (`k` = 0) or in the iterate (`k` = 1). A
+    /// centre lies over segments and arcs between their ends, and over vertices between the ends of two of them or at
+    /// the ends of the surface.
     fn over(
         &self,
         candidates: impl Iterator<Item = Candidate>,
@@ -157,7 +157,7 @@ type DiscRow = SVector<f64, 8>;
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
 /// Positions of the nodes of a disc constraint at the start and at the end: its centre s, the node that turns with it,
-/// and a and b. Rows have this order too, nodes of the slave first.
+/// and a and b. The entries of a row follow the order s, turning node, a, b.
 struct NodePositions {
     form: RowForm,
     nodes: [[[f64; 2]; 4]; 2],

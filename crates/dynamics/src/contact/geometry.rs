@@ -17,8 +17,8 @@ use crate::model::{
 };
 use crate::vectors::{cross, difference, dot, length};
 
-/// Nodes at one place that equations join, for example at both ends of a pre-tension section. They are one vertex of
-/// the surface, which does not touch the segments there.
+/// Nodes at one place that equations join, for example at both ends of a pre-tension section. Joined nodes are one
+/// vertex of the surface, which does not touch the segments there.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct JoinedNodes(HashMap<usize, Vec<usize>>);
 
@@ -294,8 +294,8 @@ impl ContactSurfaces {
         dot(e, f) < CORNER_COSINE
     }
 
-    /// Number of the run of every segment: the first segment of the run. In a closed run without corners it is the
-    /// least segment.
+    /// Number of the run of every segment: the first segment of the run. The number of a closed run without corners is
+    /// its least segment.
     fn runs(&self, x: &[[f64; 2]]) -> Vec<usize> {
         let mut runs = vec![usize::MAX; self.segments.len()];
         let before = |j: usize| self.previous[j].filter(|&i| !self.has_corner(x, i, j));

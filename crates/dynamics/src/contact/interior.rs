@@ -1,9 +1,9 @@
 //! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
 //! See docs/theory/geometry.md.
 //!
-//! The line is followed from element to element through their common sides. Following it tells a
-//! node on the far side of a thin body from a node of another part that has penetrated the body,
-//! however thin the body is.
+//! The line is followed from element to element through their common sides. The elements on the
+//! line tell a node on the far side of a thin body from a node of another part that has penetrated
+//! the body, however thin the body is.
 
 use super::projection::{between, project};
 use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
@@ -72,9 +72,9 @@ impl Interior {
     }
 
     /// Whether a node behind the line of a segment has penetrated the body there through this
-    /// segment, at the positions `at`. This is so if the node lies in the body, belongs to none of
-    /// the elements on the line, and is nearer to the segment than to the far side. Without an
-    /// element behind the segment, everything there is inside.
+    /// segment, at the positions `at`. The node has penetrated the body if it lies in the body,
+    /// belongs to none of the elements on the line, and is nearer to the segment than to the far
+    /// side. Without an element behind the segment, everything there is inside.
     pub fn takes_in(
         &self,
         segment: [usize; 2],

@@ -1,5 +1,5 @@
 //! Kinds of contact constraints: every property of a constraint that depends on the kind of its target. Each property
-//! is one method with one match. See docs/theory/contact.md.
+//! is one method with one `match` over the kinds. See docs/theory/contact.md.
 
 use nalgebra::DMatrix;
 

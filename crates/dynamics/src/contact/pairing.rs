@@ -47,8 +47,7 @@ impl SlaveChoice {
 /// overrun beyond their ends (segment lengths), even if the node is now at others: passes that go to and fro across a
 /// corner converge with it.
 ///
-/// A contact from surface to surface has points of slave faces as its pairs. The rows of these points have the given
-/// form.
+/// Pairs of contact from surface to surface are points of slave faces, whose rows have the given form.
 ///
 /// A node that has just left its segment by a little and finds no other target keeps it: the end of
 /// the increment decides whether the node has slid off, not one of its passes.

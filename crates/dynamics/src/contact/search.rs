@@ -105,7 +105,7 @@ impl<'m> Search<'m> {
     /// Transfers the lists, and the positions for which they are valid.
     ///
     /// # Errors
-    /// The archive is of other contacts.
+    /// Returns an error if the archive is of other contacts.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         for territory in &mut self.territories {
             let Territory {
@@ -439,8 +439,8 @@ impl<'m> Territory<'m> {
         }
     }
 
-    /// Calls a function with the segments that the slave faces face at the start of the increment. They are found once
-    /// for all passes of an increment, as long as faces and segments have these edges.
+    /// Calls a function with the segments that the slave faces face at the start of the increment. The segments are
+    /// found once for all passes of an increment, as long as faces and candidates stay the same.
     pub(super) fn with_faced<T>(
         &self,
         edges: Recycled<Edge>,

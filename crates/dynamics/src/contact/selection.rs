@@ -80,7 +80,7 @@ impl SlaveNode<'_> {
         is_over && (target.from).is_none_or(|i| self.tilts_gently(i, target.segment))
     }
 
-    /// Whether two targets belong to one run of segments round convex corners; one of them is
+    /// Whether two targets belong to one run of segments round convex corners, so one of them is
     /// enough.
     pub fn is_same_face(&self, one: &ContactTarget, other: &ContactTarget) -> bool {
         one.segment == other.segment
@@ -303,8 +303,8 @@ impl SlaveNode<'_> {
     }
 
     /// The first segment before or after `from` on which the node projected at the start. The way
-    /// there is round corners that are convex, or were at the start, and no longer than twice the
-    /// node's displacement.
+    /// to that segment is round corners that are convex, or were at the start, and no longer than
+    /// twice the node's displacement.
     fn walk(&self, from: usize, direction: Along) -> Option<usize> {
         let farthest = 2.0 * self.relative_displacement(from);
         let length = |i: usize| self.project(i).length;
@@ -406,9 +406,9 @@ impl SlaveNode<'_> {
         Some([before, after].map(|[x, y]| [y, -x]))
     }
 
-    /// Weight w of the second segment at a vertex. The vertex is one of a face, of a gentle hollow, or of a gentle
+    /// Weight w of the second segment at a vertex. Such a vertex is one of a face, of a gentle hollow, or of a gentle
     /// corner that meets a node in a hollow of its own face, as a pin meets a bore. At such a vertex the gaps to both
-    /// segments are the same. The normal of only one segment would lean to one side, and round-off would choose the
+    /// segments are the same; the normal of only one of them would lean to one side, and round-off would choose the
     /// segment. Returns `None` if the gaps differ, if the turn is larger, or if the node was behind one of the
     /// segments.
     fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {

@@ -64,7 +64,7 @@ impl SlaveNode<'_> {
     }
 
     /// Sine by which the neighbours of the node were at least in front of the parallel to a segment through the node,
-    /// at the start. It is larger for the segment that the node's surface faced better.
+    /// at the start. The sine is larger for the segment that the node's surface faced better.
     pub(crate) fn faced_at_start(&self, segment: usize) -> f64 {
         let (node, normal) = (self.start_position(), self.project_at_start(segment).normal);
         let sine = |adjacent: usize| {
@@ -244,8 +244,8 @@ impl SlaveNode<'_> {
 }
 
 /// Motions of a node and of the ends of a segment. At both ends of the path the node is raised along the normal by the
-/// overlap that a fit allows, and lowered by the bulge of the face (length). Where it then crosses the segment, it
-/// crosses the face.
+/// overlap that a fit allows, and lowered by the bulge of the face (length). Where the raised node crosses the segment,
+/// the node crosses the face.
 pub(super) fn raised(
     [mut s, a, b]: [QuadraticMotion; 3],
     (bulge, allowed): (&Bulge, [f64; 2]),

@@ -13,8 +13,8 @@ pub struct SlaveSegments {
     /// Numbers of the slave nodes at the ends of every face; `None` for a node that takes no part
     /// in the contact.
     pub ends: Vec<[Option<usize>; 2]>,
-    /// For every slave node the faces on its sides, each with the end (0 or 1) at which the node lies. At a corner
-    /// there are two lists, one for each side.
+    /// For every slave node the faces on its sides, each with the end (0 or 1) at which the node lies. A slave node at
+    /// a corner has two lists of faces, one for each side.
     pub at_nodes: Vec<Vec<Vec<[usize; 2]>>>,
     /// Number of the run of every master segment; a run is a chain of segments without a corner.
     pub runs: Vec<usize>,
@@ -98,7 +98,7 @@ impl SlaveSegments {
 }
 
 /// A vertex of the straight edges of the surfaces: a node, or the point x_v that stands for a mid-side node. With x_v a
-/// pressure that is linear along the side has the right forces on all its nodes.
+/// pressure that is linear along the side gives the right forces on all nodes of the side.
 ///
 /// ```text
 /// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)

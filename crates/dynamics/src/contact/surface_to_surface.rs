@@ -46,8 +46,8 @@ struct Mean {
 ///
 /// A cell has two Gauss points where N_j g_q is quadratic, or cubic with the radius; w_q is then half the reference
 /// length of the cell, times the radius of the point in bodies of revolution. Cells end on the bisectors of the
-/// master's vertices in the iterate. With discrete gradients they also end on the bisectors at the start, since rows
-/// are exact differences between the two.
+/// master's vertices in the iterate. With discrete gradients the cells also end on the bisectors at the start, since
+/// rows are exact differences between the two configurations.
 pub(super) fn find_points(
     territory: &Territory,
     positions: [Positions; 2],
@@ -236,7 +236,7 @@ struct Finder<'a> {
     territory: &'a Territory<'a>,
     surfaces: &'a ContactSurfaces,
     slave: &'a SlaveSegments,
-    /// Edges at the start, and positions there.
+    /// Edges of the surfaces and positions of the nodes at the start.
     start: &'a [Edge],
     positions: Positions<'a>,
 }
@@ -257,7 +257,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// For every face the segments that it faces, one entry for each run, and its cells over them.
+    /// For every face one entry for each run of the master, with the segments of the run that it
+    /// faces and its cells over them.
     fn all_faced(&self) -> Vec<FacedRun> {
         let mut all = Vec::new();
         for face in 0..self.slave.ends.len() {
@@ -373,9 +374,9 @@ impl<'a> Finder<'a> {
     }
 
     /// Whether a face was in front of a segment at the start, or in front of another segment from which it may slide on
-    /// to this one, or has penetrated the body through this segment. `p` and `q` are the projections of its ends. It is
-    /// false for the far side of a thin body or of a body behind it, for a face that has entered through another
-    /// segment, and for one that lies on another segment.
+    /// to this one, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of the
+    /// face. The result is false for the far side of a thin body or of a body behind it, for a face that has entered
+    /// through another segment, and for one that lies on another segment.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
         // gaps at the ends of the part of the face that is over the segment: beyond it a face of a bent thin body may be in front
         // of the line of a segment on the other side
@@ -452,8 +453,8 @@ impl<'a> Finder<'a> {
         dot(e, f) < -FACING_COSINE
     }
 
-    /// The parts of a face over some segments of a run, for the given edges. They end at the bisectors of the vertices,
-    /// and at the normals of the ends of the run.
+    /// The parts of a face over some segments of a run, for the given edges. The parts end at the bisectors of the
+    /// vertices, and at the normals of the ends of the run.
     ///
     /// ```text
     /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
@@ -570,7 +571,7 @@ impl SurfacePoint {
     }
 
     /// Projection and rows over the point, a and b, with the tilted force row of eq. (7.8), and the tilt. `gap` is the
-    /// gap of the constraint: when the constraint closes, the point is lower by this length.
+    /// gap of the constraint: when the constraint closes, the point is lower by this gap.
     fn rows(&self, gap: f64, at: &Configurations) -> (SegmentRows, Tilt) {
         let places = self.configurations(at);
         let [_, of_chord] = self.gaps(at);
@@ -890,8 +891,8 @@ mod tests {
         Configurations { form, x, u0, u }
     }
 
-    /// The weighted mean of the gaps of the points at some displacements, each point over its segment of the start or
-    /// of the end.
+    /// The weighted mean of the gaps of the points at some displacements; each point is over its segment of the start
+    /// or of the end.
     fn gap(u: &[f64], is_start: bool) -> f64 {
         gap_of(&source(), u, is_start)
     }

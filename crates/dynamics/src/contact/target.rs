@@ -1,7 +1,7 @@
 //! Targets of slave nodes: what is selected for a node, and from what a constraint of each kind is made. See
 //! docs/theory/contact.md and docs/theory/geometry.md.
 //!
-//! Constraints of each kind are made in a file of their own; the module `kinds` leads to them.
+//! Constraints of each kind are made in a file of their own; the module `kinds` chooses among them.
 
 use smallvec::SmallVec;
 
@@ -109,7 +109,7 @@ entries!(SurfacePoint, (usize, SurfacePoint));
 /// The master segment under a point at the start of the increment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum StartSegment {
-    /// The same segment as at the end.
+    /// The segment at the start is the one at the end.
     Same,
     /// Another segment, with these ends and this bulge.
     Other([Vertex; 2], Bulge),
@@ -126,9 +126,9 @@ pub struct DiscContact {
     pub arm: usize,
     /// Number of the segment, or of one segment at the arc or vertex.
     pub segment: usize,
-    /// The feature under the centre.
+    /// The segment, arc or vertex under the centre of the disc.
     pub feature: MasterFeature,
-    /// The feature under the centre at the start, if it was another one.
+    /// The segment, arc or vertex under the centre at the start, if it was another one.
     pub from: Option<MasterFeature>,
 }
 
@@ -205,8 +205,7 @@ impl PairTarget {
 }
 
 impl Target {
-    /// The same target without the memory of an earlier one, on which the slave node was closed at
-    /// the start.
+    /// The same target without the target on which the slave node was closed at the start.
     pub(super) fn untilted(self) -> Self {
         match self {
             Target::Segment(contact) => Target::Segment(SegmentContact::new(contact.segment)),
@@ -236,8 +235,8 @@ impl Target {
         }
     }
 
-    /// Ends of the segment of the target. At a corner it is the segment before the corner, for a mean the one that
-    /// counts most; for a disc these are the nodes of the segment or arc.
+    /// Ends of the segment of the target: at a corner the segment before the corner, for a mean the segment that counts
+    /// most, for a disc the nodes of the segment or arc.
     fn ends(&self) -> [usize; 2] {
         match self {
             Target::Segment(contact) => contact.segment.ends,
@@ -258,8 +257,8 @@ impl Target {
         numbers.into_iter().flatten()
     }
 
-    /// The target as it was selected for the node. For means and discs it is `None`: nothing is selected for them,
-    /// since their targets do not depend on the last pass.
+    /// The target as it was selected for the node; `None` for means and discs, whose targets do not depend on the last
+    /// pass.
     pub(super) fn selected(&self) -> Option<ContactTarget> {
         match self {
             Target::Segment(SegmentContact { segment, from }) => Some(ContactTarget {
@@ -323,7 +322,7 @@ impl MeanContact {
         nodes.any(|other| other == node)
     }
 
-    /// The same points without the memory of other segments under them at the start.
+    /// The same points as if each had been over its present segment at the start.
     pub(super) fn untilted(mut self) -> Self {
         for point in self.points.iter_mut() {
             point.from = StartSegment::Same;

@@ -66,8 +66,8 @@ pub(crate) fn at_face([gap, slip]: [f64; 2]) -> Constraint {
     Constraint::new(face(), &at)
 }
 
-/// A constraint of some dofs whose force rows and derivative rows are `rows`. It has no gap, no slip, mu = 0.5 and the
-/// length 1; its slave node is the first node.
+/// A constraint of some dofs whose force rows and derivative rows are `rows`. The constraint has no gap, no slip, mu =
+/// 0.5 and the length 1; its slave node is the first node.
 pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
     let source = face();
     Constraint {

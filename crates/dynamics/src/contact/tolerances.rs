@@ -1,20 +1,20 @@
 //! Tolerances of contact, each a part of a computed scale, so that no result depends on the system
-//! of units. A length is counted in lengths of the segment concerned unless said otherwise.
-//! See docs/theory/geometry.md.
+//! of units. Lengths are relative to the length of the segment concerned unless said otherwise. See
+//! docs/theory/geometry.md.
 
 // Geometry of surfaces and bodies.
 
 /// Cosine of the turn beyond which a convex corner of the reference configuration is sharp (an
-/// angle below 120 degrees). Folded legs at a sharp corner are the corner itself; elsewhere they
-/// are a closed concave corner.
+/// angle below 120 degrees). Folded legs at a sharp corner are the corner itself; folded legs
+/// elsewhere are a closed concave corner.
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
 /// Cosine of 30 degrees: beyond this turn in the reference configuration a surface has a corner.
 pub(crate) const CORNER_COSINE: f64 = 0.866;
-/// Sine of the turn in the reference configuration up to which a surface counts as straight there. It is also the bound
-/// for four times the rise of a mid-side node, in lengths of the side.
+/// Sine of the turn in the reference configuration up to which a surface counts as straight there. The same number
+/// bounds four times the rise of a mid-side node, in lengths of the side.
 pub(crate) const LEAST_TURN: f64 = 1e-4;
-/// Ratio of the turns at both ends of a segment beyond which the segment does not belong to the curve at the end with
-/// the larger turn. Such a segment is a chord of a fine flank that meets a coarse fillet.
+/// Ratio of the turns at both ends of a segment beyond which the segment, a chord of a fine flank that meets a coarse
+/// fillet, does not belong to the curve at the end with the larger turn.
 pub(crate) const UNLIKE_TURNS: f64 = 4.0;
 /// Relative difference of the slopes at both ends of a curved face up to which they are equal but for round-off.
 pub(crate) const EQUAL_SLOPES: f64 = 1e-9;
@@ -23,8 +23,8 @@ pub(crate) const LONGEST_BENT: f64 = 3.0;
 /// Sine of the turn at a corner below which its two segments count as one straight face: a smooth,
 /// finely meshed surface turns so little.
 pub(crate) const STRAIGHT_SINE: f64 = 1e-3;
-/// Sine of the angle between the legs of a corner below which they lie on each other. There a sharp
-/// corner and a closed concave corner have the same tangents.
+/// Sine of the angle between the legs of a corner below which they lie on each other; a sharp
+/// corner and a closed concave corner then have the same tangents.
 pub(crate) const FOLDED_CORNER_SINE: f64 = 0.3;
 /// Distance (in side lengths of the element) by which a line may pass outside an element and still
 /// count as inside: round-off of coordinates.
@@ -41,18 +41,18 @@ pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;
 // Projection and search.
 
 /// Overrun of a projection beyond the ends of a segment at which it still counts as on the segment.
-/// It covers round-off, and the sum of the tolerances of many increments for a node that sticks at
-/// the end of a surface.
+/// This overrun covers round-off, and the sum of the tolerances of many increments for a node that
+/// sticks at the end of a surface.
 pub(crate) const PROJECTION_BEYOND_ENDS: f64 = 1e-6;
 /// Distance up to which a node at rest pairs with a segment at rest, in mean segment lengths of the
 /// contact.
 pub(crate) const PAIRING_REACH: f64 = 0.5;
-/// Pairing distance, as `PAIRING_REACH`, in steps without velocities.
+/// Pairing distance at rest in steps without velocities, in mean segment lengths of the contact.
 pub(crate) const PAIRING_REACH_WITHOUT_VELOCITIES: f64 = 2.0;
 /// Part of the pairing distance within which a node may meet a segment after the next correction.
 pub(crate) const NEAR_REACH: f64 = 0.25;
 /// Further distance within which a node may meet a segment after the next correction, in
-/// displacements of both per increment.
+/// displacements of node and segment per increment.
 pub(crate) const NEAR_PER_MOTION: f64 = 2.0;
 /// Growth of the circle of an entity at rest, in mean segment lengths of the contact: it may move
 /// this far before its candidates are searched anew.
@@ -86,18 +86,19 @@ pub(crate) const SLIDING_SINE: f64 = 0.5;
 /// Distance beyond the end of a segment or arc, in its lengths, up to which a disc is still over
 /// it.
 pub(crate) const END_OF_FEATURE: f64 = 1e-9;
-/// Distance beyond the end of a segment from which on a node counts as having slid on to the next.
+/// Distance beyond the end of a segment from which on a node counts as having slid on to the next
+/// segment.
 pub(crate) const SLID: f64 = 1e-7;
 /// Distance from a convex corner, along the faces, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node keeps it, if the node has left it within
-/// an increment and found no other. The end of the increment decides whether the node has slid off.
+/// an increment and found no other; the end of the increment decides whether the node has slid off.
 pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// Overrun up to which a node keeps its segment once the passes have settled, even if another segment would constrain
 /// it. If passes still go to and fro between two targets, `KEPT_BEYOND_ENDS` applies instead.
 pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
-/// Overlap below which an open pair stays open once the passes have settled. Without it a force
-/// could alternate between two nodes that face each other.
+/// Overlap below which an open pair stays open once the passes have settled. Without this bound a
+/// force could alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// Slip of a correction along a segment, in lengths of the segment, up to which rows and targets stay: the square of
 /// this number is round-off.
@@ -136,9 +137,10 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 // Contact from surface to surface.
 
-/// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface. It is
-/// above round-off, so no corner closes where the means are closed. A body must turn by about three times this number
-/// before the resultant on its face reaches the corner. With 1e-5, walls of bricks need up to a third more passes.
+/// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface. This
+/// depth is above round-off, so no corner closes where the means are closed. A body must turn by about three times this
+/// number before the resultant on its face reaches the corner. With the depth 1e-5, walls of bricks need up to a third
+/// more passes.
 pub(crate) const CORNER_DEPTH: f64 = 3e-5;
 /// Depth of a corner on its straight path in an increment that does not count as penetration, in the lengths of
 /// `CORNER_DEPTH`: a corner that slides over a segment whose face turns reaches it.
@@ -158,8 +160,8 @@ pub(crate) const SIDE_BY_SIDE: f64 = 1.0;
 pub(crate) const LEAST_CELL: f64 = 1e-13;
 /// Part of the weight of a slave node that a mean must cover at least.
 pub(crate) const LEAST_COVER: f64 = 1e-6;
-/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond it the point keeps the
-/// segment of the start, unless the surface turns by half as much.
+/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond this tilt the point keeps
+/// the segment of the start, unless the surface turns by half as much.
 pub(crate) const POINT_TILT: f64 = 0.3;
 
 // Preparation of a model.
@@ -176,6 +178,6 @@ pub(crate) const ADJUSTMENT_REACH: f64 = 1.0;
 /// Gap below which a node has met its target at an impact; the node joins the active pairs with
 /// this accuracy.
 pub(crate) const IMPACT_GAP: f64 = 1e-12;
-/// Cosine of the turn between a touched segment and another on to which the node slides without an impact. It belongs
-/// to [`GENTLE_SINE`], up to which one of the two segments is the node's only target.
+/// Cosine of the turn between a touched segment and another on to which the node slides without an impact. This turn
+/// belongs to [`GENTLE_SINE`], up to which one of the two segments is the node's only target.
 pub(crate) const FACING_ALIKE_COSINE: f64 = 0.9998;

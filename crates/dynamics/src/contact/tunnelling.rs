@@ -267,7 +267,7 @@ impl NodePath<'_> {
     }
 
     /// Whether a node that may overlap segment `i` is still in front of the line of a neighbour at a convex corner,
-    /// when raised by the allowed overlap. Near the corner it is then outside the body reduced by the overlap.
+    /// when raised by the allowed overlap. Near the corner such a node is outside the body reduced by the overlap.
     fn is_before_corner(&self, i: usize, p: &Projection) -> bool {
         let is_before = |(j, is_next): (Option<usize>, bool)| {
             let Some(q) = j.map(|j| self.project(j, 1.0)) else {
@@ -290,7 +290,8 @@ impl NodePath<'_> {
     }
 
     /// Whether two segments are neighbours on the surface, or the surface between them is at most
-    /// twice as long as the displacement of the node. This excludes the far side of a thin body.
+    /// twice as long as the displacement of the node. The bound excludes the far side of a thin
+    /// body.
     fn are_near(&self, i: usize, j: usize) -> bool {
         let leads = |i: usize, j: usize| self.leads(i, Along::Forward, Some(j));
         i == j || leads(i, j) || leads(j, i)

@@ -36,7 +36,7 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
-    /// The part of the increment that is left.
+    /// The part of the nominal increment that is left.
     pub rest: Interval,
     /// Length of the nominal increment.
     pub nominal: f64,
@@ -68,7 +68,7 @@ impl Intrusion {
 /// Second-order motion of all nodes from the start of a subincrement.
 struct FreeMotion<'a> {
     path: &'a Path,
-    /// End of the subincrement if the motion is its own converged one; else 0.
+    /// End of the subincrement if the motion is that of a converged subincrement; else 0.
     end: f64,
     /// Time for which the motion is followed.
     duration: f64,
@@ -149,7 +149,7 @@ impl FreeMotion<'_> {
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
 
-    /// Time of the first entry of a node that stays inside. A node that comes out again before the end of the
+    /// Time of the first entry of a node that stays inside. A node that leaves the body before the end of the
     /// subincrement does not count, since the motion between the ends is an estimate.
     fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
         let stays = |&(k, crossing): &(usize, &Crossing)| {
@@ -307,7 +307,7 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     /// Events of the nodes that enter bodies, and are not kept out of them, within the time tau of a motion. The motion
-    /// is that of a converged subincrement, or a prediction. In a converged subincrement these nodes stay inside to its
+    /// is that of a converged subincrement, or a prediction. Such nodes of a converged subincrement stay inside to its
     /// end, or go through the body.
     fn entries(
         &mut self,

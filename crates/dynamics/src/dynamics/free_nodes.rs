@@ -12,11 +12,11 @@ use crate::linear::{Assembled, Transformation, linear_solver};
 
 /// The free nodes without mass of some bodies.
 pub(super) struct FreeNodes {
-    /// Map from the dofs of these nodes to unknowns.
+    /// Map from the dofs of the free nodes to unknowns.
     pub map: Transformation,
-    /// Elements at these nodes.
+    /// Elements at the free nodes.
     elements: Vec<usize>,
-    /// Pattern of the stiffness of these elements.
+    /// Pattern of the stiffness of the elements at the free nodes.
     pattern: Assembled,
 }
 

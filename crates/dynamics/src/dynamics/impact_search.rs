@@ -42,7 +42,7 @@ pub(crate) struct ImpactSearch {
     before: EventTrial,
     /// The shortest trial that ends after an impact.
     after: Option<EventTrial>,
-    /// The trial that the last one has replaced.
+    /// The trial before or after an impact that the last trial has replaced.
     old: Option<EventTrial>,
     /// The last two changes of the trial length.
     steps: [f64; 2],
@@ -89,7 +89,8 @@ impl ImpactSearch {
     }
 
     /// The length to try after the last one, `tau`: the expected length `root` of the impact. If `root` is not between
-    /// the trials before and after, or the steps hardly decrease, it is halfway between these trials.
+    /// the trials before and after the impact, or the steps hardly decrease, the result is halfway between these
+    /// trials.
     pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
         let (low, high) = (
             self.before.length,

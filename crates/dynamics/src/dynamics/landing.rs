@@ -17,7 +17,7 @@ use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 /// step asks for it (`LANDING=RETURN`).
 ///
 /// # Errors
-/// A solve with K* failed.
+/// Returns an error if a solve with K* fails.
 pub(crate) fn return_landings(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -149,7 +149,7 @@ fn landing(
 /// Factorises K* of the converged increment from `start`, so that results do not depend on the age of the factors.
 ///
 /// # Errors
-/// [`Cause::Indefinite`], or the errors of the solver.
+/// Returns [`Cause::Indefinite`], or the errors of the solver.
 pub(super) fn factorize_anew(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -188,7 +188,7 @@ pub(super) struct GivenBack {
 /// V1 <- V1 + sum y_j w_j, eq. (6.8)
 ///
 /// # Errors
-/// A solve with K* failed.
+/// Returns an error if a solve with K* fails.
 pub(super) fn give_back(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -254,7 +254,8 @@ pub(super) fn give_back(
     })
 }
 
-/// Gives the rests of the energies of loads to the vibration of their free bodies, and adds them to `given`:
+/// Gives the rests of the energies of loads, those not yet in `given`, to the vibration of their free bodies, and adds
+/// them to `given`:
 ///
 /// ```text
 /// V1 <- V1 + z V',  sum M V' = 0,  sum r x M V' = 0

@@ -51,7 +51,7 @@ impl VelocityPattern {
 /// w = K*^-1 Gn^T, eq. (6.6), is up to a factor the change of the end velocity by the load.
 ///
 /// # Errors
-/// A solve with K* failed.
+/// Returns an error if a solve with K* fails.
 pub(super) fn pattern(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -117,8 +117,8 @@ impl RigidBodies {
     }
 
     /// Velocity V_s of the supports over all dofs, if the dofs have the velocities `v`. V_s is one vector for each
-    /// body. Its component in a direction is the mean velocity of the supports in this direction; without supports it
-    /// is the mean velocity of the mass.
+    /// body. The component of V_s in a direction is the mean velocity of the supports in this direction; without
+    /// supports it is the mean velocity of the mass.
     pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let body_of = problem.parts.of_nodes();
         // sums of the velocities and their number, and of the momenta and masses

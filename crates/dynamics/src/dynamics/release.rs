@@ -19,9 +19,9 @@ const OVERLAP_ROUND_OFF: f64 = 1e-12;
 const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// Brings nodes without mass that carry no force to rest at the end of an increment in which pairs have opened. The
-/// mid-point rule fixes only the mean of start and end, so without this their deviation from rest would change its sign
-/// in every increment. If there is no rest, or a node would pass through a surface on the way, the nodes stay as they
-/// are. Returns the energy that the rest removes.
+/// mid-point rule fixes only the mean of start and end, so without the rest the deviation of these nodes would change
+/// its sign in every increment. If there is no rest, or a node would pass through a surface on the way, the nodes stay
+/// as they are. Returns the energy that the rest removes.
 pub(crate) fn bring_to_rest(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -119,7 +119,7 @@ impl Releasing<'_, '_> {
     }
 
     /// Constraints at the displacements `u` that the free nodes can close, without friction: the new ones and those of
-    /// the last pass. Their gaps are measured from the least allowed value.
+    /// the last pass. The gaps of these constraints are measured from the least allowed value.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;
         let (increment, mut found) = ([start.as_slice(), u], Vec::new());

@@ -8,12 +8,12 @@ use super::results::{Cause, State};
 use super::step::{StepProblem, Workspace};
 use crate::contact::Constraint;
 
-/// Enters the release at the end of an increment of length `dt` from `start`. If the step asks for it
+/// Enters the release at the end of an increment of length `dt` from `start`. If the step asks for returns
 /// (`LANDING=RETURN`), the lost energy is given back along the pattern of the earlier forces of the opened pairs, in
 /// proportion to their normal forces.
 ///
 /// # Errors
-/// A solve with K* failed.
+/// Returns an error if a solve with K* fails.
 pub(crate) fn return_release(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -54,8 +54,8 @@ pub(crate) fn return_release(
     Ok(())
 }
 
-/// Parts of the pairs in a return of `energy`; its load is `factor` times the earlier forces of the
-/// pairs.
+/// Parts of the opened pairs in a return of `energy`, whose load is `factor` times the earlier
+/// forces of the pairs.
 fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
     if energy == 0.0 {
         return Vec::new();

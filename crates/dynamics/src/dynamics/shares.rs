@@ -3,7 +3,8 @@
 
 use nalgebra::DMatrix;
 
-/// Relative change of the shares at which the sweeps end. The energy of all shares together is exact in any case.
+/// Relative change of the shares at which the sweeps end. The energy of all shares together is exact whatever this
+/// tolerance is.
 const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
 const MOST_SWEEPS: usize = 1000;
@@ -12,7 +13,7 @@ const MOST_SWEEPS: usize = 1000;
 const REST_MOMENTUM: f64 = 1e-8;
 
 /// Signs of the shares: those of b, so each share strengthens the motion along its pattern and never reverses it.
-/// Without any motion the sign is that of the force.
+/// Without any motion the sign of a share is that of the force.
 pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
     let sign = |j: usize| {
         let is_at_rest = b[j].abs() <= REST_MOMENTUM * (2.0 * a[(j, j)] * energies[j]).sqrt();
@@ -27,8 +28,8 @@ pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
 /// y_j (b_j + sum_k A_jk y_k / 2) = D_j  or  |y_j| = Y_j,   eq. (6.9)
 /// ```
 ///
-/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j; `energies` are D_j > 0 and `most` are Y_j. For any
-/// signs of y there is exactly one solution if no limit Y_j is reached: the minimum of a convex function, which is
+/// Here A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j; `energies` are D_j > 0 and `most` are Y_j. For
+/// any signs of y there is exactly one solution if no limit Y_j is reached: the minimum of a convex function, which is
 /// found coordinate by coordinate. A pattern has no share if it has no energy, or if its share at the limit Y_j would
 /// remove energy.
 pub(super) fn shares(

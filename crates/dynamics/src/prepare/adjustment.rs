@@ -29,7 +29,7 @@ pub struct Adjusted {
 }
 
 /// Moves slave nodes onto the master surfaces as the contacts of a model require, one contact after
-/// the other. The reference coordinates change, so nothing is strained.
+/// the other. The reference coordinates change, so the moves cause no strain.
 pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adjusted> {
     if model
         .contacts
@@ -74,8 +74,8 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
 }
 
 /// Chooses the nodes that move in a sweep: of a node and the segment that it faces only one moves. The deepest nodes
-/// come first. Of nodes equally deep but for round-off, those that face the longest segments come first, since nodes of
-/// a fine mesh follow the shape of a coarse one. The rest is in the order of the model.
+/// come first; of nodes equally deep but for round-off, those that face the longest segments come first, since nodes of
+/// a fine mesh follow the shape of a coarse one. Nodes equal in both respects come in the order of the model.
 fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     let depths = ranks(&gaps, |gap| gap.gap);
     let lengths = ranks(&gaps, |gap| -gap.length);

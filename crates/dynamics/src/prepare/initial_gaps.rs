@@ -178,7 +178,7 @@ impl<'m> Start<'m> {
     }
 
     /// Projection of a node on a segment that it may face. The segment must not contain the node, and must be
-    /// penetrated by less than its length; if both belong to the same body, the node must be in front.
+    /// penetrated by less than its length; if node and segment belong to the same body, the node must be in front.
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);
@@ -256,9 +256,10 @@ impl NormalFan {
 
     /// Whether a point may face one of the segments, which all lie within a circle.
     ///
-    /// This is so if the point p lies along a normal of the fan from a point of the circle, in front of it or at most
-    /// the longest segment h behind it. The angle phi between p - c and the middle of the fan is then at most alpha +
-    /// beta, with sin beta = r/|p - c|; or it is at least pi - alpha - beta with |p - c| cos(phi - alpha) + r >= -h.
+    /// A point p may face a segment if p lies along a normal of the fan from a point of the circle, in front of it or
+    /// at most the longest segment h behind it. The angle phi between p - c and the middle of the fan is then at most
+    /// alpha + beta, with sin beta = r/|p - c|; or it is at least pi - alpha - beta with |p - c| cos(phi - alpha) + r
+    /// >= -h.
     pub fn may_face(&self, point: [f64; 2], circle: &Circle) -> bool {
         let d = difference(circle.centre, point);
         let distance = length(d);

@@ -1,4 +1,4 @@
-//! Check of the initial configuration. It reports penetrated nodes, overlapping bodies, and
+//! Check of the initial configuration. The check reports penetrated nodes, overlapping bodies, and
 //! surfaces that do not face each other as diagnostics at the contact in the deck.
 
 use super::initial_gaps::{InitialGap, gaps};
@@ -54,8 +54,8 @@ pub(super) fn report_penetrations(
     }
 }
 
-/// Initial gaps of a contact plus the overlaps that it allows its slave nodes at the start: one for each node, or one
-/// for all.
+/// Initial gaps of a contact plus the overlaps that it allows its slave nodes at the start; the overlaps are one for
+/// each node, or one for all.
 fn left_gaps(
     gaps: &[InitialGap],
     contact: &ContactSurfaces,
@@ -70,7 +70,7 @@ fn left_gaps(
     gaps.iter().map(left).collect()
 }
 
-/// Warns about contacts that are to press out an overlap but have none.
+/// Warns about contacts that are to press out an overlap although there is none.
 fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) {
     let has_overlap = |contact: usize| overlaps[contact].iter().any(|o| *o > 0.0);
     for (i, contact) in model.contacts.iter().enumerate() {
@@ -106,8 +106,8 @@ pub(crate) fn deepest_fault(
     faults.max_by(|a, b| depth(a).total_cmp(&depth(b)))
 }
 
-/// Warns about pairs without a node that faces the master; if both orders are given, without one in
-/// either order.
+/// Warns about pairs without a node that faces the master; of pairs given in both orders only those
+/// without such a node in either order.
 fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnostics) {
     let faced: HashSet<[usize; 2]> = model
         .contacts
@@ -151,8 +151,8 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
     }
 }
 
-/// Whether the nodes of a slave surface project on segments of the master and lie behind them. A few nodes are examined
-/// instead of all.
+/// Whether the nodes of a slave surface project on segments of the master and lie behind them. The function examines a
+/// few nodes instead of all.
 fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
     let x = &model.mesh.coordinates;
     let (nodes, segments) = (slave.nodes(&model.mesh), master.segments(&model.mesh));

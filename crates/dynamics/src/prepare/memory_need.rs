@@ -16,13 +16,13 @@ const WORD: usize = 8;
 const VECTORS: usize = 70;
 
 /// Words for each entry of the pattern of the mesh: the values of K* and M, and half a word each for the index in the
-/// pattern and the place of the entry in the fronts. With contacts there are further words for the sum with contact
-/// stiffness, and for the places of M.
+/// pattern and the place of the entry in the fronts. With contacts an entry needs further words for the sum with
+/// contact stiffness, and for the places of M.
 const MATRICES: usize = 3;
 const CONTACT_MATRICES: usize = 2;
 
 /// Number of factors: those of K*, and the lists, fronts and rests during a factorisation, which need as much memory.
-/// With contacts there are also the factors of M, for impulses.
+/// With contacts there are also the factors of M, which impulses need.
 const FACTORS: usize = 2;
 const CONTACT_FACTORS: usize = 1;
 
@@ -95,8 +95,8 @@ impl NearPairs {
     }
 }
 
-/// Memory for the near pairs. If that of the pairs between the same bodies is much less, it is used instead, since
-/// their problems are then solved by blocks.
+/// Memory for the near pairs. If the memory of the pairs between the same bodies is much less, it is used instead,
+/// since their problems are then solved by blocks.
 fn contact(prepared: &PreparedModel) -> u64 {
     let bodies = Bodies::new(&prepared.model.mesh).of_node;
     let gaps = prepared.gaps.iter().flatten();

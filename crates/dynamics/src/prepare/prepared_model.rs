@@ -1,6 +1,6 @@
 //! A model that is ready to run, and its preparation: nodes adjusted, contact surfaces and initial
 //! gaps computed, initial penetration reported. Both the program and users of the library start
-//! from it.
+//! from a prepared model.
 
 use super::adjustment::{Adjusted, adjust, report_adjusted};
 use super::initial_gaps::{InitialGap, gaps};
@@ -11,8 +11,8 @@ use crate::diagnostics::Diagnostics;
 use crate::model::Model;
 use std::collections::HashMap;
 
-/// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and contacts do not
-/// change any more; the settings of steps may.
+/// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and contacts of a
+/// prepared model do not change any more; the settings of steps may.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreparedModel {
     /// The model with adjusted nodes.

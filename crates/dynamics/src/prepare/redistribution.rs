@@ -21,7 +21,7 @@ const RINGS: [usize; 2] = [2, 3];
 type Donor = (usize, f64);
 
 /// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the kinetic energy are
-/// those of their donors, v_i = sum w_ij v_j, eq. (2.17). It is empty with `CONTACT MASS=CONSISTENT`.
+/// those of their donors, v_i = sum w_ij v_j, eq. (2.17). The redistribution is empty with `CONTACT MASS=CONSISTENT`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Redistribution {
     /// Nodes without mass, increasing, with their donors, which have mass.
@@ -158,7 +158,7 @@ impl<'m> Neighbours<'m> {
 }
 
 /// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without mass. Nodes at
-/// the edge of a hole may not, nor may those that equations, springs, dashpots or rigid bodies tie.
+/// the edge of a hole may not be without mass, nor may those that equations, springs, dashpots or rigid bodies tie.
 pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<(usize, bool)> {
     let mesh = &model.mesh;
     let mut may = outer_nodes(mesh);
@@ -218,7 +218,7 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
 }
 
 /// Closed edges of the bodies, each as its faces in order. If elements meet in only a node, the edge continues along
-/// the element from which it came.
+/// the element from which it came to the node.
 fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
     let segments = |face: &Face| face.segments(mesh);
     let faces: Vec<[usize; 2]> = mesh.outline().iter().flat_map(segments).collect();
@@ -254,8 +254,8 @@ fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
 
 /// Least number of donors: three points determine an affine function.
 const LEAST_DONORS: usize = 3;
-/// Largest sum of |w|; beyond it a node is not extrapolated from its donors. Weights of regular meshes are ratios of
-/// small integers with sums up to 6; sums slightly above 6 do not occur there.
+/// Largest sum of |w|; a node whose weights have a larger sum is not extrapolated from its donors. Weights of regular
+/// meshes are ratios of small integers with sums up to 6; sums slightly above 6 do not occur there.
 const MOST_WEIGHT: f64 = 6.0 + 1e-6;
 /// Least width of the donors, relative to their length: narrower donors lie on a line up to the digits of their
 /// coordinates.
@@ -269,8 +269,8 @@ const LEAST_WIDTH: f64 = 1e-3;
 /// w_j = phi_j p_j.G^-1 e1,  G = sum phi_j p_j p_j^T                           eq. (2.18)
 /// ```
 ///
-/// These weights satisfy sum w_j = 1 and sum w_j X_j = X. Returns `None` if the donors are too few, lie nearly on a
-/// line, or lie only on one side far away. Neither a rigid motion of all points nor their order changes this.
+/// The weights satisfy sum w_j = 1 and sum w_j X_j = X. Returns `None` if the donors are too few, lie nearly on a line,
+/// or lie only on one side far away. Neither a rigid motion of all points nor their order changes the weights.
 pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     if donors.len() < LEAST_DONORS {
         return None;
@@ -568,7 +568,8 @@ pub(crate) mod tests {
         model
     }
 
-    /// With two layers the donors lie on a line, and some nodes lie on it too; with three layers they do not.
+    /// With two layers the donors lie on a line, and some nodes lie on this line too; with three layers the donors do
+    /// not.
     #[test]
     fn round_off_turns_and_places_do_not_decide_over_mass() {
         for (rows, count) in [(2, 0), (3, 16)] {

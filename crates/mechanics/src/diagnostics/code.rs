@@ -20,7 +20,7 @@ macro_rules! codes {
                 }
             }
 
-            /// One sentence on the meaning of the code.
+            /// One sentence on the meaning of the diagnostic code.
             pub fn meaning(self) -> &'static str {
                 match self {
                     $(Code::$name => $meaning,)*
@@ -34,7 +34,7 @@ macro_rules! codes {
                 }
             }
 
-            /// Advice on what to do about it.
+            /// Advice on what to do about the diagnostic.
             pub fn cure(self) -> &'static str {
                 match self {
                     $(Code::$name => $cure,)*

@@ -13,9 +13,9 @@ const LONGEST_TEXT: usize = 1000;
 /// Severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// The deck is rejected.
+    /// An error: the deck is rejected.
     Error,
-    /// The deck is read, but differently from what it says.
+    /// A warning: the deck is read, but differently from what it says.
     Warning,
     /// Worth knowing.
     Note,
@@ -28,7 +28,7 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// Subject of the diagnostic.
     pub code: Code,
-    /// Place in the deck; `None` if there is none.
+    /// Place in the deck; `None` if the diagnostic has no place.
     pub span: Option<Span>,
     /// Text that says what was found and what was expected.
     pub message: String,

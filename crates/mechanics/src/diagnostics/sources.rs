@@ -17,7 +17,7 @@ pub struct Source {
     name: String,
     text: Arc<String>,
     included_at: Option<Span>,
-    /// Number of lines that end before every piece of the text; it is counted for the first
+    /// Number of lines that end before every piece of the text; they are counted for the first
     /// message.
     ends_before: OnceLock<Vec<usize>>,
 }
@@ -94,9 +94,9 @@ pub struct EarlierDeck {
     pub settings: Vec<String>,
     /// Step and increment of the step from which the job continues.
     pub place: [usize; 2],
-    /// Whether the increment is the last one of its step.
+    /// Whether the increment from which the job continues is the last one of its step.
     pub ends_step: bool,
-    /// The deck that this earlier one continues.
+    /// The deck that the earlier deck continues.
     pub before: Option<Box<EarlierDeck>>,
 }
 
@@ -134,8 +134,8 @@ impl Interrupt {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// If the end has been requested, unwinds to the caller that requested it, which catches the panic. Nothing is
-    /// printed.
+    /// If the end of reading has been requested, unwinds to the caller that requested it, which catches the panic. The
+    /// panic prints nothing.
     pub fn end_if_asked(&self) {
         if self.is_asked() {
             std::panic::resume_unwind(Box::new(self.clone()));
@@ -249,7 +249,7 @@ impl Sources {
         Some((name, *place))
     }
 
-    /// Stores the replaced values of a line, from left to right.
+    /// Stores the values that replaced text in a line, from left to right.
     pub fn replace(&mut self, file: FileId, line: u32, replaced: Vec<Replaced>) {
         self.replaced.insert((file.0, line), replaced);
     }

@@ -34,12 +34,12 @@ enum ElementPlace {
 
 /// All elements of a model, ready for integration. Displacements are vectors of 2 N entries.
 ///
-/// Sweeps over the elements run in parallel. Their results are added up in the order of chunks and
-/// elements, so they do not depend on the number of threads.
+/// Sweeps over the elements run in parallel. The results of a sweep are added up in the order of
+/// chunks and elements, so they do not depend on the number of threads.
 pub struct Elements {
     /// Nodes of the elements, one after the other.
     nodes: Vec<usize>,
-    /// Start of every element in `nodes`, and the end of the last.
+    /// Start of every element in `nodes`, and the end of the last element.
     starts: Vec<usize>,
     kinds: Vec<ElementGroup>,
     /// Index of the kind of every element, and its place.
@@ -245,7 +245,7 @@ impl Elements {
     }
 
     /// Internal variables of all points before the first increment, element by element; they are
-    /// zero.
+    /// all zero.
     pub fn initial_variables(&self) -> Vec<f64> {
         vec![0.0; self.variables]
     }
@@ -278,7 +278,7 @@ pub struct Inverted {
     pub determinant: f64,
 }
 
-/// Internal variables at the end of an increment.
+/// Internal variables of all elements at the end of an increment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Updated {
     /// Internal variables of all points, element by element.
@@ -289,7 +289,7 @@ pub struct Updated {
 
 impl Elements {
     /// Internal variables at the end of a motion, and the energy dissipated on the way. The variables of `motion` do
-    /// not change: the increment commits or drops the returned ones.
+    /// not change: the increment commits or drops the returned variables.
     pub fn update(&self, motion: Motion) -> Updated {
         let mut updated = Updated {
             variables: motion.committed.to_vec(),
@@ -364,7 +364,7 @@ impl Elements {
     /// end, 2 N entries.
     ///
     /// # Errors
-    /// Returns the first element that is turned inside out.
+    /// Returns the first element that is turned inside out, as an error.
     pub fn internal_force(&self, motion: Motion) -> Result<Vec<f64>, Inverted> {
         let mut force = vec![0.0; self.dofs];
         self.write_internal_force(motion, &mut force)?;
@@ -374,7 +374,7 @@ impl Elements {
     /// Writes [`Self::internal_force`] to `total`, 2 N entries.
     ///
     /// # Errors
-    /// Returns the first element that is turned inside out.
+    /// Returns the first element that is turned inside out, as an error.
     pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
         if !self.sum_chunks(|chunk| chunk.sum_forces(motion)) {
             self.chunks.iter().for_each(|chunk| chunk.clear_sums());
@@ -404,7 +404,7 @@ impl Elements {
         }
     }
 
-    /// The first element that is turned inside out.
+    /// Returns the first element that is turned inside out.
     fn inverted(&self, motion: Motion) -> Inverted {
         let all = self.chunks.iter().flat_map(|chunk| {
             let elements = chunk.elements().iter().copied();
@@ -437,8 +437,8 @@ impl Elements {
     }
 
     /// Calls `add(place, k)` with the tangent, or its positive part, of every element and spring that is `wanted`, and
-    /// possibly of others. k is D x D, column by column, in the configuration of [`Self::internal_force`]. The places
-    /// are those of [`Self::connected`].
+    /// possibly of others. The matrix k is D x D, column by column, in the configuration of [`Self::internal_force`].
+    /// The places of the elements are those of [`Self::connected`].
     pub fn for_each_tangent(
         &self,
         motion: Motion,
@@ -560,8 +560,8 @@ impl Elements {
     }
 
     /// Calls `add(place, c)` with the damping matrices, or their positive parts, of every damped element and dashpot in
-    /// an increment of length `dt`, eq. (4.19). c is D x D, column by column (force time/length). An element may have
-    /// two matrices, one of the viscosity and one proportional to its mass.
+    /// an increment of length `dt`, eq. (4.19). The matrix c is D x D, column by column (force time/length). An element
+    /// may have two matrices, one of the viscosity and one proportional to its mass.
     pub fn for_each_damping(
         &self,
         (increment, dt): (Increment, f64),

@@ -1,6 +1,6 @@
 //! Elements of one shape next to each other, and their kinematics: displacement gradients and strains at the
-//! integration points, in one configuration or between two (energy-momentum form). Also the sums over the points that
-//! give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
+//! integration points, in one configuration or between two (energy-momentum form). Also the sums over the integration
+//! points that give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -64,8 +64,8 @@ pub struct Deformation {
 pub struct MovedBlock<'a, const N: usize, const P: usize, R> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
-    /// 1/R at the points (1/length). It is zero in plane strain, a ring of infinite radius; elements of the plane do
-    /// not read it.
+    /// 1/R at the points (1/length). This 1/R is zero in plane strain, a ring of infinite radius; elements of the plane
+    /// do not read it.
     pub over_radius: &'a [Lanes; P],
     /// Reference data of the formulation other than the points.
     pub reference: &'a R,
@@ -429,8 +429,9 @@ pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
 /// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.
 pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 
-/// Adds the part of the strain around the axis to the tangent of a point, for a <= b. Its row of B_L is b_a = (1 + h)
-/// h_a/R, which acts on displacements along the radius; `c` has C_33 of each component of the strain,
+/// Adds the part of the strain around the axis to the tangent of a point, for a <= b. The row of B_L for the strain
+/// around the axis is b_a = (1 + h) h_a/R, which acts on displacements along the radius; `c` has C_33 of each component
+/// of the strain,
 ///
 /// ```text
 /// b_a C_33,. B_b + its transpose + b_a b_b C_3333 + S_33 h_a h_b/R²
@@ -515,7 +516,7 @@ fn times(s: &SymmetricLanes, &[x, y]: &[Lanes; 2]) -> [Lanes; 2] {
     [s.x * x + s.w * y, s.w * x + s.y * y]
 }
 
-/// Adds g_a . A . g_b for a <= b.
+/// Adds the products g_a A g_b of the gradients for a <= b.
 #[inline(always)]
 pub fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N], a: &Elasticity) {
     for second in 0..N {

@@ -43,8 +43,8 @@ pub struct TangentSweep<'a> {
     pub wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
-/// Elements that are swept together. A place is the number of an element among these; otherwise elements are named by
-/// their indices.
+/// Elements that are swept together. A place is the number of an element among those that are swept together; otherwise
+/// elements are named by their indices.
 pub trait Chunk: Send + Sync {
     /// Elements (indices).
     fn elements(&self) -> &[usize];
@@ -102,7 +102,7 @@ pub trait Chunk: Send + Sync {
     );
 }
 
-/// Numbers of internal variables of one element: those of its points, one after the other, and then its own.
+/// Numbers of internal variables of one element: the number at its points, one after the other, and then its own.
 #[derive(Clone, Copy)]
 struct VariableLayout {
     of_points: usize,
@@ -127,7 +127,8 @@ struct Heating<const P: usize> {
 pub struct ChunkMaterial<'a> {
     pub law: PlaneLaw,
     pub viscosity: Option<Viscosity>,
-    /// Thermal expansion, and the temperature of every node at the start of the analysis, empty if that is zero.
+    /// Thermal expansion, and the temperature of every node at the start of the analysis; the latter is empty if it is
+    /// zero.
     pub expansion: Option<(Expansion, &'a [f64])>,
     pub plane: Plane,
 }
@@ -139,8 +140,8 @@ where
 {
     /// Indices of the elements, lane after lane and block after block.
     elements: Vec<usize>,
-    /// Node indices, increasing; blocks refer to places in this list. After these come the nodes for the places of the
-    /// last block that no element fills; they repeat the last element.
+    /// Node indices, increasing; blocks refer to places in this list. After these indices come the nodes for the places
+    /// of the last block that no element fills; they repeat the last element.
     nodes: Vec<usize>,
     /// Number of the increasing node indices.
     node_count: usize,
@@ -168,7 +169,7 @@ where
     F: Formulation<N, P, HOOP>,
 {
     /// A chunk of elements (indices) with the nodes `of` each, node coordinates `x` and the given
-    /// thickness. Its internal variables begin at `first_variable`.
+    /// thickness. The internal variables of the chunk begin at `first_variable`.
     pub fn new(
         elements: Vec<usize>,
         of: &[[usize; N]],
@@ -438,7 +439,7 @@ where
     }
 
     /// Whether an element may be strained: its nodes have different displacements or move along the radius, or the
-    /// material is heated or has internal variables. In bodies that are fixed no element is strained.
+    /// material is heated or has internal variables. No element of a fixed body is strained.
     fn is_strained(&self, motion: Motion) -> bool {
         let differs = |u: &[f64]| {
             let u = u.as_chunks::<2>().0;
@@ -696,9 +697,9 @@ fn add_force<const N: usize, const P: usize, R>(
     *positive
 }
 
-/// Temperatures at the points, from the temperatures of the nodes of every element. Linear elements have the mean of
-/// their nodes, quadratic ones the linear or bilinear field between their corners: strains of displacements have the
-/// same degrees.
+/// Temperatures at the points, from the temperatures of the nodes of every element. For linear elements the temperature
+/// is the mean of the nodes, for quadratic ones the linear or bilinear field between the corners: strains of
+/// displacements have the same degrees.
 fn temperatures<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     of: impl Fn(usize, usize) -> f64,
 ) -> [Lanes; P] {

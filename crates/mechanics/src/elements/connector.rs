@@ -1,7 +1,7 @@
 //! Springs and dashpots: force, tangent, stored and dissipated energy. See docs/theory/elements.md, Springs and
 //! dashpots.
 //!
-//! Vectors of a connector have two entries for each of its nodes, like those of elements.
+//! Vectors of a connector have two entries for each of its nodes, like those of an element.
 
 use nalgebra::{Matrix2, Vector2};
 use smallvec::SmallVec;
@@ -27,7 +27,7 @@ struct Elongation {
 
 /// Elongations from the start to the end of a motion.
 struct Between {
-    /// Elongations at the start and at the end.
+    /// Elongations at the start and at the end of the motion.
     ends: [f64; 2],
     /// Change l1 - l0, with only the round-off of d.
     change: f64,
@@ -102,7 +102,7 @@ impl PlacedConnector {
         }
     }
 
-    /// Whether it is a dashpot.
+    /// Whether the connector is a dashpot.
     pub(super) fn is_dashpot(&self) -> bool {
         self.connector.law == ConnectorLaw::Dashpot
     }
@@ -413,8 +413,8 @@ mod tests {
         }
     }
 
-    /// For small displacements, and for small changes of large ones, forces keep their digits: they do not contain the
-    /// round-off of coordinates.
+    /// For small displacements, and for small changes of large ones, forces keep their digits: forces do not contain
+    /// the round-off of coordinates.
     #[test]
     fn forces_along_a_line_keep_their_digits() {
         let [spring, dashpot] =

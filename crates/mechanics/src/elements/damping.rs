@@ -1,5 +1,5 @@
-//! Mass-proportional damping of an element: impulse in an increment, damping matrix. Damping by viscosity is a sweep of
-//! its chunk. See docs/theory/time.md, Damping.
+//! Mass-proportional damping of an element: impulse in an increment, damping matrix. Damping by viscosity is a sweep
+//! over the element's chunk. See docs/theory/time.md, Damping.
 
 use super::MAX_DOFS;
 use super::motion::{ElementMatrix, ElementVector, Increment, Motion, NO_MATRIX, dofs};

@@ -51,7 +51,8 @@ pub struct VolumeFunctions<const K: usize, const P: usize> {
     weighted: [[Lanes; K]; P],
 }
 
-/// An integration point with mean quantities of a motion. With only one configuration, start and end are the same.
+/// An integration point with mean quantities of a motion. If there is only one configuration, start and end are the
+/// same.
 #[derive(Clone, Copy, Default)]
 struct DilatedPoint {
     /// Displacement gradient of the mid configuration.

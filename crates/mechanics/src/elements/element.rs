@@ -1,4 +1,4 @@
-//! The formulation of every element type, and volume and mass of a single element. Each shape has a file with its
+//! The formulation of every element type, and the volume and mass of a single element. Each shape has a file with its
 //! quadrature and mass. See docs/theory/elements.md.
 
 use nalgebra::SMatrix;
@@ -27,8 +27,8 @@ pub(super) fn points(element_type: ElementType) -> usize {
     }
 }
 
-/// Indices of elements of one type and section of a model, and their law. The start of their internal variables among
-/// those of all elements is `first_variable`.
+/// Indices of elements of one type and section of a model, and their law. The internal variables of the chunk start at
+/// `first_variable` among those of all elements.
 pub(super) struct ChunkParts<'a> {
     pub model: &'a Model,
     pub elements: &'a [usize],

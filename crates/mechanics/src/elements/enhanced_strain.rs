@@ -17,7 +17,7 @@
 //! (eq. 2.28).
 //!
 //! E is quadratic in the displacements, so exactly B(U_m) d = dE and d.F = Phi(E1) - Phi(E0). Since Phi is a minimum in
-//! alpha, errors of the local solution enter f squared.
+//! alpha, only the square of an error of the local solution enters f.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -217,7 +217,7 @@ struct Measured {
 }
 
 /// Strains of the displacements, eq. (2.27), at the start, in the mid configuration and at the end of a motion, and
-/// their change, which keeps its own digits. For a single configuration all three are the same.
+/// their change, which keeps its own digits. For a single configuration all three strains are the same.
 struct Compatible {
     start: [SymmetricLanes; N],
     halfway: [SymmetricLanes; N],
@@ -292,7 +292,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
     }
 
-    /// Strains of the material at all points, including the element's own.
+    /// Strains of the material at all points, including the element's own strains.
     fn enhanced(&self, measured: &Measured, alpha: &Alpha<A>) -> [AddedStrain; N] {
         from_fn(|p| {
             let linear = measured.compatible[p] + self.modes().strain(p, alpha);
@@ -351,7 +351,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 
     /// The alpha that minimises the energy at strains of the displacements, eq. (2.28); the search starts at `first`.
-    /// It is NaN if the local solution does not converge.
+    /// This alpha is NaN if the local solution does not converge.
     fn least(&self, measured: &Measured, first: &Alpha<A>) -> Alpha<A> {
         let last = largest(&measured.compatible) * LAST_STEP + f64::EPSILON;
         let derivatives = |alpha: &Alpha<A>, wanted: Wanted| {
@@ -367,7 +367,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 
     /// The alpha at the end of an increment for which viscous stresses do no work on the element's own strains, from
-    /// the strains of the displacements at start and end. It is NaN if Newton's method does not converge.
+    /// the strains of the displacements at start and end. This alpha is NaN if Newton's method does not converge.
     fn of_rates(&self, compatible: &Compatible, end: &Measured) -> Alpha<A> {
         let last = largest(&compatible.change) * LAST_STEP
             + largest(&compatible.end) * f64::EPSILON
@@ -389,8 +389,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 
     /// Change of energy sum v (W(E1) - W(E0)) between two strains with their alpha, whose displacement strains differ
-    /// by `changes`. Its round-off is relative to the changes, whereas the difference of the two strains has the
-    /// round-off of the strains.
+    /// by `changes`. The round-off of this change of energy is relative to `changes`, whereas the difference of the two
+    /// strains has the round-off of the strains.
     fn energy_change(
         &self,
         [(start, alpha0), (end, alpha1)]: [(&Measured, &Alpha<A>); 2],
@@ -513,9 +513,10 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
 /// configurations) and at the end.
 type Solutions<const A: usize> = (Option<(Measured, Alpha<A>)>, (Measured, Alpha<A>));
 
-/// Results of a motion at all points.
+/// Strains and stresses of a motion at all points.
 struct States<const A: usize> {
-    /// Strains, including the element's own, at which the tangent of the material is evaluated.
+    /// Strains, including the element's own strains, at which the tangent of the material is
+    /// evaluated.
     enhanced: [AddedStrain; N],
     /// Strains of the material.
     strains: [Strains<Lanes>; N],
@@ -554,7 +555,7 @@ struct PointMaterial<'a, const HOOP: bool> {
     enhanced: &'a AddedStrain,
     /// Stress times the weight of the point.
     s: SymmetricLanes,
-    /// Tangent times the weight of the point.
+    /// Tangent of the material times the weight of the point.
     c: TangentLanes,
 }
 
@@ -745,7 +746,8 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         }
     }
 
-    /// The reported stresses are those of the material.
+    /// The reported stresses are those of the material, not those that do work on the strains of
+    /// the displacements.
     #[inline(always)]
     fn results<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -775,9 +777,9 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
             .work::<HOOP>(&at.block.volume)
     }
 
-    /// The element stores alpha: the one at the end with the new variables, or with the old ones if the former is not
-    /// found. If a point has flowed, D is the change of Phi beyond the stored energy: the dissipation of the points
-    /// alone would have an error of first order in alpha.
+    /// The element stores alpha: the one at the end with the new variables, or the one with the old variables if the
+    /// former is not found. If a point has flowed, D is the change of Phi beyond the stored energy: the dissipation of
+    /// the points alone would have an error of first order in alpha.
     fn update<'z, S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
         law: &AnyLaw<HOOP>,

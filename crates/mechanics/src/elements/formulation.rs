@@ -1,6 +1,6 @@
 //! Formulations of elements: how strains and stresses at the integration points depend on the displacements of the
-//! nodes. Force, tangent, results, work and internal variables of several elements at a time are computed from these.
-//! See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
+//! nodes. Force, tangent, results, work and internal variables of several elements at a time are computed from these
+//! strains and stresses. See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
 
 use super::block::{
     ElementBlock, Gradient, MatrixLanes, MovedBlock, NodalLanes, PointForces, SymmetricLanes,
@@ -59,15 +59,15 @@ pub struct PlacedBlock<'a, const N: usize, const P: usize> {
 pub type BlockVariables = [Vec<f64>; LANES];
 
 /// A formulation of elements with N nodes and P integration points, in the plane or, with `HOOP`, with all components
-/// of the strain. It is chosen at compile time, so a sweep has no dispatch within an element.
+/// of the strain. The formulation is chosen at compile time, so a sweep has no dispatch within an element.
 pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     Send + Sync + 'static
 {
     /// Reference data of elements other than their points.
     type Reference: Send + Sync;
 
-    /// Whether the force is compiled separately for each law with formulas for several elements at a time. This pays if
-    /// a call of the law takes a large part of the time.
+    /// Whether the force is compiled separately for each law with formulas for several elements at a time. A separate
+    /// compilation pays if a call of the law takes a large part of the time.
     const FOR_EACH_LAW: bool = false;
 
     /// Number of points at which the stress of the material is evaluated.
@@ -81,8 +81,8 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     /// Reference data of a block.
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference;
 
-    /// Visits every point p with its deformation and stress. This is the only evaluation of the material, from which
-    /// everything else is computed. Returns whether det F is positive at all points.
+    /// Visits every point p with its deformation and stress. This visit is the only evaluation of the material;
+    /// everything else is computed from it. Returns whether det F is positive at all points.
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
@@ -149,9 +149,8 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         work
     }
 
-    /// Writes the internal variables at the end of a motion: those of the points, and those of the elements. Returns
-    /// the energy dissipated on the way, int D dOmega (force length). `of_variables` gives the law with variables of
-    /// the points.
+    /// Writes the internal variables of the points and of the elements at the end of a motion. Returns the energy
+    /// dissipated on the way, int D dOmega (force length). `of_variables` gives the law with variables of the points.
     fn update<'z, S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &AnyLaw<HOOP>,

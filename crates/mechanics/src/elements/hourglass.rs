@@ -4,8 +4,9 @@
 //!
 //! # Derivation
 //!
-//! The element flows when the root mean square of q over it reaches the yield stress. The energy of the modes counts as
-//! distortional energy, q²/(6 mu). Strain and modes then form one strain with more components, with one radial return:
+//! The element flows when the root mean square of q over the element reaches the yield stress. The energy of the modes
+//! counts as distortional energy, q²/(6 mu). Strain and modes then form one strain with more components, with one
+//! radial return:
 //!
 //! ```text
 //! q² = 3/2 xi:xi + m,   m = 3 mu/V x.Kh x,   x = y - (1 + k) y_p,   k = H_k/(3 mu)
@@ -28,7 +29,7 @@ use crate::materials::{Lanes, Metal, Number, StrainChange, Symmetric};
 pub enum Amplitudes<const M: usize> {
     /// Amplitudes in one configuration.
     At([Lanes; M]),
-    /// At the start and at the end of an increment.
+    /// Amplitudes at the start and at the end of an increment.
     Between([Lanes; M], [Lanes; M]),
     /// Amplitudes at the start and at the end of an increment, for a viscosity.
     Change([Lanes; M], [Lanes; M]),
@@ -165,7 +166,7 @@ impl<const M: usize> JointTangent<M> {
 pub(super) enum JointPath<const M: usize> {
     /// Strain and amplitudes in one configuration.
     At(Joint<M>),
-    /// At the start and at the end of an increment.
+    /// Strain and amplitudes at the start and at the end of an increment.
     Between(Joint<M>, Joint<M>),
 }
 
@@ -279,8 +280,8 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         squared <= size * size * self.volume * self.shear()
     }
 
-    /// V S, and the part of D added to the stress of the modes. Both are the derivative of the potential D, or its
-    /// discrete gradient: with n between start and end and its metric m,
+    /// V S, and the part of D that is added to the stress of the modes. Both stresses are the derivative of the
+    /// potential D, or its discrete gradient: with n between start and end and its metric m,
     ///
     /// ```text
     /// D'(mean) + phi/(n.m) m,   phi = D(end) - D(start) - D'(mean).n
@@ -459,8 +460,8 @@ mod tests {
     const PLANE: Vector4<f64> = Vector4::new(2.0, -1.2, 0.0, 0.9);
     const BENT: Vector2<f64> = Vector2::new(0.03, -0.02);
 
-    /// States of strain and modes, approximately in units of the yield limit of each. They are at rest; with strain
-    /// only, or almost; with modes only, or almost; with both; and far beyond the limit.
+    /// States of strain and modes, approximately in units of the yield limit of each. The samples are: at rest; with
+    /// strain only, or almost; with modes only, or almost; with both; and far beyond the limit.
     const SHARES: [[f64; 2]; 10] = [
         [0.0, 0.0],
         [0.5, 0.3],
@@ -481,8 +482,8 @@ mod tests {
         }
     }
 
-    /// Metals with and without a back stress, with their variables after some flow, those of the modes, and a direction
-    /// of strain.
+    /// Metals with and without a back stress, with their variables after some flow, the variables of the modes, and a
+    /// direction of strain.
     fn metals(units: f64) -> Vec<(PlanePlastic, [f64; 2], Vector4<f64>)> {
         let law = |kinematic| Plastic {
             moduli: SmallStrainModuli {

@@ -65,7 +65,7 @@ impl MeanGradient {
 /// ln V = 1/2 (ln det F I + artanh(d/m)/d D)
 /// ```
 ///
-/// It is NaN if F turns the element inside out.
+/// The strain is NaN if F turns the element inside out.
 pub(super) fn logarithmic_strain(h: &Matrix2<f64>) -> [f64; 3] {
     let g = h + h.transpose() + h * h.transpose();
     let m = 1.0 + g.trace() / 2.0;

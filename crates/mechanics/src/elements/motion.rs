@@ -33,8 +33,8 @@ pub struct Motion<'a> {
     pub committed: &'a [f64],
     /// The increment in which damping acts; `None` without damping.
     pub increment: Option<Increment<'a>>,
-    /// Temperature of every node at which the materials are evaluated; if empty, it is that of the start of the
-    /// analysis.
+    /// Temperature of every node at which the materials are evaluated; if the list is empty, it is the temperature at
+    /// the start of the analysis.
     pub temperature: &'a [f64],
 }
 
@@ -44,7 +44,7 @@ pub enum TangentPart {
     /// The complete tangents.
     Whole,
     /// The positive part of the tangents: negative eigenvalues of every element are replaced by
-    /// zero. No sum of these is indefinite, whatever the stresses and the material.
+    /// zero. No sum of these positive parts is indefinite, whatever the stresses and the material.
     Positive,
 }
 

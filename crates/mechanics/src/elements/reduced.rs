@@ -1,23 +1,23 @@
 //! The four-node quadrilateral with the one strain of its mean gradients (CPE4R, CPS4R), and the ring with this section
-//! (CAX4R). Their hourglass modes have a potential. In a ring the variation of the strain around the axis has one too,
-//! since one layer of elements could otherwise tilt freely. See docs/theory/elements.md, One strain and hourglass
-//! stiffness.
+//! (CAX4R). Their hourglass modes have a potential. In a ring the variation of the strain around the axis has a
+//! potential too, since one layer of elements could otherwise tilt freely. See docs/theory/elements.md, One strain and
+//! hourglass stiffness.
 //!
 //! # Derivation
 //!
 //! With u = sum u_a h_a, the mean gradients b, and the mean m of grad h over the volume, exactly F = F0 + q x (grad h -
 //! m), F0 = I + sum u_a x b_a, q = sum gamma_a u_a. At small strains the element with enhanced strains has, in addition
 //! to the mean strain, those of H = F0^T q and of E_33 less its mean. Their energy products with the mean strain are
-//! zero. The potential is their energy with C of the law at E = 0, minimised over alpha:
+//! zero. The potential is the energy of these strains with C of the law at E = 0, minimised over alpha:
 //!
 //! ```text
 //! y = (H, E_33 - mean E_33 at the four points),   e = sym(H x (grad h - m)) + y_33 e_33 e_33 + M alpha
 //! Phi = V W(E0) + y.Kh y/2,   Kh = K_yy - K_ya K_aa^-1 K_ay
 //! ```
 //!
-//! y does not change when the element turns. It is quadratic in the displacements, so exactly dy = (dy/du in the mid
-//! configuration) du between two configurations. The force with Kh (y0 + y1)/2 in the mid configuration therefore does
-//! the work of the hourglass energy.
+//! The amplitudes y do not change when the element turns. They are quadratic in the displacements, so exactly dy =
+//! (dy/du in the mid configuration) du between two configurations. The force with Kh (y0 + y1)/2 in the mid
+//! configuration therefore does the work of the hourglass energy.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -128,7 +128,7 @@ impl<const M: usize> OnePoint<M> {
 }
 
 impl<'a, const M: usize> Moved<'a, M> {
-    /// The motion of the point and of the modes, eq. (2.44).
+    /// The motion of the strain and of the amplitudes, eq. (2.44).
     #[inline(always)]
     fn new<S: IntegratedShape<N, N>, const HOOP: bool>(
         at: &MovedBlock<N, N, OnePoint<M>>,
@@ -306,7 +306,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
     }
 
     /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D²y, where G has the rows dy. D²H_k = b_ak gamma_b + gamma_a
-    /// b_bk acts in both directions, and D²E_33 = h_a h_b/R² in that of the radius. In a metal C and Kh come from one
+    /// b_bk acts in both directions, and D²E_33 = h_a h_b/R² along the radius. In a metal C and Kh come from one
     /// potential, with its mixed derivatives.
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(

@@ -35,7 +35,7 @@ pub struct ElementResult {
 pub struct Strained {
     /// Element (index).
     pub element: usize,
-    /// Largest absolute principal value of the element's Green-Lagrange strain in the plane.
+    /// Largest absolute principal value of this element's Green-Lagrange strain in the plane.
     pub strain: f64,
 }
 
@@ -68,8 +68,8 @@ pub struct ResultPoint {
     pub strain: SymmetricLanes,
     /// Determinant, in the plane, of the material's deformation gradient.
     pub determinant: Lanes,
-    /// Stress that is reported for the point. It does work on the strain of the displacements, or in elements with own
-    /// strains on that of the material (force/length^2).
+    /// Stress that is reported for the point. The reported stress does work on the strain of the displacements, or in
+    /// elements with own strains on that of the material (force/length^2).
     pub s: SymmetricLanes,
     /// Weight of the point (length^3).
     pub weight: Lanes,

@@ -200,7 +200,7 @@ pub(super) const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]
 /// Natural coordinate of the integration points relative to that of the nodes, 1/sqrt(3).
 pub(super) const GAUSS: f64 = 0.577_350_269_189_625_8;
 /// Half of the linear shape function (1 + GAUSS)/2 of an edge at its nearer integration point; the half is the natural
-/// derivative across. `FAR` is the same with (1 - GAUSS)/2.
+/// derivative across. `FAR` is half of the linear shape function (1 - GAUSS)/2 at the farther integration point.
 const NEAR: f64 = (1.0 + GAUSS) / 4.0;
 const FAR: f64 = (1.0 - GAUSS) / 4.0;
 

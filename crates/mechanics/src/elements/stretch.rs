@@ -4,18 +4,18 @@
 //! # Derivation
 //!
 //! With the mean Ebar of the displacement strains and Cbar = I + 2 Ebar, the strain beyond the mean is A = E + M
-//! alpha - Ebar. In the Green-Lagrange measure the strain of the element is Ebar + A. In the logarithmic measure it is
-//! that of Cbar exp(2 Cbar^-1 A), which is additive in logarithmic strains. Cayley's approximation of the exponential
-//! agrees with it up to the second order:
+//! alpha - Ebar. In the Green-Lagrange measure the strain of the element is Ebar + A. In the logarithmic measure the
+//! strain of the element is that of Cbar exp(2 Cbar^-1 A), which is additive in logarithmic strains. Cayley's
+//! approximation of the exponential agrees with it up to the second order:
 //!
 //! ```text
 //! I + 2 E_g = Cbar (1 - Q)^-1 (1 + Q),   Q = Cbar^-1 A
 //! E_g = Ebar + A + A H A,   H = (Cbar - A)^-1, or 0 in the measure of Green and Lagrange
 //! ```
 //!
-//! The approximation is singular where Cbar + A is. There the displacements, whose strain is linear in q (eq. 2.27),
-//! turn a point of a parallelogram inside out, so the energy of the material grows before. With N = H A, W = 1 + N and
-//! dH = -H (2 dEbar - dA) H, the derivatives are
+//! The approximation is singular where Cbar + A is. Where Cbar + A is singular, the displacements, whose strain is
+//! linear in q (eq. 2.27), turn a point of a parallelogram inside out, so the energy of the material grows before. With
+//! N = H A, W = 1 + N and dH = -H (2 dEbar - dA) H, the derivatives are
 //!
 //! ```text
 //! dE_g  = dEbar + W^T dA W - 2 N^T dEbar N = dEbar + dA + dA N + N^T B,   B = dA W - 2 dEbar N
@@ -77,7 +77,7 @@ impl Tensor {
     }
 
     /// Symmetric part (A + A^T)/2. The difference between two symmetric tensors would have the round-off of their
-    /// product; this has not.
+    /// product; this form has not.
     #[inline(always)]
     fn symmetric(&self) -> SymmetricLanes {
         let [[xx, xy], [yx, yy]] = self.section;

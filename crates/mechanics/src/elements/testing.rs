@@ -438,7 +438,7 @@ fn nearly_incompressible_elements_keep_their_energy() {
 }
 
 /// A motion of a metal in many increments, which is checked. Every increment conserves the energy, and committing it
-/// changes the force at its end by no more than a small part. Returns the dissipated energy.
+/// changes the force at its end by no more than a small part. Returns the dissipated energy of the whole motion.
 fn check_metal(
     sample: &Sample,
     at: impl Fn(f64) -> DVector<f64>,

@@ -9,8 +9,8 @@ use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
 /// A law with internal variables. From the strains of an iterate and the internal variables z0, which the last accepted
-/// increment has committed, it computes the stress, its tangent, and the internal variables z1 of the iterate. It does
-/// so by a local solution (return mapping).
+/// increment has committed, it computes the stress, its tangent, and the internal variables z1 of the iterate. The law
+/// computes them by a local solution (return mapping).
 ///
 /// Energies are per reference volume (force/length^2); the stored energy is kept apart from the dissipated one.
 pub trait Flow {
@@ -23,8 +23,8 @@ pub trait Flow {
     /// Writes the internal variables z1 at the end of the strains.
     fn update(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]);
 
-    /// Tangent dS/dE of [`Self::stress`], or in the energy-momentum form the symmetric part of 2 dS/dE1. z1 depends on
-    /// the strain, and the tangent acts on strains (11, 22, 33, 2*12) (force/length^2).
+    /// Tangent dS/dE of [`Self::stress`], or in the energy-momentum form the symmetric part of 2 dS/dE1. The tangent
+    /// acts on strains (11, 22, 33, 2*12) and includes the dependence of z1 on the strain (force/length^2).
     fn tangent(&self, strains: &Strains, z0: &[f64]) -> Tangent;
 
     /// Stored energy W(E, z).
@@ -51,7 +51,7 @@ pub trait Flow {
 }
 
 /// Functions of a metal that elements with hourglass modes call: a potential W(E; m), without the elastic energy of the
-/// modes. m is the part that the modes add to q² (force^2/length^4), eq. (2.48).
+/// modes. The argument m is the part that the modes add to q² (force^2/length^4), eq. (2.48).
 pub trait MetalLaw: std::fmt::Debug {
     /// The moduli 3 mu and H_k (force/length^2).
     fn moduli(&self) -> [f64; 2];

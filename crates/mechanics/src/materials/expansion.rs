@@ -265,7 +265,7 @@ struct ExpandedMetal<'a> {
 }
 
 impl ExpandedMetal<'_> {
-    /// The squares m as the law sees them.
+    /// The squares m in the form in which the law of the metal uses them.
     fn relative_modes(&self, modes: [f64; 2]) -> [f64; 2] {
         modes.map(|m| m / self.stretch.volume())
     }

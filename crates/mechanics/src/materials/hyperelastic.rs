@@ -13,15 +13,15 @@
 //! S = S(E_m) + f/(dE:dE) dE,     f = W1 - W0 - S(E_m):dE
 //! ```
 //!
-//! f is of third order in dE, so the scheme keeps its second order. If W is quadratic, f is zero and S is the mean
-//! (S0 + S1)/2 of Simo & Tarnow (1992). C_m = I + 2 E_m is positive definite because C0 and C1 are.
+//! The scalar f is of third order in dE, so the scheme keeps its second order. If W is quadratic, f is zero and S is
+//! the mean (S0 + S1)/2 of Simo & Tarnow (1992). C_m = I + 2 E_m is positive definite because C0 and C1 are.
 
 use super::number::Number;
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
-/// Norm of dE up to which f is neglected. f changes the energy by a relative amount of about |dE|
-/// or less, which is round-off below this bound.
+/// Norm of dE up to which the correction f is neglected. The correction f changes the energy by a
+/// relative amount of about |dE| or less, which is round-off below this bound.
 pub const NO_CHANGE: f64 = f64::EPSILON;
 
 /// Norm of dE up to which the tangent is that of S(E_m): the rest is a relative amount of about |dE| and would have a
@@ -33,8 +33,9 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     /// W(E) (force/length^2).
     fn energy(&self, e: &Symmetric<T>) -> T;
 
-    /// W(E1) - W(E0), with a round-off that is relative to E1 - E0 (force/length^2). It must not be
-    /// computed as the difference of two energies, which has no correct digits if E1 is near E0.
+    /// W(E1) - W(E0), with a round-off that is relative to E1 - E0 (force/length^2). The difference
+    /// of energies must not be computed from two energies: it would have no correct digits if E1 is
+    /// near E0.
     fn energy_change(&self, change: &StrainChange<T>) -> T;
 
     /// Second Piola-Kirchhoff stress S = dW/dE, eq. (2.3) (force/length^2).

@@ -6,7 +6,7 @@ use super::number::Number;
 use super::strains::StrainChange;
 use super::symmetric::{Symmetric, Tangent, cofactor, dyad, minor, product, with_identity};
 
-/// The energy of the volume:
+/// The energy of the change of volume:
 ///
 /// ```text
 /// U(J) = (J - 1)²/D1 + (J - 1)^4/D2 + (J - 1)^6/D3,   K = 2/D1

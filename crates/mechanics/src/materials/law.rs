@@ -57,7 +57,7 @@ impl Law {
         }
     }
 
-    /// Cards from which a deck makes the law.
+    /// Cards of a deck that define the law.
     pub fn cards(&self) -> Vec<LawCard> {
         match self {
             Law::SaintVenantKirchhoff(law) => law.cards(),

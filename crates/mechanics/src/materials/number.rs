@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// Number of elements that are evaluated together: as many numbers as an instruction of any x86-64 processor handles.
-/// With more the numbers would not fit into its registers.
+/// With more elements the numbers would not fit into the registers of the processor.
 pub const LANES: usize = 2;
 
 /// Numbers for which formulas of laws and elements are written.
@@ -39,8 +39,8 @@ pub trait Number:
     /// Square root.
     fn sqrt(self) -> Self;
 
-    /// 1/x^(1/3) for positive numbers that are not subnormal; NaN for others. A third of the exponent gives a start r
-    /// within 4 %. Each step raises the relative error to the fourth power, with h = 1 - x r³:
+    /// 1/x^(1/3) for positive numbers that are not subnormal; NaN for others. A start value r that is within 4 % comes
+    /// from a third of the exponent. Each step raises the relative error of r to the fourth power, with h = 1 - x r³:
     ///
     /// ```text
     /// r <- r (1 + h/3 + 2 h²/9 + 14 h³/81)
@@ -202,7 +202,7 @@ impl Positive {
         Positive([at(0), at(1)])
     }
 
-    /// Combines two states: both must have only positive numbers.
+    /// Combines two states: in both all numbers must be positive.
     #[inline(always)]
     #[must_use]
     pub fn both(self, other: Positive) -> Positive {

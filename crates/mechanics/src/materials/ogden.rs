@@ -11,8 +11,8 @@ use super::{LawCard, SmallStrainModuli};
 
 /// Hyperelastic material, `*HYPERELASTIC, OGDEN`.
 ///
-/// For the principal stretches l_i let e_i = ln l_i; then ln J is their sum, and d_i = e_i - ln J/3 are those of the
-/// distortion:
+/// For the principal stretches l_i let e_i = ln l_i; then ln J is the sum of the e_i, and d_i = e_i - ln J/3 are the
+/// logarithmic strains of the distortion:
 ///
 /// ```text
 /// energy   W = sum_k 2 mu_k/alpha_k² (sum_i exp(alpha_k d_i) - 3) + U(J)
@@ -110,8 +110,8 @@ impl Ogden {
         (beta, j * (p + j * stiff))
     }
 
-    /// Change of T for a change of the logarithmic strain, both in the principal frame. Its off-diagonal factor is
-    /// (beta_1 - beta_2)/(e_1 - e_2).
+    /// Change of T for a change of the logarithmic strain, both in the principal frame. The off-diagonal factor of this
+    /// change is (beta_1 - beta_2)/(e_1 - e_2).
     fn stress_change(&self, at: &Principal, of_volume: f64, a: &Symmetric) -> Symmetric {
         let change = [a.x, a.y, a.z];
         let trace = a.x + a.y + a.z;

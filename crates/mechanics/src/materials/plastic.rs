@@ -180,8 +180,8 @@ impl Plastic {
         deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
     }
 
-    /// Flow from a trial strain with hourglass modes of a square m. It minimises the potentials of eq. (2.38) and eq.
-    /// (2.48): (Q, H) of the trial returns to the nearest point sigma_y (w, z) of the yield curve.
+    /// Flow from a trial strain with hourglass modes of a square m. The flow minimises the potentials of eq. (2.38) and
+    /// eq. (2.48): (Q, H) of the trial returns to the nearest point sigma_y (w, z) of the yield curve.
     fn flow(&self, strain: &Symmetric, state: &PlasticState, modes: f64) -> PlasticFlow {
         let xi = self.relative_stress(strain, state);
         let size = contract(&xi, &xi).sqrt();
@@ -271,8 +271,8 @@ impl Plastic {
         angle
     }
 
-    /// Changes of dE_p and of da between two flows from one state, for a change of the trial strain. They keep their
-    /// digits if both flow: with p = r Q/(3 mu),
+    /// Changes of dE_p and of da between two flows from one state, for a change of the trial strain. The changes keep
+    /// their digits if both flow: with p = r Q/(3 mu),
     ///
     /// ```text
     /// dQ = 3/2 (xi0 + xi1):dxi/(Q0 + Q1),   dr = 3 mu (dp (Q0 + Q1)/2 - (p0 + p1)/2 dQ)/(Q0 Q1)
@@ -394,8 +394,8 @@ struct Trial {
 /// Flow of an increment.
 #[derive(Default)]
 struct PlasticFlow {
-    /// da = w p + z p_h of eq. (2.49), with p_h = r_h H/(3 mu). As this sum of the parts that flow, its round-off does
-    /// no work.
+    /// da = w p + z p_h of eq. (2.49), with p_h = r_h H/(3 mu). In this sum of the parts that flow, the round-off of da
+    /// does no work.
     slip: f64,
     /// p = r Q/(3 mu): da for an element without modes; zero without a strain.
     own: f64,
@@ -424,7 +424,8 @@ const SMALL_SHARE: f64 = 1e-8;
 /// The first equation is the work of the flow, sigma_y da.
 struct Return {
     trial: [f64; 2],
-    /// Place c and its derivatives c' and c''.
+    /// Place c = (w, z) on the yield curve and its derivatives c' and c'' with respect to the
+    /// angle.
     point: [f64; 2],
     first: [f64; 2],
     second: [f64; 2],
@@ -504,7 +505,7 @@ fn deviator(a: &Symmetric) -> Symmetric {
 }
 
 /// The potential Phi(E; z0) of an increment: stored energy plus work of hardening after the flow. With hourglass modes
-/// it is that of eq. (2.48) without the elastic energy of the modes.
+/// the potential is that of eq. (2.48) without the elastic energy of the modes.
 #[derive(Clone, Copy)]
 struct Potential<'a> {
     law: &'a Plastic,
@@ -661,8 +662,8 @@ impl PlanePlastic {
         completed(change, across)
     }
 
-    /// Dissipated energy D of an increment that ends at a strain, in the energy-momentum form from a strain to another,
-    /// with modes of the given squares m.
+    /// Energy D dissipated in an increment that ends at a strain, or in the energy-momentum form goes from one strain
+    /// to another, with modes of the given squares m.
     fn dissipated(&self, strains: &Strains, z0: &[f64], modes: [f64; 2]) -> f64 {
         let state = self.law.state(z0);
         let released = match strains {
@@ -742,7 +743,8 @@ impl Flow for PlanePlastic {
 }
 
 /// In plane stress S_33 = 0 determines the strain across the plane, which therefore depends on m. With S_m = dS/dm at
-/// constant strain across the plane, this adds -S_m33²/C_33 to d²W/dm² and -C_i3 S_m33/C_33 to dS/dm.
+/// constant strain across the plane, the strain across the plane adds -S_m33²/C_33 to d²W/dm² and -C_i3 S_m33/C_33 to
+/// dS/dm.
 impl MetalLaw for PlanePlastic {
     fn moduli(&self) -> [f64; 2] {
         [3.0 * self.law.shear(), self.law.kinematic]

@@ -1,5 +1,5 @@
 //! Strains at which a law is evaluated: one strain, or those at the start and at the end of an increment. Also the
-//! measure in which strains are added, and the state across the plane. See docs/theory/materials.md and
+//! measure in which strains of an element are added, and the state across the plane. See docs/theory/materials.md and
 //! docs/theory/time.md.
 
 use super::number::Number;

@@ -1,8 +1,8 @@
 //! Symmetric tensors whose components 13 and 23 are zero, as in the plane and in bodies of revolution, and their
 //! products as matrices that act on strains (11, 22, 33, 2*12). See docs/theory/materials.md.
 //!
-//! With `HOOP` the component 33 is used. Without it the strain 33 is zero, as in plane strain, and formulas omit its
-//! products.
+//! With `HOOP` the component 33 is used. Without `HOOP` the strain 33 is zero, as in plane strain, and formulas omit
+//! its products.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};

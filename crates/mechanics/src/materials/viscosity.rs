@@ -74,8 +74,8 @@ impl Viscosity {
     }
 }
 
-/// Stresses are multiplied by the length of the increment (force time/length^2). They are zero if the strain does not
-/// change; nothing is stored, and there is no stress across the plane.
+/// Stresses are multiplied by the length of the increment (force time/length^2). The viscous stresses are zero if the
+/// strain does not change; nothing is stored, and there is no stress across the plane.
 impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
     /// S_d dt, eq. (4.17).
     #[inline(always)]
@@ -101,7 +101,8 @@ impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
         gdeg.with(&g, |gdeg, g| (gdeg * self.shape + dj * g) * inverse)
     }
 
-    /// 2 V of eq. (4.19), which is positive definite. It omits the change of G and J_m, which is of first order in dE.
+    /// 2 V of eq. (4.19), which is positive definite. This tangent omits the change of G and J_m, which is of first
+    /// order in dE.
     #[inline(always)]
     fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {
         let Strains::Between(change) = strains else {

@@ -1,5 +1,5 @@
-//! The yield curve of a metal whose element has hourglass modes, eq. (2.47). It limits the parts w and z of sigma_y
-//! that strain and modes use:
+//! The yield curve of a metal whose element has hourglass modes, eq. (2.47). The curve limits the parts w and z of
+//! sigma_y that strain and modes use:
 //!
 //! ```text
 //! z <= sqrt(3)/2 ((1 - e) (1 - w²) + e sqrt(1 - w²)),   w = cos t

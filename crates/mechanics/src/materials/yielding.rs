@@ -135,7 +135,8 @@ impl Flow for Yielding {
         z1.copy_from_slice(&[z.x, z.y, z.w, z0[3] + end.slip]);
     }
 
-    /// Between two strains it is (S0 + S1)/2 plus the correction for W1 - W0 + D - S:dE = (S1 - S0):dZ/2, eq. (4.8).
+    /// Between two strains the stress is (S0 + S1)/2 plus the correction for W1 - W0 + D - S:dE = (S1 - S0):dZ/2, eq.
+    /// (4.8).
     fn stress(&self, strains: &Strains, z0: &[f64]) -> Symmetric {
         let end = self.returned(&strains.end(), z0);
         let Strains::Between(change) = strains else {
@@ -147,7 +148,7 @@ impl Flow for Yielding {
         corrected_stress::<f64, true>(&mean, &change.change(), f)
     }
 
-    /// The derivative uses dZ/dE = I - (dS/dE)/G.
+    /// The derivative of the stress uses dZ/dE = I - (dS/dE)/G.
     fn tangent(&self, strains: &Strains, z0: &[f64]) -> Tangent {
         let end = self.returned(&strains.end(), z0);
         let Strains::Between(change) = strains else {

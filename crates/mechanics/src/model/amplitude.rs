@@ -1,5 +1,5 @@
-//! Amplitudes: functions of time with their value and exact rate. The rate is the velocity of a
-//! prescribed displacement (docs/theory/time.md, Supports).
+//! Amplitudes: functions of time with their value and exact rate. The rate of an amplitude is the
+//! velocity of a prescribed displacement (docs/theory/time.md, Supports).
 
 /// Relative difference up to which two times are equal: the round-off of products k dt.
 const SAME_TIME: f64 = 16.0 * f64::EPSILON;
@@ -75,13 +75,15 @@ impl Amplitude {
         self.value_and_rate(t)[0]
     }
 
-    /// Derivative at `t`. At a point of a table where it jumps, it is that of the interval before;
-    /// at the first point and at the start of a signal, that after.
+    /// Derivative of the amplitude at `t`. Where the derivative jumps at a point of a table, the
+    /// result is that of the interval before; at the first point and at the start of a signal it is
+    /// that after.
     pub fn rate(&self, t: f64) -> f64 {
         self.value_and_rate(t)[1]
     }
 
-    /// Derivative at `t`; where it jumps, that of the interval after.
+    /// Derivative of the amplitude at `t`; where it jumps, the result is that of the interval
+    /// after.
     pub fn rate_after(&self, t: f64) -> f64 {
         match &self.curve {
             Curve::Linear(points) => rate_after_point(points, t, |x| [x, 1.0]),
@@ -263,8 +265,8 @@ fn smooth_step_integrals(x: f64) -> [f64; 2] {
     ]
 }
 
-/// First and second integral at `t`, from the first point, of a table that is constant outside. Between two points its
-/// values follow a step, whose integrals from 0 to `0 <= x <= 1` are `step`.
+/// First and second integral at `t`, from the first point, of a table that is constant outside. Between two points the
+/// values of the table follow a step, whose integrals from 0 to `0 <= x <= 1` are `step`.
 fn integrals_of_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let constant = |value: f64, s: f64| [value * s, value * s * s / 2.0];
     let (first, last) = (points[0], points[points.len() - 1]);
@@ -298,8 +300,8 @@ fn smooth_step(x: f64) -> [f64; 2] {
     ]
 }
 
-/// Value and rate at `t` of a table that is constant outside. Between two points its values follow
-/// `step`, which gives the part of the difference and its derivative at `0 <= x <= 1`.
+/// Value and rate at `t` of a table that is constant outside. Between two points the values of the
+/// table follow `step`, which gives the part of the difference and its derivative at `0 <= x <= 1`.
 fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (first, last) = (points[0], points[points.len() - 1]);
     let t = at_point(points, t);
@@ -329,8 +331,8 @@ fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2
     (q.1 - p.1) / (q.0 - p.0) * slope
 }
 
-/// The time of the table point that equals `t` up to round-off, else `t`. On which side of a kink an increment ends
-/// therefore does not depend on the unit of time.
+/// The time of the table point that equals `t` up to round-off; without such a point `t` itself. On which side of a
+/// kink an increment ends therefore does not depend on the unit of time.
 fn at_point(points: &[(f64, f64)], t: f64) -> f64 {
     let next = points.partition_point(|p| p.0 < t);
     let around = &points[next.saturating_sub(1)..points.len().min(next + 1)];

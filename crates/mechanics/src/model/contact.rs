@@ -85,7 +85,7 @@ pub struct Contact {
     pub adjust: Option<Adjust>,
     /// Slave nodes that do not take part in the contact (indices, increasing).
     pub left_out: Vec<usize>,
-    /// Whether this is general contact that presses the overlap of bodies out in the first step.
+    /// Whether this is general contact that presses out the overlap of bodies in the first step.
     pub is_interference_fit: bool,
     /// Place in the deck, for messages.
     pub span: Span,
@@ -312,11 +312,11 @@ impl Equation {
     }
 }
 
-/// A rigid body and its reference node. In all steps it has its own centre of mass and angle, whether a step frees them
-/// or not, so a run does not depend on later steps.
+/// A rigid body and its reference node. In all steps a rigid body has its own centre of mass and angle, whether a step
+/// frees them or not, so a run does not depend on later steps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidBody {
-    /// Number among the rigid bodies.
+    /// Number of the body among the rigid bodies.
     pub number: usize,
     /// Name of the first surface or set of the body in the deck, or of the coupling.
     pub name: String,

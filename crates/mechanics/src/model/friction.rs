@@ -133,8 +133,8 @@ impl Friction {
         }
     }
 
-    /// Two coefficients of the law, equal if it is constant. They are those at rest and in fast slip, or the largest
-    /// and the smallest one of a table or with a limit of the shear stress.
+    /// Two coefficients of the law, equal if it is constant. The two coefficients are those at rest and in fast slip,
+    /// or the largest and the smallest one of a table or with a limit of the shear stress.
     pub fn range(&self) -> [f64; 2] {
         let [first, other] = match &self.law {
             FrictionLaw::Decay {

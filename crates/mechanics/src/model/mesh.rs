@@ -312,8 +312,8 @@ impl Element {
     }
 
     /// Cross product of the directions a, b in which the sides leave corner `i`, with the nodes at `x` (length^2). If
-    /// mid-side nodes are at the middle of straight sides, it is twice the area of the triangle of the corner and its
-    /// neighbours. It is proportional to det(dX/dr) at the corner.
+    /// mid-side nodes are at the middle of straight sides, the product is twice the area of the triangle of the corner
+    /// and its neighbours. The product is proportional to det(dX/dr) at the corner.
     ///
     /// ```text
     /// a x b;  a = x_next - x_i,  or 4 x_between - 3 x_i - x_next where there is a node between them
@@ -351,7 +351,7 @@ impl Element {
     }
 
     /// Nodes of the convex polygons into which the outline is divided, which need not be convex itself. With mid-side
-    /// nodes these are a triangle at each corner and the polygon between them.
+    /// nodes these polygons are a triangle at each corner and the polygon between the triangles.
     pub fn convex_parts(&self) -> SmallVec<[Nodes; 1]> {
         if !self.element_type.is_quadratic() {
             return [self.nodes.clone()].into_iter().collect();

@@ -1,9 +1,9 @@
 //! The problem as plain data, with all names resolved to indices: mesh, materials and sections, sets, surfaces,
 //! contacts, constraints, and steps with loads and settings. See docs/theory/README.md.
 //!
-//! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom have `2 N` entries; dof `2
-//! n + i` is direction i (0 = x, 1 = y) of node n. A rigid body that turns has two more nodes, which exist only in
-//! these vectors: its centre of mass, and one whose direction 0 is its angle.
+//! Everything in the model is indexed from 0 in the order of the deck. Vectors over degrees of freedom have `2 N`
+//! entries; dof `2 n + i` is direction i (0 = x, 1 = y) of node n. A rigid body that turns has two more nodes, which
+//! exist only in these vectors: its centre of mass, and one whose direction 0 is its angle.
 
 mod amplitude;
 mod connector;
@@ -107,7 +107,7 @@ impl Model {
         });
     }
 
-    /// Name of a node in the deck: its number, or `Instance.number`. For the nodes that only rigid bodies have, it is
+    /// Name of a node in the deck: its number, or `Instance.number`. The name of a node that only a rigid body has is
     /// that of the reference node.
     pub fn node_name(&self, node: usize) -> String {
         node_name(self.node_of(node), &self.mesh, &self.sets.instances)
@@ -255,8 +255,8 @@ impl Model {
         self.contacts.iter().any(is_varying) || all.any(|[first, other]| first != other)
     }
 
-    /// Two coefficients of friction of a contact, equal if it is constant in all steps. They are those of
-    /// [`Friction::range`], or the largest and the smallest one if steps change it.
+    /// Two coefficients of friction of a contact, equal if it is constant in all steps. The two coefficients are those
+    /// of [`Friction::range`], or the largest and the smallest one if steps change the friction.
     pub fn friction_range(&self, contact: usize) -> [f64; 2] {
         let own = self.contacts[contact].interaction.friction.range();
         let changes = self.steps.iter().flat_map(|step| &step.contacts.friction);

@@ -1,7 +1,7 @@
 //! Named sets of nodes and elements, the sets of the history output (groups `/history/nodes` and `/history/elements` of
 //! the result file), fields on request, and dofs in the status file. Also instances of parts, with their nodes and
-//! elements and the numbers of these in the part. With instances the numbers of the mesh are the program's own, each
-//! used once.
+//! elements and the numbers of these nodes and elements in the part. With instances the numbers of the mesh are the
+//! program's own, each used once.
 
 use std::collections::BTreeSet;
 
@@ -100,7 +100,8 @@ pub struct HistorySet {
     pub at_nodes: bool,
 }
 
-/// An instance of a part. Its nodes are consecutive in the mesh, and so are its elements.
+/// An instance of a part. The nodes of an instance are consecutive in the mesh, and so are its
+/// elements.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Instance {
     /// Its name.

@@ -80,7 +80,7 @@ impl Side {
     }
 
     /// int h_a n dl at every node a (length), where n is the outward normal: the forces of a unit suction per
-    /// thickness. `from_first` are the positions of the nodes relative to the first one.
+    /// thickness. `from_first` are the positions of the nodes relative to the first node.
     pub fn normals(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],

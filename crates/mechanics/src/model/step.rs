@@ -139,8 +139,8 @@ pub struct Increments {
     pub dt: f64,
     /// Duration T of the step (time).
     pub period: f64,
-    /// Smallest increment that a cutback may reach (time). By default it is 0; in a static step without DIRECT it is
-    /// 1e-5 of the duration, or the increment if that is smaller.
+    /// Smallest increment that a cutback may reach (time). By default this least increment is 0; in a static step
+    /// without DIRECT it is 1e-5 of the duration, or the increment if that is smaller.
     pub dt_min: f64,
     /// Largest increment (time).
     pub dt_max: f64,
@@ -164,11 +164,11 @@ impl Increments {
 /// Criterion for the length of the increments of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Incrementation {
-    /// The deck: all increments have one length except after cutbacks (DIRECT).
+    /// The deck decides: all increments have one length except after cutbacks (DIRECT).
     Fixed,
-    /// The number of passes of the increments.
+    /// The number of passes of the increments decides.
     Passes,
-    /// The truncation error of the increments.
+    /// The truncation error of the increments decides.
     Error {
         /// Largest truncation error, relative to the displacements of the step so far.
         tolerance: f64,
@@ -185,7 +185,7 @@ pub enum Frames {
     Count(usize),
     /// At multiples of this time since the start of the step.
     Every(f64),
-    /// After each such number of increments.
+    /// After each multiple of this number of increments.
     Increments(usize),
     /// At these step times, increasing.
     Times(Vec<f64>),
@@ -279,7 +279,7 @@ pub struct CentrifugalForce {
 pub struct Pressure {
     /// Loaded face.
     pub face: Face,
-    /// Whether it is a shear and not a pressure.
+    /// Whether the load is a shear and not a pressure.
     pub is_shear: bool,
 }
 
@@ -477,9 +477,9 @@ pub enum Impact {
 /// Time at which nodes land.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImpactTime {
-    /// Within the increment.
+    /// Nodes land within the increment.
     Increment,
-    /// At the time of the impact, which ends a subincrement.
+    /// Nodes land at the time of the impact, which ends a subincrement.
     Event,
 }
 

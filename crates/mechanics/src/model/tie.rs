@@ -76,7 +76,7 @@ const NO_PART: f64 = 1e-14;
 pub struct TiedNode {
     /// The node.
     pub node: usize,
-    /// The segment from a to b.
+    /// The segment that the node follows, from a to b.
     pub segment: Segment,
     /// Coordinate along the segment, 0 at a and 1 at b.
     pub xi: f64,
@@ -161,14 +161,14 @@ impl Tie {
     /// u_j = (1/D_j) sum_q w_q psi_j(q) u_q,   D_j = sum_q w_q N_j      eq. (3.34)
     /// ```
     ///
-    /// over the points of its sides; all other nodes follow by [`TiedNode::equation`]. Nodes that are kept have their
-    /// own displacement. In the lines of a kept node i the function of the other end is 1 instead of psi_j,
+    /// with sums over the points q of its sides; all other nodes follow by [`TiedNode::equation`]. Kept nodes have their
+    /// own displacement. In the lines of a kept node i the function of the other end is 1 instead of psi_j:
     ///
     /// ```text
     /// D_j u_j + D_i u_i = sum_q w_q u_q
     /// ```
     ///
-    /// so that the functions still add up to 1 and a uniform traction passes through the tie.
+    /// With this 1 the functions still add up to 1, and a uniform traction passes through the tie.
     pub fn equations(&self, direction: usize, is_kept: impl Fn(usize) -> bool) -> Vec<Equation> {
         let mut means: BTreeMap<usize, Mean> = BTreeMap::new();
         let mut corners: BTreeMap<usize, [usize; 2]> = BTreeMap::new();

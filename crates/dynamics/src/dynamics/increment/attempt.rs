@@ -21,7 +21,7 @@ use crate::dynamics::step::{
     ClosedConstraints, FactoredState, HeldMotions, Interval, StepProblem, Workspace,
 };
 
-/// Number of passes that an attempt makes in any case; it goes on only if the passes will end within MAX PASSES.
+/// Number of passes that an attempt makes in any case; further passes are made only if they will end within MAX PASSES.
 const PATIENCE: usize = 25;
 
 /// Relative difference of lengths up to which subincrements between impacts share the factors of K*.
@@ -109,8 +109,8 @@ impl DynamicAttempt<'_, '_> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// The slave nodes whose constraints the passes find at first. These are the near nodes if velocities tell how far
-    /// nodes go, and all nodes with the last rule.
+    /// The slave nodes whose constraints the passes find at first. The passes find the near nodes at first if all pairs
+    /// count, factors are kept and velocities tell how far nodes go; otherwise all nodes.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.passes.set, rule) {
             (ConstraintSet::All, FactorRule::Kept)

@@ -21,7 +21,7 @@ const TIPS: usize = 3;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
     /// The constraints, with increasing keys. At the end of an increment the constraints of far
-    /// nodes follow them; these are open.
+    /// nodes, which are open, follow the others.
     pub constraints: Vec<Constraint>,
     /// The closed constraints, as pairs.
     pub closed: ClosedPairs,
@@ -198,7 +198,7 @@ impl ContactForces {
     }
 
     /// Adds to the problem as many constraints as it has, those with the smallest gaps of the iterate: bodies that its
-    /// constraints leave free move on to the next ones. Returns whether there were any outside.
+    /// constraints leave free move on to the next ones. Returns whether there were any constraints outside the problem.
     fn enter_nearest(&self, inside: &mut [bool]) -> bool {
         let count = inside.iter().filter(|inside| **inside).count().max(FEWEST);
         let gap = |k: usize| self.constraints[k].gap / self.constraints[k].scale;
@@ -210,7 +210,7 @@ impl ContactForces {
     }
 
     /// Adds those constraints to the problem whose gaps `after` the correction would be overlaps of more than `overlap`
-    /// times their scale. Returns whether there were any.
+    /// times their scale. Returns whether there were any such constraints.
     fn enter(&self, inside: &mut [bool], after: &[[f64; 2]], overlap: f64) -> bool {
         let mut entered = false;
         let constraints = self.constraints.iter().zip(after);
@@ -223,7 +223,7 @@ impl ContactForces {
     }
 }
 
-/// The entries of those constraints that are in the problem.
+/// The entries of those constraints that are in the problem, out of entries for all.
 fn chosen<'c, 'i, T>(
     all: &'c [T],
     inside: &'i [bool],

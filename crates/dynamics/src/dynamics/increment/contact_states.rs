@@ -74,10 +74,10 @@ impl ContactStates {
         );
     }
 
-    /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether they stay
-    /// open, after the correction dU if there is one. If they do not, the passes go on with the constraints of all
-    /// nodes. A far node behind the line of a segment and beyond its ends has gone past the corner, so it has no
-    /// constraint there.
+    /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether these
+    /// constraints stay open, after the correction dU if there is one. If such a constraint closes, the passes go on
+    /// with the constraints of all nodes. A far node behind the line of a segment and beyond its ends has gone past the
+    /// corner, so it has no constraint there.
     pub fn complete(
         &mut self,
         problem: &StepProblem,
@@ -141,8 +141,8 @@ impl ContactStates {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Adds the inactive constraints to the others at the end of an increment. It omits those of a free node past or at
-    /// a corner that lies behind the line of the segment from which it came.
+    /// Adds the inactive constraints to the others at the end of an increment. Constraints of a free node past or at a
+    /// corner that lies behind the line of the segment from which it came are left out.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
         let left_out = self.left_out.drain(..);

@@ -2,7 +2,7 @@
 //! contact forces of a pass, M for the impulses. See docs/theory/complementarity.md and docs/theory/impacts.md.
 //!
 //! Problems of many constraints are solved by blocks, one for each set of bodies. The solve under way gives the effect
-//! of all forces on all constraints. docs/numerics.md, Blocks.
+//! of all forces on all constraints, also between blocks. docs/numerics.md, Blocks.
 //!
 //! The correction of a pass during its solve: gaps and slips at the contacts are known before the solve ends, and
 //! contact forces are added to its right-hand side. See docs/numerics.md, Solves of a pass.
@@ -27,7 +27,8 @@ pub(crate) struct Guess {
     pub states: Vec<ContactState>,
     /// Forces of every constraint, if known: of several solutions, the answer near them is sought.
     pub forces: Option<Vec<[f64; 2]>>,
-    /// Weight of this nearness; without a weight it counts only if there is no answer otherwise.
+    /// Weight of the nearness of the answer to these forces; without a weight the nearness counts
+    /// only if there is no answer otherwise.
     pub weight: Option<f64>,
 }
 
@@ -153,7 +154,7 @@ impl System<'_> {
     }
 }
 
-/// The closed pairs of the constraints that carry a force.
+/// The constraints that carry a force, as closed pairs.
 pub(super) fn closed_of<'a>(
     constraints: &'a [&Constraint],
     forces: impl Iterator<Item = [f64; 2]> + 'a,
@@ -185,7 +186,7 @@ const LEAST: usize = 100;
 pub(super) const FEW: usize = 128;
 
 /// Least mean number of constraints in a block. The solves of an iteration cost the same for any blocks, so with
-/// smaller blocks they gain nothing against solving with all of Q. Two flush faces have up to four constraints of
+/// smaller blocks the iteration is no faster than solving with all of Q. Two flush faces have up to four constraints of
 /// corners, which seldom carry a force.
 const LEAST_BLOCK: usize = 8;
 
@@ -374,8 +375,8 @@ fn is_coupled(part: &FrictionalLcp) -> bool {
     (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
-/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. It is available at the nodes of
-/// the constraints at any time, and everywhere at the end.
+/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. The sum is available at the
+/// nodes of the constraints at any time, and everywhere at the end.
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.
     start: &'a [f64],
@@ -386,7 +387,7 @@ impl<'a> Response<'a> {
     /// Begins with the forces `f`, over all dofs, and P = 0.
     ///
     /// # Errors
-    /// The matrix has no factors.
+    /// Returns an error if the matrix has no factors.
     pub fn begin(
         system: &mut System,
         [start, f]: [&'a [f64]; 2],
@@ -456,7 +457,7 @@ impl<'a> Response<'a> {
     }
 
     /// Puts forces of the given constraints and of the pins into the right-hand side, in place of the former ones. Gaps
-    /// and slips without forces must have been asked for before.
+    /// and slips without contact forces must have been asked for before.
     pub fn set_forces<'c>(
         &mut self,
         system: &mut System,
@@ -482,10 +483,10 @@ impl<'a> Response<'a> {
         forces.drain(..before);
     }
 
-    /// Writes the response, over all dofs.
+    /// Writes the response u + W (f + B^T P), over all dofs.
     ///
     /// # Errors
-    /// The solution is not finite.
+    /// Returns an error if the solution is not finite.
     pub fn end(self, system: &mut System, response: &mut Vec<f64>) -> Result<(), LinearError> {
         system.give_back(self.vectors);
         system.end(self.start, response)

@@ -18,13 +18,13 @@ const BALANCED: f64 = 0.1;
 /// together have about as much round-off as the diagonal entry.
 const STAGNANT_NOISE: f64 = 4.0;
 
-/// Scales of residual and correction of a pass. They are computed, so the answer does not depend on the system of
-/// units, and every part and body has its own, so that a light body next to a heavy one is solved as well.
+/// Scales of residual and correction of a pass. The scales are computed, so the answer does not depend on the system of
+/// units; every part and body has its own, so that a light body next to a heavy one is solved as accurately.
 pub(crate) struct Scales<'a> {
     parts: &'a Parts,
-    /// Largest force in equilibrium, of every part.
+    /// Largest force in equilibrium of every part.
     force: PerBody,
-    /// Round-off of the residual, of every part.
+    /// Round-off of the residual of every part.
     noise: PerBody,
     /// Largest displacement increment of every body.
     increment: PerBody,
@@ -66,7 +66,8 @@ impl<'a> Scales<'a> {
     ///
     /// A force from displacements U carries the round-off of K U, the inertia force that of (2/dt²)
     /// M d, and a force that closes a gap between positions x that of K* x. A residual cannot be
-    /// measured more finely. Displacements that close a gap carry the round-off of x.
+    /// measured more finely than the round-off of these forces. Displacements that close a gap
+    /// carry the round-off of x.
     pub fn new(
         parts: &'a Parts,
         [force, before]: [&PerBody; 2],
@@ -103,8 +104,8 @@ impl<'a> Scales<'a> {
         values.all(|value| value.is_finite())
     }
 
-    /// Stricter scales: a part of the tolerance, and no allowance for the round-off of residuals. They apply as long as
-    /// corrections decrease, since round-off is then not reached.
+    /// Stricter scales: a part of the tolerance, and no allowance for the round-off of residuals. The stricter scales
+    /// apply as long as corrections decrease, since round-off is then not reached.
     pub fn strict(mut self) -> Self {
         self.noise.fill(0.0);
         self.tolerance *= BALANCED;
@@ -169,8 +170,8 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether gaps and slips of the constraints obey the contact law to the tolerance. Closed gaps are zero and open
-    /// ones not negative; a pair that has not slipped in the last solution has no slip, and a pair that slips has none
-    /// in the direction of its friction.
+    /// ones not negative; a pair that has not slipped in the last solution has no slip, and a pair that slips has no
+    /// slip in the direction of its friction.
     pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
         contact.iter().all(|(constraint, pair)| {
@@ -190,17 +191,17 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// Whether the forces of a pair obey the coefficient of friction of its own slip rate, if the coefficient depends
-    /// on it.
+    /// Whether the forces of a pair obey the coefficient of friction at the slip rate of the pair, if the coefficient
+    /// depends on it.
     fn has_own_friction(&self, constraint: &Constraint, pair: &ClosedPair) -> bool {
         let most = self.tolerance * constraint.friction() * pair.force[0];
         !constraint.mu_varies || pair.out_of_cone(constraint.friction()) <= most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs by its rows, as far as open pairs may
-    /// overlap. It does not if pairs contradict each other: the equal-force rule then lets the forces grow in balance,
-    /// and gaps stay. It does not either if supports push a body along another under the same forces: the residual is
-    /// all round-off, but slave nodes come to other segments.
+    /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets the forces grow in
+    /// balance, and gaps stay. They do not close either if supports push a body along another under the same forces:
+    /// the residual is all round-off, but slave nodes come to other segments.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
             let most = |part: f64| larger(self.closed_gap(constraint), part * constraint.scale);

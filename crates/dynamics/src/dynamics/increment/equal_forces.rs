@@ -18,14 +18,14 @@ pub(super) const ROUND_OFF: f64 = 100.0;
 /// Weight eps of eq. (5.3) from pass to pass.
 ///
 /// Forces of pairs that are almost the same keep changing at the rate eps/(eps + lambda), where lambda is the
-/// compliance of their difference relative to their own. The weight therefore decreases from pass to pass. If small
-/// corrections stay as large as before with the same weight, the round-off of the gaps moves the forces, and the weight
-/// returns to its first value.
+/// compliance of the pairs' difference relative to their own compliance. The weight therefore decreases from pass to
+/// pass, which makes these changes die away faster. If small corrections stay as large as before with the same weight,
+/// the round-off of the gaps moves the forces, and the weight returns to its first value.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,
     correction: f64,
-    /// Whether the weight is less than in the last pass; a slow mode then moves more.
+    /// Whether the weight is less than in the last pass, so that a slow mode moves more.
     has_decreased: bool,
     holds: bool,
 }
@@ -52,7 +52,7 @@ impl EqualForces {
         self.has_decreased
     }
 
-    /// Enters the relative correction of a pass; the pass had the weight if the passes have
+    /// Enters the relative correction of a pass; the pass used the weight if the passes have
     /// `settled`.
     pub fn take_in(&mut self, correction: f64, settled: bool) {
         if !settled {

@@ -21,8 +21,9 @@ use crate::linear::larger;
 /// Number of changes of the set of pairs with impulses after which the set is kept.
 const SET_CHANGES: usize = 5;
 
-/// The impact impulses of an increment. They act on the pairs that carry a force at its end, and on
-/// the pairs that touch at its start because an impact ended the previous subincrement.
+/// The impact impulses of an increment. Impulses act on the pairs that carry a force at the end of
+/// the increment, and on the pairs that touch at its start because an impact ended the previous
+/// subincrement.
 #[derive(Default)]
 pub(crate) struct Impulses {
     /// Keys of the pairs closed at the end of the last pass, increasing.
@@ -47,7 +48,7 @@ pub(crate) struct Impulses {
     sticking: Vec<(ConstraintKey, f64)>,
 }
 
-/// Keys and normal forces of the pairs that do not slip. The friction of some of them may be at its
+/// Keys and normal forces of the pairs that do not slip, some of which may have friction at its
 /// limit.
 fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
     let stuck = closed.iter().filter(|pair| !pair.slips);
@@ -55,7 +56,7 @@ fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
 }
 
 /// Speed of approach, as a part of the largest speed at a pair, up to which the pair neither lands nor opens. A speed
-/// that moves less than a solved gap in the increment counts as zero too.
+/// whose motion in the increment is less than a solved gap counts as zero too.
 const RESTING: f64 = 1e-9;
 
 impl Impulses {
@@ -187,8 +188,8 @@ impl Impulses {
     }
 
     /// Standing impulses P0 = dt Pn, eq. (11.7), of constraints of bodies that turn, if they did not slip in the last
-    /// pass and neither land nor open. They are zero for all other constraints; the list is empty if bodies that turn
-    /// are driven.
+    /// pass and neither land nor open. The standing impulses are zero for all other constraints; the list is empty if
+    /// bodies that turn are driven.
     fn standing(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
         let turning = &problem.unknowns.turning;
         let of_pair = |constraint: &Constraint| {
@@ -226,9 +227,9 @@ impl Impulses {
         .fold(0.0, larger)
     }
 
-    /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. It is V0, with
-    /// the impulses separately, so nothing is solved with M. If U_theta depends on V0+, or the mass of bodies that turn
-    /// acts by other arms in the iterate than at the start, it is V0+.
+    /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. This velocity is
+    /// V0+ if U_theta depends on V0+, or if the mass of bodies that turn acts by other arms in the iterate than at the
+    /// start; else it is V0 with the impulses apart, so nothing is solved with M.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,
@@ -318,15 +319,15 @@ fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
     !nodes.any(|node| problem.redistribution.is_massless(node))
 }
 
-/// Impact impulses Phi and Psi of constraints at the start of an increment. The velocity after them is V0+ = V0 + M^-1
-/// (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), and they satisfy eq. (6.2):
+/// Impact impulses Phi and Psi of constraints at the start of an increment. The velocity after the impulses is V0+ =
+/// V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), and Phi and Psi satisfy eq. (6.2):
 ///
 /// ```text
 /// 0 <= Phi  complementary to  Gn V0+ + (2/dt) max(g0, 0) >= 0
 /// |Psi| <= mu Phi, Psi opposes Gt V0+
 /// ```
 ///
-/// Kinetic energy therefore never grows where G = B. The search begins with the given states.
+/// The kinetic energy therefore never grows where G = B. The search begins with the given states.
 ///
 /// Problems of many constraints are solved by blocks that use the given gaps and slips, so the round-off of V0 does not
 /// enter the effect of the impulses.
@@ -376,8 +377,8 @@ fn impulses(
 }
 
 /// Impulses of constraints of which some have a standing impulse P0, with Phi + P0 >= 0 in place of Phi >= 0, eq.
-/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. A pair that would pull with all of P0 has
-/// no impulse.
+/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all of its P0,
+/// this P0 is set to zero and the impulses are computed anew.
 fn standing_impulses(
     constraints: &[Constraint],
     mut standing: Vec<f64>,
@@ -440,7 +441,7 @@ pub(super) fn approach(constraint: &Constraint, v0: &[f64], dt: f64) -> f64 {
         + 2.0 / dt * constraint.start_gap.max(0.0)
 }
 
-/// Measure of a change of impulses.
+/// Scales by which a change of impulses is measured.
 pub(super) struct Steady<'a> {
     pub problem: &'a StepProblem<'a>,
     /// Largest diagonal entries of (2/dt²) M of every part.
@@ -493,9 +494,9 @@ impl Steady<'_> {
     }
 }
 
-/// Change of the velocity after the impulses of a constraint if its rows change from `before` to `now`. It is the sum
-/// of three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and of the
-/// direction of the velocity jump that stops them.
+/// Change of the velocity after the impulses of a constraint if its rows change from `before` to `now`. The change is
+/// the sum of three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and
+/// of the direction of the velocity jump that stops them.
 fn change(
     before: &Constraint,
     now: &Constraint,

@@ -7,13 +7,13 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
 use crate::linear::largest;
 
-/// Change of N dU, relative to the other forces, that counts as zero.
+/// Change of N dU, relative to the other forces, up to which it counts as zero.
 const NO_CHANGE: f64 = 1e-13;
-/// Largest part of the first change that is left to the next pass.
+/// Largest part of the first change of N dU that is left to the next pass.
 const MOST_LEFT: f64 = 1e-3;
-/// Largest number of changes in a pass.
+/// Largest number of changes of N dU in a pass.
 const MOST_CHANGES: usize = 3;
-/// Factor below which successive changes must fall, unless they are round-off.
+/// Factor below which successive changes of N dU must fall, unless they are round-off.
 const FALLS: f64 = 0.5;
 
 /// Vectors of the passes of an increment.
@@ -54,7 +54,8 @@ pub(super) struct SkewPart {
 }
 
 impl SkewPart {
-    /// The skew parts of the given changes, with dU = 0. `correction` is the relative correction of the last pass.
+    /// The skew parts of the given changes, with dU = 0. The square of `correction`, the relative correction of the
+    /// last pass, is the part of the first change that is left to the next pass.
     pub fn new(all: &[ForceChange], correction: f64) -> Self {
         let skew = |change: &ForceChange| (change.dofs.clone(), change.skew());
         SkewPart {

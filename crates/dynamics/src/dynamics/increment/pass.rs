@@ -27,7 +27,7 @@ impl Pass<'_> {
     /// Checks that all forces and the correction are finite.
     ///
     /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not finite.
+    /// Returns [`Cause::NotFinite`] with the first quantity that is not finite.
     pub fn check_finite(&self, contact_force: &Vec<f64>) -> Result<(), Cause> {
         check_finite(&[
             ("the load", &self.equilibrium.load),
@@ -42,7 +42,7 @@ impl Pass<'_> {
     /// Residual and correction of the pass, and their scales; writes the residual.
     ///
     /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not finite.
+    /// Returns [`Cause::NotFinite`] with the first quantity that is not finite.
     pub fn measure<'m>(
         &self,
         problem: &StepProblem<'m>,

@@ -22,8 +22,8 @@ use crate::linear::larger;
 /// keep both.
 pub(super) const SLOW_PASSES: usize = 10;
 
-/// Largest error of the friction after the last pass, relative to the largest normal force. It is a tenth of the limit
-/// in the certificate.
+/// Largest error of the friction after the last pass, relative to the largest normal force. This error is a tenth of
+/// the limit in the certificate.
 const OWN_FRICTION: f64 = 1e-10;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even if
@@ -175,14 +175,15 @@ impl Passes<'_, '_> {
         Ok(solved)
     }
 
-    /// Adds the constraints of far slave nodes at the iterate U. Returns whether they stay open after a correction dU.
+    /// Adds the constraints of far slave nodes at the iterate U. Returns whether these constraints stay open after a
+    /// correction dU.
     pub fn complete(&mut self, contact: &mut ContactStates, u: &[f64], du: Option<&[f64]>) -> bool {
         let of_increment = (self.start, self.interval);
         contact.complete(self.problem, self.workspace, of_increment, u, du)
     }
 
     /// Compares residual and correction of a pass with their scales. Returns whether the pass has converged with a
-    /// solve that passes its check.
+    /// solve that passes its residual check.
     pub fn measure(
         &mut self,
         pass: &Pass,

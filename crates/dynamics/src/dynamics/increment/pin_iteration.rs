@@ -57,7 +57,7 @@ pub(super) struct PinIteration<'a, 'm> {
 
 impl PinIteration<'_, '_> {
     /// Solves a pass: contact forces, correction and rigid motions. A motion that a force drives is held if only the
-    /// facets of the mesh resist it. If nothing resists it, there is no equilibrium.
+    /// facets of the mesh resist the motion. If nothing resists such a motion, there is no equilibrium.
     ///
     /// Returns the forces by which hinges close their gaps.
     pub fn iterate(
@@ -174,7 +174,7 @@ impl PinIteration<'_, '_> {
     }
 
     /// Motions that a force drives although contact does not resist them, or resists them only as little as facets may.
-    /// For the latter the force must be one that facets may cause.
+    /// A motion that facets resist counts only if its force is one that facets may cause.
     fn driven(&mut self, contact: &ContactForces, v: &Vectors) -> Vec<Loose> {
         let others = self.others(contact, v);
         let problem = self.problem;
@@ -196,7 +196,8 @@ impl PinIteration<'_, '_> {
         all.filter(is_driven).collect()
     }
 
-    /// Forces that drive motions, and a correction along these motions, within the reach of the search.
+    /// Forces that drive motions of bodies, and a correction along these motions that stays within the reach of the
+    /// search.
     fn unbalance(&self, driven: &[Loose], v: &Vectors) -> Unbalance {
         let reach = self.workspace.search.reach();
         let (mut force, mut du) = (Vec::new(), vec![0.0; v.du.len()]);
@@ -245,8 +246,8 @@ impl PinIteration<'_, '_> {
         Ok(held.hold(&self.workspace.pins, &at, &acting, (force, least)))
     }
 
-    /// Checks that the forces that hold motions in a converged increment are within those that facets may cause with
-    /// its normal forces.
+    /// Checks that the forces that hold motions in a converged increment are within the forces that facets may cause
+    /// under its normal forces.
     pub fn check_held(
         &self,
         contact: &ContactForces,

@@ -13,9 +13,9 @@ const COST: f64 = 1.0;
 /// Rule for the factors of K* that an attempt uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum FactorRule {
-    /// The available factors, as long as they pay.
+    /// The available factors are used as long as they pay.
     Kept,
-    /// New factors in every pass.
+    /// New factors are made for every pass.
     EveryPass,
 }
 
@@ -36,9 +36,9 @@ pub(super) struct Refactorization {
     corrections: Corrections,
     /// Whether the factors were made in this attempt.
     own: bool,
-    /// Passes so far.
+    /// Number of passes so far.
     passes: usize,
-    /// Passes since the last factorisation.
+    /// Number of passes since the last factorisation.
     age: usize,
     worn: bool,
     /// Rate of the corrections with fresh factors.
@@ -92,8 +92,8 @@ impl Refactorization {
 
     /// Enters the relative correction of a pass. A growing correction is not divergence if it `may_grow`.
     ///
-    /// At the rate theta, n(theta) = ln(correction/tolerance)/-ln(theta) passes are left. The factors are worn if this
-    /// is more than the passes with fresh factors plus the cost of the factorisation.
+    /// At the rate theta, n(theta) = ln(correction/tolerance)/-ln(theta) passes are left. The factors are worn if
+    /// n(theta) is more than the passes with fresh factors plus the cost of the factorisation.
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         self.corrections.take_in(correction, may_grow)?;
         self.age += 1;

@@ -29,8 +29,8 @@ struct RigidMotion {
 /// ```
 ///
 /// r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about this
-/// configuration; started from U0, it would stretch a body that turns by the angle phi by phi²/2. The other bodies have
-/// the increment that all supports of the model share, or zero.
+/// configuration; started from U0, it would stretch a body that turns by the angle phi by phi²/2. The bodies that
+/// cannot move as rigid bodies have the increment that all supports of the model share, or zero.
 pub(super) fn rigid_predictor(
     problem: &StepProblem,
     start: &State,

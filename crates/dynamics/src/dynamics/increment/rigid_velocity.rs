@@ -1,5 +1,5 @@
-//! Velocities of bodies that turn: of their nodes at the end of an increment, and as impulses see them at its start.
-//! See docs/theory/bodies.md, Rigid bodies that turn.
+//! Velocities of bodies that turn: those of their nodes at the end of an increment, and those from which impulses start
+//! at its start. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use std::borrow::Cow;
 
@@ -20,8 +20,8 @@ pub(super) fn carry_nodes(
     problem.unknowns.move_bodies(u, v);
 }
 
-/// The velocity V from which impulses of contact start in place of V0; it is that of a motion of
-/// the model:
+/// The velocity V from which impulses of contact start in place of V0 is that of a motion of the
+/// model:
 ///
 /// ```text
 /// V = Vr + T_0 (T_0^T M T_0)^-1 T_0^T M (V0 - Vr)      eq. (11.5)

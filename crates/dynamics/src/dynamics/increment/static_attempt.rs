@@ -21,7 +21,7 @@ use crate::dynamics::step::{ClosedConstraints, ForceChange, HeldMotions, Stiffne
 use crate::model::Factorization;
 
 /// Number of passes that are made in any case while corrections are small. Passes converge quadratically, so an attempt
-/// goes on only if they will end within MAX PASSES.
+/// goes on only if its passes will end within MAX PASSES.
 const PATIENCE: usize = 8;
 /// Number of passes that are made in any case while corrections are large.
 const LARGE_PATIENCE: usize = 25;
@@ -39,8 +39,8 @@ pub(super) struct StaticAttempt<'a, 'm> {
 
 impl<'m> StaticAttempt<'_, 'm> {
     /// Solves the increment, starting from the motion of the last one, with factors that are kept as long as they pay,
-    /// then with new factors in every pass. If that fails, it starts from rest, and then with K* stiffened by closed
-    /// pairs: K alone is soft in bending and leaves the contact forces of slender bodies few digits.
+    /// then with new factors in every pass. If these attempts fail, it starts from rest, and then with K* stiffened by
+    /// closed pairs: K alone is soft in bending and leaves the contact forces of slender bodies few digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
@@ -232,7 +232,7 @@ impl<'m> StaticAttempt<'_, 'm> {
     }
 
     /// Computes the changes C of the forces of loads and pairs at the iterate; factorises K - (C +
-    /// C^T)/2 if it `is_new`.
+    /// C^T)/2 if new factors are due (`is_new`).
     fn tangent(
         &mut self,
         (pairs_stiffen, is_new): (bool, bool),

@@ -47,9 +47,9 @@ pub(super) struct StaticFactors {
     tolerance: f64,
     /// Whether the factors of the pass before the last and of the last pass were made in this attempt.
     are_own: [bool; 2],
-    /// Passes so far.
+    /// Number of passes so far.
     passes: usize,
-    /// Passes since the last factorisation.
+    /// Number of passes since the last factorisation.
     age: usize,
     /// Error of the iterate at which the factors were made, relative to the increment.
     made_at: f64,
@@ -57,8 +57,8 @@ pub(super) struct StaticFactors {
     rate: f64,
     /// Correction of the last pass.
     last: Option<f64>,
-    /// Whether the last correction was smaller than the one before. If it was not, contact still searches for its
-    /// states.
+    /// Whether the last correction was smaller than the one before. If the correction was not smaller, contact still
+    /// searches for its states.
     falls: bool,
     /// Whether a pass has used the factors of an earlier one.
     have_been_kept: bool,
@@ -95,8 +95,8 @@ impl StaticFactors {
     /// n(theta) + s > COST + n(growth e) + s_new
     /// ```
     ///
-    /// e is the error of the iterate. s is the cost of telling the stability at the end: zero if the factors belong to
-    /// an iterate near the end, else another factorisation.
+    /// Here e is the error of the iterate at which factors would be made. The cost s of telling the stability at the
+    /// end is zero if the factors belong to an iterate near the end, else that of another factorisation.
     pub fn are_worn(&self) -> bool {
         if !self.may_be_kept || !self.falls || self.rate >= POOR {
             return true;
@@ -121,8 +121,8 @@ impl StaticFactors {
     /// Enters the relative correction of a pass.
     ///
     /// # Errors
-    /// The first pass used earlier factors, and the correction has hardly decreased: it has led
-    /// away from the solution.
+    /// Returns an error if the first pass used earlier factors and hardly decreased the correction,
+    /// so it has led away from the solution.
     pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
         self.age += 1;
         let of_last = self.are_own[0];
@@ -189,7 +189,7 @@ mod tests {
 
     const TOLERANCE: f64 = 1e-11;
 
-    /// Number of passes and of factorisations of an increment. The error of its iterates falls by `growth` times the
+    /// Number of passes and of factorisations of an increment. The error of the iterates falls by `growth` times the
     /// error at which the factors were made. The first error is `first`, and the factors of the last increment have the
     /// rate `kept`.
     fn solve(rates: &mut StaticRates, growth: f64, [first, kept]: [f64; 2]) -> [usize; 2] {

@@ -62,7 +62,7 @@ impl Trace {
         self.unbalanced = Some([first, force]);
     }
 
-    /// Enters a pass and its contact forces.
+    /// Enters a pass with its correction and its contact forces.
     pub fn add(&mut self, pass: PassReport, contact: &ContactForces) {
         self.passes.push(pass);
         self.contact.add(contact);
@@ -112,7 +112,7 @@ impl Trace {
         }
     }
 
-    /// Course of the passes; `None` if they were too few to tell.
+    /// Course of the passes; `None` if they were too few to show one.
     fn course(&self, tolerance: f64) -> Option<Course> {
         let alternations = self.contact.alternations();
         let corrections = self.corrections();
@@ -170,7 +170,7 @@ fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
 
 /// Number of last passes within which a slave node must have left a state and come back to it.
 const PASSES: usize = 6;
-/// Number of the very last passes within which its state must have changed.
+/// Number of the very last passes within which the state of a slave node must have changed.
 const RECENT: usize = 3;
 
 /// A closed pair after a pass.

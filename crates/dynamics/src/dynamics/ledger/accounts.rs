@@ -66,14 +66,14 @@ impl Accounts {
         }
     }
 
-    /// Transfers the sums over the run.
+    /// Transfers the sums over the run to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self {
             [contacts, touches, surface_work] damped, largest_normal; bodies, faces, consistent
         })
     }
 
-    /// Motion at the start with the energies of the ledger, without forces.
+    /// Enters the motion at the start with the energies of the ledger, without forces.
     pub fn start(&self, problem: &StepProblem, state: &State, ledger: &Ledger) -> IncrementReport {
         let (dofs, nodes) = (state.u.len(), state.u.len() / 2);
         let of_contact = |contact: &Contact| ContactResultant {

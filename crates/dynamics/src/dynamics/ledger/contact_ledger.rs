@@ -56,7 +56,7 @@ impl ContactLedger {
         }
     }
 
-    /// Transfers the sums and slips.
+    /// Transfers the sums and slips to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             contacts,
@@ -182,7 +182,7 @@ impl ContactLedger {
     }
 
     /// Distance of the total impulses from Coulomb's cone, for each contact. Without returns the total impulses are in
-    /// the cone, since forces and impacts each are.
+    /// the cone, since the impulses of forces and those of impacts are each in it.
     fn measure_cones(totals: &Totals, resultants: &mut [ContactResultant]) {
         let mut largest = vec![0.0_f64; resultants.len()];
         for (key, (constraint, [normal, tangential, size])) in totals {
@@ -217,8 +217,8 @@ impl ContactLedger {
     }
 }
 
-/// 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other side, 0 within
-/// one body.
+/// The result is 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other
+/// side, 0 within one body.
 fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64 {
     let on_side = forces_on_side(model, bodies, constraint, [1.0, 0.0]);
     let slave = constraint.forces_on_slave_surface([1.0, 0.0]).next();

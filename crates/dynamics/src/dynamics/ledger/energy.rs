@@ -113,7 +113,7 @@ impl Ledger {
         ledger
     }
 
-    /// Transfers all fields of the ledger.
+    /// Transfers all fields of the ledger to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let mut of_elements = self.elements.to_vec();
         archive.transfer(&mut of_elements)?;
@@ -123,9 +123,9 @@ impl Ledger {
         })
     }
 
-    /// Changes to a step of another procedure at a state with the velocities of the new step. Kinetic energy that
-    /// bodies lose as they come to rest is numerical dissipation; energy that supports give as they begin to move is
-    /// their work.
+    /// Changes the ledger to a step of another procedure at a state with the velocities of the new step. Kinetic energy
+    /// that bodies lose as they come to rest is numerical dissipation; energy that supports give as they begin to move
+    /// is their work.
     pub fn change_procedure(&mut self, problem: &StepProblem, state: &State) {
         problem.mass.write_product(&state.v, &mut self.momentum);
         let kinetic = dot(&state.v, &self.momentum) / 2.0;
@@ -165,7 +165,7 @@ impl Ledger {
     /// The ledger after a converged increment of length `dt`, which began at `start`, and after the energy given back.
     ///
     /// # Errors
-    /// An energy is not finite.
+    /// Returns an error if an energy is not finite.
     pub fn entered(
         mut self,
         problem: &StepProblem,
@@ -357,8 +357,8 @@ impl Ledger {
         Ok(())
     }
 
-    /// Bound of the work that the round-off of forces may do in a static increment. No pass can balance these forces;
-    /// those of elements without unknowns count too.
+    /// Bound of the work that the round-off of forces may do in a static increment. No pass can balance the round-off
+    /// of forces; those of elements without unknowns count too.
     ///
     /// ```text
     /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)
@@ -377,7 +377,7 @@ impl Ledger {
     /// work of the normal contact forces since `contact_work0` if it is positive beyond round-off.
     ///
     /// # Errors
-    /// An energy is not finite.
+    /// Returns an error if an energy is not finite.
     fn close(&mut self, end: &State, contact_work0: f64) -> Result<Option<f64>, Cause> {
         let e = &mut self.energy;
         e.balance = balance(e, self.start);
@@ -393,7 +393,7 @@ impl Ledger {
     /// Checks that all energies are finite.
     ///
     /// # Errors
-    /// [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
+    /// Returns [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
     pub fn check(&self, state: &State) -> Result<(), Cause> {
         let e = &self.energy;
         let energies = [

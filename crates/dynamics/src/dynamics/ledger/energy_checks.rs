@@ -17,8 +17,8 @@ const UNBALANCED: f64 = 1e-3;
 /// against the largest energy of the bodies in contact up to its end.
 ///
 /// # Errors
-/// [`Cause::GainedEnergy`]: if the increment is halved, a node passes the corner before or after
-/// the corner turns concave.
+/// Returns [`Cause::GainedEnergy`]: if the increment is halved, a node passes the corner before or
+/// after the corner turns concave.
 pub(crate) fn check_energy_gain(
     problem: &StepProblem,
     start: &State,
@@ -91,9 +91,9 @@ pub(crate) fn check_balance(
 /// Energy that contact adds because nodes slide on to segments behind which they were: the sum over the pairs, each
 /// relative to the largest energy of its bodies.
 ///
-/// With energy-momentum rows a pair does the work Pn (g1 - g0). This work is positive if a node slides over a convex
-/// corner on to a segment with g0 < 0, and the segment stops the node because the corner turns concave in the same
-/// increment. Nodes that the mesh places inside a body do not count.
+/// With energy-momentum rows a pair does the work Pn (g1 - g0). The work Pn (g1 - g0) is positive if a node slides over
+/// a convex corner on to a segment with g0 < 0, and the segment stops the node because the corner turns concave in the
+/// same increment. Nodes that the mesh places inside a body do not count.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.integration.energy_momentum {
         return 0.0;

@@ -398,16 +398,16 @@ fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
         .unwrap_or(dt)
 }
 
-/// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`. It is
-/// NaN at nodes without area, and at all nodes except those of slave surfaces and of masters with contact from surface
-/// to surface.
+/// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`. The
+/// pressure is NaN at nodes without area, and at all nodes except those of slave surfaces and of masters with contact
+/// from surface to surface.
 ///
 /// ```text
 /// N = sum Bn^T Pn,  p = |N|/A    eq. (9.8)
 /// ```
 ///
-/// N is summed over all pairs of the node. `largest` is the largest |N| of the run so far and is updated; forces below
-/// the tolerance of the passes times it count as zero.
+/// N is summed over all pairs of the node. `largest`, the largest |N| of the run so far, is updated; forces below the
+/// tolerance of the passes times `largest` count as zero.
 pub(crate) fn contact_pressure(
     faces: &SlaveFaces,
     problem: &StepProblem,

@@ -20,8 +20,8 @@ pub(crate) struct PairWork {
     pub friction: f64,
     /// Normal force times the sliding path of the pair (energy).
     pub sliding: f64,
-    /// Nodes on the slave surface and on the master at which the pair acts. They are stored because a pair that has
-    /// opened is no longer a pair at the end.
+    /// Nodes on the slave surface and on the master at which the pair acts. These nodes are stored because a pair that
+    /// has opened is no longer a pair at the end.
     pub surfaces: [SurfaceParts; 2],
 }
 
@@ -115,7 +115,8 @@ impl EndForces {
         }
     }
 
-    /// Forces at a state that no static increment has led to: the forces that balance the internal force count as load.
+    /// Forces at a state that is no result of a static increment: the forces that balance the internal force count as
+    /// load.
     pub fn at(problem: &StepProblem, state: &State) -> Result<Self, Cause> {
         let motion = state.motion();
         let internal = problem.elements.internal_force(motion)?;
@@ -135,8 +136,8 @@ impl EndForces {
         missing
     }
 
-    /// Forces of supports, including those that equations and bodies that turn hand on to them, (dof, force). They hold
-    /// at displacements `u`: the end of an increment `d`, or its start.
+    /// Forces of supports, including those that equations and bodies that turn hand on to them, (dof, force). The
+    /// forces hold at displacements `u`: the end of an increment `d`, or its start.
     pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
         let unknowns = &problem.unknowns;
         let mut missing = unknowns.passed_on(&self.missing(d.len())).into_owned();
@@ -187,8 +188,8 @@ impl EndForces {
         sums
     }
 
-    /// Work of the pairs in a static increment from these forces to those of its end, and the part of the trapezoidal
-    /// work of tangential forces that friction does not dissipate:
+    /// Work of the pairs in a static increment from these forces to the forces at its end, and the part of the
+    /// trapezoidal work of tangential forces that friction does not dissipate:
     ///
     /// ```text
     /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2
@@ -196,8 +197,8 @@ impl EndForces {
     /// ```
     ///
     /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
-    /// Pn0))/2. From there on |Pt| = mu Pn, and Pn is linear, so the pair slides with the mean force. A pair that opens
-    /// has only the force of its start.
+    /// Pn0))/2. From the slide on |Pt| = mu Pn, and Pn is linear, so the pair slides with the mean force. A pair that
+    /// opens has only the force of its start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
         let (before, after) = (self.of_slaves(), end.of_slaves());

@@ -14,7 +14,8 @@ use crate::model::{Contact, Model};
 /// Sums over the run, if the deck asks for wear or heat.
 pub(crate) struct SurfaceWork {
     fields: FrictionResults,
-    /// Sums of all that was added to the nodes (work, volume of wear, heat), and sums of its absolute values.
+    /// Sums over the run of all that was added to the nodes (work, volume of wear, heat), and the sums of its absolute
+    /// values.
     added: [Sums; 2],
     /// For each contact the wear and heat of its surfaces, if any.
     contacts: Vec<Option<Surfaces>>,
@@ -31,9 +32,9 @@ struct Surfaces {
     /// Depth of wear per unit of its measure (length^2/force), and whether the measure is the work
     /// of friction.
     wear: Option<(f64, bool)>,
-    /// Part of the work of friction that heats each of these surfaces.
+    /// Part of the work of friction that heats each slave surface.
     heat: f64,
-    /// Whether all slave nodes have faces; those of discs have none.
+    /// Whether all slave nodes have faces; the centres of discs have none.
     has_faces: bool,
 }
 
@@ -70,8 +71,8 @@ impl Surfaces {
 }
 
 impl SurfaceWork {
-    /// The sums at the start of a run. They are 0 at the nodes of slave surfaces with wear or heat and NaN elsewhere;
-    /// work and wear are NaN at nodes without faces too.
+    /// The sums at the start of a run. The sums are 0 at the nodes of slave surfaces with wear or heat and NaN
+    /// elsewhere; work and wear are NaN at nodes without faces too.
     pub fn new(model: &Model, faces: &SlaveFaces) -> Self {
         let of_contact = |contact: &Contact| Surfaces::new(model, contact, faces);
         let contacts: Vec<Option<Surfaces>> = model.contacts.iter().map(of_contact).collect();
@@ -108,7 +109,7 @@ impl SurfaceWork {
         }
     }
 
-    /// Transfers the sums.
+    /// Transfers the sums to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let FrictionResults {
             coefficient: _,

@@ -218,7 +218,7 @@ mod tests {
         );
     }
 
-    /// Forces of which none is handed over.
+    /// Forces of an increment of which none is handed over to other dofs.
     fn forces(load: [f64; 2], internal: [f64; 2], contact: [f64; 2]) -> HandedOver<'static> {
         let own = |force: [f64; 2]| Cow::Owned(force.to_vec());
         HandedOver {
@@ -248,8 +248,8 @@ mod tests {
         near(forces.support_work(&kinematics, 1), expected);
     }
 
-    /// Backward Euler has d = dt V1 and M A = M (V1 - V0)/dt. From the free mass it removes (V1 - V0).M (V1 - V0)/2
-    /// beyond the change of the kinetic energy, eq. (4.27).
+    /// Backward Euler has d = dt V1 and M A = M (V1 - V0)/dt. From the free mass backward Euler removes (V1 - V0).M
+    /// (V1 - V0)/2 beyond the change of the kinetic energy, eq. (4.27).
     #[test]
     fn the_backward_euler_scheme_dissipates_the_square_of_the_change_of_velocity() {
         let (m, dt) = ([3.0, 7.0], 0.4);
@@ -322,8 +322,8 @@ mod tests {
         near(found, -k * u.powi(4) / 8.0);
     }
 
-    /// A load R holds a node on a spring k at u until its contact opens; then the node comes to rest at R/k. It loses k
-    /// (u - R/k)²/2, by which W - R.u decreases.
+    /// A load R holds a node on a spring k at u until its contact opens; then the node comes to rest at R/k. The node
+    /// loses k (u - R/k)²/2, by which W - R.u decreases.
     #[test]
     fn the_strain_energy_before_the_rest_is_that_of_the_place_left() {
         let (k, load, u) = (4.0, 1.0, 0.75);
@@ -350,8 +350,8 @@ mod tests {
         }
     }
 
-    /// The works of two pairs are added to those in the ledger. The work of a fit belongs to its supports and is
-    /// entered there.
+    /// The works of two pairs are added to those in the ledger. The work of a fit belongs to the supports of the fit
+    /// and is entered there.
     #[test]
     fn pairs_add_their_normal_work_and_their_friction() {
         let mut energy = Energy {

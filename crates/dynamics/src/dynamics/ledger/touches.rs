@@ -1,5 +1,5 @@
-//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Also landings of nodes
-//! that take over from nodes that have opened. See docs/theory/impacts.md, Touches.
+//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Landings of nodes that
+//! take over from nodes that have opened. See docs/theory/impacts.md, Touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -46,7 +46,7 @@ struct TouchUnderWay {
 }
 
 impl Touches {
-    /// No touches yet.
+    /// The touches at the start of a run: none.
     pub fn new(mesh: &Mesh) -> Self {
         Touches {
             corners: corners(mesh),
@@ -55,7 +55,7 @@ impl Touches {
         }
     }
 
-    /// Transfers the touches under way.
+    /// Transfers the touches under way to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self { increments, under_way; corners })
     }

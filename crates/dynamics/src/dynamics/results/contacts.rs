@@ -5,13 +5,14 @@
 pub struct ContactImpulse {
     /// Impulse on the slave surface (force time).
     pub vector: [f64; 2],
-    /// Sum of dt Pn + Phi and of the normal impulses of landing returns (force time).
+    /// Normal impulse: sum of dt Pn + Phi and of the normal impulses of landing returns (force
+    /// time).
     pub normal: f64,
-    /// Sum of dt Pt + Psi (force time).
+    /// Tangential impulse: sum of dt Pt + Psi (force time).
     pub tangential: f64,
-    /// Sum of Phi, the impact impulses (force time).
+    /// Sum of Phi, the normal impact impulses (force time).
     pub impact_normal: f64,
-    /// Sum of Psi (force time).
+    /// Sum of Psi, the tangential impact impulses (force time).
     pub impact_tangential: f64,
     /// Sum of the normal impulses of landing returns; a negative impulse takes a part of the contact force back (force
     /// time).
@@ -48,9 +49,9 @@ pub struct ContactResultant {
     pub force: [f64; 2],
     /// Moment of that force about the origin (force length).
     pub moment: f64,
-    /// Sum of Pn (force).
+    /// Sum of the normal forces Pn (force).
     pub normal: f64,
-    /// Sum of Pt (force).
+    /// Sum of the tangential forces Pt (force).
     pub tangential: f64,
     /// Number of pairs with Pn > 0.
     pub closed: usize,
@@ -60,7 +61,7 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// Mean coefficient of friction of the closed pairs, weighted by Pn; NaN without closed pairs.
     pub friction_coefficient: f64,
-    /// Largest max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the largest Pn. It is 0
+    /// Largest max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the largest Pn. The error is 0
     /// without contact; mu is the coefficient of the law.
     pub cone_violation: f64,
     /// Distance of the pairs' total impulses from the cone in the increment, with impacts and returns; for a pair whose

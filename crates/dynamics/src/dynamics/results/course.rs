@@ -6,10 +6,10 @@
 pub enum Course {
     /// Corrections grew.
     Growing {
-        /// Number of the pass after which the corrections grew.
+        /// The corrections grew after the pass with this number.
         from: usize,
     },
-    /// Pairs went to and fro between two states; each such slave node has one entry.
+    /// Pairs went to and fro between two states; the list has one entry for each slave node.
     Alternating(Vec<Alternation>),
     /// Corrections became smaller, but slowly.
     Slow {

@@ -34,8 +34,8 @@ pub struct Energy {
     pub numerical_dissipation: f64,
     /// Energy balance; zero for exact solutions, so it measures the residual of the passes.
     pub balance: f64,
-    /// Largest kinetic energy, strain energy or external work so far; in static steps also the work of the loads alone
-    /// or of the supports alone.
+    /// Largest kinetic energy, strain energy or external work so far; in static steps also the largest work of the
+    /// loads alone or of the supports alone.
     pub scale: f64,
     /// Work that the round-off of the forces may have done in static steps.
     pub round_off: f64,

@@ -34,7 +34,7 @@ pub enum Cause {
         /// Node (index) whose pivot is not positive.
         node: usize,
     },
-    /// A static increment leads much farther than the last one under the same load: to another equilibrium.
+    /// A static increment leads much farther than the last one under the same load, and so to another equilibrium.
     Jump {
         /// Node (index) that moves most.
         node: usize,
@@ -61,7 +61,7 @@ pub enum Cause {
         slave: usize,
         /// Ends (indices) of the segment.
         segment: [usize; 2],
-        /// Whether the motion of the node and of both ends is prescribed.
+        /// Whether supports prescribe the motion of the slave node and of both ends of the segment.
         prescribed: bool,
     },
     /// A contact is added while a slave node is inside the master body.
@@ -103,11 +103,11 @@ pub enum Cause {
 /// A body that is not in balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unbalanced {
-    /// One of its nodes (index).
+    /// A node (index) of the body that is not in balance.
     pub node: usize,
-    /// Resultant force that remains.
+    /// Resultant force on the body that nothing balances.
     pub force: [f64; 2],
-    /// Moment that remains about the mean of the nodes (force length).
+    /// Moment on the body that nothing balances, about the mean of its nodes (force length).
     pub moment: f64,
     /// Rigid motion that the body is about to make: displacement of the mean of the nodes, and angle (length; rad).
     pub motion: [f64; 3],
@@ -118,7 +118,7 @@ pub struct Unbalanced {
 /// A complementarity problem without solution, of a pass or of the impulses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailedLcp {
-    /// Reason why it was not solved.
+    /// Reason why the complementarity problem was not solved.
     pub error: LcpError,
     /// The problem.
     pub problem: FrictionalLcp,
@@ -132,7 +132,7 @@ impl FailedLcp {
         matches!(self.error, LcpError::Ray { .. })
     }
 
-    /// The failed problem of some constraints.
+    /// The failure of the complementarity problem of some constraints.
     pub(crate) fn new(
         error: LcpError,
         problem: FrictionalLcp,
@@ -168,7 +168,7 @@ pub struct Failure {
     pub step: usize,
     /// Time at the start of the increment.
     pub time: f64,
-    /// Length of the attempt.
+    /// Length of the attempted increment.
     pub dt: f64,
     /// Why.
     pub cause: Cause,
@@ -256,7 +256,7 @@ impl Cause {
         )
     }
 
-    /// Whether the only cause is a number that has grown too large.
+    /// Whether a number that has grown too large is the only cause of the failure.
     pub(crate) fn is_overflow(&self) -> bool {
         match self {
             Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,

@@ -32,7 +32,7 @@ pub struct SolverCounts {
     pub factorizations: usize,
     /// Relative force residual of the last pass.
     pub residual: f64,
-    /// Errors of the pairs against the contact law at the end.
+    /// Errors of the pairs against the contact law at the end of the increment.
     pub violation: ContactViolation,
     /// Largest force that holds a motion resisted only by facets, relative to the normal forces on the body.
     pub held: f64,
@@ -59,7 +59,7 @@ pub struct IncrementReport {
     /// Truncation error relative to the displacements, in a step in which it decides the
     /// increments.
     pub truncation_error: Option<f64>,
-    /// Motion at the end.
+    /// Motion and state at the end of the increment.
     #[serde(skip)]
     pub state: State,
     /// Results at nodes.

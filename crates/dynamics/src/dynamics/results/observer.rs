@@ -10,7 +10,7 @@ use super::increment_report::IncrementReport;
 pub struct Cutback {
     /// The failed attempt.
     pub failure: Failure,
-    /// Length of the next attempt.
+    /// Length of the next attempt at the increment (time).
     pub next_dt: f64,
 }
 
@@ -33,8 +33,8 @@ pub trait Observer {
         false
     }
 
-    /// Receives all data on which the rest of the run depends, for [`crate::dynamics::resume`]. It is called when a
-    /// checkpoint is wanted, and before the run ends on request.
+    /// Receives all data on which the rest of the run depends, for [`crate::dynamics::resume`]. The observer receives
+    /// the data when a checkpoint is wanted, and before the run ends on request.
     fn checkpoint(&mut self, _checkpoint: Vec<u8>) -> io::Result<()> {
         Ok(())
     }

@@ -25,11 +25,11 @@ pub struct Timings {
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// All steps are done.
+    /// All steps of the run are done.
     Finished,
     /// An increment failed for good; the results up to it are valid.
     Stopped(Box<Failure>),
-    /// The observer requested the end; the results up to there are valid.
+    /// The observer requested the end of the run; the results up to there are valid.
     Interrupted,
 }
 

@@ -73,7 +73,7 @@ impl Accepted {
 }
 
 /// Finishes the motion of a converged increment: brings released nodes to rest and gives back the energy that landings
-/// and releases have removed. It fails if an element is turned inside out or a node has passed through a surface.
+/// and releases have removed. Fails if an element is turned inside out or a node has passed through a surface.
 fn finish_motion(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -92,8 +92,8 @@ fn finish_motion(
     Ok(())
 }
 
-/// Enters a finished increment of length `dt` in the ledger. The energies must be finite and in balance, and contact
-/// must add no energy if the increment may be halved for that reason.
+/// Enters a finished increment of length `dt` in the ledger. Fails if the energies are not finite or not in balance, or
+/// if contact adds energy and the increment may be halved for that reason.
 fn accept(
     problem: &StepProblem,
     workspace: &Workspace,
@@ -112,7 +112,7 @@ fn accept(
 }
 
 /// Checks that no node has entered a body on its straight path from U0 to U1. A depth within the
-/// error that the tolerance of the passes leaves does not count.
+/// error that the tolerance of the passes leaves does not count as entry.
 fn check_paths(
     problem: &StepProblem,
     workspace: &mut Workspace,

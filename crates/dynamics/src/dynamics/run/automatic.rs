@@ -28,9 +28,9 @@ const SAFE_GROWTH: f64 = 0.9;
 /// Least growth for which new factors of K* are worth their cost.
 const WORTHWHILE: f64 = 1.25;
 
-/// Automatic increments of a whole step: longer after easy increments, shorter after failed ones. By their passes they
-/// are cut to a quarter after a failure; the alternative is by their truncation error (docs/theory/time.md, Automatic
-/// increments).
+/// Automatic increments of a whole step: longer after easy increments, shorter after failed ones. If the passes decide
+/// the increments, a failed one is cut to a quarter; the truncation error may decide them instead (docs/theory/time.md,
+/// Automatic increments).
 pub(crate) struct Automatic {
     /// The step.
     nominal: NominalIncrement,
@@ -43,14 +43,15 @@ pub(crate) struct Automatic {
     easy: u32,
     /// Number of cuts since the last accepted increment.
     cuts: u32,
-    /// Number of these cuts that are rejections because of the truncation error.
+    /// Number of cuts since the last accepted increment that are rejections because of the
+    /// truncation error.
     rejections: u32,
     /// Number of last impacts, in a row, that have ended subincrements.
     events: usize,
 }
 
 impl Automatic {
-    /// Starts with the first increment of a step.
+    /// Starts a step with its first increment.
     pub fn new(place: StepPlace, increments: Increments, ends_at_impacts: bool) -> Self {
         Automatic {
             nominal: NominalIncrement {
@@ -71,7 +72,7 @@ impl Automatic {
         }
     }
 
-    /// The step as one increment.
+    /// The whole step as one increment.
     pub fn nominal(&self) -> NominalIncrement {
         self.nominal
     }

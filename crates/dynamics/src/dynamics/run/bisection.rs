@@ -1,5 +1,5 @@
-//! Fixed grid: a nominal increment is divided into halves, quarters ... that join again as soon as
-//! they align. See docs/theory/time.md, Cutback.
+//! Fixed grid: a nominal increment is divided into halves, quarters and so on, which join again as
+//! soon as they align. See docs/theory/time.md, Cutback.
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
@@ -14,7 +14,7 @@ pub(crate) struct Bisection {
 }
 
 impl Bisection {
-    /// Starts with the increment as a whole.
+    /// Starts with the nominal increment as a whole.
     pub fn new(nominal: NominalIncrement) -> Self {
         Bisection {
             nominal,

@@ -6,8 +6,8 @@ use super::time_control::{Ended, NextSubincrement, TimeControl};
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::Interval;
 
-/// Largest number of impact events within a nominal increment. After them the rest of the increment is one subincrement
-/// without events, so that chattering contacts do not stall a run.
+/// Largest number of impact events within a nominal increment. After so many impact events the rest of the increment is
+/// one subincrement without events, so that chattering contacts do not stall a run.
 pub(super) const MOST_EVENTS: usize = 50;
 /// Number of halvings of a subincrement from which on nodes land within it.
 pub(super) const EVENT_HALVINGS: u32 = 2;
@@ -23,7 +23,7 @@ pub(crate) struct ImpactControl {
 }
 
 impl ImpactControl {
-    /// Starts with the increment as a whole.
+    /// Starts with the nominal increment as a whole.
     pub fn new(nominal: NominalIncrement) -> Self {
         ImpactControl {
             from: nominal.from,

@@ -42,7 +42,7 @@ const SHRINKS: f64 = 1.5;
 /// Errors that end a run, other than a failed increment.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The observer could not take the results.
+    /// The observer could not receive the results.
     #[error(transparent)]
     Observer(#[from] io::Error),
     /// A checkpoint is of another model.
@@ -64,7 +64,7 @@ pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunS
 /// times of the continuation.
 ///
 /// # Errors
-/// Errors of the observer, or a checkpoint of another model.
+/// Returns errors of the observer, or an error if the checkpoint is of another model.
 pub fn resume(
     prepared: &PreparedModel,
     checkpoint: &[u8],
@@ -340,8 +340,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(Outcome::Finished)
     }
 
-    /// Computes the motion at the start of a step; returns a failure if that of the analysis is not
-    /// finite.
+    /// Computes the motion at the start of a step; returns a failure if the motion at the start of
+    /// the analysis is not finite.
     fn begin(
         &mut self,
         problem: &StepProblem<'m>,
@@ -475,8 +475,8 @@ impl<'m, 'o> Runner<'m, 'o> {
     /// error is too large, it is computed without the part of the motion that is too stiff for the increment.
     ///
     /// # Errors
-    /// [`Cause::Inaccurate`] if the error is so large that the increment is to be repeated; also
-    /// the errors of [`factorize_anew`].
+    /// Returns [`Cause::Inaccurate`] if the error is so large that the increment is to be repeated;
+    /// also the errors of [`factorize_anew`].
     fn measured(
         &self,
         problem: &StepProblem,
@@ -602,9 +602,10 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Checks that a static increment does not lead to another equilibrium, that is, much farther than at the rate of
-    /// the last increment, or in the first one than by its tangent. It passes too if the travel decreases with the
-    /// length of the increment, or is below the resolution of the passes. Bodies that only contact holds may move
-    /// freely until contact begins, and the other bodies may then move suddenly.
+    /// the last increment, or in the first one than by its tangent. The check passes too if the travel decreases with
+    /// the length of the increment, or is below the resolution of the passes. Bodies that only contact holds are not
+    /// checked, since they may move freely until contact begins; the other bodies may then move as far as by the
+    /// tangent.
     fn check_jump(
         &mut self,
         problem: &StepProblem,
@@ -645,7 +646,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Reports a failed attempt that is to be repeated with a smaller length. Returns the failure
-    /// if the repetition would fail too, or there is no smaller length.
+    /// if the repetition would fail too, or if there is no smaller length.
     fn cut_back(
         &mut self,
         failure: Failure,
@@ -757,7 +758,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Completes the start state (velocity of supports and equations, acceleration; at rest in a static step) and
-    /// reports it. Returns a failure if it is not finite.
+    /// reports it. Returns a failure if the start state is not finite.
     fn start(
         &mut self,
         problem: &StepProblem,

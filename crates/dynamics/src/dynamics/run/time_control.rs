@@ -37,13 +37,14 @@ pub(crate) trait TimeControl {
     /// Divides an interval that failed, or whose truncation error is too large.
     fn failed(&mut self, interval: &Interval, error: Option<f64>);
 
-    /// Transfers the progress of the nominal increment.
+    /// Transfers the progress of the nominal increment to or from an archive.
     ///
     /// # Errors
-    /// The archive is of another kind of control.
+    /// Returns an error if the archive is of another kind of control.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
-    /// Whether an interval of this length may be cut once more; `dt_min` is the least of the step.
+    /// Whether an interval of this length may be cut once more; `dt_min` is the least length that
+    /// the step allows.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
         self.halvings() < HALVINGS && dt / 2.0 >= dt_min
     }

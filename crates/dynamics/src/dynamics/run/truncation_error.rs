@@ -15,11 +15,12 @@ pub(crate) struct TruncationError {
     travel: f64,
     /// Truncation error that the step allows.
     tolerance: f64,
-    /// The last two increments, the later one last; at first only the start, with length 0.
+    /// The last two increments, the later one last; at first only the start of the step, as an
+    /// increment of length 0.
     last: Vec<Past>,
 }
 
-/// An increment that is done.
+/// An increment whose result is known.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Past {
     /// Mean acceleration, including impulses and landing returns.
@@ -59,14 +60,14 @@ impl TruncationError {
         }
     }
 
-    /// Error of an increment in the displacements.
+    /// Truncation error of an increment in the displacements:
     ///
     /// ```text
     /// e = (dt³/12) (A - A_2)/(dt/2 + dt_1 + dt_2/2)    eq. (4.22)
     /// ```
     ///
-    /// Here 1 is the last increment and 2 the one before it: a motion that is too stiff for the increments changes its
-    /// sign in each of them.
+    /// Here index 1 is the last increment and 2 the one before it: a motion that is too stiff for the increments
+    /// changes its sign in each of them.
     pub fn of(&self, problem: &StepProblem, ends: &Ends) -> Vec<f64> {
         let (before, since) = match &self.last[..] {
             [earlier, later] => (earlier, later.dt + earlier.dt / 2.0),
@@ -87,7 +88,7 @@ impl TruncationError {
     /// ```
     ///
     /// # Errors
-    /// The factors cannot be used.
+    /// Returns an error if the factors cannot be used.
     pub fn filter(
         problem: &StepProblem,
         mut k: System,
@@ -103,7 +104,7 @@ impl TruncationError {
     }
 
     /// The largest error of a body, in the norm of its mass, relative to the largest displacement of the step so far.
-    /// The part of a body's displacements that the passes do not resolve is within the tolerance.
+    /// The part of a body's displacements that the passes do not resolve counts as within the tolerance.
     ///
     /// ```text
     /// sqrt(e.M e/m)/max |U - U_start|    eq. (4.23)
@@ -130,7 +131,7 @@ impl TruncationError {
         all.map(of_body).fold(0.0, larger)
     }
 
-    /// Enters an accepted increment.
+    /// Enters an accepted increment with its motion.
     pub fn accept(&mut self, ends: &Ends) {
         self.travel = larger(self.travel, self.travel_to(ends.u1));
         if self.last.len() == 2 {

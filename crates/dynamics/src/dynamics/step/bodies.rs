@@ -39,7 +39,7 @@ impl BodyAngles {
         }
     }
 
-    /// Transfers the angles of the configuration in which K* was assembled.
+    /// Transfers the angles of the configuration in which K* was assembled to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer_values(&mut self.assembled)
     }
@@ -49,7 +49,7 @@ impl BodyAngles {
         self.assembled = self.angles(problem, motion);
     }
 
-    /// Rotations of the bodies from the configuration in which K* was assembled to that of a motion (rad).
+    /// Rotations of the bodies from the configuration in which K* was assembled to the one of a motion (rad).
     pub fn since_assembly(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let angles = self.angles(problem, motion);
         let since = angles.iter().zip(&self.assembled).map(|(a, b)| a - b);
@@ -101,7 +101,7 @@ pub(crate) enum Hold {
     Free,
     /// Both dofs of this node are prescribed, and no others.
     Pinned(usize),
-    /// More dofs are prescribed, equations tie the body, or it is a body of revolution.
+    /// More dofs are prescribed, equations tie the body, or the body is one of revolution.
     Held,
 }
 
@@ -220,8 +220,8 @@ mod tests {
     }
 
     /// Largest difference, relative to the largest entry, between the responses of turned factors and those of K*
-    /// assembled in the turned configuration. The first block has turned by `angle`, and turns by `increment` within an
-    /// increment.
+    /// assembled in the turned configuration. The first block has turned by `angle` since the assembly, and turns by
+    /// `increment` within an increment.
     fn error_of_turned_factors(supports: &[usize], angle: f64, increment: f64) -> f64 {
         let prepared = blocks();
         let discretization = Discretization::new(&prepared);

@@ -18,8 +18,9 @@ pub(crate) struct Committed {
 
 impl StepProblem<'_> {
     /// Internal variables at the end of an increment to displacements `u1` and temperatures T1, the dissipated energy,
-    /// and the work of the temperature. If the temperature changes, the materials follow it at once: their variables
-    /// are those of the end. The work is the change of the potential of the elements at constant displacements,
+    /// and the work of the temperature. If the temperature changes, the materials follow the change at once: their
+    /// variables are those of the end. The work of the temperature is the change of the potential of the elements at
+    /// constant displacements,
     ///
     /// ```text
     /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0                   energy-momentum form, Tm halfway

@@ -59,7 +59,7 @@ impl<'m> Fits<'m> {
         allowed
     }
 
-    /// The largest length by which the fits separate surfaces in an interval.
+    /// The largest length by which the fits separate surfaces in an interval of time.
     pub fn travel(&self, interval: Interval) -> f64 {
         let allowed = self.allowed(interval);
         let ways = allowed.iter().flatten().map(|[a0, a1]| (a0 - a1).abs());

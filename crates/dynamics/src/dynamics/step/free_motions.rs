@@ -14,8 +14,8 @@ const UNRESISTED: f64 = 10.0;
 /// Force, relative to the other forces, up to which it is round-off.
 const NO_FORCE: f64 = 1e-12;
 
-/// The places p of the far ends of the pins as unknowns. With pins of the stiffness a that end
-/// there,
+/// The places p of the far ends of the pins as unknowns. With pins of the stiffness a that end at
+/// these places,
 ///
 /// ```text
 /// dU = y + W B^T P + Z p,   f = a S^T (y + W B^T P) - S_p p,   S_p = a - a S^T Z    eq. (12.3)
@@ -44,7 +44,7 @@ pub(crate) struct FreeMotions {
     round_off: f64,
     /// Largest distance that nodes may move in a pass (length).
     reach: f64,
-    /// S^T y: motions of the pins without contact forces and with p = 0.
+    /// S^T y: motions of the pins without contact forces and with their far ends at p = 0.
     pub alone: Vec<f64>,
     /// The answer of the last complementarity problem.
     answer: Option<Answer>,
@@ -106,7 +106,7 @@ impl FreeMotions {
     }
 
     /// The free unknowns of the complementarity problem of some constraints. For held motions the balance says that the
-    /// pins stay there:
+    /// far ends of the pins stay in place:
     ///
     /// ```text
     /// H f + P^T a P S^T dU = 0,   H = (1 - P)^T - P^T P    eq. (12.11)
@@ -190,8 +190,8 @@ impl FreeMotions {
     }
 
     /// Motions n with a mean square of 1 whose stiffness under the closed pairs of the last answer is at most that of E
-    /// or of facets (`of_facets`). They are right singular vectors of S_e relative to the mean square motion, since a
-    /// sliding pair resists by its friction motions that do not change its gap.
+    /// or of facets (`of_facets`). The motions n are right singular vectors of S_e relative to the mean square motion,
+    /// since a sliding pair resists by its friction motions that do not change its gap.
     pub fn loose(&self, of_facets: &dyn Fn(&[f64]) -> f64) -> Vec<Loose> {
         let Some(Answer {
             p,

@@ -45,7 +45,7 @@ impl BeforeIterate<'_> {
     }
 
     /// Normal force of every constraint in the last solution. If a slave node has left all its targets, its first
-    /// constraint has the forces that it had there.
+    /// constraint has the forces that the node had there.
     fn normal_forces(&self, constraints: &[Constraint]) -> Vec<f64> {
         let mut forces: Vec<f64> = (constraints.iter())
             .map(|constraint| self.closed.force(constraint.key)[0])
@@ -132,8 +132,8 @@ impl<'m> Frictions<'m> {
     }
 
     /// Sets the coefficients of the constraints of an iterate: at rest if the pair has not slipped in the last
-    /// solution, else at the slip rate of the increment. Both depend on the pressure of the available forces on the
-    /// slave node,
+    /// solution, else at the slip rate of the increment. Both coefficients depend on the pressure of the available
+    /// forces on the slave node,
     ///
     /// ```text
     /// p = |N|/A,  N = sum Bn^T Pn    eq. (3.13)
@@ -160,9 +160,10 @@ impl<'m> Frictions<'m> {
     }
 
     /// The least and the largest coefficient that the law allows for every closed pair of a converged increment, under
-    /// the pressure of its forces and whatever coefficients the passes had. For a pair that slips it is the coefficient
-    /// of its slip rate Bt d/dt; for a pair that does not slip, any up to the one at rest. A slip within round-off
-    /// counts as zero. The friction of the pair must be between mu Pn of the two.
+    /// the pressure of its forces and whatever coefficients the passes had. The two coefficients of a pair that slips
+    /// enclose, within round-off, that of its slip rate Bt d/dt; those of a pair that does not slip are 0 and at least
+    /// the one at rest. A slip within round-off counts as zero. The friction of the pair must be between mu Pn of the
+    /// two.
     pub fn bounds<'c>(
         &self,
         x: &[[f64; 2]],

@@ -21,7 +21,7 @@ struct HeldBody {
     /// Number of the body among the bodies with pins.
     body: usize,
     directions: Vec<HeldDirection>,
-    /// Resultant of the forces that hold the body, along its free rigid motions.
+    /// Resultant of the forces that hold a body, along the free rigid motions of the body.
     force: DVector<f64>,
 }
 

@@ -7,7 +7,7 @@ use crate::linear::{LinearError, Rotation, Transformation};
 use crate::model::{Model, Step};
 
 /// Least eigenvalue of the matrix of hinge compliances, scaled to a unit diagonal, below which some hinges are
-/// redundant. Light bodies between heavy ones are far above it.
+/// redundant. The eigenvalues of light bodies between heavy ones are far above this bound.
 const INDEPENDENT: f64 = 1e-12;
 
 /// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x and then along y for
@@ -83,7 +83,8 @@ impl Hinges {
     /// ```
     ///
     /// # Errors
-    /// [`LinearError::Dependent`] with the number of a hinge that is redundant because of others.
+    /// Returns [`LinearError::Dependent`] with the number of a hinge that is redundant because of
+    /// others.
     pub fn hold(
         &self,
         (map, rotation): (&Transformation, &Rotation),
@@ -113,7 +114,7 @@ impl Hinges {
         Ok(RankUpdate::new([v, y], inverse))
     }
 
-    /// S^-1, if no row depends on the others.
+    /// S^-1, the inverse of the matrix of hinge compliances, if no row depends on the others.
     fn inverse(&self, s: DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
         let m = s.nrows();
         let size: Vec<f64> = (0..m).map(|i| s[(i, i)].abs().sqrt()).collect();

@@ -16,8 +16,8 @@ pub(crate) struct Integration {
     pub energy_momentum: bool,
     /// Whether inertia and damping take part.
     pub has_rates: bool,
-    /// Whether V1 = d/dt, the backward Euler rule. It needs no impulses, since a node that lands is at rest in the next
-    /// increment.
+    /// Whether V1 = d/dt, the backward Euler rule. The backward Euler rule needs no impulses, since a node that lands
+    /// is at rest in the next increment.
     pub backward_euler: bool,
 }
 
@@ -76,7 +76,7 @@ impl Integration {
     }
 
     /// Whether the rows of the impulses are those of the start, as in the energy-momentum form;
-    /// else they are those of the end.
+    /// otherwise they are the rows of the end.
     pub fn impulses_at_start(&self) -> bool {
         self.energy_momentum
     }

@@ -27,8 +27,8 @@ impl TimePoint {
         amplitude.at(self.of(amplitude.time))
     }
 
-    /// Rate of an amplitude. If the rate jumps, it is the rate before the jump; at the start of a step it is the one
-    /// after.
+    /// Rate of an amplitude. Where the rate jumps, the result is the rate before the jump; at the start of a step it is
+    /// the rate after.
     pub fn amplitude_rate(&self, model: &Model, index: usize) -> f64 {
         let amplitude = &model.amplitudes[index];
         let t = self.of(amplitude.time);
@@ -337,7 +337,7 @@ impl<'m> Loads<'m> {
     }
 
     /// Adds the pressure p on the current face, -p int N^T n t dl, where n is the outward normal and t the thickness or
-    /// 2 pi r. For a shear p along the face it adds p int N^T e t dl, where e is the unit vector along the face.
+    /// 2 pi r. A shear p along the face adds p int N^T e t dl, where e is the unit vector along the face.
     fn add_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64], r: &mut [f64]) {
         let side = load.at.face.of(&self.model.mesh);
         let (x, a) = (&self.model.mesh.coordinates, side.nodes()[0]);
@@ -394,7 +394,7 @@ impl<'m> Loads<'m> {
 pub(crate) struct StepPlace {
     /// Number of the step, from 1.
     pub number: usize,
-    /// Time of the analysis at which it starts.
+    /// Time of the analysis at which the step starts.
     pub start: f64,
     /// Duration in the deck (time).
     pub period: f64,

@@ -37,7 +37,7 @@ use crate::linear::{
 pub(crate) struct FactoredMatrix {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
-    /// Factors from the last complementarity problems, by scope.
+    /// Factors from the last complementarity problems, one set for each scope.
     pub kept: BTreeMap<ConstraintGroup, KeptFactors>,
     /// Memory of the Delassus operators of the matrix.
     pub space: DelassusSpace,
@@ -117,7 +117,7 @@ impl FactoredMatrix {
         self.solver.factorize()
     }
 
-    /// Transfers the matrix and the known part of its inverse.
+    /// Transfers the matrix and the known part of its inverse to or from an archive.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             solver,
@@ -143,7 +143,7 @@ impl FactoredMatrix {
         archive.transfer(update)
     }
 
-    /// The rows of T of bodies that turn, to be changed.
+    /// Mutable rows of T of bodies that turn.
     fn map_mut(&mut self) -> &mut Transformation {
         self.update = None;
         self.compliance.map_mut()
@@ -186,7 +186,7 @@ pub(crate) enum StiffnessForm {
 
 impl StiffnessForm {
     /// The forms to be tried, from the one with the fastest passes to the one that is never indefinite. With
-    /// `pairs_stiffen` only those that closed constraints stiffen are tried.
+    /// `pairs_stiffen` only those forms that closed constraints stiffen are tried.
     pub fn forms(pairs_stiffen: bool) -> &'static [Self] {
         match pairs_stiffen {
             false => &[Self::Tangent, Self::Stiffened, Self::Positive],
@@ -206,7 +206,7 @@ impl StiffnessForm {
 /// Closed constraints of an iterate with their forces.
 pub(crate) struct ClosedConstraints<'a> {
     pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
-    /// Configurations between which they are linearised.
+    /// Configurations between which the closed constraints are linearised.
     pub at: Configurations<'a>,
     /// Whether the constraints stiffen K* even if it is definite without them.
     pub pairs_stiffen: bool,
@@ -237,12 +237,12 @@ fn masses(problem: &StepProblem) -> Masses {
 }
 
 /// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
-/// the mass matrix. Both are over the unknowns of a step: T^T K* T and T^T M T.
+/// the mass matrix. Both matrices are over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M with a diagonal at nodes without mass. It is factorised for the acceleration at the start, and again when an
-    /// impulse first needs it.
+    /// M with a diagonal at nodes without mass. This mass matrix is factorised for the acceleration at the start, and
+    /// again when an impulse first needs it.
     pub m: FactoredMatrix,
     /// Angles of the bodies in the configuration of K*.
     angles: BodyAngles,
@@ -284,7 +284,7 @@ impl EffectiveStiffness {
         }
     }
 
-    /// Transfers both matrices and the configuration of K*.
+    /// Transfers both matrices and the configuration of K* to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self {
             [k, m, angles] form, pins, dt, stiffness, inertia
@@ -551,7 +551,7 @@ impl<'a> System<'a> {
         self.matrix.free.as_ref()
     }
 
-    /// Motions of pins that are free unknowns, to be changed.
+    /// Mutable motions of pins that are free unknowns.
     pub fn free_mut(&mut self) -> &mut Option<FreeMotions> {
         &mut self.matrix.free
     }
@@ -760,7 +760,7 @@ impl<'a> System<'a> {
     }
 
     /// Solves the complementarity problem of some constraints, starting from the states `warm`. Constraints between the
-    /// same two bodies form a joint.
+    /// same two bodies form a joint of the problem.
     pub fn solve_lcp(
         &mut self,
         problem: &FrictionalLcp,

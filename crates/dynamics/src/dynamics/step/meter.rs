@@ -32,7 +32,7 @@ impl Meter {
         self.counts.residual = residual;
     }
 
-    /// Counts a complementarity problem of `size` pairs.
+    /// Counts a complementarity problem of `size` pairs with its work.
     pub fn count_lcp(&mut self, size: usize, work: Counters) {
         let counts = &mut self.counts;
         counts.lcps += 1;
@@ -57,7 +57,7 @@ impl Timings {
 }
 
 impl SolverCounts {
-    /// Counts at the start: no work, converged.
+    /// Counts at the start of a run: no work, and convergence.
     pub(crate) fn at_start() -> Self {
         SolverCounts {
             converged: true,

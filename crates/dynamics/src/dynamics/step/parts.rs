@@ -28,7 +28,7 @@ pub(crate) struct Parts {
     runs_of_parts: Vec<DofRun>,
 }
 
-/// One value for every body, or part; up to eight are stored in place.
+/// One value for every body, or every part; up to eight values are stored in place.
 pub(crate) type PerBody = SmallVec<[f64; 8]>;
 
 /// Consecutive dofs or unknowns of a body or part.
@@ -125,7 +125,8 @@ impl Parts {
         largest_of(&self.runs_of_bodies, self.bodies, values)
     }
 
-    /// Values over all dofs, relative to the largest value of the increment `d` in the body; zero if that is zero.
+    /// Values over all dofs, relative to the largest value of the increment `d` in the body of the dof; zero where that
+    /// is zero.
     pub fn beside_increments(&self, d: &[f64], values: &[f64]) -> Vec<f64> {
         let units = self.largest_of_bodies(d);
         let beside = |(dof, value): (usize, &f64)| match units[self.body[dof / 2]] {

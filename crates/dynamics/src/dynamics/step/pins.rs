@@ -173,7 +173,7 @@ impl Pins {
     }
 
     /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of the body, eq.
-    /// (12.2). A rigid body gets its stiffness from springs only. Its pins have at least the mean over all unknowns if
+    /// (12.2). Springs alone give a rigid body its stiffness; its pins have at least the mean over all unknowns if
     /// pairs touch it, and always at least 1e3 times `force` divided by its size.
     pub fn stiffnesses(
         &self,
@@ -225,8 +225,8 @@ impl Pins {
         }
     }
 
-    /// Largest round-off of the forces at the pins of deformable bodies. It is ten times that of one nodal force, 4 eps
-    /// a |x|, where a is the stiffness of the pin in K* and x the size of the body.
+    /// Largest round-off of the forces at the pins of deformable bodies. This round-off is ten times that of one nodal
+    /// force, 4 eps a |x|, where a is the stiffness of the pin in K* and x the size of the body.
     pub fn round_off(&self, a: &[f64]) -> f64 {
         let all = self.bodies.iter().zip(self.of_bodies());
         all.filter(|(body, _)| !body.is_rigid)
@@ -510,7 +510,8 @@ impl PinnedBody {
         self.nodes.iter().map(of_node).sum()
     }
 
-    /// E of the pins of the body; `None` if the pins do not determine all its motions.
+    /// E, the mean square motion as a quadratic form of the pins of the body; `None` if the pins do
+    /// not determine all its motions.
     fn mean_square(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DMatrix<f64>> {
         let frame = self.frame(pole(self.hold, &self.nodes, at), at);
         let inverse = self.motions_of_pins(&frame)?.inverse;
@@ -626,8 +627,8 @@ impl PinnedBody {
 }
 
 /// Dofs of nodes without elements that, through equations, move parts of a body relative to each other, as the
-/// tightening of a pre-tension section does. With such a dof an equation forbids rigid motions that it would allow
-/// without the dof.
+/// tightening of a pre-tension section does. The terms of such a dof make an equation forbid rigid motions that the
+/// equation without them allows.
 fn tightening(
     equations: &[Equation],
     has_elements: &[bool],

@@ -27,7 +27,7 @@ pub(crate) struct UpdateColumns {
 }
 
 impl UpdateColumns {
-    /// Motions of columns over the unknowns: R T of them, with T of the derivatives.
+    /// Motions R T of columns over the unknowns, with T of the derivative rows.
     pub fn motions(
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
@@ -35,8 +35,8 @@ impl UpdateColumns {
         UpdateColumns::turned(of_unknowns, |column| map.motion(column), rotation)
     }
 
-    /// Columns over the unknowns in the form of the work of forces over the dofs: R T of them, with
-    /// T of the force rows.
+    /// Columns over the unknowns in the form of the work of forces over the dofs: R T times the
+    /// columns, with T of the force rows.
     pub fn works(
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
@@ -108,12 +108,12 @@ impl RankUpdate {
         (0..p.len()).map(row).collect()
     }
 
-    /// Factors C Y^T b of the columns V.
+    /// Factors p = C Y^T b of the columns V.
     pub fn parts(&self) -> Vec<f64> {
         self.weighted(&self.projected)
     }
 
-    /// Forces -C p, and the motion V (-C p) over all dofs.
+    /// Forces -C p of the update, and the motion V (-C p) over all dofs.
     pub fn answer(&self, p: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let parts: Vec<f64> = self.weighted(p).iter().map(|part| -part).collect();
         let columns = &self.columns[0].of_dofs;

@@ -30,10 +30,10 @@ impl Seen {
         }
     }
 
-    /// Transfers all values.
+    /// Transfers all values to or from an archive.
     ///
     /// # Errors
-    /// The archive is of another model.
+    /// Returns an error if the archive is of another model.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer_values(&mut self.displacement)?;
         archive.transfer_values(&mut self.force)
@@ -59,8 +59,8 @@ impl Seen {
         of_iterate
     }
 
-    /// Part of the displacements of every body that the passes do not resolve, with those of an iterate: the tolerance
-    /// times the largest so far, or the round-off of positions (length).
+    /// Part of the displacements of every body that the passes do not resolve, including those of an iterate: the
+    /// tolerance times the largest displacement so far, or the round-off of positions (length).
     pub fn unresolved(&self, problem: &StepProblem, u: &[f64]) -> PerBody {
         let tolerance = problem.settings.tolerance;
         let mut all: PerBody = (self.displacement.iter())

@@ -18,7 +18,8 @@ struct SlaveFace {
 
 /// The slave nodes of all contacts with their faces.
 pub(crate) struct SlaveFaces {
-    /// 0 at slave nodes and at master nodes of contact from surface to surface, NaN at other nodes, `N` entries.
+    /// The value is 0 at slave nodes and at master nodes of contact from surface to surface, NaN at other nodes, `N`
+    /// entries.
     pub start: Vec<f64>,
     /// The faces, with increasing nodes.
     faces: Vec<SlaveFace>,
@@ -98,8 +99,8 @@ impl SlaveFaces {
     ///
     /// n, l and t are the outward normal, current length and thickness of a segment, and w is the node's part of it:
     /// 1/2, or on a side with a mid-side node 1/3 at a corner and 2/3 at the mid-side node. The forces of a uniform
-    /// pressure then give this pressure. In a body of revolution t is 2 pi r, evaluated at a third of the segment from
-    /// the node, eq. (2.35); on a side with a mid-side node it is evaluated at the node itself.
+    /// pressure then give back this pressure. In a body of revolution t is 2 pi r, evaluated at a third of the segment
+    /// from the node, eq. (2.35); on a side with a mid-side node it is evaluated at the node itself.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let size = force[0].hypot(force[1]);
         // n l = (e_y, -e_x): on the right of the direction from a to b

@@ -52,10 +52,10 @@ pub(crate) struct StepProblem<'m> {
 
 /// Velocity at the start of an increment.
 pub(crate) struct StartVelocity<'a> {
-    /// V0+, or V0 if the impulses are given separately.
+    /// The velocity is V0+, or V0 if the impulses are given separately.
     pub v0p: Cow<'a, [f64]>,
-    /// Impulses J = M (V0+ - V0) that the velocity does not contain, over all dofs; empty if it
-    /// does.
+    /// Impulses J = M (V0+ - V0) that this velocity does not contain, over all dofs; empty if it
+    /// contains them.
     pub impulse: &'a [f64],
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// U_theta and the temperatures there.
+    /// U_theta and the temperatures at this configuration.
     pub fn place(&self) -> [&[f64]; 2] {
         [&self.u_theta, &self.temperature]
     }
@@ -170,7 +170,8 @@ impl StepProblem<'_> {
         self.integration.has_rates && self.elements.has_damping()
     }
 
-    /// Whether landing nodes have a velocity that the step treats in some way.
+    /// Whether the step treats the velocity of landing nodes: it has rates and does not use the
+    /// backward Euler rule.
     fn has_impacts(&self) -> bool {
         self.integration.has_rates && !self.integration.backward_euler
     }
@@ -226,7 +227,7 @@ impl StepProblem<'_> {
     /// Checks that every segment has a length, and so a normal.
     ///
     /// # Errors
-    /// [`Cause::Collapsed`] with the first segment that has almost no length.
+    /// Returns [`Cause::Collapsed`] with the first segment that has almost no length.
     pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
         let x = &self.model.mesh.coordinates;
         let length = |[p, q]: [[f64; 2]; 2]| distance(p, q);
@@ -242,11 +243,11 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Checks that no element is turned inside out at the end of an increment. The passes detect it themselves in the
-    /// energy-momentum form, and if both weights are 1; in other schemes they see only U_theta.
+    /// Checks that no element is turned inside out at the end of an increment. The passes detect such elements
+    /// themselves in the energy-momentum form, and if both weights are 1; in other schemes they see only U_theta.
     ///
     /// # Errors
-    /// [`Cause::Inverted`] with the first such element.
+    /// Returns [`Cause::Inverted`] with the first such element.
     pub fn check_end(&self, end: &State) -> Result<(), Cause> {
         let Integration {
             theta1,
@@ -305,7 +306,8 @@ impl StepProblem<'_> {
         Ok(())
     }
 
-    /// Writes load and internal force of the iterate U = U0 + d. Both depend on V0+ only if U_theta does.
+    /// Writes load and internal force of the iterate U = U0 + d. Load and internal force depend on V0+ only if U_theta
+    /// does.
     fn load_and_internal_force(
         &self,
         start: &State,
@@ -398,7 +400,7 @@ impl StepProblem<'_> {
 /// Checks that all values of some quantities, each over all dofs, are finite.
 ///
 /// # Errors
-/// [`Cause::NotFinite`] with the first quantity and node at which this is not so.
+/// Returns [`Cause::NotFinite`] with the first quantity and node at which this is not so.
 pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
     for &(what, values) in quantities {
         if !largest(values).is_finite()

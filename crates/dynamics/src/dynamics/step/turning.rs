@@ -6,9 +6,9 @@ use crate::linear::Transformation;
 use crate::model::{Model, RigidBody};
 use crate::vectors::{cross, difference, distance, dot};
 
-/// A rigid body, which turns if its angle is not held. Its unknowns are the displacement of its pole and s = L c. Here
-/// c = 2 tan(dtheta/2) is its rotation in the increment, and L is a length of the body, by which s is a displacement
-/// and its force a force.
+/// A rigid body, which turns if its angle is not held. The unknowns of a rigid body are the displacement of its pole
+/// and s = L c. Here c = 2 tan(dtheta/2) is the body's rotation in the increment, and L is a length of the body, by
+/// which s is a displacement and its work-conjugate a force.
 pub struct TurningBody {
     /// The node of the centre of mass.
     pub centre: usize,
@@ -235,8 +235,8 @@ impl<'m> Turning<'m> {
         first.is_some() && nodes.iter().all(|node| body(node) == first)
     }
 
-    /// Whether the mass matrix over the unknowns changes as bodies turn. This is so if a centre of mass follows a
-    /// reference node, or if nodes with mass of deformable elements follow a pole.
+    /// Whether the mass matrix over the unknowns changes as bodies turn. The mass matrix changes if a centre of mass
+    /// follows a reference node, or if nodes with mass of deformable elements follow a pole.
     pub fn turn_mass(&self) -> bool {
         let mut all = self.with_poles().zip(&self.driven);
         all.any(|((body, pole), driven)| {
@@ -396,9 +396,9 @@ impl<'m> Turning<'m> {
     }
 
     /// Sets the velocities of all nodes of the bodies to the motion of the centre of mass and the angle; `u` are the
-    /// displacements. For bodies that are driven or have no mass it is the motion of the reference node and the angle.
-    /// Prescribed dofs keep their velocities, and so do nodes with mass of deformable elements in a body that is not
-    /// driven.
+    /// displacements. For bodies that are driven or have no mass the velocities are those of the motion of the
+    /// reference node and the angle. Prescribed dofs keep their velocities, and so do nodes with mass of deformable
+    /// elements in a body that is not driven.
     pub fn move_with(&self, u: &[f64], v: &mut [f64], is_prescribed: impl Fn(usize) -> bool) {
         for (body, &driven) in self.bodies.iter().zip(&self.driven) {
             let carrier = match driven || body.mass == 0.0 {
@@ -445,7 +445,7 @@ impl<'m> Turning<'m> {
     }
 
     /// Sets the accelerations of the nodes of driven bodies to (V1 - V0)/dt in an increment `d` from `u0`; in `a` the
-    /// reference nodes and angles have theirs already.
+    /// reference nodes and angles must have theirs already.
     pub fn drive(&self, [u0, d]: [&[f64]; 2], v0: &[f64], dt: f64, a: &mut [f64]) {
         for body in self.driven() {
             let reference = 2 * body.reference;
@@ -461,8 +461,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Corrects the accelerations of the nodes of the other bodies in an increment `d` from `u0`. It adds the motion of
-    /// the prescribed poles and angles beyond `own`, the accelerations of eq. (4.1):
+    /// Corrects the accelerations of the nodes of the other bodies in an increment `d` from `u0`. The correction adds
+    /// the motion of the prescribed poles and angles beyond `own`, the accelerations of eq. (4.1):
     ///
     /// ```text
     /// A += A_p + (A_s/L) J r_m      eq. (11.4)
@@ -505,7 +505,8 @@ impl<'m> Turning<'m> {
     }
 
     /// Hands forces at the nodes of every body over to its pole and angle, where they do the same work in the increment
-    /// `d` to the displacements `u1`, or act at its end. Those of driven bodies stay at the nodes if `keeps_driven`.
+    /// `d` to the displacements `u1`, or act at its end. The forces of driven bodies stay at the nodes if
+    /// `keeps_driven`.
     pub fn hand_over(&self, [u1, d]: [&[f64]; 2], keeps_driven: bool, force: &mut [f64]) {
         let all = self.with_poles().zip(&self.driven);
         for ((body, pole), _) in all.filter(|(_, driven)| !(keeps_driven && **driven)) {

@@ -74,8 +74,8 @@ impl<'m> Unknowns<'m> {
         !self.map.row(dof).is_empty()
     }
 
-    /// Whether the gap of a constraint can change. It cannot if equations tie the node to the
-    /// segment: then Gn T is zero but for round-off.
+    /// Whether the gap of a constraint can change. The gap cannot change if equations tie the node
+    /// to the segment: then Gn T is zero but for round-off.
     pub fn opens(&self, constraint: &Constraint) -> bool {
         if !self.turning.is_empty() {
             let nodes: PerDof<usize> = constraint.nodes().collect();

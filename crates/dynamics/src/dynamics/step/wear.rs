@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Number of increments over which the mean number of passes of new factors is measured.
 const NEW: u32 = 5;
-/// Part of the least such mean by which passes may exceed it.
+/// Part of the least mean number of passes by which passes may exceed it.
 const SLACK: f64 = 0.05;
 /// Cost of a factorisation, including the compliance of the contacts, in passes.
 const COST: f64 = 10.0;
@@ -32,15 +32,15 @@ pub(crate) enum FactoredState {
 ///
 /// The choice between old and new factors of K* is that between renting and buying. Every pass beyond the number with
 /// new factors is rent; when the rent reaches the cost of a factorisation, K* is factorised. If passes grow evenly with
-/// the age of the factors, this age is the best one. New factors are on trial: if strains change in the next
-/// increments, they can be worse than those of the unstrained bodies.
+/// the age of the factors, the age at which the rent reaches this cost is the best one. New factors are on trial: if
+/// strains change in the next increments, they can be worse than those of the unstrained bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wear {
     /// Number of increments since the last factorisation.
     increments: u32,
     /// Mean number of passes in the first increments since the last factorisation.
     new: f64,
-    /// Least mean of this kind in the step.
+    /// Least mean of this kind since the start of the step.
     least: f64,
     /// Running mean of the number of passes.
     latest: f64,
@@ -48,9 +48,9 @@ pub(crate) struct Wear {
     before: Option<f64>,
     /// Whether factors on trial have not paid.
     has_failed: bool,
-    /// Sum of the passes beyond the least mean.
+    /// Sum of the passes beyond the least mean (the rent).
     excess: f64,
-    /// Multiple of the cost of a factorisation at which it pays.
+    /// Multiple of the cost of a factorisation that the excess passes must reach.
     bound: f64,
 }
 
@@ -86,7 +86,7 @@ impl Wear {
     }
 
     /// Notes that K* is factorised: at the `start` of an increment, or because the factors have worn in its passes.
-    /// Returns the state for which it is made.
+    /// Returns the state for which the factors are made.
     pub fn renew(&mut self, at_start: bool) -> FactoredState {
         if !at_start && self.before.is_some() {
             self.fail();

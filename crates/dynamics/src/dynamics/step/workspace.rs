@@ -1,5 +1,6 @@
 //! Workspace of the increments of a step: effective stiffness with its factors, contact search,
-//! times and counts. Each operation measures its own time. See docs/theory/time.md.
+//! times and counts. Each operation on the workspace measures its own time. See
+//! docs/theory/time.md.
 
 use super::held_motions::HeldMotions;
 use super::loads::TimePoint;
@@ -56,7 +57,7 @@ impl<'m> Workspace<'m> {
         }
     }
 
-    /// Transfers the data that the increments of the step hand on.
+    /// Transfers the data that the increments of the step hand on to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self { [stiffness, search, seen] wear; meter, pins, pairs })
     }
@@ -104,11 +105,11 @@ impl<'m> Workspace<'m> {
     }
 
     /// Assembles and factorises K* for increments of length `dt`, in the configuration of a motion and with the given
-    /// closed constraints. It uses the first form that is positive definite.
+    /// closed constraints. The factorised form is the first one that is positive definite.
     ///
     /// # Errors
-    /// The error of the last form, or the first error other than a matrix that is not positive
-    /// definite.
+    /// Returns the error of the last form, or the first error other than a matrix that is not
+    /// positive definite.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
@@ -147,11 +148,11 @@ impl<'m> Workspace<'m> {
         Ok(())
     }
 
-    /// Checks that an equilibrium is stable. Nothing is done if the last factors belong to a state near it, were not
-    /// stiffened by closed pairs, and the last complementarity problem with free pins was stable.
+    /// Checks that an equilibrium is stable. The check does nothing if the last factors belong to a state near the
+    /// equilibrium, were not stiffened by closed pairs, and the last complementarity problem with free pins was stable.
     ///
     /// # Errors
-    /// K* is not positive definite.
+    /// Returns an error if K* is not positive definite.
     pub fn check_stability(
         &mut self,
         problem: &StepProblem,
@@ -276,15 +277,15 @@ impl<'m> Workspace<'m> {
         means
     }
 
-    /// Corrects the velocities at the start of a motion so that hinges keep their nodes together; it does so by
-    /// impulses of the hinges:
+    /// Corrects the velocities at the start of a motion by impulses of the hinges, so that hinges keep their nodes
+    /// together:
     ///
     /// ```text
     /// V <- V - M^-1 C^T (C M^-1 C^T)^-1 C V      eq. (11.11)
     /// ```
     ///
     /// # Errors
-    /// [`LinearError::Dependent`] with a hinge that is redundant because of others.
+    /// Returns [`LinearError::Dependent`] with a hinge that is redundant because of others.
     pub fn start_hinges(
         &mut self,
         problem: &StepProblem,
