@@ -49,7 +49,8 @@ pub fn polygon_area(corners: impl IntoIterator<Item = [f64; 2]>) -> f64 {
     let Some(first) = corners.next() else {
         return 0.0;
     };
-    // the terms of the first and last side are zero, being relative to the first corner
+    // positions are relative to the first corner, so the terms of the first and the last side are
+    // zero
     let mut last = [0.0; 2];
     let terms = corners.map(|corner| {
         let side = [last, difference(first, corner)];
@@ -242,7 +243,7 @@ impl CircleTree {
             } else {
                 let halves = [2 * group, 2 * group + 1];
                 let nearer_first = distance(halves[0]) <= distance(halves[1]);
-                // the last one is visited first
+                // the last group of the list is visited first
                 open.extend(if nearer_first {
                     [halves[1], halves[0]]
                 } else {

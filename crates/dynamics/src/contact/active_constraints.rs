@@ -273,7 +273,7 @@ mod tests {
     fn a_node_slides_round_a_bend_but_runs_against_a_wall() {
         for i in 0..16 {
             let direction = 0.3 + f64::from(i) * std::f64::consts::FRAC_PI_8;
-            // 0.0175 is the turn of a circle in chords of a degree
+            // a circle of chords of one degree turns by 0.0175 from chord to chord
             for turn in [-0.0175, -0.01, 0.0, 0.01, 0.0175] {
                 assert!(is_held(direction, turn), "{direction} {turn}");
             }
@@ -307,7 +307,8 @@ mod tests {
             {
                 assert_eq!(touches(&at(part)), is_touched, "{part:e} {length:e}");
             }
-            // a wall that a node was not in front of stops it as any other segment that it touches
+            // a wall that a node was not in front of stops the node like any other segment that it
+            // touches
             let mut active = ActiveConstraints::default();
             active.add(AT, [1.0, 0.0]);
             for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {

@@ -44,7 +44,7 @@ impl Bulge {
             let square = t * t;
             t * (1.0 - square / 5.0 + 3.0 * square * square / 35.0)
         });
-        // on a circle the cubic is a parabola, for which two Gauss points do
+        // on a circle the cubic is a parabola, for which two Gauss points are enough
         let end = match (start - end).abs() <= EQUAL_SLOPES * start.abs() {
             true => start,
             false => end,
@@ -189,7 +189,7 @@ impl Bulge {
         if self.is_flat() {
             return p.tangent;
         }
-        // the chord is shorter or longer than that of the reference configuration, but what bulges out of it is not
+        // the chord changes its length with the deformation, the height of the bulge does not
         let slope = self.slope(end) / p.length;
         let t = [0, 1].map(|i| p.tangent[i] + slope * p.normal[i]);
         let length = length(t);

@@ -76,7 +76,7 @@ fn of_half_side(
         Some(&ends) => (true, b, ends),
         None => (false, a, *second()?),
     };
-    // from the corner before to the one behind, as the segment runs
+    // ends of the side in the direction of the segment
     let ends = match (is_first, p == a, q == b) {
         (true, true, _) | (false, _, true) => [p, q],
         _ => [q, p],
@@ -180,7 +180,7 @@ impl Turns<'_> {
         let bends: Vec<bool> = (0..count)
             .map(|i| !self.is_half[i] && (between[i] || is_beside(i)))
             .collect();
-        // whether a segment takes a part of the turn at its end; one that turns far less at its other end does not
+        // whether a segment bends for a part of the turn at its end; it does not if it turns far less at its other end
         let takes_part = |i: usize, (neighbour, turn): (Option<usize>, Turn)| {
             let sine = |(neighbour, turn): (Option<usize>, Turn)| match turn {
                 Turn::Smooth { .. } => neighbour.map(|j| self.sine(i, j)),
@@ -191,7 +191,8 @@ impl Turns<'_> {
             let least = sines.into_iter().flatten().fold(f64::INFINITY, f64::min);
             bends[i] && own.is_some_and(|own| own <= UNLIKE_TURNS * least)
         };
-        // tangent of the circle through three nodes, eq. (3.28), or all of the turn where the neighbour takes no part
+        // slope of the circle through three nodes, eq. (3.28), or of all of the turn if the neighbour does not bend for
+        // it
         let slope = |i: usize, (neighbour, turn): (Option<usize>, Turn)| {
             let neighbour = neighbour.filter(|_| takes_part(i, (neighbour, turn)))?;
             let (e, f) = (self.edge(i), self.edge(neighbour));

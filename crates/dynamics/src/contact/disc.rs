@@ -306,7 +306,8 @@ impl DiscContact {
         let [gap, before] = [start(&self.feature), start(from)];
         let travel = rows.of_centre[0].dot(&self.displacements(pair, at));
         let rise = rise((gap, rows.scale), before, centre);
-        // a force that leans too far is left as it is: what it gains is cut back
+        // a force that would lean too far is not tilted: if it gains energy, the increment is cut
+        // back
         match travel.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * travel.abs()
         {
             true => rise / travel,
@@ -367,7 +368,7 @@ impl DiscContact {
             }
         }
         if rows.kappa != 0.0 {
-            // dkappa = -kappa/s times the derivative of the way s
+            // dkappa is -kappa/s times the derivative of the path s
             let [force, slope] = rows.of_centre;
             let travel = force.dot(&self.displacements(pair, at));
             k -= force * slope.transpose() * (leaning / travel);

@@ -181,7 +181,7 @@ impl Interior {
         let [mut start, mut end] = [0.0_f64, 1.0_f64];
         for side in self.sides(element) {
             let side = project(from, at(side[0]), at(side[1]));
-            // distances outside the side at both ends of the line
+            // distances of both ends of the line from the side, positive outside the element
             let along = dot(difference(from, to), side.normal);
             let (outside, most) = (side.gap, INSIDE_ROUND_OFF * side.length);
             if outside > most && outside + along > most {
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_line_that_leaves_the_body_does_not_come_back() {
-        // an arm above the strip, joined to it nowhere
+        // an arm above the strip, which has no node in common with the strip
         let mut mesh = strip(0.1, false);
         let first = mesh.coordinates.len();
         for y in [0.2, 0.3] {

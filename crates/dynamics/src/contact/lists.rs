@@ -55,7 +55,7 @@ impl<T: Entry> Drop for Recycled<T> {
         }
         let mut list = std::mem::take(&mut self.0);
         list.clear();
-        // a thread that ends has no lists any more
+        // a thread that ends has lost its lists already
         let _ = T::spare().try_with(|spare| {
             let mut spare = spare.borrow_mut();
             if spare.len() < MOST_SPARE {

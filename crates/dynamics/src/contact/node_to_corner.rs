@@ -151,7 +151,8 @@ mod tests {
     #[test]
     fn a_fit_allows_the_same_overlap_behind_both_segments() {
         for form in [RowForm::End, RowForm::DiscreteGradient] {
-            // behind both segments by what is allowed: where their lines, moved by it, meet
+            // the node is behind both segments by the allowed overlap: where their lines, moved by
+            // this overlap, meet
             let depths = [0.02, 0.01];
             let [_, a, tip, c] = ROOF;
             let [p, q] = [[a, tip], [tip, c]].map(|[a, b]| project(a, a, b).normal);

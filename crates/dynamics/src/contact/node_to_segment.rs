@@ -100,7 +100,7 @@ impl SegmentContact {
         let before = from.bulge.below(project(s, i, j)).raised(allowed);
         let rise = rise((start.gap + allowed, start.length), before.gap, s);
         let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
-        // a node that has not moved has no direction to be tilted in
+        // the force on a node that has not moved has no direction in which to tilt
         match rise != 0.0 && slip.abs() > position_round_off(s) {
             true => rise / slip,
             false => 0.0,
@@ -123,7 +123,7 @@ pub(super) fn segment_rows(
     let height = bulge.at(projection.xi) - allowed;
     let mut rows = rows_between(places, (height, &bulge), at.form);
     if let (RowForm::End, Some(bend)) = (at.form, &rows.bend) {
-        // the couple of friction changes with the height that the node has where the gap is closed
+        // the couple of friction changes with the height of the node when the gap is closed
         let turned = product(&couple(&projection), &displacements(&places)) / bend.stretch;
         let tangential = &mut rows.derivative.tangential;
         *tangential = sum_of(1.0, tangential, turned, &bend.of_height);
@@ -394,7 +394,7 @@ mod tests {
         for form in [RowForm::End, RowForm::DiscreteGradient] {
             let constraint = of(source.clone(), form, &U0, &U1);
             let Rows { normal, tangential } = &constraint.force_rows;
-            // the force on the node: of the length s and of one
+            // the normal row at the node has the length s, the tangential row the length 1
             let [n, t] = [normal, tangential].map(|row| [row[0], row[1]]);
             if form == RowForm::End {
                 assert!(dot(n, t).abs() < 1e-15 && (dot(t, t) - 1.0).abs() < 1e-15);
@@ -444,7 +444,7 @@ mod tests {
             let x = &x;
             contact.tilt(&pair, &Configurations { form, x, u0, u: &u })
         };
-        // a gap is no rise, an overlap is
+        // a gap gives no rise, an overlap gives one
         assert_eq!(rise_and_slip(1e-3, 1e-2), 0.0);
         assert!((rise_and_slip(-1e-3, 1e-2) + 0.1).abs() < 1e-15);
         for slip in [0.0, 1e-16, -1e-12, 1e-9] {
@@ -454,7 +454,7 @@ mod tests {
 
     #[test]
     fn forces_of_a_closed_pair_keep_both_momenta() {
-        // of end rows about the end
+        // the moments of end rows are about the end positions
         for (form, from) in [(RowForm::DiscreteGradient, &U0), (RowForm::End, &U1)] {
             let Rows { normal, tangential } = closed(form, &U0).force_rows;
             for row in [normal, tangential] {

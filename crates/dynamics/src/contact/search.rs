@@ -329,7 +329,7 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
             let (a, b) = (now.of(a), now.of(b));
             let (r, e) = (difference(a, s), difference(a, b));
             let (along, whole) = (dot(r, e), dot(e, e));
-            // |r - xi e|^2 e.e, xi = r.e/e.e within [0, 1]
+            // |r - xi e|^2 e.e, with xi = r.e/e.e limited to [0, 1]
             let on = along.max(0.0).min(whole);
             dot(r, r) * whole - on * (2.0 * along - on) > near * near * whole
         })
@@ -425,7 +425,7 @@ impl<'m> Territory<'m> {
             contact,
             key,
             corners,
-            // of all points of a slave face, whose ends are listed
+            // the reach covers all points of a slave face, although only its ends are listed
             reach: reach * mean + contact.half_longest_face(x),
             skin: SEARCH_MARGIN * mean,
             slaves: SearchedSide::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
@@ -639,13 +639,13 @@ impl SearchedSide {
         self.reference
             .extend(self.ends.iter().map(|ends| ends.map(&at)));
         self.margin.clear();
-        // m = l/2 + 2 w, eq. (10.2), w the travel
+        // margin m = l/2 + 2 w, eq. (10.2), where w is the travel
         self.margin.extend(
             self.travel
                 .iter()
                 .map(|travel| skin + SEARCH_MARGIN_PER_MOTION * travel),
         );
-        // length/2 + m (+ R of a segment), eq. (10.1)
+        // radius length/2 + m, for a segment plus R, eq. (10.1)
         let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {
             centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
             // a node pairs a little beyond the ends as well

@@ -142,7 +142,7 @@ impl SlaveNode<'_> {
         };
         let mut seen: SmallVec<[bool; 8]> = smallvec![false; faced.len()];
         let mut runs = SmallVec::new();
-        // first the runs with a head, then those all around a body
+        // first the runs with a first segment, then the closed runs around a body
         let heads = faced.iter().filter(|i| !has_previous(i));
         for &head in heads.chain(faced) {
             let mut run = Segments::new();
@@ -208,7 +208,7 @@ impl SlaveNode<'_> {
                 let over = run.iter().copied().filter(is_over).filter(is_gentle);
                 over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))
             };
-            // at a vertex a node may be over neither of its segments by round-off
+            // at a vertex round-off may leave a node over neither of the two segments
             let j = over(0.0).or_else(|| over(SLID))?;
             Some(ContactTarget {
                 from: Some(i),
@@ -217,7 +217,7 @@ impl SlaveNode<'_> {
         };
         let was_behind = || run.iter().all(|&j| !self.was_in_front(j));
         let came = || was_behind().then(|| self.came_from(run)).flatten();
-        // a node that was closed on a corner may be on either of its segments, in front of which it was
+        // a node that was closed on a corner may be on each of the corner's segments in front of which it was
         let is_left = |target: &&ContactTarget| {
             !(target.segments()).any(|i| is_within(i) && self.was_in_front(i))
         };
@@ -315,7 +315,7 @@ impl SlaveNode<'_> {
                 Along::Forward => [at, j],
                 Along::Backward => [j, at],
             };
-            // a corner that has turned concave since was convex when the node came over it
+            // a corner that is concave in the iterate was still convex when the node came over it
             let turns = [
                 self.corner_sine(first, second),
                 self.corner_sine_at_start(first, second),
@@ -362,7 +362,7 @@ impl SlaveNode<'_> {
     /// The corner between the segments `i` and `j` if the node meets it, node against node, or the vertex of a face.
     fn corner_between(&self, i: usize, j: usize) -> Option<ContactTarget> {
         let (p, q) = (self.project(i), self.project(j));
-        // distance from the corner along the sum of both tangents, whose length is 2 at most
+        // distance from the corner along the sum of both tangents, which is at most 2 long
         let offset = (p.xi - 1.0) * p.length + q.xi * q.length;
         let length = p.length.min(q.length);
         if offset.abs() > 2.0 * CORNER_TIP * length {

@@ -126,7 +126,7 @@ impl SlaveNode<'_> {
             [f64::midpoint(node[0], x), f64::midpoint(node[1], y)]
         };
         let mut adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
-        // but for round-off: nodes of matching meshes are at the ends
+        // the tolerance covers round-off: nodes of matching meshes are at the ends of segments
         is_over(node, CLOSED_GAP)
             || (is_over(node, near / length(difference(a, b)))
                 && adjacent.any(|n| is_over(middle(n), CLOSED_GAP)))
@@ -188,7 +188,7 @@ impl SlaveNode<'_> {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now.of(n));
             difference(a, b)
         });
-        // |sin| <= |tan|: mostly there is no need for the sine
+        // |sin| <= |tan|, so the sine need not be computed in most cases
         let has_gentle_tangent = cross(e, f) > -0.5 * GENTLE_SINE * dot(e, f);
         !(has_gentle_tangent && dot(e, f) > 0.0) && self.corner_sine(i, j) < -GENTLE_SINE
     }

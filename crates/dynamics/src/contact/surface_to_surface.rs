@@ -143,7 +143,7 @@ fn leave_out_slivers(
     let is_beyond = |point: &SurfacePoint| {
         let [x1, x2, c, d] = point.vertices.map(at);
         if [c, d] == [a, b] {
-            // from the end of the face that the node is at to the other
+            // from the end of the face at the node to the other end
             let ends = if point.eta < 0.5 { [x1, x2] } else { [x2, x1] };
             let [near, far] = ends.map(gap);
             return far >= near;
@@ -171,7 +171,7 @@ impl PointsOfFaces {
             points: Recycled::with_room(),
             starts: Recycled::with_room(),
         };
-        // room for those of the increments that follow too
+        // room for the points of later increments too
         all.points.reserve(16 * faced.len());
         let mut faced = faced.iter().peekable();
         for face in 0..faces {
@@ -378,8 +378,8 @@ impl<'a> Finder<'a> {
     /// face. The result is false for the far side of a thin body or of a body behind it, for a face that has entered
     /// through another segment, and for one that lies on another segment.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
-        // gaps at the ends of the part of the face that is over the segment: beyond it a face of a bent thin body may be in front
-        // of the line of a segment on the other side
+        // the gaps at the ends of the part of the face over the segment decide: beyond this part a face of a bent thin
+        // body may be in front of the line of a segment on the other side
         let part = |xi: f64| (xi.clamp(0.0, 1.0) - p.xi) / (q.xi - p.xi);
         let bulges = [
             self.slave.face_bulge(face),
@@ -395,7 +395,7 @@ impl<'a> Finder<'a> {
         };
         let [first, last] = [part(p.xi), part(q.xi)];
         let is_open = |eta: f64| gap(eta) >= -CLOSED_GAP * p.length;
-        // between the ends of a part a gap of curved faces may be larger than at both
+        // between curved faces the gap may be larger within the part than at its ends
         if is_open(first) || is_open(last) || (is_curved && is_open(f64::midpoint(first, last))) {
             return true;
         }
@@ -417,14 +417,16 @@ impl<'a> Finder<'a> {
             (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&p.xi)
                 && (-NEARER_DEPTH * depth..=on_it).contains(&p.gap)
         };
-        // beyond convex vertices from a segment: not on the side on which a thin body that is bent comes in front of its line
+        // whether this segment lies behind the line of another, as beyond convex vertices; on the other side of a bent
+        // thin body it does not
         let leads_behind = |other: usize| {
             let [a, b] = self.slave.edge_of_segment(self.start, other).ends;
             let ends = self.slave.edge_of_segment(self.start, segment).ends;
             let mut places = ends.iter().map(|&end| project(end, a, b));
             places.all(|p| p.gap <= CLOSED_GAP * p.length)
         };
-        // it is in front of a segment before or after, from which it may slide on to this one
+        // whether the face is in front of a segment before or after, from which it may slide on to
+        // this one
         let is_beside = |other: usize| {
             let p = at(other);
             self.slave.runs[other] == self.slave.runs[segment]
@@ -543,7 +545,7 @@ impl SurfacePoint {
                 let from = over(&bulge, [start[0], a, b]);
                 (from.gap, cross(from.tangent, p.tangent).abs())
             }
-            // it may slide along its face over the end of the master
+            // the point may slide along its face over the end of the master
             StartSegment::Outside => {
                 let [x1, x2] = [0, 1].map(|i| self.vertices[i].place(&at_start));
                 let face = project(x1, x1, x2).tangent;
@@ -713,7 +715,7 @@ impl MeanContact {
         let [n, t, gn, mut gt] = sums;
         gt.iter_mut().zip(&gn).for_each(|(gt, gn)| *gt -= turn * gn);
         let (mut start_gap, slip) = (mean - product(&n) + allowed_before, product(&t));
-        // what overlaps at the start stays, eq. (7.9)
+        // an overlap at the start stays, eq. (7.9)
         if at.form == RowForm::DiscreteGradient && start_gap < 0.0 {
             gap -= start_gap;
             start_gap = 0.0;
@@ -738,7 +740,7 @@ impl MeanContact {
             slip,
             mu: 0.0,
             mu_varies: false,
-            // of straight faces one, whatever round-off the weights have
+            // for straight faces s is exactly 1, without the round-off of the weights
             stretch: match self.points.iter().all(|q| q.bulge.is_flat()) {
                 true => 1.0,
                 false => stretch,
@@ -762,7 +764,7 @@ impl MeanContact {
     ) -> DMatrix<f64> {
         let nodes: SmallVec<[usize; 16]> = constraint.nodes().collect();
         let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
-        // of heights, end rows alone
+        // sum for the changes of heights, which only end rows have
         let mut couples = DVector::zeros(constraint.dofs.len());
         for point in self.points.iter() {
             let places = point.configurations(at);

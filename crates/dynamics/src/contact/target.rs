@@ -218,7 +218,7 @@ impl Target {
     /// The target on which the slave node was closed at the start.
     fn at_start(self) -> Self {
         match self {
-            // the key of the constraint has the number, which stays
+            // the number of the segment stays, since the key of the constraint contains it
             Target::Segment(SegmentContact { segment, from }) => {
                 Target::Segment(SegmentContact::new(Segment {
                     number: segment.number,

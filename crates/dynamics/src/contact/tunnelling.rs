@@ -46,7 +46,8 @@ pub fn find_penetration(
             key: listed.key,
             closed,
             unsolved,
-            // between its ends the path of a corner may cut a face deeper than its row lets it be
+            // between its ends the path of a corner may be deeper in a face than the constraint
+            // allows at the ends
             allowed: match listed.is_corner() {
                 true => (listed.allowed()).map(|depth| depth / CORNER_DEPTH * CORNER_PATH_DEPTH),
                 false => listed.allowed(),
@@ -130,7 +131,7 @@ impl NodePath<'_> {
             }
             let is_out = |c: &Crossing| match c.direction {
                 CrossingSense::Leaving => true,
-                // it ends on the surface
+                // the path ends on the surface
                 CrossingSense::Touching => c.time >= 1.0,
                 CrossingSense::Entering => false,
             };
@@ -238,7 +239,7 @@ impl NodePath<'_> {
     fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
         let [a, b] = self.contact.segments[i];
         let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
-        // arcs hold discs, not their chords
+        // discs touch the arcs, not their chords
         let is_chord = self.contact.disc.is_some() && self.contact.arc_of(i).is_some();
         let part = if is_chord { NODE_DEPTH } else { self.depth };
         depth <= largest(&unsolved) + part * length
@@ -430,7 +431,7 @@ fn crossed_by(edge: ([[f64; 2]; 2], Bulge), segment: ([[f64; 2]; 2], Bulge)) -> 
     let depth = |ends: [[f64; 2]; 2], ([a, b], bulge): ([[f64; 2]; 2], Bulge)| {
         let [p, q] = ends.map(|end| {
             let p = project(end, a, b);
-            // beyond its ends the line counts
+            // beyond the ends of the segment the bulge is that at the end
             let rise = bulge.at(p.xi.clamp(0.0, 1.0));
             p.raised(-rise)
         });
@@ -452,7 +453,7 @@ mod tests {
         assert_eq!(by([1.0, -0.4], [1.0, 2.0]), Some(0.1));
         assert_eq!(by([1.0, 2.0], [1.0, 0.4]), None, "above");
         assert_eq!(by([5.0, 2.0], [5.0, -2.0]), None, "beside");
-        // the end of the segment is nearer to the edge than the ends of the edge to the segment
+        // the end of the segment is nearer to the edge than the ends of the edge are to the segment
         assert_eq!(by([3.75, 2.0], [3.75, -2.0]), Some(0.0625));
         assert_eq!(by([1.0, 0.0], [1.0, -2.0]), None, "an end on the segment");
     }

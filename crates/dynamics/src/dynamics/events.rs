@@ -211,7 +211,7 @@ impl<'m> Subincrements<'_, 'm> {
             }
             let trial = EventTrial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
             impact.record(trial.clone(), is_before);
-            // a node that has just bounced off has hardly a gap at the start: there its motion tells
+            // a node that has just bounced off has hardly a gap at the start: its motion then gives the time
             let expected = |entry: &Intrusion| {
                 let gap = |trial: &EventTrial| entry.gap(problem, trial)[0];
                 let root = impact.root(gap).filter(|root| *root >= group);
@@ -231,7 +231,8 @@ impl<'m> Subincrements<'_, 'm> {
             let at_start = lands(&|time| time < group);
             let at_end = lands(&|time| time > rest - group);
             if !at_start.is_empty() || root.is_none_or(|root| root > rest - group) {
-                // they join, the latter to land at the very end of all that is left
+                // both groups join the active pairs; the nodes of `at_end` land at the very end of
+                // the rest of the increment
                 at_start
                     .iter()
                     .for_each(|entry| self.join_at_start(&mut active, *entry));
@@ -260,7 +261,7 @@ impl<'m> Subincrements<'_, 'm> {
             guess = Some(path);
         }
         match before {
-            // not as far as the impact
+            // this subincrement ends before the impact
             Some((tau, solved)) if tau >= group => Ok(self.converged(tau, solved)),
             _ => self.rest(),
         }
@@ -333,7 +334,7 @@ impl<'m> Subincrements<'_, 'm> {
         let place = |u: &[f64], (pair, lift): (NodeAtSegment, Lift)| {
             lift.of(problem.positions(u).place(pair.nodes))
         };
-        // between its ends the motion is an estimate: what is in front at the end has not gone in
+        // between its ends the motion is an estimate: a node in front at the end has not entered
         let ends_behind = |at: (NodeAtSegment, Lift)| {
             solved.is_none_or(|solved| place(&solved.end.u, at).gap < 0.0)
         };
@@ -345,7 +346,7 @@ impl<'m> Subincrements<'_, 'm> {
         };
         let mut entries: Vec<Intrusion> = Vec::new();
         for c in left_out {
-            // nodes that have gone in by less are found by their motion
+            // nodes that have entered less deeply are found by their motion
             let lift = c.lift_at_start();
             let least = lift.map_or(0.0, |_| CLOSED_GAP);
             if c.gap < -least * c.scale {

@@ -82,7 +82,7 @@ fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<b
         free[node] = bodies.contains(&body_of[node]);
     }
     for (constraint, _) in solved.contact.forces.acting() {
-        // next to a vertex the far end of a segment takes nothing but round-off
+        // next to a vertex the row at the far end of the segment is only round-off
         let rows = (constraint.dofs.iter()).zip(&constraint.derivative_rows().normal);
         let held = rows.filter(|(_, b)| b.abs() > TIED_ROW);
         held.for_each(|(&dof, _)| free[dof / 2] = false);

@@ -128,7 +128,7 @@ mod tests {
         let falls = |t: f64| 0.3 - 0.5 * t - t * t / 2.0;
         let found = trials(falls, (0.25_f64 + 0.6).sqrt() - 0.5);
         assert!(found.unwrap() <= 6, "{found:?}");
-        // the surface swings: the gap as a function of the length is bent
+        // the surface swings, so the gap is a curved function of the length
         let swings = |t: f64| 0.02 - 0.5 * t - 0.05 * (20.0 * t).sin();
         let root = (0..60).fold([0.0, 0.05], |[low, high], _| {
             let middle = (low + high) / 2.0;

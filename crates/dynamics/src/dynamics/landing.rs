@@ -128,7 +128,7 @@ fn landing(
         rows: [normal, tangential].map(|row| {
             let own = row[..at_end.slave_dofs].chunks(2);
             let sum = own.fold([0.0; 2], |sum, b| [sum[0] + b[0], sum[1] + b[1]]);
-            // a corner of the master is pushed the other way
+            // on a corner of the master the force acts in the opposite direction
             sum.map(|b| if at_end.is_of_master() { -b } else { b })
         }),
     };
@@ -225,7 +225,7 @@ pub(super) fn give_back(
     };
     let energies: Vec<f64> = loads.iter().map(|load| load.energy).collect();
     let signs = signs(&products(&patterns), &b, &energies);
-    // what takes a force back takes its friction back, with its work
+    // a return that takes a force back also takes back its friction, with the work of the friction
     for (j, load) in loads.iter().enumerate() {
         if let Some(friction) = load.friction.as_ref().filter(|_| signs[j] < 0.0) {
             let of_friction = respond(&friction.force)?;

@@ -102,7 +102,7 @@ mod tests {
                 prop_assert!((given - d[j]).abs() < 1e-6, "{given} {}", d[j]);
                 prop_assert!(y[j] * b[j] >= 0.0);
             }
-            // no share is above its bound, and one at its bound gives a part of its energy
+            // no share is above its bound, and a share at its bound gives only a part of its energy
             let y = shares(&a, &b, &d[..n], &signs, &[bound; 7]);
             for (j, given) in given(&a, &b, &y).into_iter().enumerate() {
                 prop_assert!(y[j].abs() <= bound && given > -1e-6 && given < d[j] + 1e-6);
@@ -113,8 +113,8 @@ mod tests {
 
     #[test]
     fn a_point_mass_keeps_its_speed_whenever_it_lands() {
-        // it lands after the part s of the increment and leaves it with -(1 - 2 s) of its speed of 1:
-        // mass 1, D = 2 s (1 - s)
+        // a mass 1 with the speed 1 lands after the part s of the increment and ends it with the velocity -(1 - 2 s),
+        // so D = 2 s (1 - s)
         for s in [0.0625, 0.25, 0.5, 0.75, 0.9375] {
             let (v, d) = (1.0 - 2.0 * s, 2.0 * s * (1.0 - s));
             let (a, b) = (DMatrix::from_element(1, 1, 4.0), [2.0 * v]);

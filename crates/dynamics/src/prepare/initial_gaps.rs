@@ -184,7 +184,7 @@ impl<'m> Start<'m> {
         let p = self.project(slave, i);
         let interior = &self.contact.interior;
         let at = |node: usize| self.x[node];
-        // deeper nodes are those of a fit that lie in the body, nearer to this side than to the far one
+        // deeper nodes must belong to a fit and lie in the body, nearer to this side than to the far side
         let may_face = || {
             p.gap >= -p.length
                 || (p.gap >= -self.deepest * p.length && interior.takes_in([a, b], slave, at))

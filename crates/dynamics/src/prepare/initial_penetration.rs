@@ -74,7 +74,7 @@ fn left_gaps(
 fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) {
     let has_overlap = |contact: usize| overlaps[contact].iter().any(|o| *o > 0.0);
     for (i, contact) in model.contacts.iter().enumerate() {
-        // of general contact all bodies and rigid surfaces are meant
+        // in general contact an overlap may be between any two bodies or rigid surfaces
         let others = model.contacts.iter().enumerate();
         let mut others = others.filter(|(_, other)| {
             let [a, b] = [contact, *other].map(|contact| [contact.slave, contact.master]);

@@ -172,7 +172,7 @@ pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<
             *may = false;
         }
     }
-    // nodes that turn with a rigid body keep the mass of the elements that deform, and have no other
+    // nodes that turn with a rigid body keep the mass of the elements that deform, which is their only mass
     let mut deforms = vec![false; mesh.node_count()];
     let rigid: BTreeSet<usize> = (model.rigid_bodies.iter())
         .flat_map(|body| body.elements.iter().copied())
@@ -235,7 +235,8 @@ fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
             is_left[face] = false;
             let [a, b] = faces[face];
             edge.push([a, b]);
-            // of the faces that go on from b the first clockwise from the way back
+            // the edge goes on along the face from b that comes first clockwise from the face back
+            // to a
             let arm = |node: usize| difference(mesh.coordinates[b], mesh.coordinates[node]);
             let clockwise = |&face: &usize| match angle(arm(faces[face][1]), arm(a)) {
                 turn if turn > 0.0 => turn,
@@ -288,7 +289,7 @@ pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     }
     let cholesky = g.cholesky()?;
     let mut w = vec![0.0; arms.len()];
-    // the second time for what round-off has left of sum w p = e1
+    // the second solve corrects the round-off in sum w p = e1
     for _ in 0..2 {
         let sum: Vector3<f64> = arms.iter().zip(&w).map(|(r, w)| *w * p(r)).sum();
         let solution = cholesky.solve(&(Vector3::x() - sum));

@@ -68,7 +68,7 @@ impl Source {
         if before == 0 {
             return Some(0);
         }
-        // the piece in which the line before it ends
+        // the piece of the text in which the line before this one ends
         let ends = self.ends_before();
         let piece = ends.partition_point(|&ends| ends < before).checked_sub(1)?;
         let text = self.text.as_bytes().get(piece * PIECE..)?;
@@ -259,7 +259,7 @@ impl Sources {
         let Some(replaced) = self.replaced.get(&(span.file.0, span.line)) else {
             return span;
         };
-        // the place of a column, at whose value `side` says where
+        // place of a column in the typed text; within a value `side` gives its start or end
         let typed = |column: u32, side: fn(&Replaced) -> u32| {
             let before = replaced.iter().take_while(|value| value.column <= column);
             match before.last() {

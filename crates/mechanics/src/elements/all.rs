@@ -102,7 +102,7 @@ impl Elements {
             }
             of_kind.retain(|&element| !is_rigid[element]);
             of_kind.sort_by_key(body);
-            // a body that rests costs nothing
+            // each body has its own chunks, so a body at rest costs nothing
             let bodies = of_kind.chunk_by(|a, b| body(a) == body(b));
             for elements in bodies.flat_map(|of_body| of_body.chunks(MAX_CHUNK)) {
                 let law = material.law.in_plane(element_type.plane);
@@ -745,7 +745,7 @@ mod tests {
     #[test]
     fn an_end_inside_out_is_found_where_halfway_nothing_is() {
         for model in models().iter().chain(&with_mean_dilatation()) {
-            // heights become -0.2 of themselves, halfway 0.4
+            // heights are multiplied by -0.2 at the end and by 0.4 halfway
             let coordinates = model.mesh.coordinates.iter();
             let u: Vec<f64> = coordinates.flat_map(|x| [0.0, -1.2 * x[1]]).collect();
             let start = vec![0.0; u.len()];

@@ -422,7 +422,8 @@ mod tests {
         for size in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
             let small = U1.map(|u| size * u);
             let pull = spring.force(Motion::at(&small, &[]))[2];
-            // F/(size F') of the linear part and the next term, which is of first order in the size
+            // the force divided by the size is its linear part plus a term of first order in the
+            // size
             let r = [X[1][0] - X[0][0], X[1][1] - X[0][1]];
             let l = r[0].hypot(r[1]);
             let linear = 7.0 * (r[0] * (U1[2] - U1[0]) + r[1] * (U1[3] - U1[1])) / l * r[0] / l;
@@ -493,7 +494,7 @@ mod tests {
             };
             assert_near(&k, &symmetric_derivative(force), 2.0);
         }
-        // the matrix of dashpots leaves the turning of their line out
+        // the matrix of dashpots omits the rotation of their line
         for dashpot in connectors(ConnectorLaw::Dashpot).drain(2..) {
             let c = dashpot.damping([&U0, &U1], 0.1);
             let impulse = |u: &[f64]| dashpot.impulse([&U0, u], 0.1);

@@ -199,7 +199,8 @@ mod tests {
     #[test]
     fn the_damping_matrix_is_the_derivative_of_the_impulse() {
         for elements in all(DAMPING) {
-            // exact where the strain does not change; else B_L of the end stands on its right
+            // the matrix is exact if the strain does not change; otherwise the exact derivative has
+            // B_L of the end on the right
             let u = wave(0.1, 1.3);
             let mut matrix = vec![0.0; DOFS * DOFS];
             elements.for_each_damping(([&u, &u], 1.0), TangentPart::Whole, |element, c| {

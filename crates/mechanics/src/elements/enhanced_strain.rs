@@ -472,7 +472,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
         let mut positive = compatible.positive;
         for s in &s {
-            // positive where there is a stress
+            // the value is positive unless the stress is NaN
             positive = positive.and(s.x * s.x + 1.0);
         }
         States {
@@ -740,7 +740,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
                 *entry = *entry - dot(&mixed[i], &along[j]);
             }
         }
-        // the blocks of one node are read as a whole
+        // the diagonal blocks of nodes are read completely
         for a in 0..N {
             k[a][a][1][0] = k[a][a][0][1];
         }

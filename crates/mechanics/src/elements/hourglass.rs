@@ -660,8 +660,8 @@ mod tests {
 
     #[test]
     fn a_section_of_one_layer_carries_its_full_moment() {
-        // an incompressible square of the side 1: the moment M stores M²/(2 E' I) for each length, E' = 4 mu, I = 1/12, and
-        // that of a section which flows all through is 2/sqrt(3) sigma_y/4
+        // an incompressible square of the side 1: the moment M stores M²/(2 E' I) per length, with E' = 4 mu and I =
+        // 1/12; the moment of a fully plastic section is 2/sqrt(3) sigma_y/4
         let shear = 100.0;
         let law = Plastic {
             moduli: SmallStrainModuli {

@@ -135,7 +135,7 @@ fn largest<const A: usize>(values: &Alpha<A>, lane: usize) -> f64 {
 /// K^-1 g; NaN for elements whose K is not positive definite. The factorisation K = L D L^T needs no roots, so units
 /// that differ by powers of two change no bit.
 fn positive<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
-    // D L^T is left above the diagonal of `rows`
+    // the elimination leaves D L^T above the diagonal of `rows`
     let (mut rows, mut x) = (*k, *g);
     for j in 0..A {
         let pivot = rows[j][j].each(|pivot| match pivot > 0.0 {

@@ -183,7 +183,8 @@ impl<'a, const M: usize> Moved<'a, M> {
         let (amplitudes, strains) = match deformation.strains {
             Strains::At(e) => (Amplitudes::At(y1), [e, e]),
             Strains::Between(change) => {
-                // the tangent of a viscosity is that by the mean of the strains: twice that by their change
+                // a viscosity is differentiated with respect to the mean strain, which gives twice the derivative with
+                // respect to the change
                 let amplitudes = match law.is_viscous() {
                     true => Amplitudes::Change(y0, y1),
                     false => Amplitudes::Between(y0, y1),
@@ -354,7 +355,8 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
             }
         }
         if let Some(of_both) = &of_both {
-            // ey y of every displacement, and its work on the strain (11, 22, 33, 2*12) of another
+            // ey y for every displacement, and its work on the strain (11, 22, 33, 2*12) of another
+            // displacement
             let of_strain: [[[Lanes; 4]; 2]; N] =
                 from_fn(|a| from_fn(|i| from_fn(|e| dot(&of_both.ey[e], &rows[a][i]))));
             let (f, mean) = (&moved.f, &one.mean);

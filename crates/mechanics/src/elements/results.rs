@@ -319,7 +319,8 @@ mod tests {
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(near(means.stress[0], 31.68) && near(means.stress[1], 8.8 / 1.2));
         assert!(near(means.across, 8.8 / 1.2));
-        // the other two are alike: von Mises is their difference to the first
+        // the other two principal stresses are equal, so the von Mises stress is their difference
+        // from the first
         assert!(near(means.von_mises(), 31.68 - 8.8 / 1.2));
         let means = evaluate(&square(ElementType::CPS4), &u)[0];
         assert_eq!(means.across, 0.0);

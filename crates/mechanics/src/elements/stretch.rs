@@ -345,7 +345,8 @@ mod tests {
 
     #[test]
     fn the_material_feels_that_displacements_turn_a_point_inside_out() {
-        // bent in its plane, a bar of the stretch F has F + q s at s, and the strain that is linear in q
+        // a bar of the stretch F that is bent in its plane has the stretch F + q s at s, and a strain that is linear in
+        // q
         let stretch: f64 = 1.3;
         let strain = [(stretch * stretch - 1.0) / 2.0, 0.1, 0.2, 0.0];
         let of = |qs: f64| {

@@ -167,7 +167,7 @@ impl Sample {
     }
 
     fn displacements(&self, seed: usize) -> DVector<f64> {
-        // a ring does not reach the axis, nor a curved side itself
+        // a ring does not reach the axis, and a curved side does not meet itself
         let size = match self.element_type.is_ring() || self.element_type.is_quadratic() {
             true => 0.4,
             false => 1.0,
@@ -368,7 +368,7 @@ fn only_rigid_motions_have_no_stiffness_and_one_more_with_reduced_integration() 
         let values = k.clone().symmetric_eigenvalues();
         let zero = values.iter().filter(|v| v.abs() < 1e-10 * k.amax()).count();
         let is_reduced = t.is_quadratic() && sample.elements.points(0) == 4;
-        // the one strain of the triangle's ring leaves a mode without strain at its point
+        // the ring of the triangle has only one strain, so one mode has no strain at the point
         let zero_modes = match (t.is_ring(), t.shape) {
             (true, Shape::Tri3) => 2,
             (true, _) => 1,
@@ -477,7 +477,7 @@ fn check_metal(
 #[test]
 fn metals_keep_their_force_and_their_energy_when_an_increment_is_committed() {
     for element_type in ElementType::NAMED {
-        // the back stress turns with the plastic strain that is committed, its work on the next strains does not
+        // committing an increment turns the back stress with the plastic strain, but not its work on the next strains
         for (kinematic, most) in [(0.0, 1e-9), (0.5, 1e-6)] {
             let sample = Sample::new(element_type, metal(kinematic));
             for [draw, bend] in [[0.2, 0.05], [0.02, 0.05], [0.0, 0.05], [0.3, 0.005]] {
@@ -601,8 +601,8 @@ fn heated_metals_keep_their_energy() {
 
 #[test]
 fn strains_of_a_metal_ring_stay_in_the_minimum_that_they_have_flown_into() {
-    // The energy of a ring that has flown far has several minima. From no enhanced strain on, the solution may come into
-    // another minimum than that of the increment before, and the stresses jump.
+    // The energy of a ring that has flown far has several minima. If the search began without enhanced strains, the
+    // solution could reach another minimum than in the increment before, and the stresses would jump.
     for element_type in [ElementType::CAX4I, ElementType::CAX4R] {
         let sample = Sample::new(element_type, metal(0.0));
         // squeezed along the axis at a constant volume, and bent in its section
@@ -700,7 +700,7 @@ fn volume_and_mass_are_those_of_the_body() {
 fn elements_have_among_others_what_they_have_alone() {
     for element_type in ElementType::NAMED {
         for law in [rubber(), metal(0.5)] {
-            // three of one type, apart from each other, so that the last is alone in its block
+            // three separate elements of one type, so that the last is alone in its block
             let mut model = Sample::new(element_type, law).model;
             let n = model.mesh.coordinates.len();
             let first = model.mesh.elements[0].clone();

@@ -366,7 +366,7 @@ mod tests {
                 "{found} {exact}"
             );
         }
-        // and stores theta^3 of its energy per reference volume
+        // the energy per reference volume is theta^3 times W_m
         let energies = [
             heated.any::<true>().energy_at(0, &strain(theta)),
             cold.any::<true>().energy_at(0, &strain(1.0)),

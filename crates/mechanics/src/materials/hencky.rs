@@ -105,7 +105,7 @@ mod tests {
                 "{s:?}"
             );
             assert!((LAW.energy(&e) - YOUNG * log * log / 2.0).abs() < 1e-13 * YOUNG);
-            // the strain across follows in plane stress
+            // in plane stress the strain across the plane follows from the others
             let Across { stretch, stress } = plane.across(&Symmetric { z: 0.0, ..e });
             assert!(
                 (stretch / side - 1.0).abs() < 1e-14 && stress == 0.0,
@@ -114,7 +114,7 @@ mod tests {
             let own = plane.stress(&Symmetric { z: 0.0, ..e });
             assert!((own - Symmetric::new(s.x, 0.0, 0.0, 0.0)).norm() < 1e-11 * YOUNG);
         }
-        // without lateral contraction a half has twice the stress of the logarithmic strain, as J is 1/2 there
+        // without lateral contraction the stretch 1/2 gives twice the stress of the logarithmic strain, since J is 1/2
         let free = Hencky {
             moduli: SmallStrainModuli {
                 young: YOUNG,

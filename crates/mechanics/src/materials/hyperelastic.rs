@@ -261,7 +261,8 @@ mod tests {
                     error <= 16.0 * f64::EPSILON * s.norm() * de.norm(),
                     "{name} {size}"
                 );
-                // all digits of the change, beside the stress at the mean strain
+                // the change of energy keeps all digits, compared with the work of the stress at
+                // the mean strain
                 let mean = law.stress(&change.mean).contract::<true>(&de);
                 let bound = size * size * 10.0 + 1e-13;
                 assert!((energy / mean - 1.0).abs() < bound, "{name} {size}");
@@ -411,7 +412,8 @@ mod tests {
                         StressAtPoints::<Lanes, false>::stress_at(&one, 0, &strains);
                     let c = StressAtPoints::<Lanes, false>::tangent_at(&own, 0, &strains);
                     let expected = StressAtPoints::<Lanes, false>::tangent_at(&one, 0, &strains);
-                    // what the energy lacks is known to a part of about eps/|dE|
+                    // the energy error that is corrected is known to a relative accuracy of about
+                    // eps/|dE|
                     let lost = if step > 0.0 && step < 1e-6 { 1e6 } else { 10.0 };
                     for lane in 0..2 {
                         let (s, t) = (found.lane(lane), exact.lane(lane));

@@ -141,7 +141,8 @@ impl<T: Number> Invariants<T> {
             false => i + q,
         };
         let square = s + 1.0;
-        // J^(-2/3) once, and no division but one: divisions take as long as all else
+        // J^(-2/3) is computed once, with a single division: divisions take as long as everything
+        // else
         let (j, over_a) = (square.sqrt(), square.inverse_cbrt());
         let a = square * over_a * over_a;
         let (of_j, of_a) = (j + 1.0, a * a + a + 1.0);

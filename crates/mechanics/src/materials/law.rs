@@ -436,7 +436,8 @@ mod tests {
         };
         let (mut time, mut failed, mut total) = (0.0, 0, 0.0);
         while time < 3.0 {
-            // too long at first, then in halves: a failed attempt leaves nothing behind
+            // the increment is too long at first and is then halved; a failed attempt changes
+            // nothing
             let mut dt = 0.5;
             let (end, work, dissipated) = loop {
                 let before = state.clone();

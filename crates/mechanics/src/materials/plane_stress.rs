@@ -54,7 +54,7 @@ impl<L: Hyperelastic> PlaneStress<L> {
             }
             l += step;
             [w1, w2] = next;
-            // what is no number is not far either
+            // NaN does not count as far, so it ends the iteration
             let is_far = step.abs() > ROUND_OFF * (l.abs() + size);
             if !is_far {
                 break;

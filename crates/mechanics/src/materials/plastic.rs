@@ -201,7 +201,7 @@ impl Plastic {
         let at = Return::new(self, trial, state.slip, angle);
         let (shear, stiffness) = (3.0 * self.shear(), 3.0 * self.shear() + self.kinematic);
         let [by_strain, mixed, by_modes] = at.derivatives(stiffness);
-        // where there is next to nothing of the strain or of the modes, what is left of it is its derivative
+        // if the strain or the modes are negligible, the ratio is replaced by its derivative
         let [has_strain, has_modes] = trial.map(|size| size > SMALL_SHARE * (trial[0] + trial[1]));
         let own = match (has_strain, angle > 0.0) {
             (false, _) => 0.0,
@@ -480,7 +480,7 @@ impl Return {
         let [turn, half] = self.curvature();
         let hardened = stiffness + self.slope * dot(self.point, self.point);
         let determinant = turn + self.slope * self.stress * half * half / hardened;
-        // of the angle and of da, by Q and by H
+        // derivatives of the angle and of da with respect to Q and H
         let changes = [0, 1].map(|k| {
             let angle =
                 (-self.first[k] + self.slope * half * self.point[k] / hardened) / determinant;
@@ -815,7 +815,7 @@ mod tests {
     };
 
     fn states(law: &Plastic) -> Vec<PlasticState> {
-        // some flow along one way and another
+        // states after flow along two different paths
         let first = law.updated(&(DIRECTION * 3.0), &PlasticState::default(), 0.0);
         let turned = Symmetric::new(-0.02, 0.04, 0.01, -0.05);
         vec![
@@ -827,7 +827,8 @@ mod tests {
 
     #[test]
     fn the_change_of_the_potential_is_that_of_its_values_wherever_the_flow_starts() {
-        // from within the yield surface and from beyond it, as the strains of an element are found, and back
+        // changes from within the yield surface and from beyond it, as they occur while the strains of an element are
+        // found, and back
         let across = Symmetric::new(-0.3, 0.2, 0.1, 0.25);
         for law in &[0.0, 50.0].map(metal) {
             for state in states(law) {
@@ -846,7 +847,7 @@ mod tests {
                         "{found:?} {exact:?}"
                     );
                 }
-                // digits of a small change, both ends of which flow: S(E_m):dE
+                // a small change between two states that flow keeps its digits: it is S(E_m):dE
                 for size in [1e-4, 1e-7, 1e-10] {
                     let (e0, e1) = (DIRECTION * 2.0, DIRECTION * 2.0 + across * size);
                     let change = StrainChange::between(&e0, &e1);
@@ -879,7 +880,8 @@ mod tests {
                         let slope = potential
                             .energy_change(&StrainChange::between(&behind, &ahead))
                             / (2.0 * h);
-                        // from a strain that flows the change is not that of the potential
+                        // if the start of a change flows, the change of energy is not that of the
+                        // potential
                         if potential.flow(&law.trial(&e, &state)).slip == 0.0 {
                             let work = contract(&s, &unit);
                             assert!((slope - work).abs() < 1e-7 * c.norm(), "{slope} {work}");

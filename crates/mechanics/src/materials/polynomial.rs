@@ -190,7 +190,7 @@ mod tests {
                 );
             }
             for l in [0.5_f64, 1.5] {
-                // the side of a bar that is free
+                // the lateral stretch of a bar without lateral stress, by Newton's method
                 let mut side = 1.0 / l.sqrt();
                 for _ in 0..50 {
                     let e = bar(l, side);

@@ -224,7 +224,7 @@ mod tests {
                 let exact = log(&y1) - log(&y0);
                 assert!((found - exact).norm() < 1e-14, "{found:?} {exact:?}");
             } else {
-                // the derivative halfway
+                // the derivative at the mean strain
                 let mid = Spectrum::new(&((y0 + y1) / 2.0));
                 let exact = mid.log_derivative(&(y1 - y0)) / 2.0;
                 let bound = (1e-14 + size * size) * exact.norm();

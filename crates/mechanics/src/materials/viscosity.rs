@@ -166,12 +166,12 @@ mod tests {
     #[test]
     fn the_bulk_modulus_is_not_felt_at_constant_volume_nor_the_shear_modulus_at_constant_shape() {
         let f = some();
-        // of one volume ratio, however large the change
+        // start and end have the same volume ratio, however large the change
         let stretched = f * Matrix2::new(1.5, 0.0, 0.4, 1.0 / 1.5);
         let ends = [strain(&f), strain(&stretched)];
         let [soft, hard] = [2.0, 2e6].map(|bulk| in_plane(viscosity(1.0, bulk), &ends));
         assert!((soft - hard).norm() < 1e-8 * soft.norm(), "{soft} {hard}");
-        // of one shape, turned; kappa = K + mu/3 is the same
+        // start and end have the same shape, turned; kappa = K + mu/3 is the same in both cases
         let turned = Matrix2::new(0.6, 0.8, -0.8, 0.6) * f * 1.7;
         let ends = [strain(&f), strain(&turned)];
         let [one, other] = [(1.0, 3.0), (3.0, 3.0 - 2.0 / 3.0)]
@@ -260,7 +260,7 @@ mod tests {
         let found = stress(v, &[de * -0.5, de * 0.5]);
         let exact = linear.stress(&de) * BETA;
         assert!((found - exact).norm() < 1e-12 * exact.norm());
-        // a change of volume alone has no part of the shear modulus: C1 = s^2 C0
+        // with a change of volume alone, C1 = s^2 C0, the stress does not contain the shear modulus
         let grown = (e0 * 1.44).plus_isotropic(0.22);
         let bulk = 1000.0 / (3.0 * 0.4);
         let with_shear = |mu: f64| {
@@ -272,7 +272,8 @@ mod tests {
         };
         let [one, other] = [400.0, 1800.0].map(|mu| stress(with_shear(mu), &[e0, grown]));
         assert!((one - other).norm() < 1e-12 * one.norm());
-        // nor has a change of shape alone, of any size, one of the bulk modulus: det C1 = det C0
+        // with a change of shape alone, of any size, det C1 = det C0, the stress does not contain
+        // the bulk modulus
         let stretched = |by: f64| {
             let c = (e0 * 2.0).plus_isotropic(1.0);
             let c = Symmetric::new(c.x * by, c.y * by, c.z / (by * by), c.w * by);

@@ -221,7 +221,7 @@ mod tests {
         let (s, z1) = stress(&Strains::At(strain(0.08, 0.0, 0.04)), &z0);
         let yield_stress = LAW.g * LAW.y + LAW.r * (1.0 - (-z1[3] / LAW.c).exp());
         assert!(z1[3] > z0[3] + 0.03 && (s.norm() - yield_stress).abs() < 1e-13 * yield_stress);
-        // at the strain that it has come to the law is elastic, and what yields against it yields as far as at once
+        // at the strain that it has reached the law is elastic
         let (again, z2) = stress(&Strains::At(strain(0.08, 0.0, 0.04)), &z1);
         assert!((again - s).norm() < 1e-13 * s.norm());
         assert!(z1.iter().zip(z2).all(|(a, b)| (a - b).abs() < 1e-15));

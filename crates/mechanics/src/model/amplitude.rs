@@ -273,15 +273,16 @@ fn integrals_of_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64;
     if t < first.0 {
         return constant(first.1, t - first.0);
     }
-    // to the end of an interval, or to t in it: with J1 and J2 at its start, s from there on,
-    // I1 = J1 + a s + (b - a) h step1, I2 = J2 + J1 s + a s^2/2 + (b - a) h^2 step2
+    // integrals up to the end of an interval, or to t in it, with J1 and J2 at its start and s
+    // counted from there: I1 = J1 + a s + (b - a) h step1, I2 = J2 + J1 s + a s^2/2 + (b - a) h^2
+    // step2
     let on = |[j1, j2]: [f64; 2], s: f64, value: f64| added([j1, j2 + j1 * s], constant(value, s));
     let mut integrals = [0.0; 2];
     for pair in points.windows(2).take_while(|pair| pair[0].0 < t) {
         let (p, q) = (pair[0], pair[1]);
         let (s, h) = (t.min(q.0) - p.0, q.0 - p.0);
         let [first, second] = step(s / h);
-        // each product with h at once: h² may overflow where the step is zero
+        // the factors h are applied one at a time: h² may overflow although the step is zero
         let rise = [h * first, h * (h * second)].map(|share| (q.1 - p.1) * share);
         integrals = added(on(integrals, s, p.1), rise);
     }

@@ -147,7 +147,7 @@ impl ForceCurve {
             }
         };
         match within {
-            // exact on one piece, also where a and b are near each other
+            // exact within one linear piece, also if a and b are near each other
             true => (self.at(a) + self.at(b)) / 2.0,
             false => self.integral(a, b) / (b - a),
         }
@@ -178,7 +178,7 @@ mod tests {
         ] {
             assert_eq!((curve.at(x), curve.slope(x)), (f, slope));
         }
-        // 1/2 4 1 below, 1/2 2 2 + 2 1 above
+        // areas: 1/2 * 4 * 1 below the axis, 1/2 * 2 * 2 + 2 * 1 above it
         assert_eq!(curve.integral(-1.0, 0.0), -2.0);
         assert_eq!(curve.integral(0.0, 3.0), 4.0);
         assert_eq!(curve.integral(3.0, -1.0), -2.0);

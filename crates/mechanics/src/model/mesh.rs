@@ -46,7 +46,7 @@ impl Mesh {
                 p = p.min(q);
             }
         }
-        // no parent comes behind its child
+        // no parent has a larger index than its child
         for node in 0..parent.len() {
             parent[node] = parent[parent[node]];
         }
@@ -227,7 +227,7 @@ impl ElementsAtNodes {
             end += *start;
             *start = end;
         }
-        // from the ends back to the starts
+        // filling backwards moves each end to its start
         let mut at_nodes = vec![0; end as usize];
         for (index, nodes) in elements.enumerate().rev() {
             for node in nodes {

@@ -136,7 +136,8 @@ impl Side {
         let n = self.nodes.len();
         let mut sums: SmallVec<[(usize, [f64; 2]); 3]> =
             self.nodes.iter().map(|&node| (node, [0.0; 2])).collect();
-        // products of a shape function and a derivative of one, and of another shape function in R
+        // the integrands are products of a shape function and a derivative, in a ring also with the
+        // radius
         let points = GAUSS[if around.is_some() { n - 1 } else { n - 2 }];
         for &[r, weight] in points {
             let functions = shape_functions(n, r);

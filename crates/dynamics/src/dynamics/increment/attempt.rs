@@ -139,7 +139,8 @@ impl DynamicAttempt<'_, '_> {
         let mut equal_forces = EqualForces::new(settings.tolerance);
         let mut acceleration = PassAcceleration::new();
         v.equilibrium.hinges.clear();
-        // the passes start from the rigid motion of the bodies, or from a motion that is known
+        // the passes start from the rigid motion of the bodies, or from the motion of an earlier
+        // solution
         let mut d = match self.guess {
             Some(path) => path.displacement(interval.dt),
             None => rigid_predictor(problem, start, interval),
@@ -155,7 +156,7 @@ impl DynamicAttempt<'_, '_> {
             let map = self.passes.workspace.stiffness.k.map();
             trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
 
-            // the forces at hand may balance r and close the gaps of the iterate
+            // the available contact forces may already balance r and close the gaps of the iterate
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let corrections = factors.corrections();
@@ -172,7 +173,7 @@ impl DynamicAttempt<'_, '_> {
                 return self.finish(&d, contact, v, true);
             }
 
-            // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
+            // K* of eq. (4.6), and d_p at the supports, with the force theta2 K d_p
             self.refresh(factors, v, &contact.forces)?;
             self.passes.supports(number, v);
 
@@ -182,7 +183,7 @@ impl DynamicAttempt<'_, '_> {
             let hinge_forces = self.balance(&mut contact.forces, weight, v)?;
             self.passes.take_hinge_forces(hinge_forces, v);
 
-            // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
+            // residual r + Bn^T Pn + Bt^T Pt and correction dU, relative to their scales
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let pass = iterate.pass(&v.support_force, &v.du);
             let has_converged = self.passes.measure(&pass, &mut v.residual, trace)?;
@@ -192,7 +193,8 @@ impl DynamicAttempt<'_, '_> {
             if !ends {
                 let correction = trace.correction();
                 equal_forces.take_in(correction, settled);
-                // friction that falls with the slip rate moves away from that at rest
+                // a coefficient of friction that falls with the slip rate moves away from the
+                // coefficient at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 factors.take_in(correction, may_grow)?;
                 if number >= SLOW_PASSES {

@@ -412,7 +412,7 @@ mod tests {
         assert_eq!(ends(2e-8, 0.0), [false, false]);
         assert_eq!(ends(0.9e-9, 5e-11), [true, false]);
         assert_eq!(ends(0.9e-9, 2e-10), [false, false]);
-        // residuals of round-off say the same of the correction, unless corrections still fall
+        // if residuals are round-off, so are corrections, unless they still decrease
         assert_eq!(ends(5e-13, 1.0), [true, false]);
         assert_eq!(ends(f64::NAN, 0.0), [false, false]);
     }

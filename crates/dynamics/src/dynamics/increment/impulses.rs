@@ -106,7 +106,7 @@ impl Impulses {
         if !problem.has_impulses() {
             return Ok(());
         }
-        // rows of the start do not change with the iterate
+        // rows at the start do not change with the iterate
         let at_start = problem.integration.impulses_at_start();
         let configurations = problem.configurations(&start.u, &start.u);
         let rows = |constraint: &Constraint| match at_start {
@@ -154,7 +154,7 @@ impl Impulses {
             true => self.resultant.clear(),
             false => {
                 (self.forces).write_resultant(start.v.len(), &mut self.resultant);
-                // on bodies that turn they act by the arms of the start
+                // on bodies that turn the impulses act by the arms of the start
                 let nothing = vec![0.0; start.v.len()];
                 let turning = &problem.unknowns.turning;
                 turning.hand_over([&start.u, &nothing], false, &mut self.resultant);
@@ -265,7 +265,7 @@ impl Impulses {
     fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
         let key = constraint.key;
         match (self.forces.constraints).binary_search_by_key(&key, |struck| struck.key) {
-            // what the other pairs of its node do tells nothing of it
+            // the other pairs of the slave node do not determine the state of this pair
             Ok(_) => self.forces.closed.own_state(key),
             Err(_) if approach(constraint, v0, dt) < 0.0 => ContactState::Stick,
             Err(_) => ContactState::Open,
@@ -338,7 +338,7 @@ fn impulses(
     dt: f64,
     system: &mut System,
 ) -> Result<ClosedPairs, Cause> {
-    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 where what they make of an increment is nothing
+    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 if their motion in an increment is negligible
     let resolved = |c: &Constraint, rate: f64| match c.resolved(dt * rate) {
         0.0 => 0.0,
         _ => rate,
@@ -548,11 +548,11 @@ mod steady_tests {
             ContactState::SlipPlus,
             ContactState::Open,
         );
-        // along the ground: the approach changes by 3 angles, the jump that turns is that of the slip
+        // motion along the ground: the approach changes by 3 angles, and the jump of the slip turns
         assert!(about(of([3.0, 0.0], slip), 3.0));
         assert!(about(of([3.0, 0.0], stick), 3.0 + 3.0));
         assert!(about(of([3.0, 0.0], open), 3.0));
-        // onto the ground: the slip rate changes by 2 angles, and the jump of 2, with its friction, turns
+        // motion on to the ground: the slip rate changes by 2 angles, and the jump of 2 turns with its friction
         assert!(about(of([0.0, -2.0], slip), 3.0));
         assert!(about(of([0.0, -2.0], stick), 2.0 + 2.0));
         assert!(about(of([0.0, -2.0], open), 0.0));
@@ -633,7 +633,8 @@ mod tests {
             assert!(impulses.rest(problem, &closed(&one)));
             assert!(!impulses.rest(problem, &closed(&two)));
             assert!(impulses.rest(problem, &closed(&two)));
-            // pairs that touch at the start strike in any case, those of nodes without mass in none
+            // pairs that touch at the start have impulses in any case, pairs of nodes without mass
+            // never
             let mut touching = Impulses::new(&one, vec![testing::key(1, 0)]);
             assert!(touching.rest(problem, &closed(&two)));
         });

@@ -245,14 +245,14 @@ impl Passes<'_, '_> {
         (self.problem.unknowns.turning).turn([&self.start.u, d], &mut u);
         let mut equilibrium = std::mem::take(&mut v.equilibrium);
         if is_balanced {
-            // its impulses may have stood beside V0
+            // in the passes the impulses may have been separate from V0
             (self.problem).inertia(self.start, &v0p, d, self.interval, &mut equilibrium);
         } else {
             self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
         }
         let v0p = v0p.v0p.into_owned();
         let tangent = std::mem::take(&mut v.tangent);
-        // V1 of eq. (4.2); of what is prescribed from the amplitude
+        // V1 of eq. (4.2); at supports V1 comes from the amplitude
         let integration = &self.problem.integration;
         let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);

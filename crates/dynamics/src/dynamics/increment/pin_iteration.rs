@@ -79,7 +79,7 @@ impl PinIteration<'_, '_> {
             let closing = self.balance(contact, weight, v)?;
             state.has_tipped |= self.tips();
             self.take_held(&mut state.held, v);
-            // in balance other pairs may be closed
+            // the solve may have closed other pairs, with which a held motion is released
             if self.follow_held(contact, &mut state.held, v) {
                 continue;
             }
@@ -132,12 +132,12 @@ impl PinIteration<'_, '_> {
             v.skew.add_to(&mut load);
             let mut k_star = self.workspace.k();
             contact.solve([&v.closing, &load], weight, &mut k_star, &mut v.du)?;
-            // Z p has its own N Z p
+            // the motion Z p already contains its N Z p
             let elastic = match k_star.free() {
                 Some(free) => difference(&v.du, &free.motion(&free.p())),
                 None => v.du.clone(),
             };
-            // forces of which several are answers would be others each time
+            // if several answers exist, each solve could return other forces
             if contact.pivots > 0 || v.skew.take_in(&elastic, others) {
                 return Ok(closing);
             }

@@ -59,7 +59,7 @@ pub(super) fn rigid_predictor(
             }
             continue;
         }
-        // without mass there is no motion to go on with
+        // a body without mass has no motion to continue
         if !(mass > 0.0 && inertia > 0.0) {
             continue;
         }

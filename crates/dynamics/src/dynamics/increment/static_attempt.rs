@@ -86,7 +86,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         let may_keep = self.passes.problem.settings.factorization == Factorization::Keep;
         match self.guess {
             Some(path) if path.pairs_stiffen => &[(true, EveryPass), (false, EveryPass)],
-            // what facets make shows with exact tangents
+            // the effect of facets shows only with exact tangents
             Some(path) if may_keep && path.held.are_none() => &[
                 (false, Kept),
                 (false, EveryPass),
@@ -122,7 +122,8 @@ impl<'m> StaticAttempt<'_, 'm> {
         let all = self.passes.workspace.pins.dofs();
         let forces = pins.held.forces(&self.passes.workspace.pins);
         v.equilibrium.held = all.zip(forces).collect();
-        // the passes start from the rigid motion of the bodies, or from a motion that is known
+        // the passes start from the rigid motion of the bodies, or from the motion of an earlier
+        // solution
         let mut d = match self.guess {
             Some(path) => path.displacement(interval.dt),
             None => rigid_predictor(problem, start, interval),
@@ -142,7 +143,7 @@ impl<'m> StaticAttempt<'_, 'm> {
             let map = self.passes.workspace.stiffness.k.map();
             trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
 
-            // the forces at hand may balance r and close the gaps of the iterate
+            // the available contact forces may already balance r and close the gaps of the iterate
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let stage = PassStage {
@@ -158,7 +159,7 @@ impl<'m> StaticAttempt<'_, 'm> {
                 return self.finish(&d, contact, pins, v, true);
             }
 
-            // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, which takes the force K d_p
+            // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, with the force K d_p
             let is_first = number == 0 && self.guess.is_none();
             let is_new = is_first || !self.fits(pairs_stiffen) || factors.are_worn();
             factors.begin(is_new);
@@ -171,13 +172,13 @@ impl<'m> StaticAttempt<'_, 'm> {
             let hinge_forces = self
                 .pins()
                 .iterate(&mut contact.forces, weight, &mut pins, v)?;
-            // the last equilibrium shows facets as they are
+            // in the first pass the facets are those of the last equilibrium
             if number == 0 && self.guess.is_none() {
                 self.pins().check_held(&contact.forces, &pins, v)?;
             }
             self.passes.take_hinge_forces(hinge_forces, v);
 
-            // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
+            // residual r + Bn^T Pn + Bt^T Pt and correction dU, relative to their scales
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let pass = iterate.pass(&v.support_force, &v.du);
             let ends = self.passes.measure(&pass, &mut v.residual, trace)?
@@ -188,7 +189,8 @@ impl<'m> StaticAttempt<'_, 'm> {
                 factors.end(correction);
             } else {
                 equal_forces.take_in(correction, settled);
-                // friction that falls with the slip rate moves away from that at rest
+                // a coefficient of friction that falls with the slip rate moves away from the
+                // coefficient at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 corrections.take_in(correction, may_grow)?;
                 factors.take_in(correction)?;

@@ -132,7 +132,7 @@ impl Trace {
             let grown = |[first, last]: [f64; 2]| last > factor * first || last.is_nan();
             self.unbalanced.is_some_and(grown)
         };
-        // where an element is wrecked, there are no forces to compare
+        // with an element turned inside out there are no forces to compare
         let is_wrecked = matches!(cause, Cause::Inverted { .. }) && !self.passes.is_empty();
         let diverged = match cause {
             Cause::Indefinite { .. } => has_grown(GROWTH),
@@ -200,7 +200,7 @@ impl PassContacts {
     pub fn add(&mut self, contact: &ContactForces) {
         let touch = |(constraint, pair): (&Constraint, &ClosedPair)| Touch {
             pair: constraint.pair(),
-            // without friction it is all the same whether a pair slides
+            // without friction sticking and sliding are the same
             state: match constraint.mu {
                 0.0 => ContactState::Stick,
                 _ => pair.state,
@@ -262,7 +262,7 @@ impl PassContacts {
         if recent.windows(2).all(|pair| pair[0] == pair[1]) {
             return None;
         }
-        // the latest pass with another state than the last, and whether the last state was there before it
+        // the latest pass whose state differs from the last state, and whether the last state occurred before this pass
         let last = states.last()?;
         let other = states.iter().rposition(|state| state != last)?;
         let came_back = |state: &[Vec<Touch>], at: usize| state[..at].contains(last);

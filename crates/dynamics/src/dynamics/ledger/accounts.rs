@@ -125,7 +125,7 @@ impl Accounts {
         let mut contacts = contact_resultants(problem, bodies, solved, &start.u, interval);
         let mut report = self.moving(problem, &solved.end, ledger);
         let u = &solved.equilibrium.u_theta;
-        // forces that act in no time give no impulse
+        // in a step without rates forces give no impulse
         let interval = match problem.integration.has_rates {
             true => interval,
             false => Interval {
@@ -166,7 +166,7 @@ impl Accounts {
             return;
         }
         let (d, u_theta) = (&solved.d, &solved.equilibrium.u_theta);
-        // U0 + d/2: U_theta where nodes without mass may have gone on from U0 + d to their rest
+        // U0 + d/2 is U_theta if nodes without mass may have moved on from U0 + d to their rest
         let halfway: Vec<f64> = match problem.integration.energy_momentum {
             true => u_theta.clone(),
             false => solved

@@ -176,7 +176,7 @@ fn own_length(problem: &StepProblem, spin: usize) -> f64 {
 pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
     let mut momentum = Momentum::default();
     let bodies = problem.unknowns.turning.bodies.iter();
-    // I omega, which is L times what belongs to s = L c
+    // I omega is L times the momentum that belongs to s = L c
     bodies.for_each(|body| momentum.angular += body.length * p[body.spin]);
     let centres = problem
         .unknowns

@@ -344,7 +344,8 @@ impl Ledger {
             *all += work;
             e.scale = larger(e.scale, all.abs());
         }
-        // d.(F0 + F1)/2 + H - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
+        // d.(F0 + F1)/2 + H - (W1 - W0) - D, and the difference between a pair's work with its mean force and with the
+        // force during its slip
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;
         e.enter_thermal_work(solved.thermal_work);

@@ -104,7 +104,8 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
             None => constraint.start_gap < -CLOSED_GAP * constraint.scale,
             Some(lift) => !(0.0..=1.0).contains(&p.xi) && lift.of(p).gap < -CLOSED_GAP * p.length,
         };
-        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
+        // Pn (Bn d) of a pair whose node was behind the line of the segment, beyond its ends, eq.
+        // (7.7)
         let work = if was_beyond {
             pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage)
         } else {

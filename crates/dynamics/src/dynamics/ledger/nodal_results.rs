@@ -49,7 +49,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     for p in problem.unknowns.prescribed() {
         reaction[p] = missing[p];
     }
-    // of nodes only, not of the angles of bodies that turn
+    // only nodes have held forces, angles of bodies that turn have none
     for &(dof, force) in held {
         reaction[dof] += force;
     }
@@ -119,7 +119,7 @@ impl MasterMeans {
     pub fn values(&self) -> impl Iterator<Item = f64> {
         let mean = |[sum, whole]: &[f64; 2]| match *whole > 0.0 {
             true => sum / whole,
-            // 0/0 has a sign that depends on the processor
+            // the sign of 0/0 depends on the processor
             false => f64::NAN,
         };
         self.sums.iter().map(mean)
@@ -179,10 +179,10 @@ pub(crate) fn tie_forces(model: &Model, force: impl Fn(usize) -> f64) -> Vec<f64
         let slaves: HashSet<usize> = nodes.clone().collect();
         for dof in nodes.flat_map(|node| [2 * node, 2 * node + 1]) {
             let equation = model.equations.binary_search_by_key(&dof, |e| e.dof);
-            // a support takes the place of an equation
+            // a support replaces the equation of a dof
             let Ok(equation) = equation else { continue };
             all[dof] += force(dof);
-            // and its node may stand in those of its neighbours
+            // a tied node may also be a term in the equations of its neighbours
             for &(to, c) in &model.equations[equation].terms {
                 if slaves.contains(&(to / 2)) {
                     all[to] -= c * force(dof);
@@ -305,7 +305,7 @@ pub(crate) fn landings(
 ) -> Vec<Landing> {
     let fastest = problem.parts.largest_of_bodies(&start.v);
     let landing_of = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| {
-        // less than a solved gap in the increment is no approach
+        // a motion of less than a solved gap in the increment is no approach
         let none = SOLVED_GAP * constraint.scale / interval.dt;
         let least = larger(
             STRUCK * problem.parts.most(&fastest, constraint.nodes()),
@@ -344,7 +344,7 @@ fn landing(
         false => Some(impact_time(&motions, interval.dt)),
     };
     let tau = match time.unwrap_or(interval.dt) {
-        // it touches at the start and does not cross
+        // the pair touches at the start, so its node does not cross the segment
         tau if touched && (of_mean || tau == interval.dt) => 0.0,
         tau => tau,
     };

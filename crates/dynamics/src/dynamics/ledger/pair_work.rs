@@ -239,7 +239,7 @@ impl EndForces {
                     true => -mean * work,
                     false => (-mean * work).max(0.0),
                 };
-                // one that opens slides as far as its friction works
+                // a pair that opens slides as far as corresponds to its work of friction
                 let sliding = match is_end || constraint.mu == 0.0 {
                     true => mean * constraint.stretch * pn * slip.abs(),
                     false => friction / constraint.mu,

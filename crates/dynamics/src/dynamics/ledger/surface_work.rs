@@ -43,7 +43,7 @@ impl Surfaces {
     fn new(model: &Model, contact: &Contact, faces: &SlaveFaces) -> Option<Self> {
         let interaction = &contact.interaction;
         let both = contact.is_self_contact();
-        // no side of it is the slave that the part is meant for
+        // in self-contact neither side is the slave for which the part is given
         let of_each = |to_slave: f64| if both { 0.5 } else { to_slave };
         let own = Surfaces {
             both,
@@ -160,12 +160,12 @@ impl SurfaceWork {
             for &(node, part) in parts {
                 let (friction, sliding) = (part * work.friction, part * work.sliding);
                 let area = match faces.area(node, *normal, at) {
-                    // a node at a corner, whose faces are along the normal
+                    // a node at a corner, whose faces are parallel to the normal
                     0.0 => faces.whole_area(node, at),
                     area => area,
                 };
                 let mut added = [0.0; 3];
-                // sums over nodes are told where all of them have faces
+                // sums over nodes are compared only if all nodes have faces
                 let is_told = if own.has_faces { 1.0 } else { 0.0 };
                 if area > 0.0 {
                     self.fields.work[node] += friction / area;

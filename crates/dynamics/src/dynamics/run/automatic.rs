@@ -103,7 +103,7 @@ impl TimeControl for Automatic {
         let (end, dt) = if self.dt >= left * (1.0 - LEFT_OVER) {
             (self.nominal.to, left)
         } else if by_error && 2.0 * self.dt >= left {
-            // no short one is left over
+            // two equal halves, so that no short increment is left over
             (self.from + left / 2.0, left / 2.0)
         } else if by_error {
             // the same length keeps the factors of K* valid
@@ -141,7 +141,7 @@ impl TimeControl for Automatic {
         let growth = self.allowed_growth(how);
         (self.from, self.cuts, self.rejections) = (interval.end.step, 0, 0);
         self.events = if how.at_impact { self.events + 1 } else { 0 };
-        // what an impact has cut short says nothing of the whole
+        // an increment that an impact has cut short says nothing about the length of whole ones
         if how.at_impact {
             return;
         }
@@ -207,7 +207,7 @@ mod tests {
             lengths.push(interval.dt);
             control.accepted(&interval, SMOOTH);
         }
-        // the cut one is not easy, and what is left ends the step
+        // the increment after a cut does not count as easy, and the rest ends the step
         let expected = [
             0.1, 0.1, 0.15, 0.15, 0.05625, 0.05625, 0.05625, 0.084375, 0.084375, 0.1265625,
             0.0359375,

@@ -65,7 +65,7 @@ mod tests {
         let mut control = Bisection::new(nominal());
         let mut lengths = Vec::new();
         while let Some(NextSubincrement { interval, .. }) = control.next() {
-            // the first half of the increment needs two halvings, its second none
+            // the first half of the increment needs two halvings, the second half none
             if interval.start.step < 0.34 && interval.dt > 0.026 {
                 control.failed(&interval, None);
             } else {

@@ -77,7 +77,8 @@ fn checked_run(mut model: Model, step: Step) -> Keep {
     let start = keep.reports[0].energy.kinetic;
     for pair in keep.reports.windows(2) {
         let [before, after] = [&pair[0], &pair[1]];
-        // from what the last accepted increment has left, whatever was tried in between
+        // each increment starts from the variables of the last accepted one, whatever attempts came
+        // in between
         let updated = elements.update(Motion {
             start: Some(&before.state.u),
             ..Motion::at(&after.state.u, &before.state.internal)

@@ -221,7 +221,7 @@ impl FreeMotions {
             let Some(pins) = root.tr_solve_lower_triangular(&direction.transpose()) else {
                 continue;
             };
-            // |S_e n| and n^T S_e n, n being of the mean square 1
+            // |S_e n| and n^T S_e n, where n has a mean square of 1
             let resisted = root.solve_lower_triangular(&(under_contact * &pins));
             let resisted = resisted.map_or(f64::INFINITY, |force| force.norm());
             let stiffness = pins.dot(&(under_contact * &pins));

@@ -348,7 +348,7 @@ mod tests {
                 u: &u,
             };
             let mut constraint = Constraint::new(testing::face(), &at);
-            // a wrong one, which the check must not take over
+            // a wrong coefficient, which the check must not use
             constraint.mu = 9.0;
             let pair = ClosedPair::new(&constraint, [1.0, 0.3], state);
             let pairs = std::iter::once((&constraint, &pair));

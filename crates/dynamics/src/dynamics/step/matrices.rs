@@ -410,7 +410,7 @@ impl EffectiveStiffness {
                         StiffnessForm::Stability => AS_RIGID,
                         _ => 1.0,
                     };
-                    // a pair that slides one way holds the other way
+                    // a pair that slides in one direction resists motion in the other
                     let sticks = pair.state == ContactState::Stick
                         || (form == StiffnessForm::Stability && constraint.mu > 0.0);
                     let stiffening = constraint.stiffening(sticks) * (rigid * gamma);

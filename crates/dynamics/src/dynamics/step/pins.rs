@@ -115,7 +115,7 @@ impl Pins {
         for body in turning.bodies {
             spins[parts.of_nodes()[body.centre]].push((body.spin, body.length));
         }
-        // the angles of bodies that turn have no place
+        // the pairs of dofs of angles have no position
         let mut is_angle = vec![false; parts.of_nodes().len()];
         (turning.bodies.iter()).for_each(|body| is_angle[body.spin / 2] = true);
         let placed = parts.of_nodes().iter().enumerate();
@@ -142,7 +142,7 @@ impl Pins {
             if let Some(whole) = PinnedBody::new(problem, of_body, (nodes, spins)) {
                 return vec![whole];
             }
-            // what equations join may move where they ask for nothing
+            // parts that equations join may have motions that the equations allow
             let part = |nodes| PinnedBody::new(problem, of_body, (nodes, Vec::new()));
             parts.into_iter().filter_map(part).collect()
         };
@@ -202,7 +202,7 @@ impl Pins {
                 true => larger(a, STIFF * force / body.size),
                 false => a,
             };
-            // without stiffness and forces nothing moves
+            // without stiffness and forces any positive value serves, since nothing moves
             if a > 0.0 { a } else { 1.0 }
         };
         let all = self.bodies.iter();
@@ -397,7 +397,7 @@ impl PinnedBody {
             x: &x,
         };
         let row = |dof: usize| frame.row(dof);
-        // what supports and equations ask of a rigid motion
+        // conditions of supports and equations on a rigid motion
         let mut gram = Matrix3::zeros();
         let of_nodes = |dof: usize| nodes.binary_search(&(dof / 2)).is_ok();
         let of_angles = |dof: usize| spins.iter().any(|spin| spin.0 == dof);
@@ -410,7 +410,7 @@ impl PinnedBody {
         {
             gram += row(dof) * row(dof).transpose();
         }
-        // the other nodes of its equations stand
+        // nodes of other bodies in its equations are taken to be at rest
         let own_row = |dof: usize| if own(dof) { row(dof) } else { Vector3::zeros() };
         let is_rigid = |e: &&Equation| !e.terms.iter().any(|term| moves_parts(term.0));
         for Equation { dof, terms } in model.equations.iter().filter(is_rigid) {
@@ -519,7 +519,7 @@ impl PinnedBody {
         for dof in self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]) {
             sum += frame.row(dof) * frame.row(dof).transpose();
         }
-        // a body of one node turns all the same
+        // the angles count too, so that a body of one node can turn
         for &(spin, length) in &self.spins {
             let turn = frame.row(spin) * (self.size / length);
             sum += turn * turn.transpose();
@@ -597,7 +597,7 @@ impl PinnedBody {
         if angle.abs() > LARGEST_ANGLE {
             part = part.min(LARGEST_ANGLE / angle.abs());
         }
-        // a rigid body whose places stay the same stays
+        // a rigid body whose motion is below the round-off of its positions stays at rest
         let far = |node: &usize| at(*node).map(f64::abs).into_iter().fold(0.0, larger);
         let extent = self.nodes.iter().map(far).fold(0.0, larger);
         if self.is_rigid && most <= 4.0 * f64::EPSILON * extent {

@@ -336,7 +336,7 @@ impl StepProblem<'_> {
             let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
             internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
         }
-        // without loads it is zero as it was made
+        // without loads the load vector is still zero
         if !self.loads.are_none() {
             (self.loads).write_weighted(theta1, interval, u_theta, load);
             self.unknowns.turning.scale_moments(d, load);
@@ -364,7 +364,7 @@ impl StepProblem<'_> {
             inertia,
             ..
         } = equilibrium;
-        // without inertia they are zero as they were made
+        // without inertia both vectors are still zero
         if !self.integration.has_rates {
             return equilibrium.set_out_of_balance();
         }

@@ -85,7 +85,7 @@ impl<'m> Workspace<'m> {
         } = self;
         let EffectiveStiffness { k, pins: a, .. } = stiffness;
         let reach = search.reach();
-        // what equations and rigid bodies hand on is balanced within them
+        // forces that equations and rigid bodies hand on are balanced within them
         let mut at_unknowns = vec![0.0; unbalanced.len()];
         let restricted = k.map().restrict(unbalanced);
         let both = problem.unknowns.dof.iter().zip(restricted);
