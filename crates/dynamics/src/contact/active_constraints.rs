@@ -21,7 +21,7 @@ pub enum ConstraintSet<'a> {
 }
 
 impl ConstraintSet<'_> {
-    /// Keeps the chosen pairs among the constraints and moves the others to `left_out`; `start` are
+    /// Keeps the chosen pairs among the constraints and moves all others to `left_out`; `start` are
     /// the positions at the start of the subincrement.
     pub fn split(
         self,

@@ -147,7 +147,7 @@ impl ClosedPairs {
         self.find(key).map_or([0.0; 2], |pair| pair.force)
     }
 
-    /// State of a constraint.
+    /// State of a constraint among the closed pairs.
     pub fn own_state(&self, key: ConstraintKey) -> ContactState {
         self.find(key).map_or(ContactState::Open, |pair| pair.state)
     }

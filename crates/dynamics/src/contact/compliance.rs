@@ -177,9 +177,9 @@ impl Compliance {
         ConstraintGroup::Bodies(bodies)
     }
 
-    /// Computes the inverse of a scope also at those unknowns of `constraints` where it is missing. This function
-    /// checks the inverse of the scope of all constraints; with the scopes of bodies, the caller must check the
-    /// resulting forces.
+    /// Computes the inverse of a scope also at those unknowns of `constraints` where it is missing. The function checks
+    /// the inverse of the scope of all constraints; with the scopes of bodies, the caller must check the resulting
+    /// forces.
     ///
     /// # Errors
     /// Returns the error of the solver.

@@ -142,8 +142,8 @@ impl Turns<'_> {
 
     /// Slopes at the ends of every segment that bends, against its chord.
     ///
-    /// A segment bends between two smooth turns to the same side. It also bends between the end of the chain, or a
-    /// corner, and a smooth turn to a segment that bends to this side. A segment that is much longer than a neighbour
+    /// A segment bends between two smooth turns to the same side. A segment between the end of the chain, or a corner,
+    /// and a smooth turn to a segment that bends to this side bends too. A segment that is much longer than a neighbour
     /// stays straight: it is a straight side that ends in a fillet. If a segment turns far more at one end than at the
     /// other, like the last chord of a flank at a coarse fillet, its neighbour at that end bends for the whole turn.
     fn slopes(&self) -> Vec<Option<[f64; 2]>> {

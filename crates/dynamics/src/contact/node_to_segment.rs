@@ -87,7 +87,7 @@ impl SegmentContact {
     /// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
     /// ```
     ///
-    /// With this tilt Bn d = g1 - h0, so contact adds no energy.
+    /// With the tilt Bn d is g1 - h0, so contact adds no energy.
     pub(super) fn tilt(&self, pair: &Pair, at: &Configurations) -> f64 {
         let from = self.from.filter(|_| at.form == RowForm::DiscreteGradient);
         let Some(from) = from else { return 0.0 };
@@ -249,8 +249,8 @@ pub(super) fn couple(p: &Projection) -> [f64; 6] {
 /// Discrete gradients between the start and the end of the increment.
 ///
 /// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 depend on pi1 = r.e, pi2 = r x e,
-/// pi3 = e.e, eq. (7.1), which are quadratic in the positions. Their gradients at the mid
-/// configuration are therefore exact difference quotients.
+/// pi3 = e.e, eq. (7.1), which are quadratic in the positions. The gradients of these products at
+/// the mid configuration are therefore exact difference quotients.
 fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair<6> {
     let mean = |p: [f64; 2], q: [f64; 2]| [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
     let (l0, l1) = (start.length, end.length);

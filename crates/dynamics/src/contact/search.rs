@@ -55,8 +55,8 @@ impl<'m> Search<'m> {
         Search::within(PAIRING_REACH, contacts, x)
     }
 
-    /// A search for static and quasi-static steps. In such steps no velocity tells how far a node will go, so the
-    /// search looks farther.
+    /// A search for static and quasi-static steps. In static and quasi-static steps no velocity tells how far a node
+    /// will go, so the search looks farther.
     pub fn without_velocities(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search::within(PAIRING_REACH_WITHOUT_VELOCITIES, contacts, x)
     }

@@ -1,5 +1,5 @@
-//! Slave faces and master segments of contact from surface to surface, with the vertices at their ends.
-//! See docs/theory/geometry.md, From surface to surface.
+//! Where the raised node crosses the segment, the unraised node crosses the face. See docs/theory/geometry.md, From
+//! surface to surface.
 
 use super::bulge::Bulge;
 use super::lists::{Recycled, entries};

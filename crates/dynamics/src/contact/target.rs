@@ -96,7 +96,7 @@ pub struct SurfacePoint {
     pub eta: f64,
     /// Bulge of the slave face at this place (length).
     pub rise: f64,
-    /// Bulge of the master segment.
+    /// Bulge of the master segment under the point.
     pub bulge: Bulge,
     /// Part of the gap of the point in the gap of the constraint, w N/c of eq. (3.18).
     pub weight: f64,
@@ -406,7 +406,7 @@ impl ContactTarget {
 /// A convex corner or the vertex of a face, between a segment and the next, as the target of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Corner {
-    /// The segment after the corner.
+    /// The segment that starts at the corner.
     pub next: usize,
     /// Weight of the normal of the segment after the corner, between 0 and 1; the segment before
     /// the corner has the weight 1 - weight.

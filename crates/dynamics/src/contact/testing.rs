@@ -24,7 +24,7 @@ pub(crate) fn pair(key: ConstraintKey, slave: usize, target: Target) -> PairTarg
     PairTarget { pair, target }
 }
 
-/// A straight segment.
+/// A straight segment as a target.
 pub(crate) fn segment(number: usize, ends: [usize; 2]) -> Segment {
     Segment {
         number,

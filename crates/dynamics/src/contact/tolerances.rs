@@ -41,7 +41,7 @@ pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;
 // Projection and search.
 
 /// Overrun of a projection beyond the ends of a segment at which it still counts as on the segment.
-/// This overrun covers round-off, and the sum of the tolerances of many increments for a node that
+/// The overrun covers round-off, and the sum of the tolerances of many increments for a node that
 /// sticks at the end of a surface.
 pub(crate) const PROJECTION_BEYOND_ENDS: f64 = 1e-6;
 /// Distance up to which a node at rest pairs with a segment at rest, in mean segment lengths of the
@@ -97,7 +97,7 @@ pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// Overrun up to which a node keeps its segment once the passes have settled, even if another segment would constrain
 /// it. If passes still go to and fro between two targets, `KEPT_BEYOND_ENDS` applies instead.
 pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
-/// Overlap below which an open pair stays open once the passes have settled. Without this bound a
+/// Overlap below which an open pair stays open once the passes have settled. Without the bound a
 /// force could alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// Slip of a correction along a segment, in lengths of the segment, up to which rows and targets stay: the square of
@@ -109,7 +109,7 @@ pub(crate) const SOLVED_GAP: f64 = 1e-12;
 /// a solution of a complementarity problem leaves about as much.
 pub(crate) const LIMIT_SLIP: f64 = 1e-10;
 /// Gap, slip or motion that counts as zero: the round-off of a quantity that is itself round-off of a length. Without
-/// this bound the remains of a motion that has died away would underflow.
+/// the bound the remains of a motion that has died away would underflow.
 pub(crate) const NOTHING: f64 = f64::EPSILON * f64::EPSILON;
 
 /// Round-off of a gap, relative to the coordinates of its nodes.
@@ -137,7 +137,7 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 // Contact from surface to surface.
 
-/// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface. This
+/// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface. The
 /// depth is above round-off, so no corner closes where the means are closed. A body must turn by about three times this
 /// number before the resultant on its face reaches the corner. With the depth 1e-5, walls of bricks need up to a third
 /// more passes.
@@ -178,6 +178,6 @@ pub(crate) const ADJUSTMENT_REACH: f64 = 1.0;
 /// Gap below which a node has met its target at an impact; the node joins the active pairs with
 /// this accuracy.
 pub(crate) const IMPACT_GAP: f64 = 1e-12;
-/// Cosine of the turn between a touched segment and another on to which the node slides without an impact. This turn
+/// Cosine of the turn between a touched segment and another on to which the node slides without an impact. The turn
 /// belongs to [`GENTLE_SINE`], up to which one of the two segments is the node's only target.
 pub(crate) const FACING_ALIKE_COSINE: f64 = 0.9998;

@@ -268,7 +268,7 @@ impl NodePath<'_> {
     }
 
     /// Whether a node that may overlap segment `i` is still in front of the line of a neighbour at a convex corner,
-    /// when raised by the allowed overlap. Near the corner such a node is outside the body reduced by the overlap.
+    /// when raised by the allowed overlap. Near the corner the node is then outside the body reduced by the overlap.
     fn is_before_corner(&self, i: usize, p: &Projection) -> bool {
         let is_before = |(j, is_next): (Option<usize>, bool)| {
             let Some(q) = j.map(|j| self.project(j, 1.0)) else {

@@ -308,8 +308,8 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     /// Events of the nodes that enter bodies, and are not kept out of them, within the time tau of a motion. The motion
-    /// is that of a converged subincrement, or a prediction. Such nodes of a converged subincrement stay inside to its
-    /// end, or go through the body.
+    /// is that of a converged subincrement, or a prediction. The nodes that enter in a converged subincrement stay
+    /// inside to its end, or go through the body.
     fn entries(
         &mut self,
         active: &ActiveConstraints,

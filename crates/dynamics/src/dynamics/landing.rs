@@ -175,7 +175,7 @@ pub(super) fn factorize_anew(
 /// Energy given back along the patterns of some loads.
 #[derive(Default)]
 pub(super) struct GivenBack {
-    /// Share y of every pattern.
+    /// Share y of each pattern in the velocities.
     pub y: Vec<f64>,
     /// Energy that each share has given back.
     pub energies: Vec<f64>,

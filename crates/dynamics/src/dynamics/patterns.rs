@@ -11,9 +11,10 @@ pub(crate) struct ReturnLoad {
     pub force: Vec<f64>,
     /// Friction that is taken back together with the load.
     pub friction: Option<FrictionLoad>,
-    /// Energy to be given back.
+    /// Energy that is to be given back along the response.
     pub energy: f64,
-    /// Largest absolute share: its impulse is that of the force of the increment.
+    /// Largest absolute value of the share: at this value the impulse is that of the force of the
+    /// increment.
     pub most: f64,
     /// Whether the share may be negative, so a force of the increment is taken back.
     pub pulls: bool,
@@ -27,7 +28,7 @@ pub(crate) struct FrictionLoad {
     pub work: f64,
 }
 
-/// A pattern of velocity.
+/// A pattern of velocity along which energy is given back.
 #[derive(Clone)]
 pub(super) struct VelocityPattern {
     /// Velocities w over all dofs.
@@ -37,7 +38,7 @@ pub(super) struct VelocityPattern {
 }
 
 impl VelocityPattern {
-    /// Adds another pattern.
+    /// Adds another pattern to this one.
     pub fn add(&mut self, other: &VelocityPattern) {
         let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
         add(&mut self.w, &other.w);
@@ -157,10 +158,9 @@ impl RigidBodies {
             .for_each(|(_, w)| *w = 0.0);
     }
 
-    /// Vibration: the part of the velocities `v` of the free bodies that is not a rigid motion, over all dofs. Its
-    /// momenta are zero.
+    /// Vibration: the part of the velocities `v` of the free bodies that is not a rigid motion, over all dofs.
     ///
-    /// It is zero on bodies that are not free.
+    /// The vibration has no momenta, and is zero on bodies that are not free.
     pub fn vibration(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let mut vibration = v.to_vec();
         self.correct(problem, 0.0, &vec![0.0; v.len()], &mut vibration);

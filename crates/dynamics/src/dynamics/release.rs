@@ -9,7 +9,7 @@ use crate::contact::{ClosedPair, Constraint, SlaveChoice};
 use crate::elements::Motion;
 use crate::linear::{larger, largest};
 
-/// Largest number of Newton steps to the rest.
+/// Largest number of Newton steps until the free nodes are at rest.
 const MOST_STEPS: usize = 10;
 /// Length of a Newton step, relative to the path so far, from which on the next step is round-off.
 const LAST_STEP: f64 = 1e-6;
@@ -21,7 +21,7 @@ const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 /// Brings nodes without mass that carry no force to rest at the end of an increment in which pairs have opened. The
 /// mid-point rule fixes only the mean of start and end, so without the rest the deviation of these nodes would change
 /// its sign in every increment. If there is no rest, or a node would pass through a surface on the way, the nodes stay
-/// as they are. Returns the energy that the rest removes.
+/// as they are. Returns the energy that is lost as the nodes come to rest.
 pub(crate) fn bring_to_rest(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -68,7 +68,7 @@ struct Releasing<'a, 'm> {
     problem: &'a StepProblem<'a>,
     workspace: &'a mut Workspace<'m>,
     interval: Interval,
-    /// State at the end of the increment before the rest.
+    /// State at the end of the increment before the nodes come to rest.
     end: &'a State,
     free: FreeNodes,
     /// The open constraints of the last pass.
@@ -153,8 +153,8 @@ impl Releasing<'_, '_> {
         found.is_some()
     }
 
-    /// Energy that the rest at the displacements `u` removes, eq. (6.15), and the internal variables there; `None` if
-    /// the rest would add energy.
+    /// Energy that is lost if the nodes are at rest at the displacements `u`, eq. (6.15), and the internal variables
+    /// there; `None` if energy would be added.
     fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
         let (elements, end) = (self.problem.elements, self.interval.end);
         let before = elements.evaluate(self.end.motion());

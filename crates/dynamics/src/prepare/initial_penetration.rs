@@ -1,5 +1,6 @@
-//! Check of the initial configuration. The check reports penetrated nodes, overlapping bodies, and
-//! surfaces that do not face each other as diagnostics at the contact in the deck.
+//! Check of the initial configuration for penetration. The check reports penetrated nodes,
+//! overlapping bodies, and surfaces that do not face each other as diagnostics at the contact in
+//! the deck.
 
 use super::initial_gaps::{InitialGap, gaps};
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};

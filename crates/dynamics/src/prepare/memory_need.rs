@@ -21,8 +21,8 @@ const VECTORS: usize = 70;
 const MATRICES: usize = 3;
 const CONTACT_MATRICES: usize = 2;
 
-/// Number of factors: those of K*, and the lists, fronts and rests during a factorisation, which need as much memory.
-/// With contacts there are also the factors of M, which impulses need.
+/// Number of factors: those of K*, and the lists, fronts and remainders during a factorisation, which need as much
+/// memory. With contacts there are also the factors of M, which impulses need.
 const FACTORS: usize = 2;
 const CONTACT_FACTORS: usize = 1;
 

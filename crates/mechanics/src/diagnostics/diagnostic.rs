@@ -36,7 +36,7 @@ pub struct Diagnostic {
     pub label: Option<String>,
     /// Word that was probably meant at the caret.
     pub suggestion: Option<String>,
-    /// Advice on what to do.
+    /// Advice on what to do about the diagnostic.
     pub help: Option<String>,
     /// Another card that the diagnostic is about, and its place.
     pub other: Option<(String, Span)>,

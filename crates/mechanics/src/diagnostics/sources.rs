@@ -124,7 +124,7 @@ pub struct Sources {
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Requests the end of reading.
+    /// Requests the end of reading the deck.
     pub fn ask(&self) {
         self.0.store(true, Ordering::Relaxed);
     }

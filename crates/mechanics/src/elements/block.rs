@@ -27,7 +27,7 @@ pub struct ElementBlock<const N: usize, const P: usize> {
     pub nodes: [[u16; LANES]; N],
     /// (dX/dr)^-1 at the integration points (1/length).
     pub inverse: [TensorLanes; P],
-    /// Weights of the points (length^3).
+    /// Weights of the integration points (length^3).
     pub volume: [Lanes; P],
 }
 
@@ -64,8 +64,8 @@ pub struct Deformation {
 pub struct MovedBlock<'a, const N: usize, const P: usize, R> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
-    /// 1/R at the points (1/length). This 1/R is zero in plane strain, a ring of infinite radius; elements of the plane
-    /// do not read it.
+    /// 1/R at the integration points (1/length). The radius is infinite in plane strain, so 1/R is zero; elements of
+    /// the plane do not read it.
     pub over_radius: &'a [Lanes; P],
     /// Reference data of the formulation other than the points.
     pub reference: &'a R,

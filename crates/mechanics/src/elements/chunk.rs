@@ -127,7 +127,7 @@ struct Heating<const P: usize> {
 pub struct ChunkMaterial<'a> {
     pub law: PlaneLaw,
     pub viscosity: Option<Viscosity>,
-    /// Thermal expansion, and the temperature of every node at the start of the analysis; the latter is empty if it is
+    /// Thermal expansion, and the temperature of every node at the start of the analysis; the list is empty if all are
     /// zero.
     pub expansion: Option<(Expansion, &'a [f64])>,
     pub plane: Plane,

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 use super::motion::{Increment, Motion, TangentPart};
 use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Model};
 
-/// Two entries for each node.
+/// Two entries for each node of a connector.
 pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
 /// Matrix with D x D entries, column by column.
 pub(super) type ConnectorMatrix = SmallVec<[f64; 16]>;

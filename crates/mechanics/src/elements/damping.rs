@@ -49,7 +49,7 @@ impl MassDamping {
     }
 }
 
-/// The motion in which viscosity acts: that of the increment, in every scheme.
+/// The motion in which viscosity acts: that of the increment in every integration scheme.
 pub(super) fn between([u0, u1]: Increment) -> Motion {
     Motion {
         start: Some(u0),

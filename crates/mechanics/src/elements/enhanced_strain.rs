@@ -1,7 +1,7 @@
 //! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990) and of the ring with its section
 //! (CAX4I), which bend without locking. The element adds four own strains to those of the displacements, and in a ring
-//! a fifth around the axis; they minimise its stored energy. These strains are not part of the state: Newton's method
-//! in the element, eq. (2.28), computes them from the displacements, starting with those of the last increment. See
+//! a fifth around the axis; they minimise its stored energy. Own strains are not part of the state: Newton's method in
+//! the element, eq. (2.28), computes them from the displacements, starting with those of the last increment. See
 //! docs/theory/elements.md.
 //!
 //! # Derivation
@@ -351,7 +351,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 
     /// The alpha that minimises the energy at strains of the displacements, eq. (2.28); the search starts at `first`.
-    /// This alpha is NaN if the local solution does not converge.
+    /// The alpha is NaN if the local solution does not converge.
     fn least(&self, measured: &Measured, first: &Alpha<A>) -> Alpha<A> {
         let last = largest(&measured.compatible) * LAST_STEP + f64::EPSILON;
         let derivatives = |alpha: &Alpha<A>, wanted: Wanted| {
@@ -367,7 +367,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 
     /// The alpha at the end of an increment for which viscous stresses do no work on the element's own strains, from
-    /// the strains of the displacements at start and end. This alpha is NaN if Newton's method does not converge.
+    /// the strains of the displacements at start and end. The alpha is NaN if Newton's method does not converge.
     fn of_rates(&self, compatible: &Compatible, end: &Measured) -> Alpha<A> {
         let last = largest(&compatible.change) * LAST_STEP
             + largest(&compatible.end) * f64::EPSILON

@@ -46,7 +46,7 @@ pub struct PlacedBlock<'a, const N: usize, const P: usize> {
     pub block: &'a ElementBlock<N, P>,
     /// 1/R at the points: zero in plane strain and in plane stress (1/length).
     pub over_radius: &'a [Lanes; P],
-    /// Places of the points (length).
+    /// Places of the integration points (length).
     pub places: &'a [[Lanes; 2]; P],
     /// Tangent of the law at zero strain (force/length^2).
     pub tangent: &'a Tangent,
@@ -81,7 +81,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     /// Reference data of a block.
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference;
 
-    /// Visits every point p with its deformation and stress. This visit is the only evaluation of the material;
+    /// Visits every point p with its deformation and stress. The visit is the only evaluation of the material;
     /// everything else is computed from it. Returns whether det F is positive at all points.
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,

@@ -114,9 +114,9 @@ fn tensor(e: &Vector4<f64>) -> Symmetric {
 /// Strain (11, 22, 33, 2*12) and amplitudes of the modes, or the forces that do work on them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Joint<const M: usize> {
-    /// Part of the point.
+    /// The strain, or the force that does work on it.
     pub e: Vector4<f64>,
-    /// Part of the modes.
+    /// The amplitudes of the modes, or the forces that do work on them.
     pub y: SVector<f64, M>,
 }
 

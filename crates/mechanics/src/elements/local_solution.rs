@@ -27,7 +27,7 @@ pub type Stiffness<const A: usize> = [[Lanes; A]; A];
 /// Values that minimise the energies of elements, eq. (2.28), starting at `alpha`: Newton's method with a line search
 /// and the absolute eigenvalues of the stiffness. `derivatives` gives slope and stiffness, and `change` the energy at
 /// the second values less that at the first; the solution ends with a step of the size `last`. Values of an element are
-/// NaN if it does not converge. The values of an element do not depend on the other elements.
+/// NaN if its solution does not converge. The values of an element do not depend on the other elements.
 pub fn least<const A: usize>(
     mut alpha: Alpha<A>,
     derivatives: impl Fn(&Alpha<A>, Wanted) -> (Alpha<A>, Stiffness<A>),
@@ -183,8 +183,8 @@ pub fn solved<const A: usize, const M: usize>(
     all
 }
 
-/// -|K|^-1 g, where |K| has the absolute eigenvalues of K. The result is NaN in the lane of an element without such a
-/// step, because an eigenvalue is zero or not finite.
+/// -|K|^-1 g, where |K| has the absolute eigenvalues of K. The result is NaN in the lane of an element for which no
+/// step exists, because an eigenvalue is zero or not finite.
 fn descent<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     let mut step = positive(k, g).map(|x| x * -1.0);
     for lane in 0..LANES {

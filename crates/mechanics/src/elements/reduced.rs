@@ -1,22 +1,22 @@
 //! The four-node quadrilateral with the one strain of its mean gradients (CPE4R, CPS4R), and the ring with this section
-//! (CAX4R). Their hourglass modes have a potential. In a ring the variation of the strain around the axis has a
-//! potential too, since one layer of elements could otherwise tilt freely. See docs/theory/elements.md, One strain and
-//! hourglass stiffness.
+//! (CAX4R). The hourglass modes of these elements have a potential. In a ring the variation of the strain around the
+//! axis has a potential too, since one layer of elements could otherwise tilt freely. See docs/theory/elements.md, One
+//! strain and hourglass stiffness.
 //!
 //! # Derivation
 //!
 //! With u = sum u_a h_a, the mean gradients b, and the mean m of grad h over the volume, exactly F = F0 + q x (grad h -
 //! m), F0 = I + sum u_a x b_a, q = sum gamma_a u_a. At small strains the element with enhanced strains has, in addition
-//! to the mean strain, those of H = F0^T q and of E_33 less its mean. Their energy products with the mean strain are
-//! zero. The potential is the energy of these strains with C of the law at E = 0, minimised over alpha:
+//! to the mean strain, those of H = F0^T q and of E_33 less its mean. The energy products of these strains with the
+//! mean strain are zero. The potential is the energy of these strains with C of the law at E = 0, minimised over alpha:
 //!
 //! ```text
 //! y = (H, E_33 - mean E_33 at the four points),   e = sym(H x (grad h - m)) + y_33 e_33 e_33 + M alpha
 //! Phi = V W(E0) + y.Kh y/2,   Kh = K_yy - K_ya K_aa^-1 K_ay
 //! ```
 //!
-//! The amplitudes y do not change when the element turns. They are quadratic in the displacements, so exactly dy =
-//! (dy/du in the mid configuration) du between two configurations. The force with Kh (y0 + y1)/2 in the mid
+//! The amplitudes y do not change when the element turns. The amplitudes are quadratic in the displacements, so exactly
+//! dy = (dy/du in the mid configuration) du between two configurations. The force with Kh (y0 + y1)/2 in the mid
 //! configuration therefore does the work of the hourglass energy.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
@@ -53,15 +53,15 @@ pub struct OnePoint<const M: usize> {
     around: [Lanes; N],
     /// h_a/R at the four points, less the means.
     around_at: [[Lanes; N]; N],
-    /// gamma of eq. (2.26).
+    /// The hourglass vector gamma of eq. (2.26).
     gamma: [Lanes; N],
     /// Weights of the four points divided by the volume.
     parts: [Lanes; N],
     /// Volume (length^3).
     volume: Lanes,
-    /// Stiffness Kh of the law.
+    /// Stiffness Kh of the modes from the law.
     stiffness: ModeStiffness<M>,
-    /// Stiffness Kh of the viscosity.
+    /// Stiffness Kh of the modes from the viscosity.
     viscous_stiffness: ModeStiffness<M>,
 }
 

@@ -295,7 +295,7 @@ const fn bilinear<const P: usize>(
 pub struct QuadraticTriangle;
 
 /// The six points of degree 4 (Dunavant 1985): for three of them the natural coordinate that two of their area
-/// coordinates have, and their weight; then the same for the other three.
+/// coordinates have, and their weight; then the same data of the other three.
 const DUNAVANT: [f64; 4] = [
     0.445_948_490_915_964_9,
     0.223_381_589_678_011_47,

@@ -763,7 +763,7 @@ fn elements_have_among_others_what_they_have_alone() {
     }
 }
 
-/// Displacements of three elements: `u` in one of them, and rest in the others.
+/// Displacements of three elements: `u` in one of them, and zero in the other two.
 fn among_others(u: &DVector<f64>, element: usize) -> DVector<f64> {
     let mut all = DVector::zeros(3 * u.len());
     all.rows_mut(u.len() * element, u.len()).copy_from(u);

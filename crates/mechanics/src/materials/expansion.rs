@@ -1,4 +1,4 @@
-//! Thermal expansion: a temperature stretches a material equally in all directions; any law describes the rest of the
+//! Thermal expansion: a temperature stretches a material equally in all directions; any law describes the additional
 //! deformation. See docs/theory/materials.md, Temperature.
 //!
 //! # Derivation
@@ -12,7 +12,7 @@
 //! W = theta³ W_m(E_m),   S = dW/dE = theta S_m(E_m),   dS/dE = C_m(E_m)/theta
 //! ```
 //!
-//! Then F S F^T/J = F_m S_m F_m^T/J_m, so the law gives the true stress of the heated body.
+//! The law thus gives the true stress of the heated body, since F S F^T/J = F_m S_m F_m^T/J_m.
 
 use super::constitutive_law::{AnyLaw, BentTangent, Metal, MetalLaw};
 use super::number::{LANES, Lanes, Number};

@@ -6,8 +6,8 @@
 //!
 //! The force int B_L(U_m)^T S dOmega at the mid configuration U_m does the work d.F = int S:dE dOmega with any S,
 //! because exactly B_L(U_m) d = E1 - E0 = dE (E is quadratic in U). A symmetric S conserves the angular momentum. The
-//! energy is conserved if S:dE = W1 - W0. Of all such stresses, the nearest to S(E_m), with E_m = (E0 + E1)/2, is
-//! S(E_m) + lambda dE:
+//! energy is conserved if S:dE = W1 - W0. Of all stresses with this property, the nearest to S(E_m), with E_m = (E0 +
+//! E1)/2, is S(E_m) + lambda dE:
 //!
 //! ```text
 //! S = S(E_m) + f/(dE:dE) dE,     f = W1 - W0 - S(E_m):dE
@@ -24,11 +24,12 @@ use super::symmetric::{Symmetric, Tangent};
 /// relative amount of about |dE| or less, which is round-off below this bound.
 pub const NO_CHANGE: f64 = f64::EPSILON;
 
-/// Norm of dE up to which the tangent is that of S(E_m): the rest is a relative amount of about |dE| and would have a
-/// round-off of about eps/|dE|.
+/// Norm of dE up to which the tangent is that of S(E_m): the omitted part is a relative amount of about |dE| and would
+/// have a round-off of about eps/|dE|.
 pub const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
 
-/// A stored energy W(E) of the strain, for numbers T. Without `HOOP` the strain 33 is zero, or depends on the others.
+/// A stored energy W(E) of the strain, for numbers T. Without `HOOP` the strain 33 is zero, or depends on the strains
+/// in the plane.
 pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     /// W(E) (force/length^2).
     fn energy(&self, e: &Symmetric<T>) -> T;

@@ -26,7 +26,7 @@ pub enum Law {
     Hencky(Hencky),
     /// `*HYPERELASTIC, NEO HOOKE`
     NeoHooke(NeoHooke),
-    /// Other forms of `*HYPERELASTIC`.
+    /// Forms of `*HYPERELASTIC` other than `NEO HOOKE`.
     Polynomial(Polynomial),
     /// `*HYPERELASTIC, OGDEN`
     Ogden(Ogden),
@@ -43,7 +43,7 @@ impl Law {
         Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson })
     }
 
-    /// Moduli at small strains.
+    /// Moduli of the law at small strains.
     pub fn small_strain(&self) -> SmallStrainModuli {
         match self {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),

@@ -186,7 +186,7 @@ impl AddAssign for Lanes {
 }
 
 impl Default for Positive {
-    /// The state before any number.
+    /// The state before any number is added.
     #[inline(always)]
     fn default() -> Self {
         Positive([u64::MAX; LANES])

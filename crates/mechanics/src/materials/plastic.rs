@@ -394,8 +394,8 @@ struct Trial {
 /// Flow of an increment.
 #[derive(Default)]
 struct PlasticFlow {
-    /// da = w p + z p_h of eq. (2.49), with p_h = r_h H/(3 mu). In this sum of the parts that flow, the round-off of da
-    /// does no work.
+    /// da = w p + z p_h of eq. (2.49), with p_h = r_h H/(3 mu). As the sum of the parts that flow, da has a round-off
+    /// that does no work.
     slip: f64,
     /// p = r Q/(3 mu): da for an element without modes; zero without a strain.
     own: f64,

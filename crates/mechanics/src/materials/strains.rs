@@ -75,7 +75,7 @@ impl<T: Number> StrainChange<T> {
         self.half.map(|half| half * 2.0)
     }
 
-    /// The change in one element.
+    /// The change of the strains in one element.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> StrainChange {
         StrainChange {

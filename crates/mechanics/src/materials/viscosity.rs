@@ -101,7 +101,7 @@ impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
         gdeg.with(&g, |gdeg, g| (gdeg * self.shape + dj * g) * inverse)
     }
 
-    /// 2 V of eq. (4.19), which is positive definite. This tangent omits the change of G and J_m, which is of first
+    /// 2 V of eq. (4.19), which is positive definite. The tangent omits the change of G and J_m, which is of first
     /// order in dE.
     #[inline(always)]
     fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {

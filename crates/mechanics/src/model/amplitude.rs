@@ -30,13 +30,14 @@ pub enum Curve {
     /// Linear between points (time, value), constant outside; times strictly increase, and there is
     /// at least one point.
     Linear(Vec<(f64, f64)>),
-    /// Smooth steps between such points, with zero rate and zero second derivative at each point.
+    /// Smooth steps between points (time, value), with zero rate and zero second derivative at each
+    /// point.
     SmoothStep(Vec<(f64, f64)>),
     /// `base` up to the time `start`, and `base + signal(t - start)` from there on.
     Signal {
         /// Time at which the signal begins.
         start: f64,
-        /// Value without the signal.
+        /// Value of the amplitude without the signal.
         base: f64,
         /// The signal.
         signal: Signal,
@@ -46,7 +47,7 @@ pub enum Curve {
 /// A function of the time since the start of the signal.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Signal {
-    /// `sum over n = 1.. of A_n cos(n w t) + B_n sin(n w t)`
+    /// `sum over n >= 1 of A_n cos(n w t) + B_n sin(n w t)`
     Periodic {
         /// Angular frequency w (1/time).
         frequency: f64,

@@ -112,8 +112,8 @@ impl Friction {
         self.limited(self.law.at(Some(rate), pressure), pressure)
     }
 
-    /// Coefficient at a slip rate (`None` at rest) and a pressure, if it has changed by a given part of the difference
-    /// from that of another friction.
+    /// Coefficient at a slip rate (`None` at rest) and a pressure, if the friction has changed by a given part of the
+    /// difference from that of another friction.
     pub fn on_the_way(
         &self,
         (from, part): (&Friction, f64),

@@ -156,7 +156,7 @@ impl Model {
     }
 
     /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither this
-    /// step nor an earlier one turns. A hinge between such nodes has no effect along the axis.
+    /// step nor an earlier one turns. A hinge has no effect along the axis between two nodes for which this is true.
     pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
         let has_not_turned = |body: &&RigidBody| {
             let angle = self.angle_of(body);
@@ -178,8 +178,8 @@ impl Model {
         a.is_some() && a == b
     }
 
-    /// Pairs of nodes at one place that equations between them join in both directions, the smaller index first. Such
-    /// an equation has at most one more node, for example the one of a pre-tension section.
+    /// Pairs of nodes at one place that equations between them join in both directions, the smaller index first. An
+    /// equation that joins a pair has at most one more node, for example that of a pre-tension section.
     pub fn joined_nodes(&self) -> BTreeSet<[usize; 2]> {
         let mesh = &self.mesh;
         let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();

@@ -30,8 +30,8 @@ pub struct Step {
     pub tractions: Vec<Load<Traction>>,
     /// Overlaps that contacts allow, by contact.
     pub interferences: Vec<Load<Interference>>,
-    /// Temperatures of nodes, with increasing nodes, each at most once; other nodes keep that of the start of the
-    /// analysis.
+    /// Temperatures of nodes, with increasing nodes, each at most once; nodes that are not listed keep the temperature
+    /// at the start of the analysis.
     pub temperatures: Vec<Load<NodeTemperature>>,
     /// Changes of the contacts in the step.
     pub contacts: ContactChanges,
@@ -164,11 +164,11 @@ impl Increments {
 /// Criterion for the length of the increments of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Incrementation {
-    /// The deck decides: all increments have one length except after cutbacks (DIRECT).
+    /// The deck fixes the length: all increments have one length except after cutbacks (DIRECT).
     Fixed,
-    /// The number of passes of the increments decides.
+    /// The number of passes determines the length of the increments.
     Passes,
-    /// The truncation error of the increments decides.
+    /// The truncation error determines the length of the increments.
     Error {
         /// Largest truncation error, relative to the displacements of the step so far.
         tolerance: f64,
@@ -181,7 +181,7 @@ pub enum Frames {
     /// The program's default number of frames.
     #[default]
     Default,
-    /// This number of frames, evenly spaced over the step.
+    /// The given number of frames, evenly spaced over the step.
     Count(usize),
     /// At multiples of this time since the start of the step.
     Every(f64),

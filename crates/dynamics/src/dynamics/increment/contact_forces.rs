@@ -20,8 +20,8 @@ const TIPS: usize = 3;
 /// Constraints, and the forces (or impulses) of the closed ones.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
-    /// The constraints, with increasing keys. At the end of an increment the constraints of far
-    /// nodes, which are open, follow the others.
+    /// The constraints of the iterate, with increasing keys. At the end of an increment the
+    /// constraints of far nodes, which are open, follow the others.
     pub constraints: Vec<Constraint>,
     /// The closed constraints, as pairs.
     pub closed: ClosedPairs,
@@ -57,13 +57,13 @@ impl ContactForces {
         }
     }
 
-    /// Replaces the constraints by those of the next iterate, with the forces at hand, and returns the old ones in
-    /// `constraints`.
+    /// Replaces the constraints by those of the next iterate, with the available forces, and returns the old
+    /// constraints in `constraints`.
     pub fn relinearize(&mut self, constraints: &mut Vec<Constraint>) {
         std::mem::swap(&mut self.constraints, constraints);
     }
 
-    /// Whether every force at hand belongs to a constraint of the iterate.
+    /// Whether every available force belongs to a constraint of the iterate.
     pub fn all_have_constraints(&self) -> bool {
         self.acting().count() == self.closed.len()
     }
@@ -107,10 +107,11 @@ impl ContactForces {
     }
 
     /// Solves for the contact forces of a pass, which replace those of the last pass, and writes the correction dU =
-    /// d_p + W (r + Bn^T Pn + Bt^T Pt). d_p is the motion of the supports and r the sum of the other forces (all dofs).
+    /// d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
+    /// contact forces (all dofs).
     ///
     /// Constraints that the last pass left open stay out of the problem at first; in a first pass, constraints that y =
-    /// d_p + W r leaves open do. Constraints that overlap under the forces of the others enter afterwards, so the
+    /// d_p + W r leaves open do. Constraints that overlap under the forces in the problem enter afterwards, so the
     /// answer is that of all constraints. Once the passes have settled, the equal-force rule has a `weight`, and
     /// constraints enter only if they would overlap by more than round-off. Two nodes that face each other may carry
     /// the same force, which must not go to and fro between them.
@@ -210,7 +211,7 @@ impl ContactForces {
     }
 
     /// Adds those constraints to the problem whose gaps `after` the correction would be overlaps of more than `overlap`
-    /// times their scale. Returns whether there were any such constraints.
+    /// times their scale. Returns whether any constraint has entered the problem.
     fn enter(&self, inside: &mut [bool], after: &[[f64; 2]], overlap: f64) -> bool {
         let mut entered = false;
         let constraints = self.constraints.iter().zip(after);

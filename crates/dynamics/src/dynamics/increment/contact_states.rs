@@ -40,9 +40,9 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U, those that count and the others; `begins` is true in the first pass.
-    /// Pairs that have not slipped get the coefficient of friction at rest, others the one of their slip rate. With
-    /// `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U, both those that count and the inactive ones; `begins` is true in the
+    /// first pass. Pairs that have not slipped get the coefficient of friction at rest, others the one of their slip
+    /// rate. With `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
@@ -75,9 +75,9 @@ impl ContactStates {
     }
 
     /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether these
-    /// constraints stay open, after the correction dU if there is one. If such a constraint closes, the passes go on
-    /// with the constraints of all nodes. A far node behind the line of a segment and beyond its ends has gone past the
-    /// corner, so it has no constraint there.
+    /// constraints stay open, after the correction dU if there is one. If a constraint of a far node closes, the passes
+    /// go on with the constraints of all nodes. A far node behind the line of a segment and beyond its ends has gone
+    /// past the corner, so it has no constraint there.
     pub fn complete(
         &mut self,
         problem: &StepProblem,
@@ -130,7 +130,7 @@ impl ContactStates {
         (problem.frictions).give(problem.coordinates, before, constraints);
     }
 
-    /// Replaces the constraints by those of the iterate, with the forces at hand.
+    /// Replaces the constraints by those of the iterate, with the available forces.
     pub fn relinearize(&mut self) {
         self.forces.relinearize(&mut self.found);
     }
@@ -141,8 +141,8 @@ impl ContactStates {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Adds the inactive constraints to the others at the end of an increment. Constraints of a free node past or at a
-    /// corner that lies behind the line of the segment from which it came are left out.
+    /// Adds the inactive constraints to the active ones at the end of an increment. Constraints of a free node past or
+    /// at a corner that lies behind the line of the segment from which it came are left out.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
         let left_out = self.left_out.drain(..);

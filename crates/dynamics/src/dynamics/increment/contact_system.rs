@@ -166,7 +166,7 @@ pub(super) fn closed_of<'a>(
 }
 
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, where P^0 are the forces of the last
-/// pass. If several pairs can carry the same force, this selects the solution near that of the last pass; the term
+/// pass. If several pairs can carry the same force, the rule selects the solution near that of the last pass; its term
 /// vanishes as the passes converge.
 fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f64) {
     let n = forces.len();
@@ -209,7 +209,7 @@ struct GapsAndSlips<'r, 'a> {
     constraints: &'r [&'r Constraint],
     /// eps Q_kk of eq. (5.3), zero without a weight.
     proximal: Vec<[f64; 2]>,
-    /// P^0 of eq. (5.3).
+    /// P^0 of eq. (5.3): the forces of the last pass.
     near: Vec<[f64; 2]>,
 }
 
@@ -456,8 +456,8 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// Puts forces of the given constraints and of the pins into the right-hand side, in place of the former ones. Gaps
-    /// and slips without contact forces must have been asked for before.
+    /// Replaces the forces of the given constraints and of the pins in the right-hand side. Gaps and slips without
+    /// contact forces must have been asked for before.
     pub fn set_forces<'c>(
         &mut self,
         system: &mut System,

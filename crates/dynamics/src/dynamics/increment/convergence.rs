@@ -200,8 +200,8 @@ impl<'a> Scales<'a> {
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs by its rows, as far as open pairs may
     /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets the forces grow in
-    /// balance, and gaps stay. They do not close either if supports push a body along another under the same forces:
-    /// the residual is all round-off, but slave nodes come to other segments.
+    /// balance, and gaps stay. The gaps do not close either if supports push a body along another under the same
+    /// forces: the residual is all round-off, but slave nodes come to other segments.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
             let most = |part: f64| larger(self.closed_gap(constraint), part * constraint.scale);

@@ -10,9 +10,9 @@ const LEAST_WEIGHT: f64 = 1e-7;
 /// Ratio of successive corrections above which they crawl: if the weight has its least value, it
 /// then falls further.
 const CRAWLING: f64 = 0.7;
-/// Weight for corrections that crawl.
+/// Weight of the equal-force rule for corrections that crawl.
 const WEIGHT_OF_CRAWLING: f64 = 1e-9;
-/// Correction, in tolerances, below which it is round-off if it does not decrease.
+/// Correction, in tolerances, below which a correction that does not decrease is round-off.
 pub(super) const ROUND_OFF: f64 = 100.0;
 
 /// Weight eps of eq. (5.3) from pass to pass.

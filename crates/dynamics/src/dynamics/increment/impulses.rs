@@ -71,7 +71,7 @@ impl Impulses {
         }
     }
 
-    /// The constraints with their impulses.
+    /// The constraints that have impulses, with these impulses.
     pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> {
         self.forces.acting()
     }
@@ -227,9 +227,9 @@ impl Impulses {
         .fold(0.0, larger)
     }
 
-    /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. This velocity is
+    /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. The velocity is
     /// V0+ if U_theta depends on V0+, or if the mass of bodies that turn acts by other arms in the iterate than at the
-    /// start; else it is V0 with the impulses apart, so nothing is solved with M.
+    /// start; else it is V0, with the impulses apart, so nothing is solved with M.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,

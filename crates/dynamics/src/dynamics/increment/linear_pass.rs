@@ -45,7 +45,7 @@ pub(super) struct Vectors {
 pub(super) struct SkewPart {
     /// Dofs of each skew part, and N over these dofs.
     parts: Vec<(Vec<usize>, DMatrix<f64>)>,
-    /// N dU (all dofs).
+    /// N dU over all dofs (force).
     force: Vec<f64>,
     /// Part of the first change of N dU that is left to the next pass.
     left: f64,
@@ -82,8 +82,8 @@ impl SkewPart {
         force
     }
 
-    /// Enters another dU. Returns whether N dU has converged, relative to the other forces, or cannot converge further
-    /// because of round-off.
+    /// Enters the dU of another solve. Returns whether N dU has converged, relative to the other forces, or cannot
+    /// converge further because of round-off.
     pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
         let force = self.product(du);
         self.force.resize(du.len(), 0.0);

@@ -22,8 +22,8 @@ use crate::linear::larger;
 /// keep both.
 pub(super) const SLOW_PASSES: usize = 10;
 
-/// Largest error of the friction after the last pass, relative to the largest normal force. This error is a tenth of
-/// the limit in the certificate.
+/// Largest error of the friction after the last pass, relative to the largest normal force. This largest error is a
+/// tenth of the limit in the certificate.
 const OWN_FRICTION: f64 = 1e-10;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even if
@@ -141,8 +141,8 @@ impl Passes<'_, '_> {
         }
     }
 
-    /// Adds the forces of a pass to those of the hinges: the forces that close the gaps of the hinges, and their
-    /// reactions to the other forces.
+    /// Adds the forces of a pass to those of the hinges: the forces that close the gaps of the hinges, and the
+    /// reactions of the hinges to all other forces.
     pub fn take_hinge_forces(&mut self, closing: Vec<f64>, v: &mut Vectors) {
         let hinges = &self.problem.hinges;
         if hinges.are_none() {

@@ -57,7 +57,7 @@ pub(super) struct PinIteration<'a, 'm> {
 
 impl PinIteration<'_, '_> {
     /// Solves a pass: contact forces, correction and rigid motions. A motion that a force drives is held if only the
-    /// facets of the mesh resist the motion. If nothing resists such a motion, there is no equilibrium.
+    /// facets of the mesh resist the motion. If nothing resists the motion, there is no equilibrium.
     ///
     /// Returns the forces by which hinges close their gaps.
     pub fn iterate(
@@ -229,7 +229,7 @@ impl PinIteration<'_, '_> {
         most.is_some_and(|(_, pressed)| pressed > 0.0)
     }
 
-    /// Holds the free motions of bodies with forces at their pins; returns whether there are any. These motions are
+    /// Holds the free motions of bodies with forces at their pins; returns whether there are any. The free motions are
     /// found in a configuration in which the bodies have not moved away.
     fn hold(
         &mut self,

@@ -17,10 +17,10 @@ pub(crate) struct Returned {
 /// Energy that nodes without mass lose as they come to rest at the end of an increment in which pairs open.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Release {
-    /// Loss R: decrease of the strain energy less the potential of the loads, W - R.u, on the way
-    /// to the rest (energy).
+    /// Loss R: decrease of the strain energy less the potential of the loads, W - R.u, while the
+    /// nodes come to rest (energy).
     pub loss: f64,
-    /// Work of the loads on the way to the rest (energy).
+    /// Work of the loads while the nodes come to rest (energy).
     pub load_work: f64,
     /// The opened pairs at the end of the increment, with the forces that they had before.
     pub opened: Vec<(Constraint, [f64; 2])>,
@@ -37,7 +37,7 @@ pub(crate) struct PairReturn {
     pub friction: f64,
     /// Normal impulse (dt²/2) y (force time).
     pub normal: f64,
-    /// Tangential impulse (force time).
+    /// Tangential impulse of the return (force time).
     pub tangential: f64,
     /// Impulse on the slave node (force time).
     pub vector: [f64; 2],

@@ -1,5 +1,6 @@
 //! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with finite rotation.
-//! The other bodies move with the supports of the model if these all move alike. See docs/theory/time.md, Predictor.
+//! All other bodies move with the supports of the model if these supports all move alike. See docs/theory/time.md,
+//! Predictor.
 
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};

@@ -27,8 +27,8 @@ pub(super) fn carry_nodes(
 /// V = Vr + T_0 (T_0^T M T_0)^-1 T_0^T M (V0 - Vr)      eq. (11.5)
 /// ```
 ///
-/// Vr is any motion of the model with the prescribed values, and T_0 are the rows (11.3) at the start. The rest V0 - V
-/// does no work with impulses, (V0 - V).M V = 0, so impulses add no energy.
+/// Vr is any motion of the model with the prescribed values, and T_0 are the rows (11.3) at the start. The difference
+/// V0 - V does no work with impulses, (V0 - V).M V = 0, so impulses add no energy.
 pub(super) fn agreeing<'a>(
     problem: &StepProblem,
     workspace: &mut Workspace,

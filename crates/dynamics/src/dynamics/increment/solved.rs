@@ -20,7 +20,7 @@ pub(crate) struct Solved {
     pub equilibrium: Equilibrium,
     /// Contact forces and impact impulses.
     pub contact: ContactStates,
-    /// Motion at the end.
+    /// Motion at the end of the increment.
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Solved {
     pub tangent: Vec<f64>,
     /// Its passes.
     pub passes: Vec<PassReport>,
-    /// Energy given back after convergence.
+    /// Energy given back after the increment has converged.
     pub returned: Returned,
     /// Motions that are held in the increment.
     pub held: HeldMotions,

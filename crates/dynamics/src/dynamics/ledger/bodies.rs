@@ -172,7 +172,7 @@ fn own_length(problem: &StepProblem, spin: usize) -> f64 {
 }
 
 /// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, with p = M V. For bodies of
-/// revolution only the momentum along the axis is given; the others are zero.
+/// revolution only the momentum along the axis is given; the other components are zero.
 pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
     let mut momentum = Momentum::default();
     let bodies = problem.unknowns.turning.bodies.iter();

@@ -359,7 +359,7 @@ impl Ledger {
     }
 
     /// Bound of the work that the round-off of forces may do in a static increment. No pass can balance the round-off
-    /// of forces; those of elements without unknowns count too.
+    /// of forces; forces of elements without unknowns count too.
     ///
     /// ```text
     /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)

@@ -48,8 +48,8 @@ pub(crate) fn check_energy_gain(
 /// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
 /// ```
 ///
-/// E is the largest energy so far; n, K_ii and M_ii are those of eq. (4.10). In a static step no balance is demanded
-/// either if n has done more than a thousandth of E of work, since the bodies then move rigidly.
+/// Here E is the largest energy so far; n, K_ii and M_ii are those of eq. (4.10). In a static step no balance is
+/// demanded either if n has done more than a thousandth of E of work, since the bodies then move rigidly.
 ///
 /// # Errors
 /// [`Cause::Unbalanced`].

@@ -12,7 +12,7 @@ use crate::dynamics::step::{StepProblem, difference, dot};
 pub(crate) struct PairWork {
     /// The pair.
     pub key: ConstraintKey,
-    /// Work of the normal force, without the other parts.
+    /// Work of the normal force, without the work at fits.
     pub normal: f64,
     /// Work of the normal force that separates the surfaces of a fit.
     pub fit: f64,
@@ -20,7 +20,7 @@ pub(crate) struct PairWork {
     pub friction: f64,
     /// Normal force times the sliding path of the pair (energy).
     pub sliding: f64,
-    /// Nodes on the slave surface and on the master at which the pair acts. These nodes are stored because a pair that
+    /// Nodes on the slave surface and on the master at which the pair acts. The nodes are stored because a pair that
     /// has opened is no longer a pair at the end.
     pub surfaces: [SurfaceParts; 2],
 }

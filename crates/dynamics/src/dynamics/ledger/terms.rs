@@ -137,8 +137,8 @@ pub(super) fn scheme_dissipation(
     internal_work - (strain1 - strain0) - damping - material_dissipation
 }
 
-/// Strain energy at the end of an increment before nodes without mass came to rest (energy), computed from the strain
-/// energy after the rest:
+/// Strain energy at the end of an increment before nodes without mass came to rest (energy), computed from the energy
+/// at rest:
 ///
 /// ```text
 /// W1 + R - (work of the loads on the way to the rest)      eq. (6.15)

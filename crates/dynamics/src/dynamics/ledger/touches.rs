@@ -37,7 +37,7 @@ pub(crate) struct Touches {
 #[derive(Default, serde::Serialize, serde::Deserialize)]
 struct TouchUnderWay {
     touch: Touch,
-    /// Impulse on the first partner.
+    /// Impulse on the first partner of the touch.
     impulse: [f64; 2],
     /// Slave nodes closed at the end of the last increment.
     closed: BTreeSet<SlaveKey>,

@@ -107,7 +107,7 @@ pub struct IncrementReport {
 }
 
 impl IncrementReport {
-    /// The numbers of the report, without fields and without events such as landings.
+    /// The numbers of the report, without fields and events (for example landings).
     pub fn numbers(&self) -> IncrementReport {
         IncrementReport {
             increment: self.increment,

@@ -15,14 +15,14 @@
 )]
 #[repr(u8)]
 pub enum NodeStatus {
-    /// No candidate segment.
+    /// The node has no candidate segment.
     #[default]
     None = 0,
-    /// A candidate segment, without contact.
+    /// The node has a candidate segment but no contact.
     Open = 1,
-    /// In contact without slip.
+    /// The node is in contact and does not slip.
     Stick = 2,
-    /// In contact, sliding.
+    /// The node is in contact and slides.
     Slip = 3,
 }
 

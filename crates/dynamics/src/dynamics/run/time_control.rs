@@ -17,7 +17,7 @@ pub(crate) struct NextSubincrement {
     pub nominal: f64,
 }
 
-/// Divides one nominal increment.
+/// Divides one nominal increment into subincrements.
 pub(crate) trait TimeControl {
     /// The next subincrement; `None` at the end of the nominal increment.
     fn next(&self) -> Option<NextSubincrement>;

@@ -12,7 +12,8 @@ use crate::elements::Motion;
 use crate::vectors::{cross, difference, dot};
 
 /// Angles, in the configuration in which K* was assembled, of the bodies that are free or turn
-/// about one node. Other bodies have the angle 0, since their supports do not turn with them.
+/// about one node. Bodies that are held otherwise have the angle 0, since their supports do not
+/// turn with them.
 pub(crate) struct BodyAngles {
     /// Nodes of the bodies that turn, each with its arm r0 from the centre of mass of the body times its mass (mass
     /// length).
@@ -94,7 +95,7 @@ fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     sums.iter().map(centre).collect()
 }
 
-/// How a body is held.
+/// How supports and equations hold a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// Neither supports nor equations hold the body.

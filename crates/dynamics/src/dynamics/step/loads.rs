@@ -73,7 +73,7 @@ impl TimePoint {
     }
 }
 
-/// Times of an increment.
+/// Start and end of an increment as points in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interval {
     pub start: TimePoint,
@@ -356,8 +356,8 @@ impl<'m> Loads<'m> {
         [0, 1].map(|i| self.model.mesh.coordinates[node][i] + u[2 * node + i])
     }
 
-    /// Derivative of the forces of the pressure p on a face. These forces are polynomials of degree 2 at most in the
-    /// positions, so central differences of any step are exact; the step is the length of the face.
+    /// Derivative of the forces of the pressure p on a face. The forces of the pressure are polynomials of degree 2 at
+    /// most in the positions, so central differences of any step are exact; the step is the length of the face.
     fn change_of_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64]) -> ForceChange {
         let side = load.at.face.of(&self.model.mesh);
         let thickness = self.elements.thickness(load.at.face.element);
@@ -396,7 +396,7 @@ pub(crate) struct StepPlace {
     pub number: usize,
     /// Time of the analysis at which the step starts.
     pub start: f64,
-    /// Duration in the deck (time).
+    /// Duration of the step in the deck (time).
     pub period: f64,
     /// Time by which a run goes on beyond the step; ramped loads keep the value of its end.
     pub extension: f64,

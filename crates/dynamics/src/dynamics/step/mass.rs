@@ -151,8 +151,8 @@ fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<us
     (carriers, carried)
 }
 
-/// Mass matrix T^T M T over the unknowns of a step. Its pattern includes that of the elements, which are the first ones
-/// in the assembly.
+/// Mass matrix T^T M T over the unknowns of a step. The pattern of the mass matrix includes that of the elements, which
+/// come first in the assembly.
 pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     let of_node = |&node: &usize| [2 * node, 2 * node + 1];
     let of_list = |nodes: &Vec<usize>| nodes.iter().flat_map(of_node).collect();

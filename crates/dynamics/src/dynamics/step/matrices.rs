@@ -65,13 +65,13 @@ pub(crate) struct SolveVectors {
 /// Vectors of the response at the nodes of some constraints.
 #[derive(Default)]
 pub(crate) struct ResponseVectors {
-    /// The nodes, increasing.
+    /// The nodes at which the response is computed, increasing.
     pub nodes: Vec<usize>,
     /// Unknowns on which the dofs of these nodes depend, increasing.
     pub unknowns: Vec<usize>,
     /// Forces of the constraints in the right-hand side (unknown, force).
     pub forces: Vec<(usize, f64)>,
-    /// Values at the unknowns.
+    /// Values of the response at the unknowns.
     pub values: Vec<f64>,
     /// The response at these nodes, over all dofs; other entries have no meaning.
     pub at_nodes: Vec<f64>,
@@ -241,12 +241,12 @@ fn masses(problem: &StepProblem) -> Masses {
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M with a diagonal at nodes without mass. This mass matrix is factorised for the acceleration at the start, and
+    /// M with a diagonal at nodes without mass. The mass matrix is factorised for the acceleration at the start, and
     /// again when an impulse first needs it.
     pub m: FactoredMatrix,
     /// Angles of the bodies in the configuration of K*.
     angles: BodyAngles,
-    /// Form of K*.
+    /// Form of the stiffness in K*.
     pub form: StiffnessForm,
     /// Stiffness of every pin in K* (force/length).
     pub pins: Vec<f64>,

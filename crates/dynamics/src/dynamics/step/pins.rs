@@ -26,7 +26,7 @@ const AGREES: f64 = 1e-9;
 /// Least stiffness of the pins of a rigid body, relative to the largest force divided by the body's size, so that pins
 /// move little against the size of the body.
 const STIFF: f64 = 1e3;
-/// Round-off of the resultant of many nodal forces, relative to the round-off of one of them.
+/// Round-off of the resultant of many nodal forces, relative to the round-off of one nodal force.
 const RESULTANT: f64 = 10.0;
 
 /// The pins of a step.
@@ -225,7 +225,7 @@ impl Pins {
         }
     }
 
-    /// Largest round-off of the forces at the pins of deformable bodies. This round-off is ten times that of one nodal
+    /// Largest round-off of the forces at the pins of deformable bodies. Their round-off is ten times that of one nodal
     /// force, 4 eps a |x|, where a is the stiffness of the pin in K* and x the size of the body.
     pub fn round_off(&self, a: &[f64]) -> f64 {
         let all = self.bodies.iter().zip(self.of_bodies());
@@ -627,8 +627,8 @@ impl PinnedBody {
 }
 
 /// Dofs of nodes without elements that, through equations, move parts of a body relative to each other, as the
-/// tightening of a pre-tension section does. The terms of such a dof make an equation forbid rigid motions that the
-/// equation without them allows.
+/// tightening of a pre-tension section does. The terms of tightening dofs make an equation forbid rigid motions that
+/// the equation without them allows.
 fn tightening(
     equations: &[Equation],
     has_elements: &[bool],

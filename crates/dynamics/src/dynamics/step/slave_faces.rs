@@ -21,12 +21,12 @@ pub(crate) struct SlaveFaces {
     /// The value is 0 at slave nodes and at master nodes of contact from surface to surface, NaN at other nodes, `N`
     /// entries.
     pub start: Vec<f64>,
-    /// The faces, with increasing nodes.
+    /// The faces of all nodes, with increasing nodes.
     faces: Vec<SlaveFace>,
 }
 
 impl SlaveFaces {
-    /// Faces of the slave surfaces; slave nodes without such a face get the exterior faces of their elements. Master
+    /// Faces of the slave surfaces; slave nodes without a slave face get the exterior faces of their elements. Master
     /// nodes of contact from surface to surface that are not slave nodes get the faces of the master surfaces.
     pub fn new(model: &Model) -> Self {
         let mesh = &model.mesh;

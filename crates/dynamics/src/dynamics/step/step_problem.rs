@@ -243,11 +243,11 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Checks that no element is turned inside out at the end of an increment. The passes detect such elements
+    /// Checks that no element is turned inside out at the end of an increment. The passes detect inverted elements
     /// themselves in the energy-momentum form, and if both weights are 1; in other schemes they see only U_theta.
     ///
     /// # Errors
-    /// Returns [`Cause::Inverted`] with the first such element.
+    /// Returns [`Cause::Inverted`] with the first element that is turned inside out.
     pub fn check_end(&self, end: &State) -> Result<(), Cause> {
         let Integration {
             theta1,

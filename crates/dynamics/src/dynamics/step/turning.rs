@@ -147,7 +147,7 @@ impl TurningBody {
         u[self.spin] / self.length
     }
 
-    /// The other nodes of the body with their arms from the pole, at an angle.
+    /// All nodes of the body except its pole, with their arms from the pole, at an angle.
     fn arms_from(
         &self,
         pole: usize,
@@ -245,8 +245,8 @@ impl<'m> Turning<'m> {
         })
     }
 
-    /// Whether nodes of a body that is not driven carry mass of deformable elements: velocities of such nodes would not
-    /// follow the rigid motion.
+    /// Whether nodes of a body that is not driven carry mass of deformable elements: their velocities would not follow
+    /// the rigid motion.
     pub fn carry_elements(&self) -> bool {
         let mut all = self.bodies.iter().zip(&self.driven);
         all.any(|(body, driven)| !driven && !body.loaded.is_empty())
@@ -461,8 +461,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Corrects the accelerations of the nodes of the other bodies in an increment `d` from `u0`. The correction adds
-    /// the motion of the prescribed poles and angles beyond `own`, the accelerations of eq. (4.1):
+    /// Corrects the accelerations of the nodes of bodies that are not driven, in an increment `d` from `u0`. The
+    /// correction adds the motion of the prescribed poles and angles beyond `own`, the accelerations of eq. (4.1):
     ///
     /// ```text
     /// A += A_p + (A_s/L) J r_m      eq. (11.4)

@@ -205,7 +205,7 @@ impl<'m> Unknowns<'m> {
     }
 }
 
-/// For every dof whether it is free: dofs of nodes with elements, and dofs that such a dof follows,
+/// For every dof whether it is free: dofs of nodes with elements, and dofs that those dofs follow,
 /// except supports and dofs that follow others.
 fn free_dofs(
     elements: &Elements,
