@@ -20,14 +20,14 @@ impl CornerContact {
     /// s, a, b, c.
     ///
     /// With the weight w of the corner, the segment i before it and the segment j behind it, eq.
-    /// (10.3),
+    /// (10.3):
     ///
     /// ```text
     /// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
     /// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
     /// ```
     ///
-    /// and the normal has the length 1. Both g_i and g_j contain the overlap a that a fit allows, eq. (3.15). The
+    /// The blended normal has the length 1. Both g_i and g_j contain the overlap a that a fit allows, eq. (3.15). The
     /// weights are constant in a pass, so rows and gap stay exact differences. With other weights than in the last
     /// increment, a closed corner may begin with a small overlap; the overlap stays, since pushing it out would do
     /// work.

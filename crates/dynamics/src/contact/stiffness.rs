@@ -14,7 +14,7 @@
 //! ```
 //!
 //! The end rows are Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t + (h/l) e_n), eq. (3.4). With de_n = -e_t (e_n.de)/l,
-//! de_t = e_n (e_n.de)/l and constant h their derivatives are
+//! de_t = e_n (e_n.de)/l and constant h, the derivatives of the end rows are
 //!
 //! ```text
 //! dBn = -(e_t, -xi e_t) (e_n.de)/l - (0, e_n) dxi

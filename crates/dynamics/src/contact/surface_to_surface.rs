@@ -555,7 +555,7 @@ impl SurfacePoint {
         Tilt::new(p.gap - before, slip(&p, &q), POINT_TILT.max(2.0 * turn))
     }
 
-    /// Gap of the point in the iterate between the faces, and the one between their chords:
+    /// Gaps of the point in the iterate, between the faces and between their chords:
     ///
     /// ```text
     /// G_q = g_q - b_m(xi_q) - b_s(eta_q)    eq. (3.32)

@@ -109,11 +109,11 @@ entries!(SurfacePoint, (usize, SurfacePoint));
 /// The master segment under a point at the start of the increment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum StartSegment {
-    /// The segment at the start is the one at the end.
+    /// The point was over the same segment as at the end.
     Same,
-    /// Another segment, with these ends and this bulge.
+    /// The point was over another segment, with these ends and this bulge.
     Other([Vertex; 2], Bulge),
-    /// No segment: the point has come in over the end of the master surface.
+    /// The point was over no segment: it has come in over the end of the master surface.
     Outside,
 }
 

@@ -5,8 +5,8 @@
 // Geometry of surfaces and bodies.
 
 /// Cosine of the turn beyond which a convex corner of the reference configuration is sharp (an
-/// angle below 120 degrees). Folded legs at a sharp corner are the corner itself; folded legs
-/// elsewhere are a closed concave corner.
+/// angle below 120 degrees). Folded legs at a sharp corner are the corner itself; elsewhere they
+/// are a closed concave corner.
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
 /// Cosine of 30 degrees: beyond this turn in the reference configuration a surface has a corner.
 pub(crate) const CORNER_COSINE: f64 = 0.866;

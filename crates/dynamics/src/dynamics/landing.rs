@@ -262,7 +262,7 @@ pub(super) fn give_back(
 /// (z + z²/2) V'.M V' = sum (D_j - G_j),   eq. (6.12)
 /// ```
 ///
-/// A rest larger than the energy of the vibration is lost.
+/// If the sum of the rests is larger than the energy of the vibration, the rests are lost.
 fn give_rests(
     problem: &StepProblem,
     bodies: &RigidBodies,

@@ -1,20 +1,20 @@
 //! Formulations with volume ratios of the element in place of those of its points (CPE4H, CAX4H, CPE8H, CPE8RH, CAX8H,
 //! CAX8RH; Simo, Taylor & Pister 1985), for nearly incompressible materials. The stored energy is that of the modified
-//! deformation gradient
+//! deformation gradient, eq. (2.9):
 //!
 //! ```text
 //! Fbar = (theta/J)^(1/n) F,  det Fbar = theta
 //! ```
 //!
-//! of eq. (2.9), where theta is the mean of J, or linear in the element. See docs/theory/elements.md. Without strain
-//! across the plane n is 2, since F_zz stays 1 and the material keeps its plane strain law (de Souza Neto et al. 1996);
-//! with all components n is 3.
+//! Here theta is the mean of J, or linear in the element. See docs/theory/elements.md. Without strain across the plane
+//! n is 2, since F_zz stays 1 and the material keeps its plane strain law (de Souza Neto et al. 1996); with all
+//! components n is 3.
 //!
 //! # Derivation
 //!
 //! The functions psi_k are orthogonal, and the integral of psi_k² over the element is its volume V; theta = sum psi_k
 //! int psi_k J dOmega/V. The strain of the material is Ebar = r E + (r - 1)/2 I, with r = rho^(2/n) and rho = theta/J.
-//! The changes of these products between two configurations are exact with mean quantities,
+//! The changes of the products in Ebar between two configurations are exact with mean quantities:
 //!
 //! ```text
 //! dEbar = r_m dE + C_m/2 dr,  dr = g drho,  drho = (J_m dtheta - theta_m dJ)/(J0 J1),  dJ = K : dE

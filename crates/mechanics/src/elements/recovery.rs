@@ -118,14 +118,14 @@ impl ElementNodes {
 }
 
 /// Share of a point in the value at a node. In quadrilaterals this share is, with sums over the
-/// points,
+/// points:
 ///
 /// ```text
 /// f(r, s) = sum_p f_p (1/P + r r_p/sum r² + s s_p/sum s² + r s r_p s_p/sum r² s²)
 /// ```
 ///
-/// which interpolates between four points and is the nearest field to nine. In triangles with three points the share is
-/// 2 L - 1/3 with L of the point's corner.
+/// With four points the field interpolates their values; with nine it is the nearest field. In triangles with three
+/// points the share is 2 L - 1/3 with L of the point's corner.
 fn share(shape: Shape, points: usize, node: usize, point: usize) -> f64 {
     let corners = shape.topology().sides.len();
     if points == 1 {

@@ -161,7 +161,7 @@ impl Plastic {
         found
     }
 
-    /// Trial state of a strain, eq. (2.37).
+    /// Trial state of the metal at a strain, eq. (2.37).
     fn trial(&self, e: &Symmetric, state: &PlasticState) -> Trial {
         let v = IDENTITY + root(&state.g);
         let y = state.g + between(&v, e) * 2.0;

@@ -22,7 +22,8 @@ impl Thickness {
         }
     }
 
-    /// The constant factor, and in a ring the distance of a place from the axis.
+    /// Factors of the extent: the constant thickness or 1, and in a ring the distance of a place
+    /// from the axis.
     pub(super) fn parts(self, radius: f64) -> (f64, Option<f64>) {
         match self {
             Thickness::Of(thickness) => (thickness, None),

@@ -110,8 +110,8 @@ impl ContactForces {
     /// d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
     /// contact forces (all dofs).
     ///
-    /// Constraints that the last pass left open stay out of the problem at first; in a first pass, constraints that y =
-    /// d_p + W r leaves open do. Constraints that overlap under the forces in the problem enter afterwards, so the
+    /// Constraints that the last pass left open stay out of the problem at first; in a first pass, those stay out that
+    /// y = d_p + W r leaves open. Constraints that overlap under the forces in the problem enter afterwards, so the
     /// answer is that of all constraints. Once the passes have settled, the equal-force rule has a `weight`, and
     /// constraints enter only if they would overlap by more than round-off. Two nodes that face each other may carry
     /// the same force, which must not go to and fro between them.
@@ -198,8 +198,9 @@ impl ContactForces {
         });
     }
 
-    /// Adds to the problem as many constraints as it has, those with the smallest gaps of the iterate: bodies that its
-    /// constraints leave free move on to the next ones. Returns whether there were any constraints outside the problem.
+    /// Adds to the problem as many constraints as it has, namely those with the smallest gaps of the iterate: a body
+    /// that the present constraints leave free moves on to the next ones. Returns whether there were any constraints
+    /// outside the problem.
     fn enter_nearest(&self, inside: &mut [bool]) -> bool {
         let count = inside.iter().filter(|inside| **inside).count().max(FEWEST);
         let gap = |k: usize| self.constraints[k].gap / self.constraints[k].scale;

@@ -42,7 +42,7 @@ pub(crate) fn check_energy_gain(
 /// Checks that the energy balance is negligible against the largest energy so far.
 ///
 /// Round-off of positions causes forces n that cannot be balanced. No balance is demanded of a motion with so little
-/// energy that these forces exceed a thousandth of its own forces,
+/// energy that the forces n exceed a thousandth of its own forces:
 ///
 /// ```text
 /// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)

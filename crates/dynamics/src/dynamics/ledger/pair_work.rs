@@ -188,7 +188,7 @@ impl EndForces {
         sums
     }
 
-    /// Work of the pairs in a static increment from these forces to the forces at its end, and the part of the
+    /// Work of the pairs in a static increment that leads from this equilibrium to its end, and the part of the
     /// trapezoidal work of tangential forces that friction does not dissipate:
     ///
     /// ```text

@@ -113,8 +113,8 @@ pub struct Touch {
     pub is_at_corner: bool,
     /// Impulse J on one of the bodies (force time).
     pub impulse: f64,
-    /// J²/(8 m), where m is the reduced mass of the bodies: the kinetic energy of their approach if they rebound with
-    /// the same speed; 0 if both are held.
+    /// J²/(8 m) with the reduced mass m of the bodies: their kinetic energy of approach if they rebound with the same
+    /// speed; 0 if both are held.
     pub energy: f64,
 }
 

@@ -33,8 +33,8 @@ pub trait Observer {
         false
     }
 
-    /// Receives all data on which the rest of the run depends, for [`crate::dynamics::resume`]. The observer receives
-    /// the data when a checkpoint is wanted, and before the run ends on request.
+    /// Receives all data on which the rest of the run depends, for [`crate::dynamics::resume`]: when a checkpoint is
+    /// wanted, and before the run ends on request.
     fn checkpoint(&mut self, _checkpoint: Vec<u8>) -> io::Result<()> {
         Ok(())
     }

@@ -22,7 +22,7 @@ const MOST: f64 = 256.0;
 /// State for which new factors of K* are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FactoredState {
-    /// The state of the iterate is used.
+    /// The state of the iterate.
     Iterate,
     /// The bodies without displacements, and then turned.
     Unstrained,
