@@ -24,7 +24,7 @@ pub(super) struct OfChord {
 /// Bn' = Bn - beta Bt,  Bt' = (Bt + beta Bn)/s    eq. (3.30)
 /// ```
 ///
-/// With these rows Bn' d = G1 - G0. End rows (`RowForm::End`) have beta = b'(xi)/l.
+/// With the rows of the face Bn' d = G1 - G0. End rows (`RowForm::End`) have beta = b'(xi)/l.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bend {
     /// beta

@@ -36,9 +36,9 @@ impl Bulge {
     /// ```
     ///
     /// With tau = t the cubic would have the slopes of the face; its mean distance from an arc would be 8/15 of the
-    /// greatest distance. With these tau the area between chord and arc is right to the seventh order, tau = 3 ((1 +
-    /// t²) atan t - t)/(2 t²). The greatest distance from the arc is a fifth of that with tau = t, and the slopes are
-    /// right to the third order.
+    /// greatest distance. With the given tau the area between chord and arc is right to the seventh order, tau = 3
+    /// ((1 + t²) atan t - t)/(2 t²). The greatest distance from the arc is a fifth of that with tau = t, and the slopes
+    /// are right to the third order.
     pub(super) fn of_slopes(length: f64, slopes: [f64; 2]) -> Self {
         let [start, end] = slopes.map(|t| {
             let square = t * t;
@@ -208,7 +208,7 @@ pub struct Lift {
 }
 
 impl Lift {
-    /// Whether the lift is zero, so gaps are those to the chord.
+    /// Whether the lift is zero, so gaps are relative to the chord.
     pub fn is_none(&self) -> bool {
         self.allowed == 0.0 && self.bulge.is_flat()
     }

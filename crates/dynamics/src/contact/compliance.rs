@@ -342,7 +342,7 @@ fn add_unknowns(blocks: &mut Vec<InverseBlock>, missing: &[(usize, usize)]) -> V
 pub(super) struct UnknownEntry {
     /// Row of the unknown in the inverse of its block.
     pub place: usize,
-    /// Number of the block: the one of the group of the unknown.
+    /// Number of the block of the unknown's group.
     pub block: usize,
     /// Entries of Bn T and Bt T.
     pub force: [f64; 2],
@@ -365,7 +365,8 @@ impl GroupRows {
         self.entries.clear();
     }
 
-    /// Adds an entry of a constraint; the constraint is the last one of the list or comes after it.
+    /// Adds an entry of a constraint, which must be the last constraint of the list or come after
+    /// it.
     pub fn push(&mut self, constraint: usize, entry: UnknownEntry) {
         self.entries.push(entry);
         let end = self.entries.len();

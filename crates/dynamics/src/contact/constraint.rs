@@ -102,7 +102,7 @@ pub struct Constraint {
     pub stretch: f64,
     /// Decrease of the overlap that a fit allows within the increment (length), eq. (3.15).
     pub shrinkage: f64,
-    /// Length to which gaps are relative: the one of the segment.
+    /// Length to which gaps are relative: the length of the segment.
     pub scale: f64,
     /// The slave node and target from which the constraint is made.
     pub(super) source: PairTarget,

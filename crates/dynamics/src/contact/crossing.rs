@@ -87,7 +87,7 @@ pub fn crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
 /// Whether a node on a straight path stays clearly on one side of the line of the segment, before its end a, or beyond
 /// b, at all times.
 ///
-/// On a straight path r x e, -r.e and (r - e).e are quadratic in time. Each of these is positive if its Bernstein
+/// On a straight path r x e, -r.e and (r - e).e are quadratic in time. Each of the three is positive if its Bernstein
 /// coefficients are; for r x e the coefficients are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
 fn is_clear(nodes: &[QuadraticMotion; 3], dt: f64) -> bool {
     if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {

@@ -20,9 +20,9 @@ pub struct FaceShapes {
 pub struct Chain<'a> {
     /// The nodes at the ends of each segment.
     pub segments: &'a [[usize; 2]],
-    /// For every segment the one that starts at its end, if any.
+    /// For every segment the segment that starts at its end, if any.
     pub next: &'a [Option<usize>],
-    /// For every segment the one that ends at its start, if any.
+    /// For every segment the segment that ends at its start, if any.
     pub previous: &'a [Option<usize>],
 }
 

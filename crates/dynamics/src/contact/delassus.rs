@@ -159,7 +159,7 @@ impl WithSimd for PanelResponses<'_> {
 struct GroupSum<'a> {
     /// The constraints that act on the group.
     members: &'a [Member<'a>],
-    /// Responses of these constraints, panel by panel.
+    /// Responses of the constraints that act on the group, panel by panel.
     responses: &'a [Responses],
     /// Number of all constraints.
     n: usize,

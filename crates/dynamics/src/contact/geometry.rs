@@ -50,9 +50,9 @@ pub struct ContactSurfaces {
     pub adjacent: Vec<Option<[usize; 2]>>,
     /// Master segments [a, b] with the body on the left of the direction from a to b.
     pub segments: Vec<[usize; 2]>,
-    /// For every segment the one that starts at its end, if any.
+    /// For every segment the segment that starts at its end, if any.
     pub next: Vec<Option<usize>>,
-    /// For every segment the one that ends at its start, if any.
+    /// For every segment the segment that ends at its start, if any.
     pub previous: Vec<Option<usize>>,
     /// For every segment whether the body has a sharp corner at its end b in the reference
     /// configuration: an angle below 120 degrees. At any other corner, legs that fold onto each
@@ -469,9 +469,9 @@ pub fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f6
 /// Direction of a walk along a chain of segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
-    /// From a segment to the one that starts at its end.
+    /// From a segment to the next, which starts at its end.
     Forward,
-    /// From a segment to the one that ends at its start.
+    /// From a segment to the previous one, which ends at its start.
     Backward,
 }
 

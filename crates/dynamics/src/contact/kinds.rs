@@ -163,8 +163,8 @@ impl Constraint {
         }
     }
 
-    /// Whether the slave node projects between the ends of its segment at the given positions, and on neither end. For
-    /// a point of a mean this is always so.
+    /// Whether the slave node projects between the ends of its segment at the given positions, and on neither end. The
+    /// result is always true for a point of a mean.
     pub fn is_over(&self, at: Positions) -> bool {
         let is_over = || {
             let xi = at.place(self.pair().nodes).xi;

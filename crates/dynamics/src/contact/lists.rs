@@ -16,7 +16,7 @@ type Spare<T> = RefCell<Vec<Vec<T>>>;
 
 /// Type of the entries of recycled lists.
 pub trait Entry: Copy + 'static {
-    /// The spare lists of this thread.
+    /// The spare lists of the current thread.
     fn spare() -> &'static LocalKey<Spare<Self>>;
 }
 

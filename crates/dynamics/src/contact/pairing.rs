@@ -132,8 +132,9 @@ pub fn find_means(
     }
 }
 
-/// Keeps those targets of the last pass that the node is still over, and adds the found ones beyond them. Corners get
-/// the weights of the iterate; the vertex of a hollow that the node has left becomes its two segments.
+/// Keeps those targets of the last pass that the node is still over, and adds those of the found targets that are
+/// beyond them. Corners get the weights of the iterate; the vertex of a hollow that the node has left becomes its two
+/// segments.
 fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut ContactTargets) {
     targets.retain(|target| node.is_over(target, beyond));
     for place in 0..targets.len() {
@@ -212,7 +213,7 @@ fn pair_target(
     PairTarget { pair, target }
 }
 
-/// Slave nodes with the corners that they meet; there are few.
+/// Slave nodes with the corners that they meet; usually few nodes meet corners.
 type Corners = SmallVec<[[usize; 2]; 8]>;
 
 /// Removes one of the two pairs of nodes that are each other's corner.

@@ -22,8 +22,8 @@ type Segments = SmallVec<[usize; 8]>;
 ///
 /// Near a concave corner a node outside the body is in front of both segments; near a convex corner
 /// it is in front of at least one. Every segment that the node faces therefore constrains it, but
-/// only one of a run of segments round convex corners. The node was in front of these segments at
-/// the start of the increment, so the contact never adds energy.
+/// only one of a run of segments round convex corners. The node was in front of the segments in its
+/// targets at the start of the increment, so the contact never adds energy.
 impl SlaveNode<'_> {
     /// The targets of the node in the order of their segments; the candidates must come in this
     /// order.
@@ -406,10 +406,11 @@ impl SlaveNode<'_> {
         Some([before, after].map(|[x, y]| [y, -x]))
     }
 
-    /// Weight w of the second segment at a vertex. A vertex is one of a face, of a gentle hollow, or of a gentle corner
-    /// that meets a node in a hollow of its own face, as a pin meets a bore. At a vertex the gaps to both segments are
-    /// the same; the normal of only one segment would lean to one side, and round-off would choose the segment. Returns
-    /// `None` if the gaps differ, if the turn is larger, or if the node was behind one of the segments.
+    /// Weight w of the second segment at a vertex. A vertex is that of a face, of a gentle hollow, or of a gentle
+    /// corner that meets a node in a hollow of its own face, as a pin meets a bore. At a vertex the gaps to both
+    /// segments are the same; the normal of only one segment would lean to one side, and round-off would choose the
+    /// segment. Returns `None` if the gaps differ, if the turn is larger, or if the node was behind one of the
+    /// segments.
     fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {
         let round_off = position_round_off(self.position());
         let least = (CLOSED_GAP * p.length.min(q.length)).max(round_off);

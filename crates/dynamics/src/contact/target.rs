@@ -94,7 +94,7 @@ pub struct SurfacePoint {
     pub vertices: [Vertex; 4],
     /// Place on the slave face, 0 at its first end and 1 at its second.
     pub eta: f64,
-    /// Bulge of the slave face at this place (length).
+    /// Bulge of the slave face at the place of the point (length).
     pub rise: f64,
     /// Bulge of the master segment under the point.
     pub bulge: Bulge,
@@ -183,7 +183,7 @@ impl PairTarget {
         }
     }
 
-    /// Whether the condition is true for one of the nodes.
+    /// Whether the condition is true for any of the nodes.
     pub fn any_node(&self, holds: impl Fn(usize) -> bool) -> bool {
         let named = self.named().nodes;
         named.into_iter().any(&holds)
@@ -273,7 +273,7 @@ impl Target {
         }
     }
 
-    /// The mean, if the target is one.
+    /// The mean, if the target is a mean.
     pub(super) fn mean(&self) -> Option<&MeanContact> {
         match self {
             Target::Mean(mean) => Some(mean),

@@ -160,8 +160,8 @@ pub(crate) const SIDE_BY_SIDE: f64 = 1.0;
 pub(crate) const LEAST_CELL: f64 = 1e-13;
 /// Part of the weight of a slave node that a mean must cover at least.
 pub(crate) const LEAST_COVER: f64 = 1e-6;
-/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond this tilt the point keeps
-/// the segment of the start, unless the surface turns by half as much.
+/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond the largest tilt the point
+/// keeps the segment of the start, unless the surface turns by half as much.
 pub(crate) const POINT_TILT: f64 = 0.3;
 
 // Preparation of a model.

@@ -193,8 +193,8 @@ impl RigidBodies {
     /// ```
     ///
     /// p = M w, f is the load, and r is the vector from the centre of mass. The response of K* alone does not have
-    /// exactly these momenta: K* belongs to another configuration, contains contact stiffness, and its factors may have
-    /// been turned with the bodies.
+    /// exactly the momenta of the load: K* belongs to another configuration, contains contact stiffness, and its
+    /// factors may have been turned with the bodies.
     fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
         let loads = self.sums(problem, force);
         let own = self.sums(problem, &problem.mass.times(w));

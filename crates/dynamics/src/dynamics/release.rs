@@ -118,8 +118,8 @@ impl Releasing<'_, '_> {
         Some(du)
     }
 
-    /// Constraints at the displacements `u` that the free nodes can close, without friction: the new ones and those of
-    /// the last pass. The gaps of these constraints are measured from the least allowed value.
+    /// Constraints at the displacements `u` that the free nodes can close, without friction: new constraints and those
+    /// of the last pass. The gaps of constraints that free nodes can close are measured from the least allowed value.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;
         let (increment, mut found) = ([start.as_slice(), u], Vec::new());

@@ -3,7 +3,7 @@
 
 use nalgebra::DMatrix;
 
-/// Relative change of the shares at which the sweeps end. The energy of all shares together is exact whatever this
+/// Relative change of the shares at which the sweeps end. The energy of all shares together is exact whatever the
 /// tolerance is.
 const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
@@ -65,7 +65,7 @@ pub(super) fn given(a: &DMatrix<f64>, b: &[f64], y: &[f64]) -> Vec<f64> {
     (0..y.len()).map(|j| y[j] * (b[j] + half(j))).collect()
 }
 
-/// The root y > 0 of a y² + b y = D for a, D > 0; 0 if there is no pattern (a = 0).
+/// The root y > 0 of a y² + b y = D for a, D > 0; 0 without a pattern (a = 0).
 fn positive_root(a: f64, b: f64, energy: f64) -> f64 {
     if a <= 0.0 {
         return 0.0;

@@ -165,7 +165,7 @@ impl<'m> Start<'m> {
     }
 
     /// Distance from the end of segment `i`, if the node lies between the normals of `i` and the
-    /// next segment. The segment returned is the one with the larger gap outside a convex corner,
+    /// next segment. The function returns the segment with the larger gap outside a convex corner,
     /// and with the smaller gap inside a concave one.
     fn in_wedge(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let j = self.contact.next[i]?;

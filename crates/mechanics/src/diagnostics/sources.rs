@@ -111,9 +111,9 @@ pub struct Sources {
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
     /// Values of parameters that replace those of the deck.
     settings: Vec<String>,
-    /// The deck that this one continues.
+    /// The deck that the main deck continues.
     earlier: Option<EarlierDeck>,
-    /// Texts of an editor that are read in place of files, by the whole paths of these files.
+    /// Texts of an editor that are read in place of files, by the full paths of these files.
     unsaved: BTreeMap<PathBuf, String>,
     /// Request to stop reading the deck because its result is not needed any more.
     interrupt: Interrupt,
@@ -199,7 +199,7 @@ impl Sources {
         &self.interrupt
     }
 
-    /// The deck that this one continues.
+    /// The deck that the main deck continues.
     pub fn earlier(&self) -> Option<&EarlierDeck> {
         self.earlier.as_ref()
     }
@@ -280,7 +280,7 @@ impl Sources {
         }
     }
 
-    /// The file with this id.
+    /// The file with the given id.
     pub fn get(&self, file: FileId) -> Option<&Source> {
         self.files.get(file.0 as usize)
     }

@@ -140,8 +140,8 @@ where
 {
     /// Indices of the elements, lane after lane and block after block.
     elements: Vec<usize>,
-    /// Node indices, increasing; blocks refer to places in this list. After these indices come the nodes for the places
-    /// of the last block that no element fills; they repeat the last element.
+    /// Node indices, increasing; blocks refer to places in this list. After the increasing indices come the nodes for
+    /// the places of the last block that no element fills; they repeat the last element.
     nodes: Vec<usize>,
     /// Number of the increasing node indices.
     node_count: usize,
@@ -380,13 +380,13 @@ where
         positive
     }
 
-    /// The force by any law, and whether det F is positive; this is compiled only once.
+    /// The force by any law, and whether det F is positive; the function is compiled only once.
     #[inline(never)]
     fn force(at: &MovedBlock<N, P, F::Reference>, law: &AnyLaw<HOOP>) -> (NodalLanes<N>, Positive) {
         F::force::<S>(at, law)
     }
 
-    /// The results of points by any law; this is compiled only once.
+    /// The results of points by any law; the function is compiled only once.
     #[inline(never)]
     fn results(at: &MovedBlock<N, P, F::Reference>, law: &AnyLaw<HOOP>) -> [ResultPoint; P] {
         F::results::<S>(at, law)

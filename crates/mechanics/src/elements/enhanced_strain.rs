@@ -563,12 +563,12 @@ struct PointMaterial<'a, const HOOP: bool> {
 struct Column {
     /// dE_g
     first: SymmetricLanes,
-    /// Tensor B of this change in the second derivative S : d²E_g.
+    /// Tensor B of the change in the second derivative S : d²E_g.
     second: Tensor,
 }
 
 impl Column {
-    /// dE_g C dE_g + S : d²E_g for this change and another, whose stresses are given.
+    /// dE_g C dE_g + S : d²E_g for the change and another one, whose stresses are given.
     #[inline(always)]
     fn product<const HOOP: bool>(
         &self,

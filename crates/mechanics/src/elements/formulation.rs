@@ -1,6 +1,6 @@
 //! Formulations of elements: how strains and stresses at the integration points depend on the displacements of the
-//! nodes. Force, tangent, results, work and internal variables of several elements at a time are computed from these
-//! strains and stresses. See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
+//! nodes. Force, tangent, results, work and internal variables of several elements at a time are computed from the
+//! strains and stresses at the points. See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
 
 use super::block::{
     ElementBlock, Gradient, MatrixLanes, MovedBlock, NodalLanes, PointForces, SymmetricLanes,

@@ -44,7 +44,7 @@ pub enum TangentPart {
     /// The complete tangents.
     Whole,
     /// The positive part of the tangents: negative eigenvalues of every element are replaced by
-    /// zero. No sum of these positive parts is indefinite, whatever the stresses and the material.
+    /// zero. No sum of positive parts is indefinite, whatever the stresses and the material.
     Positive,
 }
 

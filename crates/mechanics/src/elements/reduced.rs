@@ -1,7 +1,7 @@
 //! The four-node quadrilateral with the one strain of its mean gradients (CPE4R, CPS4R), and the ring with this section
-//! (CAX4R). The hourglass modes of these elements have a potential. In a ring the variation of the strain around the
-//! axis has a potential too, since one layer of elements could otherwise tilt freely. See docs/theory/elements.md, One
-//! strain and hourglass stiffness.
+//! (CAX4R). The hourglass modes of CPE4R, CPS4R and CAX4R have a potential. In a ring the variation of the strain
+//! around the axis has a potential too, since one layer of elements could otherwise tilt freely. See
+//! docs/theory/elements.md, One strain and hourglass stiffness.
 //!
 //! # Derivation
 //!

@@ -35,7 +35,7 @@ pub struct ElementResult {
 pub struct Strained {
     /// Element (index).
     pub element: usize,
-    /// Largest absolute principal value of this element's Green-Lagrange strain in the plane.
+    /// Largest absolute principal value of the Green-Lagrange strain of this element in the plane.
     pub strain: f64,
 }
 

@@ -44,7 +44,7 @@ pub trait Flow {
         StrainMeasure::Logarithmic
     }
 
-    /// The law as that of a metal, if it is one.
+    /// The law with the functions of a metal, if it is a metal.
     fn as_metal(&self) -> Option<&dyn MetalLaw> {
         None
     }

@@ -225,7 +225,7 @@ impl PlaneLaw {
         }
     }
 
-    /// The law as that of a metal, if it is one.
+    /// The law with the functions of a metal, if it is a metal.
     pub fn as_metal(&self) -> Option<&dyn MetalLaw> {
         match self.kind() {
             Kind::Elastic(_) => None,
@@ -242,7 +242,7 @@ pub enum LawInLanes<'a> {
     NeoHooke(Elastic<'a, NeoHooke>),
     /// A law that is evaluated for one element after the other.
     OneByOne(OneByOne<Committed<'a>>),
-    /// Any of these laws at temperatures.
+    /// A law from this list at temperatures.
     Expanded(Box<Expanded<'a>>),
 }
 

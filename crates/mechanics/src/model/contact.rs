@@ -124,7 +124,7 @@ pub enum Adjust {
     Within(Reach),
     /// Nodes of the node set with this index.
     Nodes(usize),
-    /// Nodes near the surface, which are moved to this clearance above it (length).
+    /// Nodes near the surface, which are moved to a clearance above it (length).
     Clearance(f64),
 }
 

@@ -54,7 +54,7 @@ const GAUSS: [&[[f64; 2]]; 3] = [
 ];
 
 impl Side {
-    /// The side with these nodes.
+    /// The side between the given nodes.
     pub fn new(nodes: SideNodes) -> Self {
         Side { nodes }
     }

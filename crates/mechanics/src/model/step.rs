@@ -111,7 +111,7 @@ impl ContactChanges {
 /// Request of checkpoints, from a step on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RestartOutput {
-    /// Number, from 1, of the first step with these checkpoints.
+    /// Number, from 1, of the first step with the requested checkpoints.
     pub from_step: usize,
     /// Number of increments between two checkpoints of a step; its last increment always has one.
     /// 0: none.
@@ -183,11 +183,11 @@ pub enum Frames {
     Default,
     /// The given number of frames, evenly spaced over the step.
     Count(usize),
-    /// At multiples of this time since the start of the step.
+    /// At multiples of the given time since the start of the step.
     Every(f64),
     /// After each multiple of this number of increments.
     Increments(usize),
-    /// At these step times, increasing.
+    /// At the given step times, increasing.
     Times(Vec<f64>),
 }
 

@@ -55,7 +55,7 @@ pub enum TieReach {
     /// Nodes whose distance from the master is at most a part (`NEAR`) of the segment that they
     /// face.
     Near,
-    /// Nodes whose distance from the master is at most this length.
+    /// Nodes whose distance from the master is at most a given length.
     Within(f64),
     /// Nodes of the node set with this index.
     Nodes(usize),

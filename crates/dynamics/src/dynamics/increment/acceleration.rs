@@ -19,7 +19,7 @@ const DEPENDENT: f64 = 1e-6;
 pub(super) struct CorrectionProgress {
     /// Largest correction relative to the increment.
     pub correction: f64,
-    /// Largest correction relative to the one of the last pass.
+    /// Largest correction relative to that of the last pass.
     pub rate: f64,
     /// Correction at which the passes end.
     pub tolerance: f64,

@@ -17,7 +17,7 @@ const FEWEST: usize = 3;
 /// Number of times that the problem grows because a body is unstable on the constraints in it.
 const TIPS: usize = 3;
 
-/// Constraints, and the forces (or impulses) of the closed ones.
+/// Constraints, and the forces (or impulses) of the closed constraints.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
     /// The constraints of the iterate, with increasing keys. At the end of an increment the
@@ -225,7 +225,7 @@ impl ContactForces {
     }
 }
 
-/// The entries of those constraints that are in the problem, out of entries for all.
+/// Out of entries for all constraints, the entries of those that are in the problem.
 fn chosen<'c, 'i, T>(
     all: &'c [T],
     inside: &'i [bool],

@@ -74,10 +74,10 @@ impl ContactStates {
         );
     }
 
-    /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether these
-    /// constraints stay open, after the correction dU if there is one. If a constraint of a far node closes, the passes
-    /// go on with the constraints of all nodes. A far node behind the line of a segment and beyond its ends has gone
-    /// past the corner, so it has no constraint there.
+    /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether the
+    /// constraints of far nodes stay open, after the correction dU if there is one. If a constraint of a far node
+    /// closes, the passes go on with the constraints of all nodes. A far node behind the line of a segment and beyond
+    /// its ends has gone past the corner, so it has no constraint there.
     pub fn complete(
         &mut self,
         problem: &StepProblem,

@@ -27,8 +27,8 @@ pub(crate) struct Guess {
     pub states: Vec<ContactState>,
     /// Forces of every constraint, if known: of several solutions, the answer near them is sought.
     pub forces: Option<Vec<[f64; 2]>>,
-    /// Weight of the nearness of the answer to these forces; without a weight the nearness counts
-    /// only if there is no answer otherwise.
+    /// Weight of the nearness of the answer to the known forces; without a weight the nearness
+    /// counts only if there is no answer otherwise.
     pub weight: Option<f64>,
 }
 

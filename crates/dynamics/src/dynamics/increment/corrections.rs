@@ -18,7 +18,7 @@ pub(super) struct Corrections {
     passes: usize,
     /// The last correction, relative to the increment.
     last: f64,
-    /// The last correction divided by the one before.
+    /// The last correction divided by the correction before it.
     rate: f64,
     /// Number of last passes, in a row, in which the correction has grown.
     growing: usize,
@@ -40,7 +40,7 @@ impl Corrections {
         self.last < NEAR
     }
 
-    /// The last correction divided by the one before.
+    /// The last correction divided by the correction before it.
     pub fn rate(&self) -> f64 {
         self.rate
     }

@@ -25,7 +25,7 @@ pub(super) struct Vectors {
     pub u: Vec<f64>,
     /// Prescribed motion d_p of the supports that the predictor leaves to the passes.
     pub d_p: Vec<f64>,
-    /// Force theta2 K d_p of this motion.
+    /// Force theta2 K d_p of the prescribed motion.
     pub support_force: Vec<f64>,
     /// Load r - theta2 K d_p.
     pub load: Vec<f64>,
@@ -99,8 +99,8 @@ impl SkewPart {
     }
 }
 
-/// Writes d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of this
-/// motion.
+/// Writes d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of the
+/// closing motion.
 ///
 /// ```text
 /// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.10)

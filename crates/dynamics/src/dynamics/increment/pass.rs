@@ -191,7 +191,7 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// The pass from this iterate with the correction dU.
+    /// The pass from the iterate with the correction dU.
     pub fn pass<'p>(&'p self, support_force: &'p Vec<f64>, du: &'p Vec<f64>) -> Pass<'p> {
         let [u, d] = self.displacements;
         Pass {

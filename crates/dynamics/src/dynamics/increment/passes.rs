@@ -175,8 +175,8 @@ impl Passes<'_, '_> {
         Ok(solved)
     }
 
-    /// Adds the constraints of far slave nodes at the iterate U. Returns whether these constraints stay open after a
-    /// correction dU.
+    /// Adds the constraints of far slave nodes at the iterate U. Returns whether the constraints of far nodes stay open
+    /// after a correction dU.
     pub fn complete(&mut self, contact: &mut ContactStates, u: &[f64], du: Option<&[f64]>) -> bool {
         let of_increment = (self.start, self.interval);
         contact.complete(self.problem, self.workspace, of_increment, u, du)
@@ -206,8 +206,8 @@ impl Passes<'_, '_> {
         Ok(has_converged)
     }
 
-    /// Whether the friction of a pass obeys the law at the slip rates and pressures after the pass; these change the
-    /// coefficient of friction.
+    /// Whether the friction of a pass obeys the law at the slip rates and pressures after the pass, on which the
+    /// coefficient of friction depends.
     fn obeys_friction(&self, pass: &Pass) -> bool {
         if !pass
             .contact

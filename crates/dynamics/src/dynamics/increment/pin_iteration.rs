@@ -246,8 +246,8 @@ impl PinIteration<'_, '_> {
         Ok(held.hold(&self.workspace.pins, &at, &acting, (force, least)))
     }
 
-    /// Checks that the forces that hold motions in a converged increment are within the forces that facets may cause
-    /// under its normal forces.
+    /// Checks that the forces that hold motions in a converged increment are within those that facets may cause under
+    /// the normal forces of the increment.
     pub fn check_held(
         &self,
         contact: &ContactForces,
@@ -272,7 +272,7 @@ impl PinIteration<'_, '_> {
         })
     }
 
-    /// Turns the held motions with the surfaces of the iterate; returns whether one of them is
+    /// Turns the held motions with the surfaces of the iterate; returns whether any held motion is
     /// released.
     fn follow_held(
         &self,

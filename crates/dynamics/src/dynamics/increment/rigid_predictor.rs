@@ -29,9 +29,9 @@ struct RigidMotion {
 /// d = shift + (R - 1) r,  R the rotation by 2 atan(omega dt/2),  omega = H/I
 /// ```
 ///
-/// r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about this
-/// configuration; started from U0, it would stretch a body that turns by the angle phi by phi²/2. The bodies that
-/// cannot move as rigid bodies have the increment that all supports of the model share, or zero.
+/// r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about the
+/// configuration of the predictor; started from U0, it would stretch a body that turns by the angle phi by phi²/2. The
+/// bodies that cannot move as rigid bodies have the increment that all supports of the model share, or zero.
 pub(super) fn rigid_predictor(
     problem: &StepProblem,
     start: &State,

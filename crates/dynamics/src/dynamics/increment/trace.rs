@@ -97,7 +97,7 @@ impl Trace {
         }
     }
 
-    /// The failure of the attempt; `tolerance` is the one of the passes.
+    /// The failure of the attempt; `tolerance` is the tolerance of the passes.
     pub fn failed(self, cause: Cause, tolerance: f64) -> Failed {
         let cause = self.explain(cause);
         let course = match cause {

@@ -134,7 +134,8 @@ impl ContactLedger {
         sums.map(|sums| (sums.friction_dissipation, sums.sliding))
     }
 
-    /// Enters the returns after an increment, before the increment itself; returns the total impulses of these pairs.
+    /// Enters the returns after an increment, before the increment itself; returns the total impulses of the pairs with
+    /// returns.
     pub fn enter_returns(
         &mut self,
         model: &Model,

@@ -223,7 +223,7 @@ fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a>
 }
 
 /// Forces of a constraint on the slave surface of its contact. If the surface touches itself, it is not a side of the
-/// contact: then these are the forces on the body with the smaller number, and none within one body.
+/// contact: the forces are then those on the body with the smaller number, and zero within one body.
 pub(super) fn forces_on_side(
     model: &Model,
     bodies: &Bodies,

@@ -155,9 +155,9 @@ pub(super) fn enter_pair_works(energy: &mut Energy, works: &[PairWork]) {
     }
 }
 
-/// Enters the returns and losses of landings and releases. For landings these are D of eq. (6.5) with the work of the
-/// supports, eq. (6.10), and the friction taken back, eq. (6.13); for releases R and the work of the loads on the way
-/// to the rest, eq. (6.15).
+/// Enters the returns and losses of landings and releases. The terms of landings are D of eq. (6.5) with the work of
+/// the supports, eq. (6.10), and the friction taken back, eq. (6.13); the terms of releases are R and the work of the
+/// loads on the way to the rest, eq. (6.15).
 pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
     let Release {
         loss, load_work, ..
@@ -420,7 +420,7 @@ mod tests {
     }
 
     /// A rod turns between a support and a node that a force pulls: along the chord of the node the force does work
-    /// that no support has done. If the node has a support, the support does all of this work.
+    /// that no support has done. If the node has a support, the support does all of the work on the chord.
     #[test]
     fn rigid_bodies_hold_work_on_the_chords_of_their_nodes() {
         let (travel, missing) = ([0.0, 0.0, 0.5, 0.25], [-4.0, 0.0, 4.0, 2.0]);

@@ -12,7 +12,7 @@ use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::model::{Bodies, Mesh};
 use crate::vectors::{angle, difference};
 
-/// Angle (rad) from which on a surface has a corner, where a contact of any extent ends.
+/// Angle (rad) from which on a surface has a corner, at which a contact ends however large it is.
 const CORNER: f64 = 1.0;
 
 /// One side of a touch: a body, or the rigid surface of a contact.

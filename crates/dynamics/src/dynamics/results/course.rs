@@ -15,7 +15,7 @@ pub enum Course {
     Slow {
         /// Mean ratio of successive corrections in the last passes.
         rate: f64,
-        /// Number of further passes needed at this rate.
+        /// Number of further passes needed at the mean ratio.
         left: usize,
     },
     /// Corrections became no smaller.

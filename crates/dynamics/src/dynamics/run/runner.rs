@@ -30,13 +30,13 @@ use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
-/// Ratio of the displacement of a static increment to the one at the rate of the last increment from which on it may be
-/// a jump.
+/// Ratio of the displacement of a static increment to its displacement at the rate of the last increment, from which on
+/// the increment may be a jump.
 const FAR: f64 = 5.0;
 /// Displacement increment, relative to the displacements, below which it is not a jump.
 const COUNTS: f64 = 0.01;
-/// An increment that is repeated with a shorter length is no jump if its rate of displacement is at most this multiple of
-/// the rate of the longer, rejected one.
+/// An increment that is repeated with a shorter length is no jump if its rate of displacement is at most this multiple
+/// of the rate of the rejected longer increment.
 const SHRINKS: f64 = 1.5;
 
 /// Errors that end a run, other than a failed increment.

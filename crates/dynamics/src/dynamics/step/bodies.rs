@@ -50,7 +50,7 @@ impl BodyAngles {
         self.assembled = self.angles(problem, motion);
     }
 
-    /// Rotations of the bodies from the configuration in which K* was assembled to the one of a motion (rad).
+    /// Rotations of the bodies from the configuration in which K* was assembled to that of a motion (rad).
     pub fn since_assembly(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let angles = self.angles(problem, motion);
         let since = angles.iter().zip(&self.assembled).map(|(a, b)| a - b);

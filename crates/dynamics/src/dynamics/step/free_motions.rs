@@ -15,7 +15,7 @@ const UNRESISTED: f64 = 10.0;
 const NO_FORCE: f64 = 1e-12;
 
 /// The places p of the far ends of the pins as unknowns. With pins of the stiffness a that end at
-/// these places,
+/// the places p,
 ///
 /// ```text
 /// dU = y + W B^T P + Z p,   f = a S^T (y + W B^T P) - S_p p,   S_p = a - a S^T Z    eq. (12.3)

@@ -67,13 +67,13 @@ pub(crate) struct SolveVectors {
 pub(crate) struct ResponseVectors {
     /// The nodes at which the response is computed, increasing.
     pub nodes: Vec<usize>,
-    /// Unknowns on which the dofs of these nodes depend, increasing.
+    /// Unknowns on which the dofs of the nodes depend, increasing.
     pub unknowns: Vec<usize>,
     /// Forces of the constraints in the right-hand side (unknown, force).
     pub forces: Vec<(usize, f64)>,
     /// Values of the response at the unknowns.
     pub values: Vec<f64>,
-    /// The response at these nodes, over all dofs; other entries have no meaning.
+    /// The response at the nodes, over all dofs; other entries have no meaning.
     pub at_nodes: Vec<f64>,
 }
 
@@ -179,7 +179,7 @@ pub(crate) enum StiffnessForm {
     Stiffened,
     /// Positive parts of the tangents, stiffened by the closed constraints.
     Positive,
-    /// Tangents of the elements and contact stiffness, stiffened almost rigidly by the closed constraints: this is
+    /// Tangents of the elements and contact stiffness, stiffened almost rigidly by the closed constraints: the sum is
     /// definite if a static equilibrium is stable.
     Stability,
 }
@@ -691,7 +691,7 @@ impl<'a> System<'a> {
         std::mem::take(&mut self.matrix.vectors.response)
     }
 
-    /// Returns the memory of a response.
+    /// Gives the memory of a response back for the next one.
     pub fn give_back(&mut self, response: ResponseVectors) {
         self.matrix.vectors.response = response;
     }

@@ -89,7 +89,7 @@ impl Normals {
     }
 }
 
-/// The nodes before and after every node of the contact surfaces at which these are smooth.
+/// The nodes before and after every node at which the contact surfaces are smooth.
 #[derive(Default)]
 pub(super) struct Vertices(HashMap<usize, [Option<usize>; 2]>);
 

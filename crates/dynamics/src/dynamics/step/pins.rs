@@ -310,7 +310,7 @@ impl Pins {
     }
 
     /// Motions of the pins of body number `body` among those with pins, in its free motions at the positions `at`;
-    /// `None` if the pins do not determine all of these.
+    /// `None` if the pins do not determine all free motions.
     pub(super) fn motions(
         &self,
         body: usize,
@@ -480,7 +480,7 @@ impl PinnedBody {
     }
 
     /// Z_p, the motions of the pins in the free motions of the body; `None` if the pins do not
-    /// determine all of these.
+    /// determine all free motions.
     fn motions_of_pins(&self, frame: &PinFrame) -> Option<PinMotions> {
         let m = self.dofs.len();
         let seen =

@@ -80,7 +80,7 @@ impl Seen {
     }
 }
 
-/// Raises each value to the corresponding one of `values`, if that is larger.
+/// Raises each value to the corresponding entry of `values`, if that entry is larger.
 fn enlarge(most: &mut PerBody, values: &PerBody) {
     for (most, value) in most.iter_mut().zip(values) {
         *most = larger(*most, *value);

@@ -54,7 +54,7 @@ pub(crate) struct StepProblem<'m> {
 pub(crate) struct StartVelocity<'a> {
     /// The velocity is V0+, or V0 if the impulses are given separately.
     pub v0p: Cow<'a, [f64]>,
-    /// Impulses J = M (V0+ - V0) that this velocity does not contain, over all dofs; empty if it
+    /// Impulses J = M (V0+ - V0) that the velocity does not contain, over all dofs; empty if it
     /// contains them.
     pub impulse: &'a [f64],
 }
@@ -84,7 +84,7 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// U_theta and the temperatures at this configuration.
+    /// U_theta and the temperatures of the nodes in it.
     pub fn place(&self) -> [&[f64]; 2] {
         [&self.u_theta, &self.temperature]
     }
@@ -400,7 +400,7 @@ impl StepProblem<'_> {
 /// Checks that all values of some quantities, each over all dofs, are finite.
 ///
 /// # Errors
-/// Returns [`Cause::NotFinite`] with the first quantity and node at which this is not so.
+/// Returns [`Cause::NotFinite`] with the first quantity and node whose value is not finite.
 pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
     for &(what, values) in quantities {
         if !largest(values).is_finite()
