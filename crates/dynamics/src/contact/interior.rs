@@ -24,7 +24,7 @@ pub struct Interior {
 /// A line and the elements that it goes through.
 struct CrossedElements {
     elements: Vec<usize>,
-    /// Whether the line stays in the elements up to its end.
+    /// Whether the line stays in the body up to its end.
     stays: bool,
 }
 

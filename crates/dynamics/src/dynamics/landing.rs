@@ -62,7 +62,8 @@ struct LandedPair {
     key: ConstraintKey,
     /// Pt/Pn.
     ratio: f64,
-    /// Length s of the normal row in the increment, eq. (3.31): if all of a force is taken back, no impulse is left.
+    /// Length s of the normal row in the increment, eq. (3.31); with it no impulse is left if all of a force is taken
+    /// back.
     stretch: f64,
     /// Rows Gn and Gt at the end, summed over the nodes of the contact's slave surface.
     rows: [[f64; 2]; 2],

@@ -55,8 +55,7 @@ pub(super) fn report_penetrations(
     }
 }
 
-/// Initial gaps of a contact plus the overlaps that it allows its slave nodes at the start; the overlaps are one for
-/// each node, or one for all.
+/// Initial gaps of a contact plus the overlaps that it allows at the start: one for each slave node, or one for all.
 fn left_gaps(
     gaps: &[InitialGap],
     contact: &ContactSurfaces,

@@ -568,7 +568,7 @@ struct Column {
 }
 
 impl Column {
-    /// dE_g C dE_g + S : d²E_g for the change and another one, whose stresses are given.
+    /// dE_g C dE_g + S : d²E_g for two changes of the strain, one of them given by its stresses.
     #[inline(always)]
     fn product<const HOOP: bool>(
         &self,
@@ -599,7 +599,7 @@ impl<const HOOP: bool> PointMaterial<'_, HOOP> {
         from_fn(|k| self.column(of(k), SymmetricLanes::zeros()))
     }
 
-    /// The stress C dE_g of a change, and the stress on its B.
+    /// The stress C dE_g of a change, and the stress that acts on its tensor B.
     #[inline(always)]
     fn stress(&self, column: &Column) -> (SymmetricLanes, Option<Tensor>) {
         (

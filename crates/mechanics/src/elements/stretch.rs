@@ -101,7 +101,7 @@ impl Tensor {
 pub struct MeanStrain {
     /// Ebar
     pub strain: SymmetricLanes,
-    /// Measure of the law.
+    /// Strain measure of the law.
     pub measure: StrainMeasure,
 }
 

@@ -60,8 +60,8 @@ pub trait MetalLaw: std::fmt::Debug {
     /// Returns the dissipated energy (force/length^2) and the part r of the trial strain that flows.
     fn update(&self, strains: &Strains, z0: &[f64], modes: [f64; 2], z1: &mut [f64]) -> [f64; 2];
 
-    /// W at a second strain and m less W at the first ones, with a round-off that is relative to the changes
-    /// (force/length^2); `by` is the difference of m.
+    /// Change of W between two strains and their m, with a round-off that is relative to the changes (force/length^2);
+    /// `by` is the difference of m.
     fn change(&self, z0: &[f64], strains: &StrainChange, modes: [f64; 2], by: f64) -> f64;
 
     /// The stress S (force/length^2) and the derivative dW/dm.

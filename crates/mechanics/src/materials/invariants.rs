@@ -25,8 +25,8 @@ impl VolumeEnergy {
         self.d.map(|d| if d > 0.0 { 1.0 / d } else { 0.0 })
     }
 
-    /// Whether only the first term exists: formulas with constants known to be zero are then
-    /// simplified by the compiler.
+    /// Whether only the first term exists: the compiler then simplifies the formulas, since it
+    /// knows which constants are zero.
     #[inline(always)]
     fn is_quadratic(&self) -> bool {
         self.d[1] == 0.0 && self.d[2] == 0.0

@@ -242,7 +242,7 @@ pub enum LawInLanes<'a> {
     NeoHooke(Elastic<'a, NeoHooke>),
     /// A law that is evaluated for one element after the other.
     OneByOne(OneByOne<Committed<'a>>),
-    /// A law from this list at temperatures.
+    /// Any plane law at the temperatures of the points.
     Expanded(Box<Expanded<'a>>),
 }
 

@@ -11,7 +11,7 @@ use crate::dynamics::step::{
 use crate::lcp::Stability;
 use crate::linear::{larger, largest};
 
-/// Force along a motion that nothing resists, relative to the other forces, up to which it is ignored where the motion
+/// Force, relative to all others, up to which it is ignored if it acts along a motion that nothing resists and that
 /// cannot be held.
 const SMALL_FORCE: f64 = 1e-9;
 /// Force at the pins of a body that counts as zero, relative to the largest force at all pins.

@@ -15,8 +15,8 @@ pub(crate) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 pub(crate) struct Seen {
     /// Displacement of every body (length).
     displacement: PerBody,
-    /// Load and internal force of every part (force). Inertia and contact forces are not included, since they grow
-    /// without bound as increments become shorter.
+    /// Load and internal force of every part (force). The list omits inertia and contact forces, which grow without
+    /// bound as increments become shorter.
     force: PerBody,
 }
 
