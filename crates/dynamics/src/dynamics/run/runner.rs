@@ -30,8 +30,8 @@ use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
-/// A static increment may be a jump if its displacement is at least this multiple of the displacement at the rate of
-/// the last increment.
+/// A static increment may be a jump if its displacement exceeds this multiple of the displacement at the rate of the
+/// last increment.
 const FAR: f64 = 5.0;
 /// Displacement increment, relative to the displacements, below which it is not a jump.
 const COUNTS: f64 = 0.01;
