@@ -2,7 +2,7 @@
 //! overlaps and nearest neighbours: the territories of Zhong & Nilsson (1989),
 //! docs/theory/geometry.md.
 
-/// From `p` to `q`: q - p.
+/// Vector q - p from `p` to `q`.
 #[inline]
 pub fn difference(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     [q[0] - p[0], q[1] - p[1]]
@@ -14,7 +14,8 @@ pub fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[0] + p[1] * q[1]
 }
 
-/// Cross product p x q, the component out of the plane: positive where q lies to the left of p.
+/// Cross product p x q, the component out of the plane; it is positive if q points to the left of
+/// p.
 #[inline]
 pub fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[1] - p[1] * q[0]
@@ -26,7 +27,7 @@ pub fn length(p: [f64; 2]) -> f64 {
     dot(p, p).sqrt()
 }
 
-/// Distance of two points, also of those so near or far that its square underflows or overflows.
+/// Distance of two points, also if its square underflows or overflows.
 #[inline]
 pub fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     let d = difference(p, q);
@@ -48,7 +49,8 @@ pub fn polygon_area(corners: impl IntoIterator<Item = [f64; 2]>) -> f64 {
     let Some(first) = corners.next() else {
         return 0.0;
     };
-    // the terms of the first and last side are zero, being relative to the first corner
+    // positions are relative to the first corner, so the terms of the first and the last side are
+    // zero
     let mut last = [0.0; 2];
     let terms = corners.map(|corner| {
         let side = [last, difference(first, corner)];
@@ -58,7 +60,7 @@ pub fn polygon_area(corners: impl IntoIterator<Item = [f64; 2]>) -> f64 {
     terms.sum::<f64>() / 2.0
 }
 
-/// Smallest and largest coordinates of some points; infinite without any.
+/// Smallest and largest coordinates of some points; infinite without points.
 pub fn extents(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     points.into_iter().fold(nothing, |[low, high], x| {
@@ -69,14 +71,14 @@ pub fn extents(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     })
 }
 
-/// Members of the groups that are not split further.
+/// Number of members up to which a group is not split further.
 const GROUP: usize = 8;
-/// Growth of a distance, as a part of it, that covers its round-off.
+/// Relative growth of a distance that covers its round-off.
 const DISTANCE_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
 
 #[cfg(any(test, feature = "testing"))]
 thread_local! {
-    /// Pairs of circles that this thread has compared.
+    /// Number of pairs of circles that this thread has compared.
     pub static COMPARED: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
@@ -90,7 +92,7 @@ pub struct Circle {
 }
 
 impl Circle {
-    /// Whether the two have a point in common: |c1 - c2| <= r1 + r2.
+    /// Whether the two circles have a point in common: |c1 - c2| <= r1 + r2.
     fn overlaps(&self, other: &Circle) -> bool {
         #[cfg(any(test, feature = "testing"))]
         COMPARED.set(COMPARED.get() + 1);
@@ -104,7 +106,7 @@ impl Circle {
         length(difference(self.centre, point)) * (1.0 - DISTANCE_ROUND_OFF) - self.radius
     }
 
-    /// A circle about the middle of some circles that contains them all.
+    /// A circle that contains some circles, with its centre at the middle of their extent.
     fn around(circles: impl Iterator<Item = Circle> + Clone) -> Circle {
         let extent = |i: usize| {
             let bounds = |(low, high): (f64, f64), c: Circle| {
@@ -130,13 +132,14 @@ impl Circle {
 
 /// A binary hierarchy of circles: all members, halves of them, quarters, down to small groups.
 ///
-/// Groups are split at the median of the centres along their longer extent, ties by index, so that
-/// the hierarchy is a function of the circles alone.
+/// Groups are split at the median of the centres along their longer extent, with ties by index, so
+/// the hierarchy depends only on the circles.
 #[derive(Debug, Default)]
 pub struct CircleTree {
-    /// The members with their indices; every group is a range of it.
+    /// The members with their indices; every group is a range of this list.
     members: Vec<(Circle, u32)>,
-    /// Circle and range of group 1, the whole, and of the halves 2k and 2k + 1 of every group k.
+    /// Circle and range of group 1, which is the whole, and of the halves 2k and 2k + 1 of every
+    /// group k.
     groups: Vec<(Circle, [usize; 2])>,
 }
 
@@ -148,7 +151,7 @@ impl CircleTree {
         tree
     }
 
-    /// Replaces the circles, in the same memory.
+    /// Replaces the circles and uses the same memory.
     pub fn rebuild(&mut self, members: impl IntoIterator<Item = Circle>) {
         self.members.clear();
         self.members.extend(members.into_iter().zip(0..));
@@ -193,7 +196,7 @@ impl CircleTree {
         &self.members[from..to]
     }
 
-    /// A value of every group, joined from those of its members; of an empty group there is none.
+    /// A value for every group, joined from the values of its members; `None` for an empty group.
     pub fn of_groups<T: Copy>(
         &self,
         of_member: impl Fn(usize) -> T,
@@ -212,9 +215,9 @@ impl CircleTree {
         values
     }
 
-    /// Visits members in about the order of their distance from a point, until all others are
-    /// further away than the limit (length) that the last visit gave. Groups that are not admitted,
-    /// by their number and circle, are left out with all of their members.
+    /// Visits members approximately in the order of their distance from a point, until all others
+    /// are further away than the limit (length) that the last visit returned. Groups for which
+    /// `is_admitted` is false, by number and circle, are skipped with all their members.
     pub fn visit_near(
         &self,
         point: [f64; 2],
@@ -240,7 +243,7 @@ impl CircleTree {
             } else {
                 let halves = [2 * group, 2 * group + 1];
                 let nearer_first = distance(halves[0]) <= distance(halves[1]);
-                // the last one is visited first
+                // the last group of the list is visited first
                 open.extend(if nearer_first {
                     [halves[1], halves[0]]
                 } else {

@@ -10,17 +10,19 @@ use super::search::{ListedSlave, Search};
 use super::target::{Segment, Target};
 use super::tolerances::{CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTION_BEYOND_ENDS};
 
-/// Which pairs are constraints in a subincrement.
+/// Choice of the pairs that are constraints in a subincrement.
 #[derive(Clone, Copy)]
 pub enum ConstraintSet<'a> {
     /// All pairs: nodes land within the subincrement.
     All,
-    /// The active ones: nodes of the others land at its end, at the next impact.
+    /// Only the active pairs are constraints; nodes of the other pairs land at the end of the
+    /// subincrement, at the next impact.
     Active(&'a ActiveConstraints),
 }
 
 impl ConstraintSet<'_> {
-    /// Leaves the constraints that count, by the positions of the start; writes the others.
+    /// Keeps the chosen pairs among the constraints and moves all others to `left_out`; `start` are
+    /// the positions at the start of the subincrement.
     pub fn split(
         self,
         start: Positions,
@@ -34,7 +36,8 @@ impl ConstraintSet<'_> {
         }
     }
 
-    /// The pairs that touch at the start because an impact ended the subincrement before; increasing.
+    /// Keys of the pairs that touch at the start because the previous subincrement ended at their impact, in increasing
+    /// order.
     pub fn touching(self) -> Vec<ConstraintKey> {
         match self {
             ConstraintSet::All => Vec::new(),
@@ -52,27 +55,27 @@ impl ConstraintSet<'_> {
 /// The pairs that are constraints in a subincrement between impacts: those that touch at its start,
 /// and those that have joined them.
 ///
-/// A node that touches may slide on to other segments that face nearly the same way, or that it was
-/// not in front of; that is no impact. One that runs against a wall meets it later. From surface to surface a mean slides
-/// over a whole run of segments, and a mean that comes over the end of one without a gap meets nothing.
+/// A node that touches may slide on to other segments that face nearly the same way, or that it was not in front of;
+/// that is no impact. A node that slides into a wall lands on the wall at a later impact. With surface to surface, a
+/// mean slides over a whole run of segments; there is no impact where it comes over the end of a run without a gap.
 #[derive(Debug, Clone, Default)]
 pub struct ActiveConstraints {
     /// The pairs that touch at the start, with increasing keys.
     touching: Vec<Touching>,
-    /// The means of gaps at the start, with increasing keys.
+    /// The means of gaps at the start (surface to surface), with increasing keys.
     means: Vec<MeanAtStart>,
-    /// Slave nodes that have joined, with all their segments; increasing.
+    /// Slave nodes that have joined the constraints, with all their segments, in increasing order.
     joined: Vec<SlaveKey>,
 }
 
-/// A constraint from surface to surface at the start.
+/// A constraint with surface to surface at the start.
 #[derive(Debug, Clone, Copy)]
 struct MeanAtStart {
     key: ConstraintKey,
     touches: bool,
 }
 
-/// A slave node and a segment that touch, with the normal of the segment.
+/// A slave node and a segment that touch each other, with the normal of the segment.
 #[derive(Debug, Clone, Copy)]
 struct Touching {
     pair: NodeAtSegment,
@@ -80,9 +83,9 @@ struct Touching {
 }
 
 impl ActiveConstraints {
-    /// The pairs that touch in the displacements `u0`, which the search covers, where contact from surface to surface has
-    /// these `means`; `before` are those that carried forces up to then. Discs have joined: they land within the
-    /// subincrement.
+    /// Active constraints at the displacements `u0`, which the search covers: the pairs that touch there. `means` are
+    /// the constraints of contact from surface to surface at `u0`, `before` the pairs that carried forces up to the
+    /// start. Discs are always active: they land within the subincrement.
     pub fn new(search: &Search, u0: &[f64], means: &[Constraint], before: &ClosedPairs) -> Self {
         let start = Positions::new(search.coordinates(), u0);
         let mean = |c: &Constraint| MeanAtStart {
@@ -108,7 +111,7 @@ impl ActiveConstraints {
         active
     }
 
-    /// Takes in a slave node whose mean gap is closed soon after the start.
+    /// Makes a mean active that closes soon after the start.
     pub fn join_mean_at_start(&mut self, key: ConstraintKey) {
         let joined = MeanAtStart { key, touches: true };
         match self.means.binary_search_by_key(&key, |mean| mean.key) {
@@ -118,13 +121,13 @@ impl ActiveConstraints {
         self.join(key.slave);
     }
 
-    /// Takes in a slave node that lands soon after the start.
+    /// Makes a slave node active that lands soon after the start.
     pub fn join_at_start(&mut self, pair: NodeAtSegment, normal: [f64; 2]) {
         self.add(pair, normal);
         self.join(pair.key.slave);
     }
 
-    /// Takes in a slave node that lands within the subincrement.
+    /// Makes a slave node active, with all its segments, that lands within the subincrement.
     pub fn join(&mut self, slave: SlaveKey) {
         if let Err(at) = self.joined.binary_search(&slave) {
             self.joined.insert(at, slave);
@@ -136,8 +139,7 @@ impl ActiveConstraints {
         self.joined.binary_search(&slave).is_ok()
     }
 
-    /// Whether a slave node is kept out of a segment that has the place `start` relative to it at the
-    /// start.
+    /// Whether a slave node is kept out of a segment; `start` is its projection on the segment at the start.
     pub fn holds(&self, slave: SlaveKey, start: &Projection) -> bool {
         if self.has_joined(slave) {
             return true;
@@ -152,11 +154,10 @@ impl ActiveConstraints {
         own.peek().is_some() && (is_behind || own.any(faces_alike))
     }
 
-    /// Whether the slave node of a constraint is kept out of its segment, or of one of those at its corner,
-    /// or the node of the corner out of a segment of the slave node: two nodes that are each other's corner
-    /// are one constraint.
-    /// From surface to surface, whether its mean touches, or has come over the end of the master without a gap. A disc has
-    /// joined.
+    /// Whether the slave node of a constraint is kept out of its segment, of a segment at its corner, or the node of
+    /// the corner out of a segment of the slave node. Two nodes that are each other's corner are one constraint. A
+    /// constraint with surface to surface is active if its mean touches, or has come over the end of the master without
+    /// a gap. A disc is always active.
     pub fn is_held(&self, start: Positions, constraint: &Constraint) -> bool {
         let (slave, pair) = (constraint.key.slave, &constraint.source.pair);
         let is_held = |Segment {
@@ -249,8 +250,8 @@ mod tests {
         nodes: [0, 1, 2],
     };
 
-    /// Whether a node that touches a segment is held by another, which it is in front of, turned from
-    /// the first by an angle.
+    /// Whether a node that touches a segment is kept out of a second one in front of it; the normal of the second is
+    /// turned from the first, at the angle `direction`, by the angle `turn`.
     fn is_held(direction: f64, turn: f64) -> bool {
         let normal = |angle: f64| [angle.cos(), angle.sin()];
         let mut active = ActiveConstraints::default();
@@ -272,7 +273,7 @@ mod tests {
     fn a_node_slides_round_a_bend_but_runs_against_a_wall() {
         for i in 0..16 {
             let direction = 0.3 + f64::from(i) * std::f64::consts::FRAC_PI_8;
-            // 0.0175 is the turn of a circle in chords of a degree
+            // a circle of chords of one degree turns by 0.0175 from chord to chord
             for turn in [-0.0175, -0.01, 0.0, 0.01, 0.0175] {
                 assert!(is_held(direction, turn), "{direction} {turn}");
             }
@@ -306,7 +307,8 @@ mod tests {
             {
                 assert_eq!(touches(&at(part)), is_touched, "{part:e} {length:e}");
             }
-            // a wall that a node was not in front of stops it as any other segment that it touches
+            // a wall that a node was not in front of stops the node like any other segment that it
+            // touches
             let mut active = ActiveConstraints::default();
             active.add(AT, [1.0, 0.0]);
             for (part, is_held) in [(-0.1, true), (5e-10, true), (2e-9, false)] {

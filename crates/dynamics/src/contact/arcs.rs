@@ -8,32 +8,32 @@ use crate::vectors::{cross, difference, dot};
 /// An arc about a point that moves with two nodes p and q of the master: x_c = x_p + alpha e + beta J e, e = x_q - x_p.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MasterArc {
-    /// alpha and beta.
+    /// The factors alpha and beta of the centre x_c.
     pub place: [f64; 2],
-    /// Radius (length): negative where the body is outside of the circle, 0 of a vertex.
+    /// Radius (length): negative where the body is outside the circle, 0 for a vertex.
     pub radius: f64,
 }
 
 impl MasterArc {
-    /// A vertex: the first of its nodes.
+    /// The vertex at node p: an arc of radius 0.
     pub(super) const VERTEX: MasterArc = MasterArc {
         place: [0.0; 2],
         radius: 0.0,
     };
 
-    /// Its centre, p and q being at these places.
+    /// Centre of the arc where its nodes p and q are at these places.
     pub(super) fn centre(&self, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
         let ([alpha, beta], [x, y]) = (self.place, difference(p, q));
         [p[0] + alpha * x - beta * y, p[1] + alpha * y + beta * x]
     }
 
-    /// Distance of a point out of the body, p and q being at these places: |r| - R, or R - |r| in a hole.
+    /// Distance of the point `s` from the body where p and q are at these places: |r| - R, or R - |r| in a hole.
     pub(super) fn gap(&self, s: [f64; 2], nodes: [[f64; 2]; 2]) -> f64 {
         let [x, y] = difference(self.centre(nodes), s);
         self.sign() * x.hypot(y) - self.radius
     }
 
-    /// 1, or -1 of an arc whose body is outside.
+    /// Sign of the radius: 1, or -1 where the body is outside the circle.
     pub(super) fn sign(&self) -> f64 {
         match self.radius < 0.0 {
             true => -1.0,
@@ -47,11 +47,11 @@ impl MasterArc {
 pub struct SurfaceArc {
     /// Its chords.
     pub segments: Range<usize>,
-    /// Nodes at its ends.
+    /// Nodes at the ends of the arc.
     pub nodes: [usize; 2],
-    /// Its centre and radius.
+    /// Centre and radius of the arc.
     pub arc: MasterArc,
-    /// First chord of the first arc of the same circle: what constraints are named by.
+    /// First chord of the first arc on the same circle; it numbers the constraints of the circle.
     pub circle: usize,
 }
 

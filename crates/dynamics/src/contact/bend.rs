@@ -4,16 +4,16 @@ use super::bulge::Bulge;
 use super::constraint::{RowForm, RowPair, product, sum_of};
 use super::projection::Projection;
 
-/// What is known of the chord: its rows, and derivatives with respect to the positions of s, a and b.
+/// Rows of the chord, and derivatives of its quantities with respect to the positions of s, a and b.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OfChord {
-    /// Force rows and derivative rows.
+    /// Force rows and derivative rows of the chord.
     pub rows: [RowPair<6>; 2],
-    /// Derivative of xi (1/length).
+    /// Derivative of the projection xi (1/length).
     pub xi: [f64; 6],
-    /// Derivative of l.
+    /// Derivative of the length l of the chord.
     pub length: [f64; 6],
-    /// Derivative of Bn d.
+    /// Derivative of Bn d, the motion along the normal.
     pub normal_motion: [f64; 6],
 }
 
@@ -24,7 +24,7 @@ pub(super) struct OfChord {
 /// Bn' = Bn - beta Bt,  Bt' = (Bt + beta Bn)/s    eq. (3.30)
 /// ```
 ///
-/// Then Bn' d = G1 - G0. End rows have beta = b'(xi)/l.
+/// With the rows of the face Bn' d = G1 - G0. End rows (`RowForm::End`) have beta = b'(xi)/l.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bend {
     /// beta
@@ -33,16 +33,16 @@ pub(super) struct Bend {
     pub stretch: f64,
     /// Force rows and derivative rows of the chord.
     pub chord: [RowPair<6>; 2],
-    /// Derivative of beta (1/length).
+    /// Derivative of the slope beta (1/length).
     of_slope: [f64; 6],
-    /// Derivative of Bn d, of the chord.
+    /// Derivative of Bn d of the chord.
     of_normal_motion: [f64; 6],
     /// Derivative of the height b(xi) (dimensionless).
     pub of_height: [f64; 6],
 }
 
 impl Bend {
-    /// That of a face between the projections `p` of the start and of the iterate.
+    /// Bend of a face between the projections `p` at the start and in the iterate.
     pub fn new(bulge: &Bulge, p: [&Projection; 2], of_chord: OfChord, form: RowForm) -> Self {
         let [start, now] = p;
         let OfChord {
@@ -101,13 +101,15 @@ impl Bend {
         [bent, of_bent]
     }
 
-    /// The force at the chord that is the same force as one at the face: Pn + beta Pt/s and Pt/s - beta Pn.
+    /// Pn and Pt at the chord that together are the same force as Pn and Pt at the face: Pn + beta Pt/s and Pt/s - beta
+    /// Pn.
     pub fn at_chord(&self, [pn, pt]: [f64; 2]) -> [f64; 2] {
         let (beta, s) = (self.slope, self.stretch);
         [pn + beta * pt / s, pt / s - beta * pn]
     }
 
-    /// What the change of beta adds to the change of the force: (Pt/s³ Bn' - Pn Bt) dbeta, as its two factors.
+    /// The part of the change of the force that comes from the change of beta, (Pt/s³ Bn' - Pn Bt) dbeta, as its two
+    /// factors.
     pub fn change(&self, [pn, pt]: [f64; 2]) -> [[f64; 6]; 2] {
         let [force, _] = self.chord;
         let turned = pt / self.stretch.powi(3);

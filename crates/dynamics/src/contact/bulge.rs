@@ -1,21 +1,23 @@
-//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. See docs/theory/geometry.md,
-//! Curved faces.
+//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. See
+//! docs/theory/geometry.md, Curved faces.
 
 use super::projection::Projection;
 use super::tolerances::EQUAL_SLOPES;
 use crate::vectors::length;
 
-/// Distance of a curved face out of the body from the chord of a segment, constant in a run (length):
+/// Bulge of a segment: distance b of its curved face from its chord, outwards from the body, constant in a run
+/// (length):
 ///
 /// ```text
 /// b(xi) = c0 + c1 xi + c2 xi² + c3 xi³    eq. (3.26)
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bulge {
-    /// c0 to c3.
+    /// The coefficients c0 to c3 of b(xi).
     coefficients: [f64; 4],
-    /// Whether it goes on as a straight line beyond the ends of the segment: for nodes, which come over an end before they
-    /// change their segment. Points of faces change it at the bisector, and what is integrated over them has to be one cubic.
+    /// Whether the face goes on as a straight line beyond the ends of the segment. For nodes the face goes straight on:
+    /// a node comes over an end before it changes its segment. For points of faces the cubic goes on: a point changes
+    /// its segment at the bisector, and a quantity that is integrated over points must be one cubic.
     goes_straight_on: bool,
 }
 
@@ -26,21 +28,23 @@ impl Bulge {
         goes_straight_on: false,
     };
 
-    /// With the slopes `start` and `end` of the true face against the chord at the ends of a segment, outwards from its start and
-    /// from its end:
+    /// Bulge from the slopes of the true face against its chord, outwards from the `start` and from the `end` of the
+    /// segment:
     ///
     /// ```text
     /// b = l (tau_a xi (1 - xi)² + tau_b xi² (1 - xi)),  tau = t - t³/5 + 3 t⁵/35
     /// ```
     ///
-    /// With tau = t the cubic had the slopes, and 8/15 of the greatest distance from an arc on the mean. With these tau the area
-    /// between chord and arc is right, tau = 3 ((1 + t²) atan t - t)/(2 t²) to the seventh order, the greatest distance a fifth, and the slopes are right to the third order.
+    /// With tau = t the cubic would have the slopes of the face; its mean distance from an arc would be 8/15 of the
+    /// greatest distance. With the given tau the area between chord and arc is right to the seventh order, tau = 3
+    /// ((1 + t²) atan t - t)/(2 t²). The greatest distance from the arc is a fifth of that with tau = t, and the slopes
+    /// are right to the third order.
     pub(super) fn of_slopes(length: f64, slopes: [f64; 2]) -> Self {
         let [start, end] = slopes.map(|t| {
             let square = t * t;
             t * (1.0 - square / 5.0 + 3.0 * square * square / 35.0)
         });
-        // on a circle the cubic is a parabola, for which two Gauss points do
+        // on a circle the cubic is a parabola, for which two Gauss points are enough
         let end = match (start - end).abs() <= EQUAL_SLOPES * start.abs() {
             true => start,
             false => end,
@@ -52,14 +56,14 @@ impl Bulge {
         }
     }
 
-    /// A cubic that is steep, for tests.
+    /// A steep cubic bulge, for tests.
     #[cfg(test)]
     pub(super) fn steep(length: f64) -> Self {
         Bulge::of_slopes(length, [0.3, 0.15])
     }
 
-    /// The parabola of half a side whose node between is `rise` outside of the line between its corners (length), over the chord
-    /// to this node.
+    /// Bulge of one half of a side with a mid-side node: the parabola over the chord from a corner to this node, which
+    /// lies `rise` outside the line between the corners (length).
     pub(super) fn of_side(rise: f64) -> Self {
         Bulge {
             coefficients: [0.0, rise, -rise, 0.0],
@@ -67,7 +71,8 @@ impl Bulge {
         }
     }
 
-    /// That of a chord of an arc of the given radius, negative where the body is outside: t = tan(phi/2), sin(phi/2) = l/(2 R).
+    /// Bulge of a chord of an arc with the given radius, negative where the body is outside the circle: t = tan(phi/2),
+    /// sin(phi/2) = l/(2 R).
     pub(super) fn of_arc(length: f64, radius: f64) -> Self {
         let sine = length / (2.0 * radius);
         let cosine = (1.0 - sine * sine).max(0.0).sqrt();
@@ -77,8 +82,8 @@ impl Bulge {
         }
     }
 
-    /// The same for points of faces: one cubic beyond the ends of the segment too, and where the start or the end of the segment
-    /// is a node between the corners of a side, over the line to the vertex x_v of eq. (3.21) that takes its place.
+    /// The same bulge for points of faces: one cubic beyond the ends of the segment too. An end that is a mid-side node
+    /// (`is_between`) is replaced by the vertex x_v of eq. (3.21).
     pub(super) fn of_points(self, is_between: [bool; 2]) -> Self {
         let [_, rise, ..] = self.coefficients;
         let coefficients = match is_between {
@@ -98,17 +103,18 @@ impl Bulge {
         self.coefficients == [0.0; 4]
     }
 
-    /// Its coefficients c0 to c3 (length).
+    /// The coefficients c0 to c3 of the bulge (length).
     pub fn coefficients(&self) -> [f64; 4] {
         self.coefficients
     }
 
-    /// Whether its third derivative is not zero.
+    /// Whether the third derivative of the bulge is not zero.
     pub(super) fn is_cubic(&self) -> bool {
         self.coefficients[3] != 0.0
     }
 
-    /// The place from which it goes straight on, if xi is beyond an end.
+    /// The xi from which the face goes straight on: the end of the segment that xi is beyond, else
+    /// xi itself.
     #[inline]
     fn end_before(&self, xi: f64) -> f64 {
         match self.goes_straight_on {
@@ -145,7 +151,7 @@ impl Bulge {
         }
     }
 
-    /// D = (b(y) - b(x))/(y - x) without cancellation, and its derivative with respect to y (both length):
+    /// Secant D = (b(y) - b(x))/(y - x) without cancellation, and its derivative with respect to y (both length):
     ///
     /// ```text
     /// D = c1 + c2 (x + y) + c3 (x² + x y + y²),  dD/dy = c2 + c3 (x + 2 y)    eq. (3.29)
@@ -183,7 +189,7 @@ impl Bulge {
         if self.is_flat() {
             return p.tangent;
         }
-        // the chord is shorter or longer than that of the reference configuration, but what bulges out of it is not
+        // the chord changes its length with the deformation, the height of the bulge does not
         let slope = self.slope(end) / p.length;
         let t = [0, 1].map(|i| p.tangent[i] + slope * p.normal[i]);
         let length = length(t);
@@ -191,22 +197,23 @@ impl Bulge {
     }
 }
 
-/// What a gap to the chord of a segment counts more by: the overlap that a fit allows, less the bulge of the face.
+/// Lift: the amount by which the gap of a node counts more than its gap to the chord of the segment. The lift is the
+/// overlap that a fit allows, less the bulge of the face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lift {
-    /// The overlap (length).
+    /// The overlap that a fit allows (length).
     pub allowed: f64,
     /// The bulge.
     pub bulge: Bulge,
 }
 
 impl Lift {
-    /// Whether gaps are those to the chord.
+    /// Whether the lift is zero, so gaps are relative to the chord.
     pub fn is_none(&self) -> bool {
         self.allowed == 0.0 && self.bulge.is_flat()
     }
 
-    /// What it adds to the gap at a place xi of the segment (length).
+    /// Lift at a place xi of the segment (length).
     pub fn at(&self, xi: f64) -> f64 {
         match self.bulge.is_flat() {
             true => self.allowed,
@@ -214,7 +221,7 @@ impl Lift {
         }
     }
 
-    /// A projection on the chord with the gap that counts.
+    /// A projection on the chord with the lift added to its gap.
     pub fn of(&self, p: Projection) -> Projection {
         p.raised(self.at(p.xi))
     }

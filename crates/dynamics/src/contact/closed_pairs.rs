@@ -1,6 +1,6 @@
-//! Closed contact pairs with their forces and states: what a pass or an increment hands on of
-//! contact. It starts the next complementarity problem, chooses the pairs of impulses, and tells the
-//! tunnelling check and the landings which nodes are in contact. See docs/theory/complementarity.md and docs/theory/impacts.md.
+//! Closed contact pairs with their forces and states, which a pass or an increment hands on to the next one. The closed
+//! pairs start the next complementarity problem, choose the pairs of impulses, and tell the tunnelling check and the
+//! landings which nodes are in contact. See docs/theory/complementarity.md and docs/theory/impacts.md.
 
 use super::constraint::{Configurations, Constraint};
 use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};
@@ -12,21 +12,21 @@ use crate::lcp::ContactState;
 pub struct ClosedPair {
     /// Its constraint.
     pub key: ConstraintKey,
-    /// What its constraint was made from.
+    /// The pair and target from which its constraint is made.
     pub(super) source: PairTarget,
     /// Pn and Pt (force), or the impulses Phi and Psi.
     pub force: [f64; 2],
-    /// Its coefficient of friction mu.
+    /// Coefficient of friction mu of the pair.
     pub mu: f64,
-    /// Whether it sticks or slides in the solution of the complementarity problem. The force of one that slides is at its
-    /// limit, though it need not have moved.
+    /// Whether the pair sticks or slides in the solution of the complementarity problem. The force of a sliding pair is
+    /// at its limit, though the pair need not have moved.
     pub state: ContactState,
-    /// Whether it has slipped.
+    /// Whether the pair has slipped.
     pub slips: bool,
 }
 
 impl ClosedPair {
-    /// A constraint that carries a force.
+    /// Closed pair of a constraint, with its force and state.
     pub fn new(constraint: &Constraint, force: [f64; 2], state: ContactState) -> Self {
         ClosedPair {
             key: constraint.key,
@@ -38,7 +38,8 @@ impl ClosedPair {
         }
     }
 
-    /// How far its friction is beyond that of a coefficient mu, or off it where the pair slips (force), eq. (3.6).
+    /// Tangential force beyond the friction limit of a coefficient mu, or, where the pair slips, its difference from
+    /// the limit (force), eq. (3.6).
     ///
     /// ```text
     /// |Pt| - mu Pn,   of a pair that slips ||Pt| - mu Pn|
@@ -49,7 +50,8 @@ impl ClosedPair {
         if self.slips { excess.abs() } else { excess }
     }
 
-    /// Its constraint between other configurations, at whose start the same target holds it.
+    /// The constraint of the pair between other configurations; the same target holds it at their
+    /// start.
     pub fn constraint(&self, at: &Configurations) -> Constraint {
         Constraint {
             mu: self.mu,
@@ -57,7 +59,7 @@ impl ClosedPair {
         }
     }
 
-    /// A slave node and the segment that it meets, at a corner that before it.
+    /// The slave node and its segment; at a corner the segment before the corner.
     pub fn pair(&self) -> NodeAtSegment {
         self.source.named()
     }
@@ -78,14 +80,15 @@ impl FromIterator<ClosedPair> for ClosedPairs {
 }
 
 impl ClosedPairs {
-    /// Takes over other pairs, with increasing keys.
+    /// Replaces the pairs by others, which come with increasing keys.
     pub fn set(&mut self, pairs: impl Iterator<Item = ClosedPair>) {
         self.0.clear();
         self.0.extend(pairs);
         assert!(self.0.is_sorted_by(|p, q| p.key < q.key), "increasing keys");
     }
 
-    /// Says which of the pairs at their limits have slipped. Without friction a pair always slips.
+    /// Marks which of the pairs at their friction limits have slipped. Without friction a pair
+    /// always slips.
     pub fn mark_slips(&mut self, has_moved: impl Fn(ConstraintKey) -> bool) {
         for pair in &mut self.0 {
             pair.slips =
@@ -103,23 +106,23 @@ impl ClosedPairs {
         self.0.clear();
     }
 
-    /// The pairs with increasing keys.
+    /// The closed pairs, in the order of increasing keys.
     pub fn iter(&self) -> impl Iterator<Item = &ClosedPair> + Clone {
         self.0.iter()
     }
 
-    /// Whether a node lies in one of the means.
+    /// Whether a node belongs to one of the closed means (surface to surface).
     pub(super) fn means_have(&self, node: usize) -> bool {
         let mut means = self.0.iter().filter_map(|pair| pair.source.target.mean());
         means.any(|mean| mean.has(node))
     }
 
-    /// Their keys, increasing.
+    /// Keys of the closed pairs, increasing.
     pub fn keys(&self) -> impl Iterator<Item = ConstraintKey> {
         self.0.iter().map(|pair| pair.key)
     }
 
-    /// Number of pairs.
+    /// Number of closed pairs.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -129,38 +132,41 @@ impl ClosedPairs {
         self.0.is_empty()
     }
 
-    /// Number of pairs that do not slip.
+    /// Number of closed pairs that do not slip.
     pub fn sticking(&self) -> usize {
         self.0.iter().filter(|pair| !pair.slips).count()
     }
 
-    /// Whether a constraint is closed.
+    /// Whether the constraint with this key is closed.
     pub fn closes(&self, key: ConstraintKey) -> bool {
         self.find(key).is_some()
     }
 
-    /// Normal and tangential force of a constraint; zero of an open one.
+    /// Normal and tangential force of a constraint; zero for an open one.
     pub fn force(&self, key: ConstraintKey) -> [f64; 2] {
         self.find(key).map_or([0.0; 2], |pair| pair.force)
     }
 
-    /// State of a constraint.
+    /// State of a constraint among the closed pairs.
     pub fn own_state(&self, key: ConstraintKey) -> ContactState {
         self.find(key).map_or(ContactState::Open, |pair| pair.state)
     }
 
-    /// State of a constraint; a node that has come to another segment keeps the one it had.
+    /// State of a constraint; for a node that has come to another segment, its state at the segment
+    /// before.
     pub fn state(&self, key: ConstraintKey) -> ContactState {
         (self.last_of(key)).map_or(ContactState::Open, |pair| pair.state)
     }
 
-    /// The pair of a constraint; of a node that has come to another segment, its pair there.
+    /// The closed pair of a constraint; for a node that has come to another segment, its pair at
+    /// the segment before.
     pub fn last_of(&self, key: ConstraintKey) -> Option<&ClosedPair> {
         self.find(key).or(self.of_slave(key.slave).first())
     }
 
-    /// States from which the problem of constraints with increasing keys starts. An open pair whose slave node still has a
-    /// closed pair among them is open: only a node that has come to another segment hands its state on.
+    /// States from which the complementarity problem of constraints with the given, increasing keys starts. A
+    /// constraint starts as open if it was open and its slave node still has a closed pair among `keys`; only a node
+    /// that has come to another segment hands its state on.
     pub fn states_among(&self, keys: &[ConstraintKey]) -> impl Iterator<Item = ContactState> {
         let is_left = |pair: &ClosedPair| keys.binary_search(&pair.key).is_err();
         keys.iter().map(move |&key| match self.find(key) {
@@ -170,7 +176,7 @@ impl ClosedPairs {
         })
     }
 
-    /// The pairs of a slave node.
+    /// The closed pairs of a slave node.
     pub fn of_slave(&self, slave: SlaveKey) -> &[ClosedPair] {
         let from = self.0.partition_point(|pair| pair.key.slave < slave);
         let is_own = |pair: &&ClosedPair| pair.key.slave == slave;

@@ -3,8 +3,8 @@
 //! docs/theory/impacts.md and docs/numerics.md, Compliance of
 //! the pairs.
 //!
-//! What gaps and slips of constraints take from forces at the unknowns of one block of the compliance, and
-//! that of contact forces: the two products of the Delassus operator, eq. (5.1). See docs/theory/complementarity.md, Problem of a pass.
+//! The two products of the Delassus operator, eq. (5.1): the gaps and slips of constraints under forces at the unknowns
+//! of one compliance block, and under contact forces. See docs/theory/complementarity.md, Problem of a pass.
 
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -16,33 +16,34 @@ use super::keys::SlaveKey;
 use crate::archive::{Archive, ArchiveError};
 use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 
-/// The inverse of a factorised matrix at the unknowns that constraints act on, a block for each connected
-/// group of unknowns: it is zero between them.
+/// The inverse of a factorised matrix at the unknowns on which constraints act, with one block for each connected group
+/// of unknowns: between groups the inverse is zero.
 ///
-/// It is computed when constraints first need it and kept until the matrix changes, so that a Delassus
-/// matrix for any normals costs no further solves.
+/// The inverse is computed when constraints first need it and kept until the matrix changes, so a Delassus matrix for
+/// other normals needs no further solves.
 #[derive(Debug)]
 pub struct Compliance {
-    /// T: what unknowns the dofs depend on.
+    /// T: dependence of the dofs on the unknowns.
     map: Transformation,
-    /// R of the bodies since the matrix was factorised.
+    /// Rotation R of the bodies since the matrix was factorised.
     rotation: Rotation,
-    /// Connected group of every unknown.
+    /// Connected group of every unknown in the matrix.
     groups: Vec<usize>,
     /// Group of every unknown in the matrix of the elements alone: its body.
     bodies: Vec<usize>,
-    /// What has been computed, for all constraints or those of some bodies.
+    /// The inverses computed so far, for all constraints or for those of some bodies.
     inverses: BTreeMap<ConstraintGroup, Vec<InverseBlock>>,
 }
 
-/// Constraints whose compliance is computed together.
+/// Constraints whose compliance is computed together (a scope).
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum ConstraintGroup {
-    /// All of them.
+    /// All constraints.
     All,
-    /// Those between the same bodies, given by increasing numbers.
+    /// The constraints between the same bodies, which are given by increasing numbers.
     Bodies(Vec<usize>),
-    /// A part of these along the surfaces, told by contact and part.
+    /// A part, along the surfaces, of the constraints between the same bodies; contact and part
+    /// number identify it.
     Part(Vec<usize>, [usize; 2]),
 }
 
@@ -50,20 +51,20 @@ pub enum ConstraintGroup {
 #[derive(Debug, Clone)]
 struct InverseBlock {
     group: usize,
-    /// Unknowns of the rows, increasing.
+    /// Unknowns of the rows and columns, increasing.
     unknowns: Vec<usize>,
-    /// Column by column.
+    /// Entries of the inverse, column by column.
     inverse: Vec<f64>,
 }
 
 impl InverseBlock {
-    /// The block of a group, among blocks with increasing groups, with its place.
+    /// The block of a group and its place, among blocks with increasing groups.
     fn of(blocks: &[InverseBlock], group: usize) -> Option<(usize, &InverseBlock)> {
         let at = blocks.binary_search_by_key(&group, |block| block.group);
         at.ok().map(|at| (at, &blocks[at]))
     }
 
-    /// Row of an unknown, which may be the `next` one.
+    /// Row of an unknown; `next` is the row that is looked at first.
     fn place(&self, unknown: usize, next: usize) -> Option<usize> {
         match self.unknowns.get(next) {
             Some(&of_next) if of_next == unknown => Some(next),
@@ -73,8 +74,8 @@ impl InverseBlock {
 }
 
 impl Compliance {
-    /// Compliance for the unknowns that all dofs depend on, and the connected groups of the unknowns in the
-    /// matrix that the elements make.
+    /// Compliance for the unknowns on which all dofs depend; `bodies` are the connected groups of the unknowns in the
+    /// matrix of the elements.
     pub fn new(map: Transformation, bodies: Vec<usize>) -> Self {
         Compliance {
             map,
@@ -85,18 +86,19 @@ impl Compliance {
         }
     }
 
-    /// Forgets the inverse: the matrix has changed, and with it, perhaps, the connected groups.
+    /// Forgets the inverse because the matrix has changed; its connected groups may have changed
+    /// too.
     pub fn renew(&mut self, groups: Vec<usize>) {
         self.groups = groups;
         self.rotation = Rotation::default();
         self.inverses.clear();
     }
 
-    /// Transfers the rotation and the unknowns at which the inverse is known; what is read is computed anew by the
-    /// `solver`, the same bits.
+    /// Transfers the rotation and the unknowns at which the inverse is known. After the archive is read, the `solver`
+    /// computes the inverse anew, with the same bits.
     ///
     /// # Errors
-    /// What is read is of another model.
+    /// Returns an error if the archive is of another model.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,
@@ -143,17 +145,18 @@ impl Compliance {
         Ok(())
     }
 
-    /// Turns W with the bodies, to R W R^T, by their angles since the matrix was factorised (rad).
+    /// Turns W with the bodies, W <- R W R^T; `angles` are their rotations since the matrix was
+    /// factorised (rad).
     pub fn turn(&mut self, angles: &[f64], body_of: &[usize]) {
         self.rotation.set(angles, body_of);
     }
 
-    /// R of the bodies since the matrix was factorised.
+    /// Rotation R of the bodies since the matrix was factorised.
     pub fn rotation(&self) -> &Rotation {
         &self.rotation
     }
 
-    /// The part of the constraints between the same bodies that a constraint belongs to, where parts have so many slave
+    /// The part to which a constraint belongs among the constraints between the same bodies; a part has `nodes` slave
     /// nodes.
     pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> ConstraintGroup {
         let SlaveKey { contact, slave } = constraint.key.slave();
@@ -174,11 +177,12 @@ impl Compliance {
         ConstraintGroup::Bodies(bodies)
     }
 
-    /// Computes the inverse of a scope at the unknowns of `constraints` too, if some are missing. That of all
-    /// constraints is checked; the forces that those of bodies lead to must be.
+    /// Computes the inverse of a scope also at those unknowns of `constraints` where it is missing. The function checks
+    /// the inverse of the scope of all constraints; with the scopes of bodies, the caller must check the resulting
+    /// forces.
     ///
     /// # Errors
-    /// What the solver says.
+    /// Returns the error of the solver.
     pub fn prepare(
         &mut self,
         scope: &ConstraintGroup,
@@ -226,18 +230,18 @@ impl Compliance {
         Ok(())
     }
 
-    /// T: what unknowns the dofs depend on.
+    /// T: dependence of the dofs on the unknowns.
     pub fn map(&self) -> &Transformation {
         &self.map
     }
 
-    /// T, of which the rows of bodies that turn change with the iterate.
+    /// Mutable T: its rows of bodies that turn depend on the iterate.
     pub fn map_mut(&mut self) -> &mut Transformation {
         &mut self.map
     }
 
-    /// Calls `add` with the entries of the rows of a constraint, turned back with R^T, that are not all
-    /// zero; it must have been prepared in the scope.
+    /// Calls `add` with those entries of the rows of a constraint, turned back with R^T, that are not all zero. The
+    /// constraint must have been prepared in the scope.
     pub(super) fn for_each_entry(
         &self,
         scope: &ConstraintGroup,
@@ -278,7 +282,7 @@ impl Compliance {
         }
     }
 
-    /// Entries of normal and tangential row at the dofs of a node, times R (docs/numerics.md, Turned factors).
+    /// Entries of the normal and tangential row at the dofs of a node, times R (docs/numerics.md, Turned factors).
     fn turned_back(&self, dofs: &[usize], rows: &Rows, node: usize) -> [[f64; 2]; 2] {
         let Rows { normal, tangential } = rows;
         let mut normal = [normal[2 * node], normal[2 * node + 1]];
@@ -288,24 +292,24 @@ impl Compliance {
         [normal, tangential]
     }
 
-    /// The blocks of a scope.
+    /// The blocks of the inverse of a scope.
     fn blocks(&self, scope: &ConstraintGroup) -> &[InverseBlock] {
         self.inverses.get(scope).map_or(&[], Vec::as_slice)
     }
 
-    /// Number of blocks of a scope.
+    /// Number of blocks of the inverse of a scope.
     pub(super) fn block_count(&self, scope: &ConstraintGroup) -> usize {
         self.blocks(scope).len()
     }
 
-    /// The inverse at the unknowns of a block of a scope, column by column, and their number.
+    /// The inverse of one block of a scope, column by column, and the number of its unknowns.
     pub(super) fn inverse(&self, scope: &ConstraintGroup, block: usize) -> (&[f64], usize) {
         let block = &self.blocks(scope)[block];
         (&block.inverse, block.unknowns.len())
     }
 }
 
-/// Adds unknowns that are missing, with their groups, increasing, to blocks, and says which blocks change.
+/// Adds missing unknowns, given with their groups and increasing, to the blocks, and returns the blocks that change.
 fn add_unknowns(blocks: &mut Vec<InverseBlock>, missing: &[(usize, usize)]) -> Vec<usize> {
     let mut groups: Vec<usize> = Vec::new();
     for of_group in missing.chunk_by(|a, b| a.0 == b.0) {
@@ -336,9 +340,9 @@ fn add_unknowns(blocks: &mut Vec<InverseBlock>, missing: &[(usize, usize)]) -> V
 /// The rows of a constraint at one unknown.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct UnknownEntry {
-    /// Row of the inverse, in its block.
+    /// Row of the unknown in the inverse of its block.
     pub place: usize,
-    /// Its block, that of the group of the unknown.
+    /// Number of the block of the unknown's group.
     pub block: usize,
     /// Entries of Bn T and Bt T.
     pub force: [f64; 2],
@@ -349,7 +353,7 @@ pub(super) struct UnknownEntry {
 /// The rows of some constraints at the unknowns of one block.
 #[derive(Debug, Default)]
 pub(super) struct GroupRows {
-    /// The constraints, increasing, each with the end of its entries.
+    /// The constraints, increasing, each with the end of its entries in the list.
     pub members: Vec<(usize, usize)>,
     entries: Vec<UnknownEntry>,
 }
@@ -361,7 +365,8 @@ impl GroupRows {
         self.entries.clear();
     }
 
-    /// Adds an entry of a constraint, which is the last one or comes after it.
+    /// Adds an entry of a constraint, which must be the last constraint of the list or come after
+    /// it.
     pub fn push(&mut self, constraint: usize, entry: UnknownEntry) {
         self.entries.push(entry);
         let end = self.entries.len();
@@ -371,7 +376,7 @@ impl GroupRows {
         }
     }
 
-    /// Entries of the constraints with their numbers, one constraint after the other.
+    /// The constraints by their numbers, each with its entries.
     #[inline(always)]
     pub fn iter(&self) -> impl Iterator<Item = (usize, &[UnknownEntry])> {
         let mut start = 0;
@@ -383,23 +388,23 @@ impl GroupRows {
     }
 }
 
-/// What forces at the unknowns of a block do to gaps and slips of some constraints.
+/// Gaps and slips of some constraints under unit forces at the unknowns of a block.
 #[derive(Debug, Default)]
 pub(super) struct Responses {
-    /// A row for every unknown: all gaps, then all slips.
+    /// A row for every unknown: the gaps of all constraints, then their slips.
     rows: Vec<f64>,
-    /// Entries of a row.
+    /// Number of entries of a row.
     width: usize,
-    /// Gap and slip of some constraints, over the unknowns.
+    /// Columns of gap and slip of some constraints, over the unknowns.
     columns: [[Vec<f64>; 2]; TOGETHER],
 }
 
-/// Constraints whose responses are written to the rows together.
+/// Number of constraints whose responses are written to the rows of a block together.
 const TOGETHER: usize = 4;
 
 impl Responses {
-    /// W^T (G_k T)^T of eq. (5.1) of some constraints k, in the rows of a block, with W = W^T. The `inverse`
-    /// has `size` rows and columns.
+    /// Sets the rows to W^T (G_k T)^T of eq. (5.1) for some constraints k of a block, with W = W^T. The `inverse` has
+    /// `size` rows and columns.
     #[inline(always)]
     pub fn set<S: Simd>(
         &mut self,
@@ -424,7 +429,8 @@ impl Responses {
         }
     }
 
-    /// Writes the columns of so many constraints to the places from `first` on, of so many in all.
+    /// Writes the columns of `together` constraints, the `first` one and those after it, to the
+    /// rows of `count` constraints.
     #[inline(always)]
     fn write_rows(&mut self, first: usize, [together, count]: [usize; 2]) {
         let size = self.rows.len() / self.width;
@@ -456,8 +462,8 @@ impl Responses {
         }
     }
 
-    /// (B_l T) Y of eq. (5.1), Y being the rows: what normal and tangential force of l add to gaps and slips of
-    /// the constraints; added to what there is, or written.
+    /// (B_l T) Y of eq. (5.1), Y being the rows: gaps and slips of the constraints under a unit normal and a unit
+    /// tangential force of l. With `adds` the result is added to the sums, otherwise it replaces them.
     #[inline(always)]
     pub fn product<S: Simd>(&self, simd: S, l: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
         let terms = Terms {
@@ -478,7 +484,7 @@ fn resized(vectors: &mut [Vec<f64>; 2], length: usize) -> [&mut [f64]; 2] {
     })
 }
 
-/// Vectors of one length, one after the other, and the two factors that an entry has for the vector of its place.
+/// Vectors of one length, one after the other, with the function for the two factors of each entry.
 struct Terms<'a, F: Fn(&UnknownEntry) -> [f64; 2]> {
     vectors: &'a [f64],
     length: usize,
@@ -486,7 +492,8 @@ struct Terms<'a, F: Fn(&UnknownEntry) -> [f64; 2]> {
 }
 
 impl<F: Fn(&UnknownEntry) -> [f64; 2]> Terms<'_, F> {
-    /// The two sums of the vectors of some entries times their factors, added to what there is, or written.
+    /// The two sums of the vectors of some entries times their factors; they are added to the values there, or replace
+    /// them.
     #[inline(always)]
     fn combine<S: Simd>(
         &self,
@@ -509,7 +516,7 @@ impl<F: Fn(&UnknownEntry) -> [f64; 2]> Terms<'_, F> {
         }
     }
 
-    /// [`Self::combine`] for N entries.
+    /// [`Self::combine`] for exactly N entries.
     #[inline(always)]
     fn combine_some<S: Simd, const N: usize>(
         &self,

@@ -1,7 +1,7 @@
-//! A contact constraint, linearised at the current iterate: gap and slip, the rows that its force
-//! acts with and the derivatives of gap and slip. All that the complementarity problem, contact
-//! forces, impulses, convergence and the ledger know of contact.
-//! See docs/theory/contact.md and docs/theory/complementarity.md.
+//! A contact constraint, linearised at the current iterate: gap and slip, the rows of its force,
+//! and the derivatives of gap and slip. The complementarity problem, contact forces, impulses,
+//! convergence and ledger know only this constraint of contact. See docs/theory/contact.md and
+//! docs/theory/complementarity.md.
 //!
 //! The configurations between which contact constraints are linearised, and the form of their
 //! rows. See docs/theory/contact.md.
@@ -28,7 +28,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Rows of two slices of the same length.
+    /// Row pair with the values of two slices of the same length.
     #[inline]
     pub fn new(normal: &[f64], tangential: &[f64]) -> Self {
         Rows {
@@ -38,7 +38,7 @@ impl Rows {
     }
 }
 
-/// Normal and tangential row over N dofs, eight at most.
+/// Normal and tangential row over N dofs, with N at most 8.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RowPair<const N: usize> {
     pub normal: [f64; N],
@@ -60,7 +60,7 @@ pub(super) fn product(row: &[f64; 6], d: &[f64; 6]) -> f64 {
     row.iter().zip(d).map(|(b, d)| b * d).sum()
 }
 
-/// p row + q other
+/// The sum p row + q other.
 pub(super) fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 6] {
     std::array::from_fn(|k| p * row[k] + q * other[k])
 }
@@ -73,43 +73,44 @@ pub(super) fn sum_of(p: f64, row: &[f64; 6], q: f64, other: &[f64; 6]) -> [f64; 
 /// increment      Bn d = g - g0,  Bt d = Dt          d = U - U0
 /// ```
 ///
-/// Force rows and derivative rows are two things even where they hold the same numbers: the former
-/// make work and momenta right, the latter say how gap and slip go on from the iterate.
+/// Force rows and derivative rows are distinct even where their numbers are equal. Force rows make
+/// works and momenta right; derivative rows say how gap and slip change from the iterate on.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Constraint {
-    /// What identifies it.
+    /// Key that identifies the constraint.
     pub key: ConstraintKey,
-    /// Its dofs, x and y of one node after the other, those of slave nodes first; every dof once.
+    /// Dofs of the constraint: x and y of one node after the other, slave nodes first, every dof
+    /// once.
     pub dofs: PerDof<usize>,
     /// Number of dofs of slave nodes.
     pub slave_dofs: usize,
     /// Force rows Bn and Bt (dimensionless).
     pub force_rows: Rows,
-    /// Derivative rows Gn and Gt (dimensionless), where they are others than the force rows.
+    /// Derivative rows Gn and Gt (dimensionless), where they differ from the force rows.
     pub other_derivative_rows: Option<Rows>,
-    /// Gap g of the iterate (length), positive when open; of a fit with the overlap that is allowed, eq. (3.15).
+    /// Gap g of the iterate (length), positive when open; in a fit the allowed overlap is added, eq. (3.15).
     pub gap: f64,
-    /// Gap of the start in the sense of the force rows, g - Bn d, of a fit with what is allowed there (length).
+    /// Gap at the start in the sense of the force rows, g - Bn d (length); in a fit the overlap allowed there is added.
     pub start_gap: f64,
     /// Slip Dt since the start of the increment (length).
     pub slip: f64,
-    /// Coefficient of friction mu that it was last given; at first none.
+    /// Coefficient of friction mu that was last set; at first 0.
     pub mu: f64,
     /// Whether the coefficient depends on slip rate or pressure.
     pub mu_varies: bool,
-    /// Length s of its normal row, over that of a straight face: the normal force is s Pn, eq. (3.31).
+    /// Length s of the normal row, relative to that of a straight face: the normal force is s Pn, eq. (3.31).
     pub stretch: f64,
-    /// What the overlap that a fit allows becomes less by in the increment (length), eq. (3.15).
+    /// Decrease of the overlap that a fit allows within the increment (length), eq. (3.15).
     pub shrinkage: f64,
-    /// Length that gaps are relative to: that of the segment.
+    /// Length to which gaps are relative: the length of the segment.
     pub scale: f64,
-    /// The slave node and target it was made from.
+    /// The slave node and target from which the constraint is made.
     pub(super) source: PairTarget,
 }
 
 impl Constraint {
-    /// The constraint of some nodes, the slave node before the others, with its force rows and derivative rows over
-    /// their N dofs; its slip is Bt d. Its gap has the overlaps `allowed` at start and end.
+    /// The constraint of some nodes, slave node first, with its force rows and derivative rows over their N dofs; its
+    /// slip is Bt d. The gap of the constraint contains the overlaps `allowed` at start and end.
     #[inline]
     pub(super) fn of_nodes<const N: usize>(
         source: PairTarget,
@@ -140,17 +141,17 @@ impl Constraint {
         }
     }
 
-    /// Coefficient of friction of its Pn, eq. (3.31): |Pt| <= mu s Pn.
+    /// Coefficient of friction relative to Pn, mu s: |Pt| <= mu s Pn, eq. (3.31).
     pub fn friction(&self) -> f64 {
         self.mu * self.stretch
     }
 
-    /// Normal and tangential force s Pn and Pt of its multipliers.
+    /// Normal and tangential force, s Pn and Pt, from the multipliers Pn and Pt.
     pub fn normal_and_tangential(&self, [pn, pt]: [f64; 2]) -> [f64; 2] {
         [self.stretch * pn, pt]
     }
 
-    /// The same constraint with its force rows as derivative rows, so that Q is symmetric.
+    /// The same constraint with its force rows as derivative rows, which makes Q symmetric.
     pub fn with_force_rows(&self) -> Self {
         Constraint {
             other_derivative_rows: None,
@@ -158,7 +159,8 @@ impl Constraint {
         }
     }
 
-    /// The same constraint with another gap and slip, relative to another length.
+    /// The same constraint with another gap and slip, and with the length `scale` to which they are
+    /// relative.
     pub fn with_gap_and_slip(&self, [gap, slip]: [f64; 2], scale: f64) -> Self {
         Constraint {
             gap,
@@ -168,24 +170,24 @@ impl Constraint {
         }
     }
 
-    /// Derivative rows G.
+    /// Derivative rows Gn and Gt.
     pub fn derivative_rows(&self) -> &Rows {
         let other = self.other_derivative_rows.as_ref();
         other.unwrap_or(&self.force_rows)
     }
 
-    /// Gn v: what a vector over all dofs adds to the gap.
+    /// Gn v: change of the gap by a vector over all dofs.
     pub fn gap_change(&self, v: &[f64]) -> f64 {
         self.product(&self.derivative_rows().normal, |dof| v[dof])
     }
 
-    /// Gt v: what a vector over all dofs adds to the slip.
+    /// Gt v: change of the slip by a vector over all dofs.
     pub fn slip_change(&self, v: &[f64]) -> f64 {
         self.product(&self.derivative_rows().tangential, |dof| v[dof])
     }
 
-    /// A gap or slip of the pair (length), 0 where it is nothing beside the segment, eq. (4.21): what a motion has died away to
-    /// must not become the scale of a complementarity problem, whose forces would underflow.
+    /// A gap or slip of the pair (length), or 0 if it is negligible against the segment, eq. (4.21). The remains of a
+    /// motion that has died away must not become the scale of a complementarity problem, whose forces would underflow.
     pub fn resolved(&self, length: f64) -> f64 {
         match length.abs() < NOTHING * self.scale {
             true => 0.0,
@@ -193,7 +195,7 @@ impl Constraint {
         }
     }
 
-    /// Round-off of its slip (length): what solves leave of it, and round-off of the slave node's position at the start.
+    /// Round-off of the slip (length): the errors of solves, and round-off of the slave node's position at the start.
     pub fn slip_round_off(&self, (x, u0): (&[[f64; 2]], &[f64])) -> f64 {
         let place = position(x, u0, self.source.pair.slave);
         SOLVED_GAP * self.scale + 4.0 * position_round_off(place)
@@ -209,13 +211,14 @@ impl Constraint {
         self.product(&self.force_rows.tangential, |dof| d[dof])
     }
 
-    /// When its gap closes in the motion t V + t²/2 A from the start, eq. (6.3), given over all dofs, up to a time `end`:
+    /// Time at which the gap closes in the motion t V + t²/2 A from the start, eq. (6.3), up to a time `end`; V and A
+    /// are given over all dofs:
     ///
     /// ```text
     /// g0 + t Bn V + t²/2 Bn A = 0
     /// ```
     ///
-    /// None where it does not.
+    /// Returns `None` if the gap does not close.
     pub fn closing_time(&self, [v, a]: [&[f64]; 2], end: f64) -> Option<f64> {
         let (gap, rate) = (self.start_gap.max(0.0), self.normal_motion(v));
         let discriminant = rate * rate - 2.0 * gap * self.normal_motion(a);
@@ -234,7 +237,7 @@ impl Constraint {
         }
     }
 
-    /// Its nodes, slave nodes first.
+    /// Nodes of the constraint, slave nodes first.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
     }
@@ -247,7 +250,7 @@ impl Constraint {
         numbered.map(move |(k, node)| (node, [force(2 * k), force(2 * k + 1)]))
     }
 
-    /// Whether its slave node is a corner of the contact's master.
+    /// Whether the slave node of the constraint is a corner of the contact's master.
     pub fn is_of_master(&self) -> bool {
         self.source.pair.is_of_master
     }
@@ -264,7 +267,8 @@ impl Constraint {
         own.map(|(_, force)| force)
     }
 
-    /// The parts of its normal force that the nodes of the contact's slave surface take, and those of its master.
+    /// The parts of the constraint's normal force on the nodes of the contact's slave surface, and on those of its
+    /// master.
     pub fn surface_parts(&self) -> [SurfaceParts; 2] {
         let all: SmallVec<[(usize, [f64; 2]); 8]> = self.nodal_forces([1.0, 0.0]).collect();
         let (slaves, others) = all.split_at(self.slave_dofs / 2);
@@ -284,24 +288,24 @@ impl Constraint {
     }
 }
 
-/// The nodes of one of the surfaces that a constraint acts on, with the parts of its normal force that they take:
+/// The nodes of one of the two surfaces of a constraint, with their parts of its normal force:
 ///
 /// ```text
 /// f_k = Bn_k.N/(N.N),  N = sum_k Bn_k,  sum_k f_k = 1    eq. (9.15)
 /// ```
 ///
-/// From surface to surface these are the weights of its mean; a node that takes no normal force, as one that only turns
-/// a disc, has no part.
+/// With surface to surface the parts are the weights of the mean; a node without normal force, such as a node that only
+/// turns a disc, has no part.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct SurfaceParts {
-    /// N, a normal force of 1 on the surface.
+    /// N, the force on the surface under a normal force of 1.
     pub normal: [f64; 2],
     /// Nodes with their parts f.
     pub parts: SmallVec<[(usize, f64); 4]>,
 }
 
 impl SurfaceParts {
-    /// Those of nodes with Bn there.
+    /// Parts of the nodes, from the normal row Bn at each of them.
     fn of(at_nodes: &[(usize, [f64; 2])]) -> Self {
         let sum = |[x, y]: [f64; 2], (_, n): &(usize, [f64; 2])| [x + n[0], y + n[1]];
         let normal = at_nodes.iter().fold([0.0; 2], sum);
@@ -314,20 +318,20 @@ impl SurfaceParts {
     }
 }
 
-/// How the rows Bn and Bt of a pair are made.
+/// Form of the rows Bn and Bt of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RowForm {
     /// Normal and tangent of the end configuration (SS22).
     End,
-    /// Discrete gradients of gap and projection between start and end: Bn d = g1 - g0 and
-    /// Bt d = L (xi1 - xi0) exactly, and both momenta are kept (energy-momentum form).
+    /// Discrete gradients of gap and projection between start and end: exactly Bn d = g1 - g0 and
+    /// Bt d = L (xi1 - xi0), and linear and angular momentum are kept (energy-momentum form).
     DiscreteGradient,
 }
 
 /// Start of the increment and iterate between which constraints are linearised.
 #[derive(Debug, Clone, Copy)]
 pub struct Configurations<'a> {
-    /// How rows are made.
+    /// Form of the rows.
     pub form: RowForm,
     /// Reference coordinates of the nodes (length).
     pub x: &'a [[f64; 2]],

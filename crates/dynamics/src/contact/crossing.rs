@@ -47,7 +47,8 @@ pub enum CrossingSense {
     Entering,
     /// From inside the body to its outside.
     Leaving,
-    /// It meets the line and stays on its side: it grazes it, ends on it, or moves along it.
+    /// The node meets the line and stays on its side: it grazes the line, ends on it, or moves
+    /// along it.
     Touching,
 }
 
@@ -56,7 +57,7 @@ pub enum CrossingSense {
 pub struct Crossing {
     /// Time.
     pub time: f64,
-    /// Position on the segment, 0 at a and 1 at b.
+    /// Position xi on the segment, 0 at a and 1 at b.
     pub xi: f64,
     /// Sense.
     pub direction: CrossingSense,
@@ -83,11 +84,11 @@ pub fn crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
     found
 }
 
-/// Whether a node on a straight path is clearly on one side of the line of the segment all the time, or before
-/// its end a, or beyond b.
+/// Whether a node on a straight path stays clearly on one side of the line of the segment, before its end a, or beyond
+/// b, at all times.
 ///
-/// r x e, -r.e and (r - e).e are quadratic then. Each is positive where its Bernstein coefficients are: for r
-/// and e these are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
+/// On a straight path r x e, -r.e and (r - e).e are quadratic in time. Each of the three is positive if its Bernstein
+/// coefficients are; for r x e the coefficients are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
 fn is_clear(nodes: &[QuadraticMotion; 3], dt: f64) -> bool {
     if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {
         return false;
@@ -114,7 +115,7 @@ fn is_clear(nodes: &[QuadraticMotion; 3], dt: f64) -> bool {
         || least(-1.0, cross, r) > clear
 }
 
-/// The same for the infinite line through the segment.
+/// The crossings with the infinite line through the segment.
 pub fn line_crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
     let relative = Relative::new(nodes, dt);
     match relative.cross().zeros() {
@@ -142,9 +143,9 @@ fn direction(zero: Zero) -> CrossingSense {
 
 /// Motion of the node and of the end b relative to the end a; coefficients of t/dt.
 struct Relative {
-    /// x_s - x_a
+    /// r = x_s - x_a
     r: [[f64; 2]; 3],
-    /// x_b - x_a
+    /// e = x_b - x_a
     e: [[f64; 2]; 3],
 }
 
@@ -186,7 +187,7 @@ impl Relative {
         }
     }
 
-    /// xi = r.e/e.e; for a segment of zero length 0 where the node coincides with it, else none.
+    /// xi = r.e/e.e; for a segment of zero length 0 if the node coincides with it, else `None`.
     fn xi(&self, t: f64) -> Option<f64> {
         let [r, e] =
             [&self.r, &self.e].map(|c| [0, 1].map(|i| c[0][i] + (c[1][i] + c[2][i] * t) * t));
@@ -199,7 +200,8 @@ impl Relative {
         }
     }
 
-    /// For a node that is on the line of the segment at all times: when it is first on the segment.
+    /// First time at which a node that is on the line of the segment at all times is on the segment
+    /// itself.
     fn first_on_segment(&self, dt: f64) -> Option<Crossing> {
         // r.e = 0 at the end a, (r - e).e = 0 at b, r.(dr/dt) = 0 where r may vanish
         let to_b = Relative {
@@ -236,10 +238,10 @@ fn size(c: &[[f64; 2]; 3]) -> f64 {
     c.iter().flatten().map(|c| c.abs()).sum()
 }
 
-/// Halvings that leave an interval of [0, 1] no longer than its round-off.
+/// Number of halvings after which an interval of [0, 1] is no longer than its round-off.
 const HALVINGS: usize = 60;
 
-/// A polynomial c0 + c1 t + ... + c4 t^4 on [0, 1].
+/// A polynomial with the coefficients c0 to c4 on [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Quartic {
     /// Coefficients.
@@ -248,7 +250,8 @@ pub(crate) struct Quartic {
     pub tolerance: f64,
 }
 
-/// A zero with the signs of the polynomial before and after it; 0 beyond the ends of [0, 1].
+/// A zero with the signs of the polynomial before and after it; the sign is 0 beyond the ends of
+/// [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Zero {
     /// Position t.
@@ -262,7 +265,7 @@ pub(crate) struct Zero {
 /// The zeros of a polynomial on [0, 1].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Zeros {
-    /// In increasing order, with double zeros (equal signs on both sides).
+    /// The zeros in increasing order, with double zeros (equal signs on both sides).
     At(Vec<Zero>),
     /// The polynomial is zero on all of [0, 1].
     Everywhere,
@@ -337,8 +340,9 @@ impl Quartic {
         b.iter().all(|b| *b > self.tolerance) || b.iter().all(|b| *b < -self.tolerance)
     }
 
-    /// 0, 1 and the extrema between them, among other points, increasing: the zeros of the third
-    /// derivative separate those of the second, these those of the first.
+    /// Increasing list of points that contains 0, 1 and the extrema of the polynomial between them.
+    /// The zeros of the third derivative separate those of the second, which separate those of the
+    /// first.
     fn extrema(&self) -> Vec<f64> {
         let first = derivative(&self.c);
         let second = derivative(&first);
@@ -393,7 +397,7 @@ fn bisect(c: &[f64; 5], mut from: f64, mut to: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A segment at rest from (1, 0) to (-1, 0): the body below it.
+    /// Start a of a segment at rest from (1, 0) to (-1, 0), with the body below it.
     const A: [f64; 2] = [1.0, 0.0];
     const B: [f64; 2] = [-1.0, 0.0];
 
@@ -548,7 +552,7 @@ mod tests {
 mod quartic_tests {
     use super::*;
 
-    /// k (t - r1) (t - r2) ...
+    /// The polynomial k (t - r1) (t - r2) ...
     fn product(k: f64, roots: &[f64]) -> Quartic {
         let mut c = [k, 0.0, 0.0, 0.0, 0.0];
         for r in roots {

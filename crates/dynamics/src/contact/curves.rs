@@ -7,22 +7,22 @@ use super::bulge::Bulge;
 use super::tolerances::{CORNER_COSINE, LEAST_TURN, LONGEST_BENT, UNLIKE_TURNS};
 use crate::vectors::{cross, difference, dot, length};
 
-/// What is said of the shape of faces beside the places of their nodes.
+/// Shapes of faces that are known beyond the places of their nodes.
 #[derive(Debug, Clone, Default)]
 pub struct FaceShapes {
-    /// Ends of sides by the nodes between them.
+    /// For every mid-side node, the ends of its side.
     pub middles: HashMap<usize, [usize; 2]>,
-    /// Centres of the circles that segments lie on, by their ends.
+    /// Centres of the circles on which segments lie, by the ends of the segment.
     pub centres: HashMap<[usize; 2], [f64; 2]>,
 }
 
 /// The segments of a surface with their neighbours.
 pub struct Chain<'a> {
-    /// The nodes at the ends of each.
+    /// The nodes at the ends of each segment.
     pub segments: &'a [[usize; 2]],
-    /// For every segment the one that starts where it ends, if any.
+    /// For every segment the segment that starts at its end, if any.
     pub next: &'a [Option<usize>],
-    /// For every segment the one that ends where it starts, if any.
+    /// For every segment the segment that ends at its start, if any.
     pub previous: &'a [Option<usize>],
 }
 
@@ -51,8 +51,8 @@ impl Chain<'_> {
     }
 }
 
-/// Slopes against its chord of a circle about a centre through the ends of a segment; none where its tangents turn from the chord
-/// by more than half a right angle.
+/// Slopes, against its chord, of a circle about `centre` through the ends of a segment. `None` if the tangents of the
+/// circle turn from the chord by more than 45 degrees.
 fn slopes_about(centre: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let e = difference(a, b);
     // r = x - c is normal to the tangent: b' = -(r.e)/(r x e)
@@ -64,7 +64,7 @@ fn slopes_about(centre: [f64; 2], [a, b]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     (start.abs() <= 1.0 && end.abs() <= 1.0).then_some([start, end])
 }
 
-/// The bulge of a segment that is half of a side with a node between its corners: the side is a parabola.
+/// The bulge of a segment that is half of a side with a mid-side node: the side is a parabola.
 fn of_half_side(
     [a, b]: [usize; 2],
     x: &[[f64; 2]],
@@ -76,7 +76,7 @@ fn of_half_side(
         Some(&ends) => (true, b, ends),
         None => (false, a, *second()?),
     };
-    // from the corner before to the one behind, as the segment runs
+    // ends of the side in the direction of the segment
     let ends = match (is_first, p == a, q == b) {
         (true, true, _) | (false, _, true) => [p, q],
         _ => [q, p],
@@ -92,7 +92,8 @@ fn of_half_side(
     })
 }
 
-/// Turns from segment to segment in the reference configuration; some segments are halves of sides.
+/// Turns from segment to segment in the reference configuration, where some segments are halves of
+/// sides.
 struct Turns<'a> {
     chain: &'a Chain<'a>,
     x: &'a [[f64; 2]],
@@ -102,11 +103,11 @@ struct Turns<'a> {
 /// How a chain turns from one segment to the next.
 #[derive(Clone, Copy, PartialEq)]
 enum Turn {
-    /// It ends, has a corner, or goes on with a side that has its own shape.
+    /// The chain ends, has a corner, or goes on with a side that has its own shape.
     End,
-    /// Not at all.
+    /// The next segment has the same direction.
     Straight,
-    /// Smoothly, to the left or to the right.
+    /// The chain turns smoothly, to the left or to the right.
     Smooth { to_left: bool },
 }
 
@@ -141,9 +142,10 @@ impl Turns<'_> {
 
     /// Slopes at the ends of every segment that bends, against its chord.
     ///
-    /// A segment bends between two smooth turns to one side, or between the end of the chain, or a corner, and a smooth turn to a
-    /// segment that bends so; not where it is much longer than a neighbour: a straight side that ends in a fillet. Where it turns far
-    /// more at one end than at the other, as the last chord of a flank at a coarse fillet, its neighbour there takes all of the turn.
+    /// A segment bends between two smooth turns to the same side. A segment between the end of the chain, or a corner,
+    /// and a smooth turn to a segment that bends to this side bends too. A segment that is much longer than a neighbour
+    /// stays straight: it is a straight side that ends in a fillet. If a segment turns far more at one end than at the
+    /// other, like the last chord of a flank at a coarse fillet, its neighbour at that end bends for the whole turn.
     fn slopes(&self) -> Vec<Option<[f64; 2]>> {
         let count = self.chain.segments.len();
         let ends = |i: usize| {
@@ -178,7 +180,7 @@ impl Turns<'_> {
         let bends: Vec<bool> = (0..count)
             .map(|i| !self.is_half[i] && (between[i] || is_beside(i)))
             .collect();
-        // whether a segment takes a part of the turn at its end; one that turns far less at its other end does not
+        // whether a segment bends for a part of the turn at its end; it does not if it turns far less at its other end
         let takes_part = |i: usize, (neighbour, turn): (Option<usize>, Turn)| {
             let sine = |(neighbour, turn): (Option<usize>, Turn)| match turn {
                 Turn::Smooth { .. } => neighbour.map(|j| self.sine(i, j)),
@@ -189,7 +191,8 @@ impl Turns<'_> {
             let least = sines.into_iter().flatten().fold(f64::INFINITY, f64::min);
             bends[i] && own.is_some_and(|own| own <= UNLIKE_TURNS * least)
         };
-        // tangent of the circle through three nodes, eq. (3.28), or all of the turn where the neighbour takes no part
+        // slope of the circle through three nodes, eq. (3.28), or of all of the turn if the neighbour does not bend for
+        // it
         let slope = |i: usize, (neighbour, turn): (Option<usize>, Turn)| {
             let neighbour = neighbour.filter(|_| takes_part(i, (neighbour, turn)))?;
             let (e, f) = (self.edge(i), self.edge(neighbour));

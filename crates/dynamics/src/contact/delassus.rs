@@ -10,31 +10,31 @@ use super::compliance::{Compliance, ConstraintGroup, GroupRows, Responses, Unkno
 use super::constraint::Constraint;
 use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
-/// Memory of the Delassus operators of a matrix, used again by the next one.
+/// Memory of the Delassus operators of a matrix; the next matrix uses it again.
 #[derive(Debug, Default)]
 pub struct DelassusSpace {
     /// Entries of Q.
     q: Vec<f64>,
-    /// Gaps, slips and friction coefficients.
+    /// Vectors of gaps, slips and friction coefficients.
     vectors: [Vec<f64>; 3],
     groups: Vec<GroupRows>,
-    /// Of the constraints of every panel.
+    /// Responses of the constraints of every panel.
     responses: Vec<Responses>,
 }
 
 impl DelassusSpace {
-    /// Takes the memory of a problem that is not needed any more.
+    /// Reclaims the memory of a problem that is not needed any more.
     pub fn take(&mut self, problem: FrictionalLcp) {
         self.q = problem.q.data.into();
         self.vectors = [problem.gap, problem.slip, problem.mu].map(|vector| vector.data.into());
     }
 }
 
-/// The complementarity problem of some constraints: Q = G W B^T, eq. (5.1), with the compliance W,
-/// derivative rows G and force rows B, and the given constant terms, of gap and slip of every one.
+/// The complementarity problem of some constraints with the given constant terms of gap and slip:
+/// Q = G W B^T, eq. (5.1), with the compliance W, derivative rows G and force rows B.
 ///
 /// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B, unless bodies
-/// turn: their rows of T are others in gaps than in forces, eq. (11.3).
+/// turn: then their rows of T differ between gaps and forces, eq. (11.3).
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &ConstraintGroup),
@@ -59,14 +59,14 @@ pub fn frictional_lcp(
     }
 }
 
-/// Constraints whose responses are computed together.
+/// Number of constraints whose responses are computed together (a panel).
 const PANEL: usize = 128;
 
-/// Constraints whose columns of Q are one piece of work for a thread, and the least constraints that are worth threads.
+/// Number of constraints whose columns of Q are one piece of work for a thread.
 const PIECE: usize = 16;
 const THREADS: usize = 64;
 
-/// Q = G W B^T, eq. (5.1), all normal before all tangential rows and columns: the sum over the groups of
+/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. Q is the sum over the groups of
 /// unknowns, each of which couples the constraints that act on it.
 fn delassus(
     constraints: &[&Constraint],
@@ -116,7 +116,7 @@ fn delassus(
 /// A constraint that acts on a group, with its rows.
 type Member<'a> = (usize, &'a [UnknownEntry]);
 
-/// Whether there are threads, and constraints enough for them.
+/// Whether there are several threads, and enough constraints for them.
 fn is_worth_threads(constraints: usize) -> bool {
     constraints >= THREADS && rayon::current_num_threads() > 1
 }
@@ -138,7 +138,7 @@ fn set_responses(members: &[Member], inverse: (&[f64], usize), responses: &mut V
     }
 }
 
-/// The responses of the constraints of a panel.
+/// Responses of the constraints of one panel.
 struct PanelResponses<'a> {
     inverse: (&'a [f64], usize),
     panel: &'a [Member<'a>],
@@ -154,21 +154,21 @@ impl WithSimd for PanelResponses<'_> {
     }
 }
 
-/// What the unknowns of a group couple.
+/// The part of Q from the unknowns of one group.
 #[derive(Clone, Copy)]
 struct GroupSum<'a> {
-    /// The constraints that act on it.
+    /// The constraints that act on the group.
     members: &'a [Member<'a>],
-    /// Their responses, panel by panel.
+    /// Responses of the constraints that act on the group, panel by panel.
     responses: &'a [Responses],
     /// Number of all constraints.
     n: usize,
-    /// Whether it is added to Q, or written.
+    /// Whether the part is added to the entries of Q, or replaces them.
     adds: bool,
 }
 
 impl GroupSum<'_> {
-    /// Takes the sum to Q, column by column.
+    /// Adds or writes the part to Q, column by column.
     fn write_to(self, q: &mut [f64]) {
         let on_threads = is_worth_threads(self.members.len());
         let piece = if on_threads { PIECE } else { self.n.max(1) };
@@ -191,7 +191,7 @@ impl GroupSum<'_> {
     }
 }
 
-/// The columns of Q of the constraints from the `first` on, normal and tangential.
+/// The normal and tangential columns of Q of the constraints from the `first` on.
 struct DelassusColumns<'a> {
     sum: GroupSum<'a>,
     first: usize,
@@ -236,7 +236,7 @@ impl WithSimd for DelassusColumns<'_> {
     }
 }
 
-/// Adds values for the constraints of a panel to those of all.
+/// Adds values of the constraints of a panel to the values of all constraints.
 #[inline(always)]
 fn add(all: &mut [f64], panel: &[Member], values: &[f64]) {
     for ((l, _), value) in panel.iter().zip(values) {
@@ -244,7 +244,7 @@ fn add(all: &mut [f64], panel: &[Member], values: &[f64]) {
     }
 }
 
-/// Makes Q symmetric, as it is but for round-off where G = B.
+/// Makes Q exactly symmetric; where G = B it is symmetric up to round-off.
 fn mirror(q: &mut DMatrix<f64>) {
     let size = q.nrows();
     for k in 1..size {

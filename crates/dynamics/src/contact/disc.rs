@@ -1,8 +1,8 @@
-//! Constraints of rigid discs, which are slaves by their centres, at segments, vertices and arcs of the master.
-//! See docs/theory/geometry.md, Discs.
+//! Constraints of rigid discs at segments, vertices and arcs of the master; the slave node of a disc is its centre. See
+//! docs/theory/geometry.md, Discs.
 //!
-//! A disc is a node with a radius that turns. Its gap is smaller by the radius than the gap of its centre. Its slip
-//! is the slip of the point of its circle that touches.
+//! A disc is a node with a radius and a rotation. The gap of a disc is the gap of its centre less the radius. The slip
+//! of a disc is the slip of the touching point of its circle.
 
 use nalgebra::{DMatrix, Matrix2, SMatrix, SVector, Vector2};
 use smallvec::SmallVec;
@@ -21,8 +21,8 @@ use super::target::{DiscContact, MasterFeature, Pair, PairTarget, Target};
 use super::tolerances::{END_OF_FEATURE, SLIDING_SINE};
 use crate::vectors::{angle, difference};
 
-/// Adds the targets of a disc: the segments, arcs and convex vertices that its centre is over in the iterate, and was
-/// in front of at the start.
+/// Adds the targets of a disc: the segments, arcs and convex vertices over which its centre lies in the iterate, and in
+/// front of which it lay at the start.
 pub(super) fn find_targets(
     listed: &ListedSlave,
     positions: [Positions; 2],
@@ -66,19 +66,21 @@ pub(super) fn find_targets(
     }
 }
 
-/// The centre of a disc beside the master.
+/// The centre of a disc next to the master.
 struct Finder<'a> {
     surfaces: &'a ContactSurfaces,
     centre: usize,
     positions: [Positions<'a>; 2],
 }
 
-/// Features with the numbers of their constraints, increasing, and a segment of theirs.
+/// Features in the order of their constraints' numbers, each with this number and a segment of the
+/// feature.
 type Over = SmallVec<[(usize, usize, MasterFeature); 4]>;
 
 impl Finder<'_> {
-    /// What the centre is over and near to, at the start (0) or in the iterate (1): segments and arcs between their ends,
-    /// and vertices between the ends of two of them, or at the ends of the surface.
+    /// Features over which the centre lies, among those near it, at the start (`k` = 0) or in the iterate (`k` = 1). A
+    /// centre lies over segments and arcs between their ends, and over vertices between the ends of two of them or at
+    /// the ends of the surface.
     fn over(
         &self,
         candidates: impl Iterator<Item = Candidate>,
@@ -120,7 +122,7 @@ impl Finder<'_> {
         over
     }
 
-    /// The arc that a segment is a chord of, or the segment.
+    /// The arc of which a segment is a chord, or the segment itself.
     fn feature(&self, segment: usize) -> MasterFeature {
         match self.surfaces.arc_of(segment) {
             Some(arc) => MasterFeature {
@@ -134,7 +136,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Coordinate of the centre along a segment, or along the arc that it is a chord of: 0 at the start, 1 at the end.
+    /// Coordinate of the centre along a segment, or along the arc of which it is a chord: 0 at its start, 1 at its end.
     fn xi(&self, segment: usize, k: usize) -> f64 {
         let at = |node: usize| self.positions[k].of(node);
         let Some(SurfaceArc { nodes, arc, .. }) = self.surfaces.arc_of(segment) else {
@@ -151,11 +153,11 @@ impl Finder<'_> {
 type Map = SMatrix<f64, 2, 8>;
 type DiscRow = SVector<f64, 8>;
 
-/// J: turns by a right angle to the left.
+/// J, the rotation by a right angle to the left.
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
-/// Positions of the centre s, of the node that turns with the disc, and of a and b, at the start and at the end. Rows have
-/// this order, nodes of the slave first.
+/// Positions of the nodes of a disc constraint at the start and at the end: its centre s, the node that turns with it,
+/// and a and b. The entries of a row follow the order s, turning node, a, b.
 struct NodePositions {
     form: RowForm,
     nodes: [[[f64; 2]; 4]; 2],
@@ -169,18 +171,18 @@ impl NodePositions {
         }
     }
 
-    /// What a linear map gives for the positions of the nodes: the vector at the start and that at the end.
+    /// The vectors that a linear map of the node positions gives at the start and at the end.
     fn vectors(&self, map: &Map) -> [Vector2<f64>; 2] {
         self.nodes
             .map(|x| map * DiscRow::from_iterator(x.into_iter().flatten()))
     }
 
-    /// s, a and b.
+    /// The nodes s, a and b at start and end.
     fn of_segment(&self) -> [[[f64; 2]; 3]; 2] {
         self.nodes.map(|[s, _, a, b]| [s, a, b])
     }
 
-    /// Part w of the increment at which directions are taken, z_m = z_0 + w (z_1 - z_0): the middle, or the end.
+    /// Part w of the increment at which directions are evaluated, z_m = z_0 + w (z_1 - z_0): the middle, or the end.
     fn part(&self) -> f64 {
         match self.form {
             RowForm::End => 1.0,
@@ -189,7 +191,8 @@ impl NodePositions {
     }
 }
 
-/// x_b - x_a, and from the centre of the disc to the node that turns with it.
+/// The maps for x_b - x_a, and for the vector from the centre of the disc to the node that turns
+/// with it.
 fn arms() -> [Map; 2] {
     let (mut e, mut arm) = (Map::zeros(), Map::zeros());
     for i in 0..2 {
@@ -199,7 +202,7 @@ fn arms() -> [Map; 2] {
     [e, arm]
 }
 
-/// r = x_s - x_c, from the centre of an arc.
+/// The map for r = x_s - x_c, the vector from the centre x_c of an arc.
 fn from_centre(arc: &MasterArc) -> Map {
     let [alpha, beta] = arc.place;
     let mut r = Map::zeros();
@@ -212,7 +215,8 @@ fn from_centre(arc: &MasterArc) -> Map {
     r
 }
 
-/// Rotation of a vector in the increment, its rows and the change of its force row with the end.
+/// Rotation of a vector within the increment, its rows, and the derivative of its force row with
+/// respect to the end.
 ///
 /// ```text
 /// T = (e_0 x e_1)/|e_m|² = (J e_m).d/|e_m|²,   d = e_1 - e_0    eq. (3.22)
@@ -239,14 +243,16 @@ impl Turn {
     }
 }
 
-/// Rows of a disc, its gap without radius and allowed overlap, the length that it is relative to, and the tilt of its force.
+/// Rows of a disc, with its gap without radius and allowed overlap, the length to which the gap is relative, and the
+/// tilt of the force.
 struct DiscRows {
     force: RowPair<8>,
     derivative: RowPair<8>,
     gap: f64,
     scale: f64,
     kappa: f64,
-    /// Rows of the way of the centre along the master, which does not turn with the disc: force and derivative.
+    /// Force row and derivative row of the path of the centre along the master; the path does not depend on the
+    /// rotation of the disc.
     of_centre: [DiscRow; 2],
 }
 
@@ -284,14 +290,14 @@ impl DiscContact {
         rows
     }
 
-    /// Displacements of its nodes since the start, in the order of the rows.
+    /// Displacements of the nodes since the start, in the order of the rows.
     fn displacements(&self, pair: &Pair, at: &Configurations) -> DiscRow {
         let dofs = self.nodes(pair).map(|node| [2 * node, 2 * node + 1]);
         let dofs = dofs.as_flattened().iter();
         DiscRow::from_iterator(dofs.map(|&dof| at.u[dof] - at.u0[dof]))
     }
 
-    /// Tilt of the force on a disc that has come from another feature, eq. (7.6), along the way of its centre.
+    /// Tilt of the force on a disc that has come from another feature, eq. (7.6), along the path of its centre.
     fn tilt(&self, pair: &Pair, from: &MasterFeature, rows: &DiscRows, at: &Configurations) -> f64 {
         let centre = at.start([pair.slave])[0];
         let start = |feature: &MasterFeature| {
@@ -300,7 +306,8 @@ impl DiscContact {
         let [gap, before] = [start(&self.feature), start(from)];
         let travel = rows.of_centre[0].dot(&self.displacements(pair, at));
         let rise = rise((gap, rows.scale), before, centre);
-        // a force that leans too far is left as it is: what it gains is cut back
+        // a force that would lean too far is not tilted: if it gains energy, the increment is cut
+        // back
         match travel.abs() > position_round_off(centre) && rise.abs() <= SLIDING_SINE * travel.abs()
         {
             true => rise / travel,
@@ -308,7 +315,8 @@ impl DiscContact {
         }
     }
 
-    /// Change of the contact force Pn, Pt of a disc, over the dofs of the constraint.
+    /// Derivative of the contact force of a disc at constant Pn and Pt, over the dofs of the
+    /// constraint.
     pub(super) fn change(
         &self,
         pair: &Pair,
@@ -360,7 +368,7 @@ impl DiscContact {
             }
         }
         if rows.kappa != 0.0 {
-            // dkappa = -kappa/s times the derivative of the way s
+            // dkappa is -kappa/s times the derivative of the path s
             let [force, slope] = rows.of_centre;
             let travel = force.dot(&self.displacements(pair, at));
             k -= force * slope.transpose() * (leaning / travel);
@@ -373,7 +381,7 @@ fn row(row: &[f64; 8]) -> DiscRow {
     DiscRow::from_column_slice(row)
 }
 
-/// Rows at a segment: those of the centre, the slip with the turns of disc and segment.
+/// Rows at a segment: those of the centre, and the slip with the rotations of disc and segment.
 ///
 /// ```text
 /// g = g(x_s) - rho,   Dt = L (xi1 - xi0) - rho (T_s - T_e)    eq. (3.23)
@@ -410,18 +418,19 @@ fn at_segment(places: &NodePositions, radius: f64, height: f64) -> DiscRows {
     }
 }
 
-/// What the rows at an arc are made of: r at start, middle and end, m = |r_m|, and the parts of the turns of disc and arc.
+/// Ingredients of the rows at an arc: r at start, middle and end, m = |r_m|, and the weights of the rotations of disc
+/// and arc.
 struct AtArc {
     r: [Vector2<f64>; 2],
     middle: Vector2<f64>,
     m: f64,
     part: f64,
     sign: f64,
-    /// rho/(rho + R) and R/(rho + R)
+    /// Weights rho/(rho + R) and R/(rho + R) of the two rotations.
     shares: [f64; 2],
-    /// T_s and T_e
+    /// Rotations T_s of the disc and T_e of the arc.
     turns: [Turn; 2],
-    /// r, and the arms of disc and arc.
+    /// Maps for r, and for the arms of disc and arc.
     maps: [Map; 3],
 }
 
@@ -443,21 +452,21 @@ impl AtArc {
         }
     }
 
-    /// T = (rho T_s + R T_e)/(rho + R)
+    /// Mean rotation T = (rho T_s + R T_e)/(rho + R).
     fn turn(&self) -> f64 {
         let [s, e] = &self.turns;
         self.shares[0] * s.value + self.shares[1] * e.value
     }
 }
 
-/// Rows at an arc of radius R about x_c, with r = x_s - x_c and m = |r_m|; the signs are others in a hole.
+/// Rows at an arc of radius R about x_c, with r = x_s - x_c and m = |r_m|; in a hole the signs differ.
 ///
 /// ```text
 /// g  = |r| - R - rho,   Bn = 2 r_m/(l0 + l1), or r_1/l1 of end rows
 /// Dt = (r_0 x r_1)/m - m (rho T_s + R T_e)/(rho + R)                  eq. (3.24)
 /// ```
 ///
-/// The way of the centre is (r_0 x r_1)/m - m T_e.
+/// The path of the centre is (r_0 x r_1)/m - m T_e.
 fn at_arc(places: &NodePositions, radius: f64, arc: &MasterArc) -> DiscRows {
     let own = AtArc::new(places, radius, arc);
     let [r0, r1] = own.r;
@@ -506,7 +515,8 @@ mod tests {
     const U0: [f64; 8] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.04, -0.02];
     const U1: [f64; 8] = [-0.2, -0.15, 0.3, 0.2, 0.25, -0.3, -0.1, 0.3];
 
-    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole, and at each of them behind a rise.
+    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole; then the same four behind a
+    /// rise.
     fn sources() -> [PairTarget; 8] {
         let arc = |beta: f64, radius: f64| MasterArc {
             place: [0.5, beta],
@@ -526,7 +536,8 @@ mod tests {
         })
     }
 
-    /// A disc about node 0, turned by node 3, at the segment from node 1 to node 2, or at an arc that they move.
+    /// A disc about node 0, turned by node 3, at the segment from node 1 to node 2, or at an arc that moves with these
+    /// two nodes.
     fn disc(radius: f64, arc: Option<MasterArc>) -> (Pair, DiscContact) {
         let contact = DiscContact {
             radius,

@@ -17,8 +17,8 @@ use crate::model::{
 };
 use crate::vectors::{cross, difference, dot, length};
 
-/// Nodes at one place that equations join, as those of both sides of a pre-tension section: one vertex of the surface on both
-/// sides of it, which does not touch the segments there.
+/// Nodes at one place that equations join, for example at both ends of a pre-tension section. Joined nodes are one
+/// vertex of the surface, which does not touch the segments there.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct JoinedNodes(HashMap<usize, Vec<usize>>);
 
@@ -33,7 +33,7 @@ impl JoinedNodes {
         JoinedNodes(others)
     }
 
-    /// A node and those at its place.
+    /// A node, and the nodes joined with it.
     fn of(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::once(node).chain(self.0.get(&node).into_iter().flatten().copied())
     }
@@ -44,33 +44,34 @@ impl JoinedNodes {
 pub struct ContactSurfaces {
     /// Slave nodes.
     pub slaves: Vec<usize>,
-    /// Faces of the slave surface; of a surface that is made of nodes the exterior faces at them.
+    /// Faces of the slave surface; if the surface is made of nodes, the exterior faces at them.
     pub slave_faces: Vec<[usize; 2]>,
-    /// For every slave node the nodes before and after it on its own surface, if it has both.
+    /// For every slave node the nodes before and after it on its own surface, if both exist.
     pub adjacent: Vec<Option<[usize; 2]>>,
     /// Master segments [a, b] with the body on the left of the direction from a to b.
     pub segments: Vec<[usize; 2]>,
-    /// For every segment the one that starts where it ends, if any.
+    /// For every segment the segment that starts at its end, if any.
     pub next: Vec<Option<usize>>,
-    /// For every segment the one that ends where it starts, if any.
+    /// For every segment the segment that ends at its start, if any.
     pub previous: Vec<Option<usize>>,
     /// For every segment whether the body has a sharp corner at its end b in the reference
-    /// configuration: an angle below 120 degrees. Folded legs of any other corner are a closed
-    /// concave corner.
+    /// configuration: an angle below 120 degrees. At any other corner, legs that fold onto each
+    /// other are a closed concave corner.
     pub sharp_corners: Vec<bool>,
-    /// How far the face of every segment is outside of its chord, for nodes.
+    /// Bulge of every segment, for nodes.
     pub bulges: Vec<Bulge>,
-    /// The same of every face of the slave surface.
+    /// Bulge of every face of the slave surface.
     pub face_bulges: Vec<Bulge>,
-    /// The same of the faces before and after every slave node on its own surface.
+    /// Bulges of the faces before and after every slave node on its own surface.
     pub own_bulges: Vec<[Bulge; 2]>,
     /// Interior of the bodies; behind a segment without an element everything is inside.
     pub interior: Arc<Interior>,
-    /// Faces at the slave nodes, where contact is from surface to surface.
+    /// Faces at the slave nodes, in contact from surface to surface.
     pub slave_segments: Option<SlaveSegments>,
-    /// From surface to surface, the corners of both as nodes against the segments of the other.
+    /// In contact from surface to surface: the corners of both surfaces as nodes against the
+    /// segments of the other.
     pub corners: Vec<Corners>,
-    /// The disc that the slave node is the centre of.
+    /// The disc whose centre is the slave node.
     pub disc: Option<Disc>,
     /// Arcs of a rigid master, with increasing segments.
     pub arcs: Vec<SurfaceArc>,
@@ -81,24 +82,24 @@ pub struct ContactSurfaces {
 /// Corners of one surface against the segments of the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Corners {
-    /// The corners as slave nodes.
+    /// Contact surfaces with the corners as slave nodes.
     pub surfaces: ContactSurfaces,
-    /// Overlap that each of them may have (length).
+    /// Allowed overlap of each corner (length).
     pub allowed: Vec<f64>,
-    /// Which of them are corners of rigid bodies.
+    /// For every corner whether it belongs to a rigid body.
     pub are_rigid: Vec<bool>,
-    /// Whether they are corners of the contact's master.
+    /// Whether the corners belong to the contact's master.
     pub are_of_master: bool,
 }
 
 impl ContactSurfaces {
-    /// Slave nodes against master segments; `own` are the segments of the slave surface, none if it
-    /// is made of nodes.
+    /// Slave nodes against master segments; `own` are the segments of the slave surface, empty if
+    /// it is made of nodes.
     pub fn new(slaves: Vec<usize>, own: &[[usize; 2]], segments: Vec<[usize; 2]>) -> Self {
         Self::with_joined(slaves, own, segments, &Arc::default())
     }
 
-    /// The same where some nodes are one vertex.
+    /// Surfaces as from [`Self::new`], where some nodes are one vertex.
     fn with_joined(
         slaves: Vec<usize>,
         own: &[[usize; 2]],
@@ -136,18 +137,18 @@ impl ContactSurfaces {
         }
     }
 
-    /// Whether a node, or one that is the same vertex, is an end of a segment.
+    /// Whether a node, or a node of the same vertex, is an end of a segment.
     pub fn is_end(&self, node: usize, segment: usize) -> bool {
         let ends = self.segments[segment];
         self.joined.of(node).any(|node| ends.contains(&node))
     }
 
-    /// Radius of the disc that the slave node is the centre of (length); 0 of nodes.
+    /// Radius of the disc whose centre is the slave node (length); 0 for nodes.
     pub fn radius(&self) -> f64 {
         self.disc.map_or(0.0, |disc| disc.radius)
     }
 
-    /// The arc that a segment is a chord of.
+    /// The arc of which a segment is a chord.
     pub fn arc_of(&self, segment: usize) -> Option<&SurfaceArc> {
         let at = self.arcs.partition_point(|arc| arc.segments.end <= segment);
         self.arcs
@@ -164,8 +165,8 @@ impl ContactSurfaces {
         }
     }
 
-    /// With the shapes of curved faces at the reference coordinates `x`: of a rigid surface its arcs, else what follows from
-    /// the turns of slave faces and segments.
+    /// Adds the shapes of curved faces at the reference coordinates `x`: the arcs of a rigid surface, else the bulges
+    /// that follow from the turns of slave faces and segments.
     pub fn with_bulges(mut self, x: &[[f64; 2]], shapes: &FaceShapes, is_rigid: bool) -> Self {
         self.bulges = match is_rigid {
             true => self.bulges_of_arcs(x),
@@ -190,7 +191,7 @@ impl ContactSurfaces {
         self
     }
 
-    /// Whether a master segment or slave face bends.
+    /// Whether any master segment or slave face bends.
     pub fn bends(&self) -> bool {
         let mut all = self.bulges.iter().chain(&self.face_bulges);
         all.any(|bulge| !bulge.is_flat())
@@ -209,7 +210,7 @@ impl ContactSurfaces {
         })
     }
 
-    /// Bulges of the segments of a rigid surface: those of its arcs.
+    /// Bulges of the segments of a rigid surface, from its arcs.
     fn bulges_of_arcs(&self, x: &[[f64; 2]]) -> Vec<Bulge> {
         let of_arc = |i: usize| {
             let arc = self.arc_of(i)?;
@@ -220,13 +221,13 @@ impl ContactSurfaces {
             .collect()
     }
 
-    /// With the interior of the bodies behind the segments.
+    /// Adds the interior of the bodies behind the segments.
     pub fn with_interior(mut self, interior: Arc<Interior>) -> Self {
         self.interior = interior;
         self
     }
 
-    /// With contact from surface to surface; `middles` are the ends of sides by their nodes between.
+    /// Makes the contact one from surface to surface; `middles` are the ends of sides by their mid-side nodes.
     pub fn from_surface_to_surface(
         mut self,
         mesh: &Mesh,
@@ -283,7 +284,8 @@ impl ContactSurfaces {
         self
     }
 
-    /// Whether the surface has a corner between a segment and the next at the positions `x`.
+    /// Whether the surface has a corner between the segments `i` and `j`, the next one, at the
+    /// positions `x`.
     fn has_corner(&self, x: &[[f64; 2]], i: usize, j: usize) -> bool {
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.segments[i].map(|node| x[node]);
@@ -292,7 +294,8 @@ impl ContactSurfaces {
         dot(e, f) < CORNER_COSINE
     }
 
-    /// Number of the run of every segment: its first segment, of a closed one without corners the least.
+    /// Number of the run of every segment: the first segment of the run. The number of a closed run without corners is
+    /// its least segment.
     fn runs(&self, x: &[[f64; 2]]) -> Vec<usize> {
         let mut runs = vec![usize::MAX; self.segments.len()];
         let before = |j: usize| self.previous[j].filter(|&i| !self.has_corner(x, i, j));
@@ -308,8 +311,8 @@ impl ContactSurfaces {
         runs
     }
 
-    /// Ranks of the segments of a surface that touches itself: those of chains with shorter segments come first, in
-    /// a chain one segment after the other.
+    /// Ranks of the segments of a surface that touches itself: segments of chains with shorter segments come first;
+    /// within a chain they are in the order of the chain.
     fn ranks(&self, x: &[[f64; 2]]) -> Vec<usize> {
         let mut seen = vec![false; self.segments.len()];
         let mut chains: Vec<(f64, Vec<usize>)> = Vec::new();
@@ -340,7 +343,7 @@ impl ContactSurfaces {
         length(difference(x[a], x[b]))
     }
 
-    /// The corners of both surfaces, of one that touches itself once.
+    /// The corners of both surfaces; if a surface touches itself, its corners once.
     fn corners_of_both(&self, x: &[[f64; 2]], is_self_contact: bool) -> Vec<Corners> {
         let chains = |faces: &[[usize; 2]]| {
             ContactSurfaces::with_joined(Vec::new(), &[], faces.to_vec(), &self.joined)
@@ -379,8 +382,8 @@ impl ContactSurfaces {
             .collect()
     }
 
-    /// Ends of the surface of the segments, and its nodes where it has a convex vertex that turns by more than 20 degrees;
-    /// increasing.
+    /// Ends of the surface of the segments, and its nodes at convex vertices that turn by more than 20 degrees, in
+    /// increasing order.
     fn corner_nodes(&self, x: &[[f64; 2]]) -> Vec<usize> {
         let mut nodes = Vec::new();
         for (i, &[a, b]) in self.segments.iter().enumerate() {
@@ -404,7 +407,7 @@ impl ContactSurfaces {
         nodes
     }
 
-    /// Half the length of the longest slave face, at the positions `x`, of contact from surface to surface; else 0.
+    /// With surface to surface, half the length of the longest slave face at the positions `x`; else 0.
     pub fn half_longest_face(&self, x: &[[f64; 2]]) -> f64 {
         if self.slave_segments.is_none() {
             return 0.0;
@@ -413,7 +416,7 @@ impl ContactSurfaces {
         self.slave_faces.iter().map(half).fold(0.0, f64::max)
     }
 
-    /// With the exterior faces at the slave nodes, for a slave surface that is made of nodes.
+    /// Adds the exterior faces at the slave nodes, for a slave surface that is made of nodes.
     pub fn with_exterior_faces(mut self, mesh: &Mesh) -> Self {
         let is_slave: HashSet<usize> = self.slaves.iter().copied().collect();
         let faces = mesh
@@ -426,7 +429,7 @@ impl ContactSurfaces {
         self
     }
 
-    /// With the sharp corners of the surfaces at the positions `x`.
+    /// Adds the sharp corners of the surfaces at the positions `x`.
     pub fn with_sharp_corners(mut self, x: &[[f64; 2]]) -> Self {
         let tangent = |i: usize| {
             let [a, b] = self.segments[i].map(|node| x[node]);
@@ -450,7 +453,7 @@ impl ContactSurfaces {
     }
 }
 
-/// Length of the shortest of some faces at each of their nodes.
+/// For every node the length of the shortest of the given faces at it.
 pub fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f64> {
     let mut shortest = HashMap::new();
     for &[a, b] in faces {
@@ -463,20 +466,20 @@ pub fn shortest_faces(faces: &[[usize; 2]], x: &[[f64; 2]]) -> HashMap<usize, f6
     shortest
 }
 
-/// Direction along a chain of segments.
+/// Direction of a walk along a chain of segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
-    /// From a segment to the one that starts where it ends.
+    /// From a segment to the next, which starts at its end.
     Forward,
-    /// From a segment to the one that ends where it starts.
+    /// From a segment to the previous one, which ends at its start.
     Backward,
 }
 
 impl ContactSurfaces {
     /// Follows a chain of segments: the segments after `from`, then `None` where an open chain ends.
     ///
-    /// The walk ends once the segments left behind, `from` not counted, are longer in sum than
-    /// `farthest`, and where it is back at `from`.
+    /// The walk ends once the segments left behind, without `from`, have a total length over
+    /// `farthest`, and when it is back at `from`.
     pub fn walk(
         &self,
         from: usize,
@@ -502,7 +505,7 @@ impl ContactSurfaces {
     }
 }
 
-/// The contacts of a model; `bodies` holds the body of every node.
+/// The contacts of a model; `bodies` is the body of every node.
 pub fn contact_surfaces(model: &Model, bodies: &[usize]) -> Vec<ContactSurfaces> {
     if model.contacts.is_empty() {
         return Vec::new();

@@ -1,22 +1,22 @@
 //! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
 //! See docs/theory/geometry.md.
 //!
-//! The line is followed from element to element through their common sides. This tells a node on
-//! the far side of a thin body from a node of another part that has penetrated it, however thin the
-//! body.
+//! The line is followed from element to element through their common sides. The elements on the
+//! line tell a node on the far side of a thin body from a node of another part that has penetrated
+//! the body, however thin the body is.
 
 use super::projection::{between, project};
 use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
 use crate::model::{Element, ElementsAtNodes, Mesh};
 use crate::vectors::{difference, dot};
 
-/// The convex parts of the elements of a mesh, here called elements, found by the segments of their outlines.
+/// The convex parts of the elements of a mesh, here called elements, which are found by the segments of their outlines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
-    /// Nodes around every element, one element after the other; segments lead from each to the next, the element on
-    /// their left.
+    /// Nodes around every element, one element after the other; each segment leads from a node to the next, with the
+    /// element on its left.
     nodes: Vec<u32>,
-    /// Start of every element in `nodes`, and their end.
+    /// Start of every element in `nodes`, and the end of the last.
     starts: Vec<u32>,
     at_nodes: ElementsAtNodes,
 }
@@ -24,12 +24,12 @@ pub struct Interior {
 /// A line and the elements that it goes through.
 struct CrossedElements {
     elements: Vec<usize>,
-    /// Whether it stays in them up to its end.
+    /// Whether the line stays in the body up to its end.
     stays: bool,
 }
 
 impl Interior {
-    /// The inside of those bodies of a mesh of whose elements `is_of` holds.
+    /// The interior of those elements of a mesh for which `is_of` is true.
     pub fn new(mesh: &Mesh, is_of: impl Fn(&Element) -> bool) -> Self {
         let (mut nodes, mut starts) = (Vec::new(), vec![0]);
         for element in mesh.elements.iter().filter(|element| is_of(element)) {
@@ -71,10 +71,10 @@ impl Interior {
         self.left(segment).is_some()
     }
 
-    /// Whether a node behind the line of a segment, at the positions `at`, has penetrated the body
-    /// there through this segment: it lies in the body, belongs to none of the elements on the
-    /// line, and is nearer to the segment than to the far side. Behind a segment without an element
-    /// everything is inside.
+    /// Whether a node behind the line of a segment has penetrated the body there through this
+    /// segment, at the positions `at`. The node has penetrated the body if it lies in the body,
+    /// belongs to none of the elements on the line, and is nearer to the segment than to the far
+    /// side. Without an element behind the segment, everything there is inside.
     pub fn takes_in(
         &self,
         segment: [usize; 2],
@@ -85,7 +85,8 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether the node lies in the body at any depth: it may have entered through another segment.
+    /// Whether the node lies in the body, at any depth: it may have entered through another
+    /// segment.
     pub fn contains(
         &self,
         segment: [usize; 2],
@@ -96,9 +97,9 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether a point of a face at a place xi of a segment and a gap behind its line has penetrated the body there through
-    /// this segment: the same of a point between nodes. Place and gap may be those of the straight line that stands for a
-    /// curved side, from which the sides of the element are as far as its nodes between corners are off.
+    /// Whether a point of a slave face between nodes has penetrated the body through this segment; `xi` and `gap` are
+    /// its place and gap at the segment. Place and gap may be relative to the straight line that stands for a curved
+    /// side; the sides of the element are as far from this line as its mid-side nodes.
     pub fn takes_in_point(
         &self,
         segment: [usize; 2],
@@ -120,8 +121,8 @@ impl Interior {
         line.is_some_and(|line| line.stays && self.has_node(&line, node))
     }
 
-    /// The line from the projection of a node on a segment to the node and beyond, `depths` times
-    /// its depth long; none without an element.
+    /// The line from the projection of a node on a segment through the node, `depths` times its
+    /// depth long; `None` if there is no element behind the segment.
     fn line(
         &self,
         segment: [usize; 2],
@@ -133,7 +134,7 @@ impl Interior {
         self.line_to(segment, s, depths, at)
     }
 
-    /// The same to any point.
+    /// The line from a segment to any point.
     fn line_to(
         &self,
         segment: [usize; 2],
@@ -169,7 +170,7 @@ impl Interior {
         Some(line)
     }
 
-    /// The part of the line within an element, between 0 and 1.
+    /// The part of the line within an element, as an interval of [0, 1].
     fn part(
         &self,
         element: usize,
@@ -180,7 +181,7 @@ impl Interior {
         let [mut start, mut end] = [0.0_f64, 1.0_f64];
         for side in self.sides(element) {
             let side = project(from, at(side[0]), at(side[1]));
-            // distances outside the side at both ends of the line
+            // distances of both ends of the line from the side, positive outside the element
             let along = dot(difference(from, to), side.normal);
             let (outside, most) = (side.gap, INSIDE_ROUND_OFF * side.length);
             if outside > most && outside + along > most {
@@ -212,8 +213,8 @@ mod tests {
     use super::*;
     use crate::model::ElementType;
 
-    /// A strip of two layers, one element each in its half, of the length 1 and the thickness `t`,
-    /// as triangles or not; its nodes are 0 to 8, row by row. Node 9 is anywhere.
+    /// A strip of length 1 and thickness `t` with two layers of elements, as triangles or
+    /// quadrilaterals; its nodes are 0 to 8, row by row. Node 9 lies outside the elements.
     fn strip(t: f64, triangles: bool) -> Mesh {
         let mut mesh = Mesh::default();
         for j in 0..3 {
@@ -286,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_line_that_leaves_the_body_does_not_come_back() {
-        // an arm above the strip, joined to it nowhere
+        // an arm above the strip, which has no node in common with the strip
         let mut mesh = strip(0.1, false);
         let first = mesh.coordinates.len();
         for y in [0.2, 0.3] {

@@ -1,13 +1,15 @@
-//! What identifies constraints and slave nodes through passes and increments.
+//! Keys that identify constraints and slave nodes through passes and increments.
 
-/// What identifies a slave node among those of all contacts: a node may be slave in several.
+/// Key of a slave node among the slave nodes of all contacts; a node may be a slave in several
+/// contacts.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub struct SlaveKey {
-    /// Contact of the model.
+    /// Number of the contact of the model.
     pub(super) contact: usize,
-    /// Number of the slave node in its contact; those of corners from surface to surface follow.
+    /// Number of the slave node in its contact; the corners of contact from surface to surface
+    /// follow the slave nodes.
     pub(super) slave: usize,
 }
 
@@ -17,7 +19,7 @@ impl SlaveKey {
         self.contact
     }
 
-    /// The slave node whose number in the contact is larger.
+    /// Key of the slave node whose number in the contact is larger by `count`.
     pub(super) fn plus(self, count: usize) -> Self {
         SlaveKey {
             slave: self.slave + count,
@@ -26,15 +28,15 @@ impl SlaveKey {
     }
 }
 
-/// What identifies a constraint through passes and increments. The rest of the program compares keys and asks
-/// them for what they share with others; it does not know what they are made of.
+/// Key of a constraint through passes and increments. The rest of the program compares keys and asks for their common
+/// parts; it does not know of what they are made.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub struct ConstraintKey {
     pub(super) slave: SlaveKey,
-    /// Segment in its contact, at a corner that before it. From surface to surface the run of segments, and more on the
-    /// second side of a corner.
+    /// Number of the segment in its contact; at a corner, of the segment before the corner. With surface to surface:
+    /// number of the run of segments; it is larger on the second side of a corner.
     pub(super) segment: usize,
 }
 
@@ -44,7 +46,7 @@ impl ConstraintKey {
         self.slave.contact
     }
 
-    /// What it shares with the other constraints of its slave node.
+    /// Key of the slave node, which its other constraints share.
     pub fn slave(self) -> SlaveKey {
         self.slave
     }
@@ -53,7 +55,7 @@ impl ConstraintKey {
 /// A slave node and a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NodeAtSegment {
-    /// Key of their constraint.
+    /// Key of the constraint of the two.
     pub key: ConstraintKey,
     /// The slave node and the ends of the segment.
     pub nodes: [usize; 3],

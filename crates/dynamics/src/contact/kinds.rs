@@ -1,5 +1,5 @@
-//! Kinds of contact constraints: every question to a constraint whose answer depends on the kind of its target. A
-//! question is one method with one match. See docs/theory/contact.md.
+//! Kinds of contact constraints: every property of a constraint that depends on the kind of its target. Each property
+//! is one method with one `match` over the kinds. See docs/theory/contact.md.
 
 use nalgebra::DMatrix;
 
@@ -28,8 +28,8 @@ impl Constraint {
         (&change + change.transpose()) / 2.0
     }
 
-    /// Change of its contact force with the iterate, d(Bn^T Pn + Bt^T Pt)/dU at constant Pn and Pt, over its dofs
-    /// (force/length): not symmetric under friction.
+    /// Derivative of the contact force with respect to the iterate, d(Bn^T Pn + Bt^T Pt)/dU at constant Pn and Pt, over
+    /// the dofs of the constraint (force/length); it is not symmetric with friction.
     pub fn change(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
         match &self.source.target {
             Target::Segment(segment) => segment.change(self, force, at),
@@ -39,7 +39,8 @@ impl Constraint {
         }
     }
 
-    /// Its gap between other configurations, and the length that it is relative to there.
+    /// Gap of the constraint between other configurations, and the length to which it is relative
+    /// there.
     pub fn gap_and_scale(&self, at: &Configurations) -> (f64, f64) {
         match &self.source.target {
             Target::Segment(segment) => segment.gap_and_scale(&self.source.pair, at),
@@ -55,14 +56,14 @@ impl Constraint {
         self.made_of(self.source.clone(), at)
     }
 
-    /// The same constraint between other configurations, at whose start the same target holds the node.
+    /// The same constraint between other configurations; the same target holds its node at their start.
     pub fn untilted(&self, at: &Configurations) -> Self {
         let PairTarget { pair, target } = self.source.clone();
         let target = target.untilted();
         self.made_of(PairTarget { pair, target }, at)
     }
 
-    /// The same constraint at the start, with the target that holds the node there.
+    /// The same constraint at the start, with the target that holds its node there.
     pub fn at_start(&self, start: &Configurations) -> Self {
         Constraint {
             shrinkage: self.shrinkage,
@@ -70,7 +71,8 @@ impl Constraint {
         }
     }
 
-    /// The constraint of another source, with the coefficient of friction of this one.
+    /// The constraint of another pair and target, with the coefficient of friction of this
+    /// constraint.
     fn made_of(&self, source: PairTarget, at: &Configurations) -> Self {
         Constraint {
             mu: self.mu,
@@ -79,13 +81,13 @@ impl Constraint {
         }
     }
 
-    /// Whether its gap is a mean over points of slave faces, not the gap of one node.
+    /// Whether the gap is a mean over points of slave faces, not the gap of one node.
     pub fn is_mean(&self) -> bool {
         self.source.target.mean().is_some()
     }
 
-    /// What the gap of its node to the chord of its segment counts more by at the start of the increment; none of a mean,
-    /// which is not the gap of one node.
+    /// Lift of the slave node over its segment at the start of the increment; `None` for a mean, which is not the gap
+    /// of one node.
     pub fn lift_at_start(&self) -> Option<Lift> {
         let bulge = match &self.source.target {
             Target::Segment(contact) => contact.segment.bulge,
@@ -97,12 +99,13 @@ impl Constraint {
         Some(Lift { allowed, bulge })
     }
 
-    /// A slave node and the segment that it meets, at a corner that before it: what messages name.
+    /// The slave node and its segment, which messages name; at a corner the segment before the
+    /// corner.
     pub fn pair(&self) -> NodeAtSegment {
         self.source.named()
     }
 
-    /// The same; at a corner, with the segment whose normal has the larger weight.
+    /// The slave node and its segment; at a corner the segment whose normal has the larger weight.
     pub fn nearer_pair(&self) -> NodeAtSegment {
         match &self.source.target {
             Target::Corner(corner) => self.source.at_ends(corner.nearer().ends),
@@ -110,7 +113,7 @@ impl Constraint {
         }
     }
 
-    /// The keys that its slave node has at each of its segments: at a corner, two.
+    /// Keys of the slave node at each of its segments; at a corner there are two.
     pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
         let behind = match &self.source.target {
             Target::Corner(corner) => Some(ConstraintKey {
@@ -122,13 +125,13 @@ impl Constraint {
         [Some(self.key), behind].into_iter().flatten()
     }
 
-    /// The slave node whose state it says: of a mean the one that it is named by, of a disc its centre.
+    /// The slave node whose state the constraint tells: the node that names a mean, the centre of a disc.
     pub fn named_slave(&self) -> usize {
         self.source.pair.slave
     }
 
-    /// The master nodes of a mean, each with |Bn| there: the part of the normal force that it takes. The other kinds say
-    /// nothing of master nodes.
+    /// The master nodes of a mean, each with |Bn| there, its part of the normal force. Other kinds of constraints
+    /// return no master nodes.
     pub fn shares_of_masters(&self) -> impl Iterator<Item = (usize, f64)> {
         let normal = &self.force_rows.normal;
         let first = match &self.source.target {
@@ -139,8 +142,8 @@ impl Constraint {
         places.map(|k| (self.dofs[k] / 2, normal[k].hypot(normal[k + 1])))
     }
 
-    /// Whether it keeps a node out of a body: its slave node, or the corner that this meets. A mean keeps out no single
-    /// node.
+    /// Whether the constraint keeps `node` out of a body; the node is its slave node, or the corner that this node
+    /// meets. A mean does not keep any single node out.
     pub fn keeps_out(&self, node: usize) -> bool {
         let slave = self.source.pair.slave;
         match &self.source.target {
@@ -160,8 +163,8 @@ impl Constraint {
         }
     }
 
-    /// Whether its slave node projects between the ends of its segment in some positions, and on neither of them. A point
-    /// of a mean always does.
+    /// Whether the slave node projects between the ends of its segment at the given positions, and on neither end. The
+    /// result is always true for a point of a mean.
     pub fn is_over(&self, at: Positions) -> bool {
         let is_over = || {
             let xi = at.place(self.pair().nodes).xi;

@@ -1,5 +1,5 @@
-//! Lists whose memory is used again. Every pass drops the constraints of the pass before and makes new ones, with about
-//! as many points and dofs. A new list begins in the memory of one that was dropped.
+//! Lists whose memory is used again. Every pass drops the constraints of the last pass and makes new ones with about as
+//! many points and dofs. A new list begins in the memory of one that was dropped.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -8,19 +8,19 @@ use std::thread::LocalKey;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Most spare lists of entries of one type that a thread keeps.
+/// Largest number of spare lists that a thread keeps for each type of entry.
 const MOST_SPARE: usize = 1 << 16;
 
 /// The spare lists of a thread.
 type Spare<T> = RefCell<Vec<Vec<T>>>;
 
-/// What lists are made of.
+/// Type of the entries of recycled lists.
 pub trait Entry: Copy + 'static {
-    /// The spare lists of this thread.
+    /// The spare lists of the current thread.
     fn spare() -> &'static LocalKey<Spare<Self>>;
 }
 
-/// Keeps spare lists of the given types.
+/// Defines the spare lists of the given types.
 macro_rules! entries {
     ($($kind:ty),* $(,)?) => {
         $(impl $crate::contact::lists::Entry for $kind {
@@ -41,7 +41,7 @@ entries!(f64, usize);
 pub struct Recycled<T: Entry>(Vec<T>);
 
 impl<T: Entry> Recycled<T> {
-    /// An empty list for entries that come: the next one has room.
+    /// An empty list with some memory, for entries that will be added.
     pub fn with_room() -> Self {
         let taken = T::spare().try_with(|spare| spare.borrow_mut().pop());
         Recycled(taken.ok().flatten().unwrap_or_default())
@@ -55,7 +55,7 @@ impl<T: Entry> Drop for Recycled<T> {
         }
         let mut list = std::mem::take(&mut self.0);
         list.clear();
-        // a thread that ends has no lists any more
+        // a thread that ends has lost its lists already
         let _ = T::spare().try_with(|spare| {
             let mut spare = spare.borrow_mut();
             if spare.len() < MOST_SPARE {
@@ -65,7 +65,7 @@ impl<T: Entry> Drop for Recycled<T> {
     }
 }
 
-/// An empty list without room.
+/// An empty list without memory.
 impl<T: Entry> Default for Recycled<T> {
     fn default() -> Self {
         Recycled(Vec::new())
@@ -127,20 +127,20 @@ impl<'de, T: Entry + Deserialize<'de>> Deserialize<'de> for Recycled<T> {
     }
 }
 
-/// Values that are stored in place: those of the eight dofs of a corner.
+/// Number of values that are stored in place: those of the eight dofs of a corner.
 pub(super) const IN_PLACE: usize = 8;
 
 /// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, in a list beyond.
 #[derive(Clone)]
 pub enum PerDof<T: Entry> {
-    /// The first of some values.
+    /// Up to eight values, in place, and their number.
     Short([T; IN_PLACE], usize),
-    /// More of them.
+    /// More than eight values, in a list.
     Long(Recycled<T>),
 }
 
 impl<T: Entry + Default> PerDof<T> {
-    /// The values of `N` dofs, eight at most.
+    /// The values of `N` dofs, with N at most 8.
     #[inline]
     pub(super) fn of<const N: usize>(values: [T; N]) -> Self {
         const { assert!(N <= IN_PLACE) };
@@ -149,7 +149,7 @@ impl<T: Entry + Default> PerDof<T> {
         PerDof::Short(all, N)
     }
 
-    /// So many zeros.
+    /// `count` zeros.
     pub(super) fn zeros(count: usize) -> Self {
         std::iter::repeat_n(T::default(), count).collect()
     }

@@ -1,12 +1,12 @@
-//! Constraint of a slave node at a corner, from those of the two segments that meet there.
-//! See docs/theory/geometry.md, Corner against corner.
+//! Constraint of a slave node at a corner, from the constraints at the two segments that meet
+//! there. See docs/theory/geometry.md, Corner against corner.
 
 use super::constraint::{Configurations, Constraint, RowForm, RowPair};
 use super::node_to_segment::{SegmentRows, segment_rows};
 use super::target::{Corner, CornerContact, Pair, PairTarget, Target};
 
 impl CornerContact {
-    /// Rows at the segments before and behind, each over three nodes, and the lengths of their blends.
+    /// Rows at the segments before and behind the corner, each over three nodes, and the lengths of the blended rows.
     pub(super) fn rows(&self, pair: &Pair, at: &Configurations) -> ([SegmentRows; 2], [f64; 2]) {
         let rows = [self.before, self.behind].map(|segment| {
             let [a, b] = segment.ends;
@@ -16,18 +16,21 @@ impl CornerContact {
         (rows, lengths)
     }
 
-    /// The constraint at the corner b between the segments from a to b and from b to c; nodes s, a, b, c.
+    /// The constraint of a slave node at the corner b between the segments from a to b and from b to c; its nodes are
+    /// s, a, b, c.
     ///
-    /// With the weight w of the corner, i the segment before and j that behind it, eq. (10.3),
+    /// With the weight w of the corner, the segment i before it and the segment j behind it, eq.
+    /// (10.3):
     ///
     /// ```text
     /// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
     /// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
     /// ```
     ///
-    /// whose normal has the length 1. Both g_i and g_j have the overlap a that a fit allows, eq. (3.15). The weights are constant in a pass, so that rows and gap stay
-    /// exact differences. With other weights than those of the increment before, a closed corner may begin with a small
-    /// overlap; it keeps it, since work would be done on its way out.
+    /// The blended normal has the length 1. Both g_i and g_j contain the overlap a that a fit allows, eq. (3.15). The
+    /// weights are constant in a pass, so rows and gap stay exact differences. With other weights than in the last
+    /// increment, a closed corner may begin with a small overlap; the overlap stays, since pushing it out would do
+    /// work.
     pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
         // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
         let corner = self.corner();
@@ -58,7 +61,7 @@ impl CornerContact {
     }
 }
 
-/// Lengths m of the blended normal and tangential rows at s, which are one of straight faces.
+/// Lengths m of the blended normal and tangential rows at s; with straight faces both are 1.
 fn lengths_of_rows(corner: Corner, sides: &[SegmentRows; 2]) -> [f64; 2] {
     let length = |of: fn(&SegmentRows) -> [f64; 2]| {
         let [p, q] = sides.each_ref().map(of);
@@ -78,12 +81,12 @@ fn lengths_of_rows(corner: Corner, sides: &[SegmentRows; 2]) -> [f64; 2] {
     }
 }
 
-/// A row at s, a, b as one at s, a, b, c.
+/// Extends a row at s, a, b to one at s, a, b, c.
 fn at_first_nodes([sx, sy, ax, ay, bx, by]: [f64; 6]) -> [f64; 8] {
     [sx, sy, ax, ay, bx, by, 0.0, 0.0]
 }
 
-/// A row at s, b, c as one at s, a, b, c.
+/// Extends a row at s, b, c to one at s, a, b, c.
 fn at_last_nodes([sx, sy, bx, by, cx, cy]: [f64; 6]) -> [f64; 8] {
     [sx, sy, 0.0, 0.0, bx, by, cx, cy]
 }
@@ -94,7 +97,7 @@ mod tests {
     use crate::contact::{RowForm, project, testing};
     use crate::vectors::dot;
 
-    /// Corner of a roof, displaced, on which the node 0 has come to lie.
+    /// Displaced corner of a roof, on which the node 0 has come to lie.
     const ROOF: [[f64; 2]; 4] = [[0.3, 1.1], [2.0, 0.1], [0.3, 1.1], [-0.8, 0.9]];
 
     fn at_corner(form: RowForm, u: &[f64]) -> Constraint {
@@ -106,7 +109,7 @@ mod tests {
         Constraint::new(source(), &Configurations { form, x, u0, u })
     }
 
-    /// Node 0 at the corner of the segments from node 1 to 2 and from 2 to 3.
+    /// Pair of node 0 and the corner of the segments from node 1 to 2 and from 2 to 3.
     fn source() -> PairTarget {
         testing::corner([1, 2, 3], 0.3)
     }
@@ -148,7 +151,8 @@ mod tests {
     #[test]
     fn a_fit_allows_the_same_overlap_behind_both_segments() {
         for form in [RowForm::End, RowForm::DiscreteGradient] {
-            // behind both segments by what is allowed: where their lines, moved by it, meet
+            // the node is behind both segments by the allowed overlap: where their lines, moved by
+            // this overlap, meet
             let depths = [0.02, 0.01];
             let [_, a, tip, c] = ROOF;
             let [p, q] = [[a, tip], [tip, c]].map(|[a, b]| project(a, a, b).normal);

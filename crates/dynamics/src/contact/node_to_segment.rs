@@ -8,15 +8,15 @@ use super::projection::{Projection, position_round_off, project, rise};
 use super::target::{Pair, PairTarget, SegmentContact, Target};
 use crate::vectors::{cross, difference, dot};
 
-/// A node on a segment, with its force rows and derivative rows.
+/// Force rows and derivative rows of a node at a segment.
 pub(super) struct SegmentRows {
-    /// Projection on the chord.
+    /// Projection of the node on the chord.
     pub projection: Projection,
     /// Gap to the face (length).
     pub gap: f64,
     pub force: RowPair<6>,
     pub derivative: RowPair<6>,
-    /// How the face bends, if it does.
+    /// Bend of the face, if it is curved.
     pub bend: Option<Bend>,
 }
 
@@ -26,13 +26,14 @@ impl SegmentRows {
         (self.bend.as_ref()).map_or([self.force, self.derivative], |bend| bend.chord)
     }
 
-    /// Length of the normal row, over that of a straight face: what the friction bound is larger by, eq. (3.31).
+    /// Length of the normal row relative to that of a straight face: factor of the friction bound, eq. (3.31).
     pub fn stretch(&self) -> f64 {
         self.bend.as_ref().map_or(1.0, |bend| bend.stretch)
     }
 }
 
-/// Start and end of the increment: r = x_s - x_a, e = x_b - x_a and what follows from them.
+/// Start or end of the increment: r = x_s - x_a, e = x_b - x_a and the quantities that follow from
+/// them.
 struct Arms {
     r: [f64; 2],
     e: [f64; 2],
@@ -55,7 +56,7 @@ impl SegmentContact {
         segment_rows(self.nodes(pair), (self.segment.bulge, pair.allowed), at)
     }
 
-    /// The constraint of the slave node s at the segment from a to b; nodes s, a, b.
+    /// The constraint of the slave node s at the segment from a to b; its nodes are s, a, b.
     pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
         let mut rows = self.rows(&pair, at);
         let kappa = self.tilt(&pair, at);
@@ -73,20 +74,20 @@ impl SegmentContact {
         }
     }
 
-    /// Gap of the constraint, and the length that it is relative to.
+    /// Gap of the constraint, and the length to which it is relative.
     pub(super) fn gap_and_scale(&self, pair: &Pair, at: &Configurations) -> (f64, f64) {
         let [s, a, b] = at.iterate(self.nodes(pair));
         let projection = self.segment.bulge.below(project(s, a, b));
         (projection.gap + pair.allowed[1], projection.length)
     }
 
-    /// Tilt of the force on a node that has slid on from another segment, eq. (7.6), zero on all others:
+    /// Tilt of the force on a node that has slid on from another segment, eq. (7.6); zero for other nodes:
     ///
     /// ```text
     /// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
     /// ```
     ///
-    /// Then Bn d = g1 - h0, so that contact puts no energy in.
+    /// With the tilt Bn d is g1 - h0, so contact adds no energy.
     pub(super) fn tilt(&self, pair: &Pair, at: &Configurations) -> f64 {
         let from = self.from.filter(|_| at.form == RowForm::DiscreteGradient);
         let Some(from) = from else { return 0.0 };
@@ -99,7 +100,7 @@ impl SegmentContact {
         let before = from.bulge.below(project(s, i, j)).raised(allowed);
         let rise = rise((start.gap + allowed, start.length), before.gap, s);
         let slip = (start.length + end.length) / 2.0 * (end.xi - start.xi);
-        // a node that has not moved has no direction to be tilted in
+        // the force on a node that has not moved has no direction in which to tilt
         match rise != 0.0 && slip.abs() > position_round_off(s) {
             true => rise / slip,
             false => 0.0,
@@ -107,7 +108,7 @@ impl SegmentContact {
     }
 }
 
-/// Projection and rows of the node s on the segment from a to b, whose face has a bulge, and which it may overlap.
+/// Projection and rows of the node s on the segment from a to b, whose face may have a bulge and an allowed overlap.
 pub(super) fn segment_rows(
     nodes: [usize; 3],
     (bulge, [_, allowed]): (Bulge, [f64; 2]),
@@ -122,7 +123,7 @@ pub(super) fn segment_rows(
     let height = bulge.at(projection.xi) - allowed;
     let mut rows = rows_between(places, (height, &bulge), at.form);
     if let (RowForm::End, Some(bend)) = (at.form, &rows.bend) {
-        // the couple of friction changes with the height that the node has where the gap is closed
+        // the couple of friction changes with the height of the node when the gap is closed
         let turned = product(&couple(&projection), &displacements(&places)) / bend.stretch;
         let tangential = &mut rows.derivative.tangential;
         *tangential = sum_of(1.0, tangential, turned, &bend.of_height);
@@ -130,8 +131,8 @@ pub(super) fn segment_rows(
     rows
 }
 
-/// Projection and rows between the positions of s, a and b at start and end; s is at a `height` over the segment when the
-/// constraint is closed, which end rows take and discrete gradients do not need.
+/// Projection and rows between the positions of s, a and b at start and end. `height` is the distance of s from the
+/// segment when the constraint is closed; end rows use it, discrete gradients do not.
 pub(super) fn rows_between(
     places: [[[f64; 2]; 3]; 2],
     (height, bulge): (f64, &Bulge),
@@ -175,13 +176,14 @@ fn displacements([start, end]: &[[[f64; 2]; 3]; 2]) -> [f64; 6] {
     std::array::from_fn(|k| end[k / 2][k % 2] - start[k / 2][k % 2])
 }
 
-/// Derivatives of xi, l and Bn d, d being the displacements of s, a and b since the start,
+/// Derivatives of xi, l and Bn d, where d is the displacement of s, a and b since the start,
 ///
 /// ```text
 /// dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²,  dl = e_t.de
 /// ```
 ///
-/// Discrete gradients are differences of gaps. End rows turn with the segment: dBn d = Bn - (e_t.w)/l D - (e_n.d_e) dxi.
+/// Derivatives of discrete gradients are differences of gap rows. End rows turn with the segment: dBn d = Bn -
+/// (e_t.w)/l D - (e_n.d_e) dxi.
 fn of_chord(rows: &SegmentRows, (form, d): (RowForm, &[f64; 6])) -> OfChord {
     let ([force, derivative], p) = (rows.chord(), &rows.projection);
     let (l, [t, n]) = (p.length, [p.tangent, p.normal]);
@@ -204,9 +206,9 @@ fn of_chord(rows: &SegmentRows, (form, d): (RowForm, &[f64; 6])) -> OfChord {
     }
 }
 
-/// Force rows of the end configuration, eq. (3.4): e_n at s, -(1 - xi) e_n at a, -xi e_n at b; the
-/// same with e_t and the couple (h/l) D, by which friction at the height h has no moment. The normal row is the derivative
-/// of the gap; the slip has the derivative of eq. (3.9).
+/// Force rows of the end configuration, eq. (3.4). The normal row is e_n at s, -(1 - xi) e_n at a, -xi e_n at b. The
+/// tangential row is the same with e_t, plus the couple (h/l) D, by which friction at the height h has no moment. The
+/// normal row is the derivative of the gap; the derivative of the slip is eq. (3.9).
 fn end_rows(
     p: &Projection,
     height: f64,
@@ -239,16 +241,16 @@ fn end_rows(
     (force, derivative)
 }
 
-/// D/l = (e_n at b, -e_n at a)/l: the couple of end rows for a force at a unit of height.
+/// D/l = (e_n at b, -e_n at a)/l: the couple of the end rows for a force at unit height.
 pub(super) fn couple(p: &Projection) -> [f64; 6] {
     nodal([0.0; 2], p.normal.map(|n| n / p.length))
 }
 
 /// Discrete gradients between the start and the end of the increment.
 ///
-/// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 are functions of pi1 = r.e,
-/// pi2 = r x e, pi3 = e.e, eq. (7.1), quadratic in the positions: their gradients at the mid
-/// configuration are exact difference quotients.
+/// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 depend on pi1 = r.e, pi2 = r x e,
+/// pi3 = e.e, eq. (7.1), which are quadratic in the positions. The gradients of these products at
+/// the mid configuration are therefore exact difference quotients.
 fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair<6> {
     let mean = |p: [f64; 2], q: [f64; 2]| [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
     let (l0, l1) = (start.length, end.length);
@@ -270,7 +272,7 @@ fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair<6> {
     }
 }
 
-/// Derivatives of the gap g1 and the slip L (xi1 - xi0) with respect to the end.
+/// Derivatives of the gap g1 and of the slip L (xi1 - xi0) with respect to the end positions.
 fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair<6> {
     let (l0, l1) = (start.length, end.length);
     let [pi1, pi2, pi3] = gradients(end.r, end.e);
@@ -285,7 +287,7 @@ fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair<6> {
 }
 
 impl Arms {
-    /// The arms of the positions of s, a and b.
+    /// The arms for the positions of s, a and b.
     fn new([s, a, b]: [[f64; 2]; 3]) -> Self {
         let (r, e) = (difference(a, s), difference(a, b));
         Arms {
@@ -306,7 +308,8 @@ fn gradients(r: [f64; 2], e: [f64; 2]) -> [[f64; 6]; 3] {
     [pi1, pi2, pi3]
 }
 
-/// From parts with respect to (r, e) to the nodes: s: r-part, a: -(r-part) - (e-part), b: e-part.
+/// Row at the nodes from its parts with respect to r and e: the r-part at s, minus both parts at a,
+/// the e-part at b.
 fn nodal(r: [f64; 2], e: [f64; 2]) -> [f64; 6] {
     [r[0], r[1], -r[0] - e[0], -r[1] - e[1], e[0], e[1]]
 }
@@ -331,7 +334,7 @@ mod tests {
         Constraint::new(source, &Configurations { form, x, u0, u })
     }
 
-    /// A pair that is closed at U1 with the overlap that is allowed there, and at a distance from the segment.
+    /// A pair that is closed at U1 with the overlap allowed there, at a distance from the segment.
     fn fit() -> PairTarget {
         let gap = projected(&U1).gap;
         assert!(gap.abs() > 0.1);
@@ -340,7 +343,7 @@ mod tests {
         source
     }
 
-    /// Node 0 at the face from node 1 to node 2.
+    /// Node 0 at the curved face from node 1 to node 2.
     fn bent(bulge: Bulge) -> PairTarget {
         testing::at_segment(Segment {
             bulge,
@@ -391,7 +394,7 @@ mod tests {
         for form in [RowForm::End, RowForm::DiscreteGradient] {
             let constraint = of(source.clone(), form, &U0, &U1);
             let Rows { normal, tangential } = &constraint.force_rows;
-            // the force on the node: of the length s and of one
+            // the normal row at the node has the length s, the tangential row the length 1
             let [n, t] = [normal, tangential].map(|row| [row[0], row[1]]);
             if form == RowForm::End {
                 assert!(dot(n, t).abs() < 1e-15 && (dot(t, t) - 1.0).abs() < 1e-15);
@@ -441,7 +444,7 @@ mod tests {
             let x = &x;
             contact.tilt(&pair, &Configurations { form, x, u0, u: &u })
         };
-        // a gap is no rise, an overlap is
+        // a gap gives no rise, an overlap gives one
         assert_eq!(rise_and_slip(1e-3, 1e-2), 0.0);
         assert!((rise_and_slip(-1e-3, 1e-2) + 0.1).abs() < 1e-15);
         for slip in [0.0, 1e-16, -1e-12, 1e-9] {
@@ -451,7 +454,7 @@ mod tests {
 
     #[test]
     fn forces_of_a_closed_pair_keep_both_momenta() {
-        // of end rows about the end
+        // the moments of end rows are about the end positions
         for (form, from) in [(RowForm::DiscreteGradient, &U0), (RowForm::End, &U1)] {
             let Rows { normal, tangential } = closed(form, &U0).force_rows;
             for row in [normal, tangential] {

@@ -16,21 +16,21 @@ use super::target::{
 };
 use super::tolerances::{CLOSED_GAP, KEPT_BEYOND_ENDS};
 
-/// The slave nodes whose pairs are found.
+/// Choice of the slave nodes whose pairs are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SlaveChoice {
-    /// All of them.
+    /// All slave nodes.
     #[default]
     All,
-    /// Those that may touch a segment after the next correction, and all whose pairs are means or discs.
+    /// The slave nodes that may touch a segment after the next correction, and all whose pairs are means or discs.
     Near,
     /// The others.
     Far,
 }
 
 impl SlaveChoice {
-    /// Whether a slave node is among them in the given positions; one that has a pair, which may have brought it deep into a
-    /// body, is near.
+    /// Whether a slave node is chosen at the given positions. A node with a pair counts as near, since the pair may
+    /// have brought it deep into a body.
     fn takes(self, listed: &ListedSlave, now: Positions, has_pair: bool) -> bool {
         let is_far = || !has_pair && listed.is_far(now);
         match self {
@@ -41,16 +41,16 @@ impl SlaveChoice {
     }
 }
 
-/// Writes the pairs of the chosen slave nodes of all contacts between the displacements `u0` of the start of an increment and `u`
-/// of an iterate, which the search covers, with increasing keys, as the constraints `before`,
-/// of the last pass. `closed_at_start` are the pairs closed at the start.
-/// With `kept`, targets are kept up to this overrun beyond their ends (segment lengths) even if others hold the
-/// node now: passes that go to and fro across a corner come to rest with it.
+/// Writes the pairs of the chosen slave nodes of all contacts, with increasing keys, between the displacements `u0` of
+/// the start and `u` of an iterate, which the search covers. `before` are the constraints of the last pass, also with
+/// increasing keys. `closed_at_start` are the pairs closed at the start. With `kept`, targets are kept up to this
+/// overrun beyond their ends (segment lengths), even if the node is now at others: passes that go to and fro across a
+/// corner converge with it.
 ///
-/// A contact from surface to surface has points of slave faces as its pairs. Their rows have the given form.
+/// Pairs of contact from surface to surface are points of slave faces, whose rows have the given form.
 ///
-/// A node that has just left its segment by a little and finds no other keeps it: whether it has
-/// slid off is decided by the end of the increment, not by one of its passes.
+/// A node that has just left its segment by a little and finds no other target keeps it: the end of
+/// the increment decides whether the node has slid off, not one of its passes.
 pub fn find_targets(
     search: &Search,
     [u0, u]: [&[f64]; 2],
@@ -117,7 +117,8 @@ pub fn find_targets(
     remove_twins(&corners, pairs);
 }
 
-/// Writes those pairs that are means from surface to surface, between the same displacements, with increasing keys.
+/// Writes only the pairs that are means (surface to surface), between the displacements `u0` and `u`, with increasing
+/// keys.
 pub fn find_means(
     search: &Search,
     [u0, u]: [&[f64]; 2],
@@ -131,8 +132,9 @@ pub fn find_means(
     }
 }
 
-/// Leaves those of the targets that a slave node had in the pass before which it keeps, corners with the
-/// weights of the iterate, vertices of hollows that it has left as their two segments, and adds what is found beside them.
+/// Keeps those targets of the last pass that the node is still over, and adds those of the found targets that are
+/// beyond them. Corners get the weights of the iterate; the vertex of a hollow that the node has left becomes its two
+/// segments.
 fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut ContactTargets) {
     targets.retain(|target| node.is_over(target, beyond));
     for place in 0..targets.len() {
@@ -156,9 +158,9 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
     targets.dedup_by_key(|target| target.segment);
 }
 
-/// The pair of a slave node and a target. From surface to surface what a corner overlaps at the start stays, as that of
-/// means does: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex was behind the line of its new
-/// segment there, and overlaps what the segment that it was closed on was in.
+/// The pair of a slave node and a target. With surface to surface the overlap of a corner at the start is allowed, like
+/// that of a mean: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex lay behind the line
+/// of its new segment at the start; its allowed overlap is that in the segment on which it was closed.
 fn pair_target(
     listed: &ListedSlave,
     target: ContactTarget,
@@ -211,10 +213,10 @@ fn pair_target(
     PairTarget { pair, target }
 }
 
-/// Slave nodes with the corners that they meet, few.
+/// Slave nodes with the corners that they meet; usually few nodes meet corners.
 type Corners = SmallVec<[[usize; 2]; 8]>;
 
-/// Two nodes that are each other's corner are one pair.
+/// Removes one of the two pairs of nodes that are each other's corner.
 fn remove_twins(corners: &Corners, pairs: &mut Vec<PairTarget>) {
     let is_twin =
         |[s, v]: [usize; 2]| s > v && corners.contains(&[s, v]) && corners.contains(&[v, s]);

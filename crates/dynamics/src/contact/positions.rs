@@ -10,7 +10,8 @@ pub struct Positions<'a> {
 }
 
 impl<'a> Positions<'a> {
-    /// Reference coordinates of the nodes and displacements over all dofs (length).
+    /// Positions from reference coordinates `x` of the nodes and displacements `u` over all dofs
+    /// (length).
     pub fn new(x: &'a [[f64; 2]], u: &'a [f64]) -> Self {
         let u = u.as_chunks().0;
         Positions { x, u }
@@ -28,7 +29,7 @@ impl<'a> Positions<'a> {
         self.x
     }
 
-    /// Projection of a node on a segment; `nodes` are slave, a and b.
+    /// Projection of a node on a segment; `nodes` are the slave node and the ends a and b.
     pub fn place(&self, nodes: [usize; 3]) -> Projection {
         let [s, a, b] = nodes.map(|node| self.of(node));
         project(s, a, b)

@@ -1,11 +1,11 @@
-//! Projection of a point on a segment: gap, projection point and local frame; what of gaps and slips is round-off.
-//! See docs/theory/geometry.md.
+//! Projection of a point on a segment: gap, projection point, local frame, and the round-off of gaps and slips. See
+//! docs/theory/geometry.md.
 
 use super::tolerances::{POSITION_ROUND_OFF, SOLVED_GAP};
 use crate::linear::largest;
 use crate::vectors::{difference, dot, length};
 
-/// A point in the local frame of a segment from a to b, which has its body on the left.
+/// A point in the local frame of a segment from a to b, whose body is on the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
     /// Coordinate of the projection on the segment: 0 at a, 1 at b.
@@ -43,7 +43,7 @@ pub fn project(s: [f64; 2], a: [f64; 2], b: [f64; 2]) -> Projection {
 }
 
 impl Projection {
-    /// The same with a gap that is larger by an overlap that is allowed (length).
+    /// The same projection with a gap that is larger by the overlap `allowed` (length).
     pub fn raised(self, allowed: f64) -> Self {
         Projection {
             gap: self.gap + allowed,
@@ -52,7 +52,7 @@ impl Projection {
     }
 }
 
-/// (1 - eta) x_1 + eta x_2
+/// The point (1 - eta) x_1 + eta x_2.
 pub(super) fn between(x1: [f64; 2], x2: [f64; 2], eta: f64) -> [f64; 2] {
     [0, 1].map(|i| (1.0 - eta) * x1[i] + eta * x2[i])
 }
@@ -62,10 +62,10 @@ pub(super) fn position_round_off(s: [f64; 2]) -> f64 {
     POSITION_ROUND_OFF * largest(&s)
 }
 
-/// Rise g0 - h0 of eq. (7.6) (length): the gap at the start of the segment of the given length that a node at `s` has slid
-/// on to, above what it counts as, the gap `before` of the segment that the node came from, and no overlap. What is
-/// round-off of closed gaps and positions is zero: over the slip of a node that has come back it would tilt the force
-/// at random.
+/// Rise g0 - h0 of eq. (7.6) (length) for a node at `s` that has slid on to another segment. The rise is the gap to the
+/// new segment at the start, of the given length, less the gap that the node is counted with; `before` is the gap to
+/// its old segment. A rise within the round-off of closed gaps and positions is set to zero: divided by the slip of a
+/// node that has come back, it would tilt the force at random.
 pub(super) fn rise((gap, length): (f64, f64), before: f64, s: [f64; 2]) -> f64 {
     let rise = gap - gap.min(before).max(0.0);
     let round_off = (SOLVED_GAP * length).max(position_round_off(s));

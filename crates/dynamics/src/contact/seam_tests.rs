@@ -1,5 +1,5 @@
-//! The seam of contact constraints: a made-up kind with 14 dofs, whose derivative rows are others
-//! than its force rows, beside a node at a segment.
+//! Tests with a made-up kind of constraint next to a node at a segment: it has 14 dofs, and
+//! derivative rows that differ from its force rows.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -10,13 +10,13 @@ use super::testing;
 use crate::linear::{Assembled, CheckedSolver, Transformation, linear_solver};
 use crate::model::SolverChoice;
 
-/// Dofs of the made-up constraint.
+/// Number of dofs of the made-up constraint.
 const DOFS: usize = 14;
 
-/// Normal and tangential row, by dof.
+/// Normal and tangential row as functions of the dof.
 type RowsByDof = [fn(usize) -> f64; 2];
 
-/// A constraint of the first `count` dofs with the given rows, B and G.
+/// A constraint over the first `count` dofs with the given rows B and G.
 fn made_up(count: usize, rows: [RowsByDof; 2]) -> Constraint {
     let [force, derivative] = rows.map(|row| {
         let [normal, tangential] = row.map(|entry| (0..count).map(entry).collect::<Vec<_>>());
@@ -33,7 +33,7 @@ fn made_up(count: usize, rows: [RowsByDof; 2]) -> Constraint {
     }
 }
 
-/// A tridiagonal positive definite matrix over the dofs, every dof an unknown.
+/// A tridiagonal positive definite matrix over the dofs; every dof is an unknown.
 fn matrix() -> CheckedSolver {
     let map = Transformation::identity(DOFS);
     let pairs: Vec<Vec<usize>> = (0..DOFS).map(|i| vec![i, (i + 1) % DOFS]).collect();
@@ -45,7 +45,7 @@ fn matrix() -> CheckedSolver {
     CheckedSolver::new(linear_solver(SolverChoice::Faer), matrix)
 }
 
-/// Two constraints of different shape, of which the wide one has derivative rows of its own.
+/// Two constraints of different size; the wide one has its own derivative rows.
 fn narrow_and_wide() -> [Constraint; 2] {
     let alternating = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     let wide = made_up(

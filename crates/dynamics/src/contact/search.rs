@@ -1,5 +1,5 @@
-//! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists
-//! that stay valid over several increments. See docs/theory/geometry.md, Candidate search.
+//! Candidate search between slave nodes and segments, after Zhong & Nilsson (1989), with lists that
+//! stay valid over several increments. See docs/theory/geometry.md, Candidate search.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -24,11 +24,11 @@ use crate::vectors::{Circle, CircleTree, difference, dot, length};
 pub struct Candidate {
     /// Index of the segment in its contact.
     pub segment: usize,
-    /// Distance up to which it pairs with the node (length).
+    /// Distance up to which the segment pairs with the node (length).
     pub reach: f64,
 }
 
-/// All segments of a contact at any distance: the exhaustive search.
+/// All segments of a contact as candidates at any distance: the exhaustive search.
 pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidate> + Clone {
     (0..surfaces.segments.len()).map(|segment| Candidate {
         segment,
@@ -38,10 +38,10 @@ pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidat
 
 /// Contact search with hierarchies of circular territories.
 ///
-/// Each slave node and each segment has a circle that is grown by a margin, and each contact two
-/// hierarchies of such circles. Overlapping circles are candidates; the lists are valid until an
-/// entity has moved further than its margin. Positions and motions are those relative to the mean of the
-/// contact's nodes: what two bodies have in common brings no pair together.
+/// Each slave node and each segment has a circle that is grown by a margin; each contact has two hierarchies of such
+/// circles. Entities with overlapping circles are candidates; the lists are valid until an entity has moved further
+/// than its margin. Positions and motions are relative to the mean of the contact's nodes, since a common motion of two
+/// bodies brings no pair together.
 pub struct Search<'m> {
     x: &'m [[f64; 2]],
     territories: Vec<Territory<'m>>,
@@ -49,18 +49,19 @@ pub struct Search<'m> {
 }
 
 impl<'m> Search<'m> {
-    /// A search among some contacts of nodes with the reference coordinates `x`, whose velocities tell how far they go in an
+    /// A search among some contacts of nodes with the reference coordinates `x`; velocities tell how far nodes go in an
     /// increment.
     pub fn new(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search::within(PAIRING_REACH, contacts, x)
     }
 
-    /// The search of static and quasi-static steps. No velocity tells how far a node will go, so it looks farther.
+    /// A search for static and quasi-static steps. In static and quasi-static steps no velocity tells how far a node
+    /// will go, so the search looks farther.
     pub fn without_velocities(contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search::within(PAIRING_REACH_WITHOUT_VELOCITIES, contacts, x)
     }
 
-    /// A search up to a distance in mean segment lengths of each contact.
+    /// A search up to the distance `reach`, in mean segment lengths of each contact.
     fn within(reach: f64, contacts: &'m [ContactSurfaces], x: &'m [[f64; 2]]) -> Self {
         Search {
             x,
@@ -73,15 +74,15 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Takes the overlaps that fits allow the slave nodes of every contact at the start of an increment and at its end
-    /// (length); of a contact without a fit none.
+    /// Sets the overlaps that fits allow the slave nodes of every contact at the start and at the end of an increment
+    /// (length); the list is empty for a contact without a fit.
     pub fn allow(&mut self, allowed: Vec<Vec<[f64; 2]>>) {
         for territory in &mut self.territories {
             territory.allow(&allowed[territory.key.contact]);
         }
     }
 
-    /// Lets nodes of a contact pair with segments that they are behind by a further `overlap` (length).
+    /// Lets nodes of a contact pair with segments behind which they lie by a further `overlap` (length).
     pub fn reach_into(&mut self, contact: usize, overlap: f64) {
         let own = |territory: &&mut Territory| territory.key.contact == contact;
         for territory in self.territories.iter_mut().filter(own) {
@@ -101,10 +102,10 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Transfers the lists, with the positions that they are valid for.
+    /// Transfers the lists, and the positions for which they are valid.
     ///
     /// # Errors
-    /// What is read is of other contacts.
+    /// Returns an error if the archive is of other contacts.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         for territory in &mut self.territories {
             let Territory {
@@ -170,8 +171,8 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Distance up to which nodes at rest pair with segments at rest in every contact (length); infinite without one. A
-    /// contact that is removed has neither.
+    /// Distance up to which nodes at rest pair with segments at rest, the least of all contacts (length); infinite
+    /// without a contact. A removed contact, which has no nodes and no segments, does not count.
     pub fn reach(&self) -> f64 {
         let acts = |territory: &&Territory| {
             let ContactSurfaces {
@@ -185,7 +186,7 @@ impl<'m> Search<'m> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The contacts with their candidates, one after the other; from surface to surface with their corners.
+    /// The contacts with their candidates, one after the other; with surface to surface also their corners.
     pub fn territories(&self) -> &[Territory<'m>] {
         &self.territories
     }
@@ -203,7 +204,7 @@ impl<'m> Search<'m> {
         })
     }
 
-    /// Surfaces of the contacts of nodes with segments in which no node may overlap.
+    /// Surfaces of the contacts between nodes and segments in which no node may overlap.
     pub(super) fn surfaces_of_nodes(&self) -> impl Iterator<Item = &'m ContactSurfaces> {
         let territories = self.territories.iter();
         let of_nodes = territories.filter(|territory| {
@@ -219,7 +220,7 @@ impl<'m> Search<'m> {
         self.x
     }
 
-    /// Number of searches so far, of every contact on its own.
+    /// Number of searches so far, counted for every contact on its own.
     pub fn searches(&self) -> usize {
         self.searches
     }
@@ -228,17 +229,17 @@ impl<'m> Search<'m> {
 /// A slave node with the segments that the search lists for it.
 #[derive(Clone, Copy)]
 pub struct ListedSlave<'a, 'm> {
-    /// What identifies it.
+    /// Key of the slave node.
     pub key: SlaveKey,
-    /// Its number on the surfaces.
+    /// Number of the slave node on the surfaces.
     pub(super) number: usize,
-    /// Surfaces of its contact.
+    /// Surfaces of the contact of the slave node.
     pub surfaces: &'m ContactSurfaces,
     territory: &'a Territory<'m>,
 }
 
 impl<'a, 'm> ListedSlave<'a, 'm> {
-    /// Search of its contact.
+    /// Candidates of the contact of the slave node.
     pub(super) fn territory(&self) -> &'a Territory<'m> {
         self.territory
     }
@@ -260,13 +261,15 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         }
     }
 
-    /// Overlap that a fit allows it at the start of the increment and at its end (length).
+    /// Overlap that a fit allows the slave node at the start and at the end of the increment
+    /// (length).
     pub fn allowed(&self) -> [f64; 2] {
         self.territory.allowed(self.number)
     }
 
-    /// The same where the node lies in a mean that was closed before the increment, or does not. The corner of a rigid body that does not
-    /// may not sink in: the body rocks on it, and lands on its corners.
+    /// The allowed overlap at start and end; `lies` tells whether the node lies in a mean that was closed before the
+    /// increment. A corner of a rigid body outside all closed means may not sink in: the body rocks and lands on its
+    /// corners.
     pub fn allowed_where(&self, lies: impl Fn(usize) -> bool) -> [f64; 2] {
         let allowed = self.allowed();
         let rocks = |corners: &&Corners| corners.are_rigid[self.number] && !lies(self.node());
@@ -276,7 +279,7 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         }
     }
 
-    /// What its gap to the chord of the segment of a pair counts more by at the start of the increment.
+    /// Lift of the gap of the slave node over the chord of the segment of a pair at the start of the increment.
     pub fn lift(&self, pair: &NodeAtSegment) -> Lift {
         Lift {
             allowed: self.allowed()[0],
@@ -284,28 +287,29 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         }
     }
 
-    /// Whether it is a corner of the contact's master.
+    /// Whether the slave node is a corner of the contact's master.
     pub fn is_of_master(&self) -> bool {
         (self.territory.corners).is_some_and(|corners| corners.are_of_master)
     }
 
-    /// Whether it meets segments by itself, not by means: it is a node, or a corner from surface to surface.
+    /// Whether the slave node meets segments by itself and not in a mean: it is a node, or a corner of contact from
+    /// surface to surface.
     pub fn meets_segments(&self) -> bool {
         self.surfaces.slave_segments.is_none()
     }
 
-    /// Whether it is a corner of contact from surface to surface.
+    /// Whether the slave node is a corner of contact from surface to surface.
     pub fn is_corner(&self) -> bool {
         self.territory.corners.is_some()
     }
 
-    /// Whether nodes of its contact may overlap at the end of the increment.
+    /// Whether nodes of the contact may overlap at the end of the increment.
     pub fn is_fitted(&self) -> bool {
         self.territory.is_fitted
     }
 
-    /// Whether it is a node that no correction brings to a segment: it is farther from all of them than a part of the
-    /// distance within which it pairs, and than twice what it is expected to move.
+    /// Whether no correction can bring the slave node to a segment: its distance from all segments is larger than a
+    /// part of the pairing distance plus twice its expected motion.
     pub(super) fn is_far(&self, now: Positions) -> bool {
         let Territory {
             contact,
@@ -325,24 +329,24 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
             let (a, b) = (now.of(a), now.of(b));
             let (r, e) = (difference(a, s), difference(a, b));
             let (along, whole) = (dot(r, e), dot(e, e));
-            // |r - xi e|^2 e.e, xi = r.e/e.e within [0, 1]
+            // |r - xi e|^2 e.e, with xi = r.e/e.e limited to [0, 1]
             let on = along.max(0.0).min(whole);
             dot(r, r) * whole - on * (2.0 * along - on) > near * near * whole
         })
     }
 
-    /// Its candidates, with increasing segments.
+    /// Candidates of the slave node, with increasing segments.
     pub fn candidates(&self) -> impl Iterator<Item = Candidate> + Clone + use<'a> {
         self.territory.candidates(self.number)
     }
 }
 
-/// The candidates of one contact, or of the corners of one.
+/// The candidates of one contact, or of the corners of one contact.
 pub struct Territory<'m> {
     contact: &'m ContactSurfaces,
     /// Key of the first slave node.
     key: SlaveKey,
-    /// The corners, if they are some.
+    /// The corners, if the slave nodes are corners.
     corners: Option<&'m Corners>,
     /// Distance up to which a node at rest pairs with a segment at rest (length).
     reach: f64,
@@ -350,36 +354,38 @@ pub struct Territory<'m> {
     skin: f64,
     slaves: SearchedSide,
     segments: SearchedSide,
-    /// Segments of all slaves, one after the other, increasing for each.
+    /// Candidate segments of all slave nodes, one node after the other, increasing for each.
     candidates: Vec<u32>,
-    /// Where the list of each slave starts, and the end of the last.
+    /// Start of the list of each slave node, and the end of the last list.
     starts: Vec<usize>,
-    /// The same as pairs, in the order in which they are found.
+    /// The candidates as pairs, in the order in which they are found.
     found: Vec<[u32; 2]>,
-    /// Overlaps that a fit allows the slave nodes at the start of the increment and at its end (length); else none.
+    /// Overlaps that a fit allows the slave nodes at the start and at the end of the increment (length); empty without
+    /// a fit.
     allowed: Vec<[f64; 2]>,
-    /// Whether there are some at the end of the increment.
+    /// Whether some of the allowed overlaps at the end of the increment are not zero.
     is_fitted: bool,
-    /// From surface to surface, the segments that faces are turned to at the start of the increment.
+    /// With surface to surface, the segments that slave faces face at the start of the increment.
     faced: Mutex<FacedAtStart>,
 }
 
-/// Segments that a slave face is turned to.
+/// Segments that a slave face faces.
 pub(super) type Faced = SmallVec<[usize; 8]>;
 
-/// Parts [low, high] of a slave face that are over master segments.
+/// Parts [low, high] of a slave face, each with the master segment under it.
 pub(super) type Cells = Recycled<(f64, f64, usize)>;
 
 entries!((f64, f64, usize));
 
-/// Segments of one run of the master that a slave face is turned to at the start of the increment, and its parts over them there.
+/// Segments of one run of the master that a slave face faces at the start of the increment, and the parts of the face
+/// over them there.
 pub(super) struct FacedRun {
     pub face: usize,
     pub segments: Faced,
     pub cells: Cells,
 }
 
-/// Segments that the slave faces are turned to, for the edges and candidates that they were found with.
+/// Segments that the slave faces face, with the edges and candidates for which they were found.
 #[derive(Default)]
 struct FacedAtStart {
     edges: Recycled<Edge>,
@@ -387,7 +393,7 @@ struct FacedAtStart {
 }
 
 impl<'m> Territory<'m> {
-    /// The territories of a contact and of its corners, whose numbers follow those of the slave nodes.
+    /// The territories of a contact and of its corners; the numbers of the corners follow those of the slave nodes.
     fn of_contact(
         contact: usize,
         (surfaces, reach): (&'m ContactSurfaces, f64),
@@ -419,7 +425,7 @@ impl<'m> Territory<'m> {
             contact,
             key,
             corners,
-            // of all points of a slave face, whose ends are listed
+            // the reach covers all points of a slave face, although only its ends are listed
             reach: reach * mean + contact.half_longest_face(x),
             skin: SEARCH_MARGIN * mean,
             slaves: SearchedSide::new(contact.slaves.iter().map(|&s| [s, s]).collect()),
@@ -433,8 +439,8 @@ impl<'m> Territory<'m> {
         }
     }
 
-    /// What follows from the segments that the slave faces are turned to at the start of the increment, where faces and
-    /// segments have these edges: passes of one increment find them once.
+    /// Calls a function with the segments that the slave faces face at the start of the increment. The segments are
+    /// found once for all passes of an increment, as long as faces and candidates stay the same.
     pub(super) fn with_faced<T>(
         &self,
         edges: Recycled<Edge>,
@@ -449,8 +455,8 @@ impl<'m> Territory<'m> {
         then(&faced.edges, &faced.runs)
     }
 
-    /// Takes the overlaps that a fit allows the slave nodes of the contact; corners, which no fit names, take the
-    /// largest.
+    /// Sets the overlaps that a fit allows the slave nodes of the contact; corners, which a fit does not name, get the
+    /// largest of them.
     fn allow(&mut self, allowed: &[[f64; 2]]) {
         self.is_fitted = allowed.iter().any(|[_, end]| *end != 0.0);
         self.allowed = match self.corners {
@@ -463,7 +469,8 @@ impl<'m> Territory<'m> {
         };
     }
 
-    /// Overlap that a slave node may have at the start of the increment and at its end (length); less by the radius of a disc.
+    /// Allowed overlap of a slave node at the start and at the end of the increment (length), less the radius of a
+    /// disc.
     pub(super) fn allowed(&self, number: usize) -> [f64; 2] {
         let of_fit = self.allowed.get(number).copied().unwrap_or_default();
         let of_corner = self.corners.map_or(0.0, |corners| corners.allowed[number]);
@@ -494,7 +501,8 @@ impl<'m> Territory<'m> {
         &self.candidates[self.starts[k]..self.starts[k + 1]]
     }
 
-    /// Positions or velocities of nodes less their mean over the ends of all slaves and segments.
+    /// Positions or velocities of nodes, less their mean over the ends of all slaves and segments
+    /// of the contact.
     fn about_mean<F: Fn(usize) -> [f64; 2]>(&self, of: F) -> impl Fn(usize) -> [f64; 2] + use<F> {
         let ends = || self.slaves.ends.iter().chain(&self.segments.ends).flatten();
         let sum = ends()
@@ -510,14 +518,14 @@ impl<'m> Territory<'m> {
         self.reach + self.slaves.travel[k] + self.segments.travel[segment]
     }
 
-    /// Whether the lists are valid at the given positions for the travel of the increment: the
-    /// distance of every entity from its position at the search plus its travel is within its
+    /// Whether the lists are valid at the given positions for the travel of the increment: for
+    /// every entity, its distance from its position at the search plus its travel is within its
     /// margin.
     fn covers(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
         self.slaves.is_within(&at, true) && self.segments.is_within(&at, true)
     }
 
-    /// Whether the lists hold all pairs that may touch at the given positions.
+    /// Whether the lists contain all pairs that may touch at the given positions.
     fn reaches(&self, at: impl Fn(usize) -> [f64; 2]) -> bool {
         self.slaves.is_within(&at, false) && self.segments.is_within(&at, false)
     }
@@ -533,7 +541,7 @@ impl<'m> Territory<'m> {
         }
     }
 
-    /// Lists the segments that each slave node can come near while all entities are within their
+    /// Lists the segments that each slave node can approach while all entities are within their
     /// margins.
     fn search(&mut self, at: impl Fn(usize) -> [f64; 2]) {
         self.forget_faced();
@@ -571,16 +579,17 @@ impl<'m> Territory<'m> {
     }
 }
 
-/// The entities of one side of a contact by their end nodes; both ends of a slave node are itself.
+/// The entities of one side of a contact by their end nodes; both ends of a slave node are the node
+/// itself.
 struct SearchedSide {
     ends: Vec<[usize; 2]>,
-    /// Distance that each may travel in the increment (length).
+    /// Distance that each entity may travel in the increment (length).
     travel: Vec<f64>,
     /// Positions of the ends at the last search; empty before the first.
     reference: Vec<[[f64; 2]; 2]>,
-    /// Distance that the ends may move from there (length).
+    /// Distance that the ends may move from their positions at the last search (length).
     margin: Vec<f64>,
-    /// Their territories at the last search.
+    /// Territories of the entities at the last search.
     circles: CircleTree,
 }
 
@@ -607,8 +616,8 @@ impl SearchedSide {
         }
     }
 
-    /// Whether the ends are within the margins, with the travel of the increment still ahead if
-    /// wanted.
+    /// Whether the ends are within the margins; with `with_travel` also after the travel of the
+    /// increment.
     fn is_within(&self, at: impl Fn(usize) -> [f64; 2], with_travel: bool) -> bool {
         self.reference.len() == self.ends.len()
             && (0..self.ends.len()).all(|i| {
@@ -623,20 +632,20 @@ impl SearchedSide {
             })
     }
 
-    /// Takes the positions as the reference; circles about the entities, grown by their margins and
-    /// by `more`.
+    /// Sets the reference positions and draws circles about the entities, grown by their margins
+    /// and by `more`.
     fn draw(&mut self, at: impl Fn(usize) -> [f64; 2], skin: f64, more: f64) {
         self.reference.clear();
         self.reference
             .extend(self.ends.iter().map(|ends| ends.map(&at)));
         self.margin.clear();
-        // m = l/2 + 2 w, eq. (10.2), w the travel
+        // margin m = l/2 + 2 w, eq. (10.2), where w is the travel
         self.margin.extend(
             self.travel
                 .iter()
                 .map(|travel| skin + SEARCH_MARGIN_PER_MOTION * travel),
         );
-        // length/2 + m (+ R of a segment), eq. (10.1)
+        // radius length/2 + m, for a segment plus R, eq. (10.1)
         let circle = |([a, b], margin): (&[[f64; 2]; 2], &f64)| Circle {
             centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
             // a node pairs a little beyond the ends as well

@@ -15,15 +15,15 @@ use super::tolerances::{
 };
 use crate::vectors::angle;
 
-/// Segments near a node, mostly few.
+/// Segments near a node; usually there are few.
 type Segments = SmallVec<[usize; 8]>;
 
-/// Selection of the targets of a node.
+/// Selection of the targets of a slave node.
 ///
 /// Near a concave corner a node outside the body is in front of both segments; near a convex corner
-/// it is in front of at least one. A node is therefore constrained by every segment that it faces,
-/// but by only one of a run of segments round convex corners. These are segments that it was in
-/// front of at the start of the increment: such contact never adds energy.
+/// it is in front of at least one. Every segment that the node faces therefore constrains it, but
+/// only one of a run of segments round convex corners. The node was in front of the segments in its
+/// targets at the start of the increment, so the contact never adds energy.
 impl SlaveNode<'_> {
     /// The targets of the node in the order of their segments; the candidates must come in this
     /// order.
@@ -47,7 +47,7 @@ impl SlaveNode<'_> {
         targets
     }
 
-    /// Adds the target in a run of segments, and those across concave corners near it.
+    /// Adds the target in a run of segments, and the targets across concave corners near the node.
     fn add_targets(&self, run: &[usize], targets: &mut ContactTargets) {
         let (segment, target) = if let Some(target) = self.slid_on(run) {
             (target.segment, target)
@@ -69,8 +69,9 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// Whether the node still projects on a target of an earlier pass, beyond its ends by `beyond`
-    /// segment lengths at most, and its force, if it has slid on to the target, still tilts gently.
+    /// Whether the node still projects on a target of an earlier pass, at most `beyond` segment
+    /// lengths beyond its ends. If the node has slid on to the target, the tilt of its force must
+    /// still be gentle.
     pub fn is_over(&self, target: &ContactTarget, beyond: f64) -> bool {
         let is_over = target.segments().any(|i| {
             let p = self.project(i);
@@ -79,7 +80,7 @@ impl SlaveNode<'_> {
         is_over && (target.from).is_none_or(|i| self.tilts_gently(i, target.segment))
     }
 
-    /// Whether two targets belong to one run of segments round convex corners, of which one is
+    /// Whether two targets belong to one run of segments round convex corners, so one of them is
     /// enough.
     pub fn is_same_face(&self, one: &ContactTarget, other: &ContactTarget) -> bool {
         one.segment == other.segment
@@ -92,7 +93,7 @@ impl SlaveNode<'_> {
             })
     }
 
-    /// Lists the segments into which the node projects, and the two at a corner where it projects into
+    /// Lists the segments into which the node projects, and both segments at a corner if the node projects into
     /// neither.
     fn list_faced(&self, candidates: impl Iterator<Item = Candidate>, faced: &mut Segments) {
         let s = self.position();
@@ -128,7 +129,8 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The faced segments as runs of neighbours with straight or convex corners between them.
+    /// The faced segments, grouped into runs of neighbours with straight or convex corners between
+    /// them.
     fn runs(&self, faced: &[usize]) -> SmallVec<[Segments; 2]> {
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
@@ -140,7 +142,7 @@ impl SlaveNode<'_> {
         };
         let mut seen: SmallVec<[bool; 8]> = smallvec![false; faced.len()];
         let mut runs = SmallVec::new();
-        // first the runs with a head, then those all around a body
+        // first the runs with a first segment, then the closed runs around a body
         let heads = faced.iter().filter(|i| !has_previous(i));
         for &head in heads.chain(faced) {
             let mut run = Segments::new();
@@ -159,8 +161,8 @@ impl SlaveNode<'_> {
         runs
     }
 
-    /// The segment of a run that constrains the node: among those that it was in front of at the
-    /// start, one that it is in front of now.
+    /// The segment of a run that constrains the node: one that it is in front of now, among those
+    /// that it was in front of at the start.
     fn choose(&self, run: &[usize]) -> Option<usize> {
         let gap = |i: usize| self.project(i).gap;
         let mut best: Option<usize> = None;
@@ -191,8 +193,8 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// The segment of a run that the node is over, if it has slid there, across corners of gentle turn,
-    /// from another that it was over at the start.
+    /// The segment of a run over which the node lies, if it has slid there across gentle corners from another segment
+    /// that it was over at the start.
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
         let is_within = |i: usize| (-SLID..=1.0 + SLID).contains(&self.xi(i));
         let slid_from = |i: usize| {
@@ -206,7 +208,7 @@ impl SlaveNode<'_> {
                 let over = run.iter().copied().filter(is_over).filter(is_gentle);
                 over.min_by(|j, k| gap(*j).total_cmp(&gap(*k)))
             };
-            // at a vertex a node may be over neither of its segments by round-off
+            // at a vertex round-off may leave a node over neither of the two segments
             let j = over(0.0).or_else(|| over(SLID))?;
             Some(ContactTarget {
                 from: Some(i),
@@ -215,7 +217,7 @@ impl SlaveNode<'_> {
         };
         let was_behind = || run.iter().all(|&j| !self.was_in_front(j));
         let came = || was_behind().then(|| self.came_from(run)).flatten();
-        // a node that was closed on a corner may be on either of its segments, in front of which it was
+        // a node that was closed on a corner may be on each of the corner's segments in front of which it was
         let is_left = |target: &&ContactTarget| {
             !(target.segments()).any(|i| is_within(i) && self.was_in_front(i))
         };
@@ -250,8 +252,8 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Whether the force on a node that has slid from segment i to j stays near the normal of j: the
-    /// tilt kappa = (g0_j - g0_i)/s is that of the surface between them.
+    /// Whether the force on a node that has slid from segment i to j stays near the normal of j: its tilt kappa =
+    /// (g0_j - g0_i)/s is that of the surface between the two.
     fn tilts_gently(&self, i: usize, j: usize) -> bool {
         let (start, now) = (self.project_at_start(j), self.project(j));
         let slip = (start.length + now.length) / 2.0 * (now.xi - start.xi);
@@ -263,10 +265,11 @@ impl SlaveNode<'_> {
         rise.abs() <= SLIDING_SINE * slip.abs()
     }
 
-    /// The neighbour, round a convex corner near the node, of a segment that the surface of the
-    /// node does not face. Where a corner slides over a corner, only the face that the surface of
-    /// the node faces constrains it; behind the other the node's own body would lie. At the start the node was over that
-    /// face, or near its end with half of a face of its own over it: a long line of a punch holds no node beside the punch.
+    /// The neighbour of segment `i` round a convex corner near the node, if the surface of the node does not face
+    /// segment `i`. Where a corner slides over a corner, only the face that the node's surface faces constrains the
+    /// node; behind the other face lies the node's own body. At the start the node must have been over that face, or
+    /// near its end with half of one of its own faces over it: the long line of a punch does not stop a node beside the
+    /// punch.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;
@@ -288,7 +291,7 @@ impl SlaveNode<'_> {
         before.filter(constrains).or(after.filter(constrains))
     }
 
-    /// The segment before or after a run from which the node has come round convex corners.
+    /// The segment before or after a run from which the node has come, round convex corners.
     fn came_from(&self, run: &[usize]) -> Option<usize> {
         let (&first, &last) = (run.first()?, run.last()?);
         let before = || self.walk(first, Along::Backward);
@@ -299,8 +302,9 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The first segment before or after another that the node projected on at the start, round
-    /// corners that are convex, or were at the start, and within twice its displacement.
+    /// The first segment before or after `from` on which the node projected at the start. The way
+    /// to that segment is round corners that are convex, or were at the start, and no longer than
+    /// twice the node's displacement.
     fn walk(&self, from: usize, direction: Along) -> Option<usize> {
         let farthest = 2.0 * self.relative_displacement(from);
         let length = |i: usize| self.project(i).length;
@@ -311,7 +315,7 @@ impl SlaveNode<'_> {
                 Along::Forward => [at, j],
                 Along::Backward => [j, at],
             };
-            // a corner that has turned concave since was convex when the node came over it
+            // a corner that is concave in the iterate was still convex when the node came over it
             let turns = [
                 self.corner_sine(first, second),
                 self.corner_sine_at_start(first, second),
@@ -328,7 +332,7 @@ impl SlaveNode<'_> {
         None
     }
 
-    /// The other segments of the concave corners at the ends of a segment that the node is near.
+    /// The segments across the concave corners near the node at the ends of segment `i`.
     fn across_concave_corners(&self, i: usize) -> impl Iterator<Item = usize> {
         let is_near = |from_end: &dyn Fn(f64) -> f64| {
             let p = self.project(i);
@@ -355,10 +359,10 @@ impl SlaveNode<'_> {
             .or_else(|| after.and_then(|j| self.corner_between(i, j)))
     }
 
-    /// The corner between a segment and the next, if the node meets it: node against node; or the vertex of a face.
+    /// The corner between the segments `i` and `j` if the node meets it, node against node, or the vertex of a face.
     fn corner_between(&self, i: usize, j: usize) -> Option<ContactTarget> {
         let (p, q) = (self.project(i), self.project(j));
-        // distance from the corner along the sum of both tangents, whose length is 2 at most
+        // distance from the corner along the sum of both tangents, which is at most 2 long
         let offset = (p.xi - 1.0) * p.length + q.xi * q.length;
         let length = p.length.min(q.length);
         if offset.abs() > 2.0 * CORNER_TIP * length {
@@ -402,10 +406,11 @@ impl SlaveNode<'_> {
         Some([before, after].map(|[x, y]| [y, -x]))
     }
 
-    /// Weight w of the second segment at a vertex: of a face, of a gentle hollow, or of a gentle corner that meets a node in a
-    /// hollow of its own face, as a pin meets a bore. The gaps to both segments are the same there. The normal of one segment
-    /// would lean to its side, and round-off would choose the segment. None where the gaps differ, where the turn is larger,
-    /// and where the node was behind one of the segments.
+    /// Weight w of the second segment at a vertex. A vertex is that of a face, of a gentle hollow, or of a gentle
+    /// corner that meets a node in a hollow of its own face, as a pin meets a bore. At a vertex the gaps to both
+    /// segments are the same; the normal of only one segment would lean to one side, and round-off would choose the
+    /// segment. Returns `None` if the gaps differ, if the turn is larger, or if the node was behind one of the
+    /// segments.
     fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {
         let round_off = position_round_off(self.position());
         let least = (CLOSED_GAP * p.length.min(q.length)).max(round_off);
@@ -415,8 +420,8 @@ impl SlaveNode<'_> {
         is_vertex.then_some(0.5)
     }
 
-    /// Whether a target of an earlier pass is the vertex of a hollow, and not found any more: the node has left it towards one
-    /// of its segments, and the body lies behind both.
+    /// Whether a target of an earlier pass is the vertex of a hollow that is no longer found: the node has left it
+    /// towards one of its segments, and the body lies behind both.
     pub fn has_left_hollow(&self, target: &ContactTarget, found: &[ContactTarget]) -> bool {
         let is_hollow = |corner: Corner| {
             let is_same =
@@ -426,7 +431,7 @@ impl SlaveNode<'_> {
         target.corner.is_some_and(is_hollow)
     }
 
-    /// Whether a target is a corner that turns, and no vertex of a face.
+    /// Whether a target is a corner with a turn and not the vertex of a face.
     pub fn meets_corner(&self, target: &ContactTarget) -> bool {
         let turns = |corner: Corner| self.corner_sine(target.segment, corner.next) > STRAIGHT_SINE;
         target.corner.is_some_and(turns)

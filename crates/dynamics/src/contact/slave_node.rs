@@ -26,12 +26,14 @@ pub struct SlaveNode<'a> {
     pub slave: usize,
     /// Targets of the pairs of the node that were closed at the start.
     pub closed_on: &'a [ContactTarget],
-    /// Overlap that a fit allows it at the start and in the iterate (length): what its gaps are larger by, eq. (3.15).
+    /// Overlap that a fit allows the node at the start and in the iterate (length); it is added to the gaps, eq.
+    /// (3.15).
     pub allowed: [f64; 2],
 }
 
 impl SlaveNode<'_> {
-    /// Whether the node enters the body through the segment on its straight path.
+    /// Whether the node enters the body through the segment, on its straight path from start to
+    /// iterate.
     pub(crate) fn enters(&self, segment: usize) -> bool {
         let [a, b] = self.surfaces.segments[segment];
         let motions = [self.node(), a, b]
@@ -41,15 +43,14 @@ impl SlaveNode<'_> {
         crossings(&motions, 1.0).iter().any(is_entering)
     }
 
-    /// Whether the node is so far in front of a segment that the neighbours of the segment do not
-    /// matter.
+    /// Whether the node is so far in front of a segment that its neighbour segments do not matter.
     pub(crate) fn is_far(&self, segment: usize) -> bool {
         let p = self.project(segment);
         p.gap > p.length && p.gap > 2.0 * self.displacement_at(segment, &p)
     }
 
-    /// Whether the node's own surface faces the segment: it lies in front of the parallel to the
-    /// segment through the node. None for a node without neighbours.
+    /// Whether the node's own surface faces the segment, that is, lies in front of the parallel to
+    /// the segment through the node. Returns `None` for a node without neighbours.
     pub(crate) fn is_opposite(&self, segment: usize) -> Option<bool> {
         let node = self.node();
         let normal = self.project(segment).normal;
@@ -62,8 +63,8 @@ impl SlaveNode<'_> {
         Some(adjacent.iter().all(is_in_front))
     }
 
-    /// Least sine by which a neighbour of the node was in front of the parallel to a segment through the node at the start:
-    /// more for the segment that its surface faced better.
+    /// Sine by which the neighbours of the node were at least in front of the parallel to a segment through the node,
+    /// at the start. The sine is larger for the segment that the node's surface faced better.
     pub(crate) fn faced_at_start(&self, segment: usize) -> f64 {
         let (node, normal) = (self.start_position(), self.project_at_start(segment).normal);
         let sine = |adjacent: usize| {
@@ -80,7 +81,7 @@ impl SlaveNode<'_> {
         p.gap >= -CLOSED_GAP * p.length
     }
 
-    /// Whether the node started with a small penetration that the mesh may have.
+    /// Whether the node started with a penetration so small that it may come from the mesh.
     pub(crate) fn was_pushed_in(&self, segment: usize) -> bool {
         let p = self.project_at_start(segment);
         let is_shallow = p.gap >= -INITIAL_DEPTH * p.length
@@ -94,26 +95,27 @@ impl SlaveNode<'_> {
                 || (surfaces.interior).takes_in(surfaces.segments[segment], node, start))
     }
 
-    /// Whether the node belongs to the body behind the segment: it is on the far side of a thin
-    /// body.
+    /// Whether the node belongs to the body behind the segment, so it lies on the far side of a
+    /// thin body.
     pub(crate) fn was_far_side(&self, segment: usize) -> bool {
         let (surfaces, start) = (self.surfaces, |node: usize| self.start.of(node));
         let node = self.node();
         (surfaces.interior).joins(surfaces.segments[segment], node, start)
     }
 
-    /// Whether the node is an end of the segment, or the same vertex as one.
+    /// Whether the node is an end of the segment, or the same vertex as an end.
     pub(crate) fn is_own(&self, segment: usize) -> bool {
         self.surfaces.is_end(self.node(), segment)
     }
 
-    /// Distance from the end of a segment with the projection `p` within which the other segment of a
-    /// concave corner counts (length).
+    /// Distance from the end of a segment, on which the node has the projection `p`, within which the other segment of
+    /// a concave corner constrains the node too (length).
     pub(crate) fn corner_reach(&self, segment: usize, p: &Projection) -> f64 {
         CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
     }
 
-    /// Whether the node was over a segment at the start, or near its end (length) with half of a face of its own over it.
+    /// Whether the node was over a segment at the start, or nearer to its end than `near` (length) with half of one of
+    /// the node's own faces over the segment.
     pub(crate) fn was_over(&self, segment: usize, near: f64) -> bool {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.start.of(n));
         let is_over =
@@ -124,7 +126,7 @@ impl SlaveNode<'_> {
             [f64::midpoint(node[0], x), f64::midpoint(node[1], y)]
         };
         let mut adjacent = self.surfaces.adjacent[self.slave].into_iter().flatten();
-        // but for round-off: nodes of matching meshes are at the ends
+        // the tolerance covers round-off: nodes of matching meshes are at the ends of segments
         is_over(node, CLOSED_GAP)
             || (is_over(node, near / length(difference(a, b)))
                 && adjacent.any(|n| is_over(middle(n), CLOSED_GAP)))
@@ -135,7 +137,7 @@ impl SlaveNode<'_> {
         self.displacement_at(segment, &self.project(segment))
     }
 
-    /// Displacement relative to the projection `p` on a segment (length).
+    /// Displacement of the node relative to the foot of its projection `p` on a segment (length).
     fn displacement_at(&self, segment: usize, p: &Projection) -> f64 {
         let [a, b] = self.surfaces.segments[segment];
         let xi = p.xi.clamp(0.0, 1.0);
@@ -150,7 +152,7 @@ impl SlaveNode<'_> {
         self.corner_sine_at(self.now, i, j)
     }
 
-    /// The same at the start.
+    /// Sine of the turn to the left from one segment to the next, at the start.
     pub(crate) fn corner_sine_at_start(&self, i: usize, j: usize) -> f64 {
         self.corner_sine_at(self.start, i, j)
     }
@@ -169,7 +171,7 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// Unit tangents of the faces of a segment and of the next where they meet.
+    /// Unit tangents of the faces of two successive segments where they meet.
     pub(crate) fn corner_tangents(&self, at: Positions, i: usize, j: usize) -> [[f64; 2]; 2] {
         [(i, 1.0), (j, 0.0)].map(|(i, end)| {
             let [a, b] = self.surfaces.segments[i].map(|n| at.of(n));
@@ -177,7 +179,7 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Whether there is a concave corner between two segments that is not of gentle turn.
+    /// Whether there is a concave corner between two segments, beyond a gentle turn.
     pub(crate) fn is_concave(&self, i: usize, j: usize) -> bool {
         if [i, j].iter().any(|&i| !self.surfaces.bulges[i].is_flat()) {
             return self.corner_sine(i, j) < -GENTLE_SINE;
@@ -186,7 +188,7 @@ impl SlaveNode<'_> {
             let [a, b] = self.surfaces.segments[i].map(|n| self.now.of(n));
             difference(a, b)
         });
-        // |sin| <= |tan|: mostly there is no need for the sine
+        // |sin| <= |tan|, so the sine need not be computed in most cases
         let has_gentle_tangent = cross(e, f) > -0.5 * GENTLE_SINE * dot(e, f);
         !(has_gentle_tangent && dot(e, f) > 0.0) && self.corner_sine(i, j) < -GENTLE_SINE
     }
@@ -197,7 +199,7 @@ impl SlaveNode<'_> {
         self.xi_of(self.position(), segment)
     }
 
-    /// The same with the position of the node.
+    /// Coordinate xi of the projection of the position `s` on a segment in the iterate.
     #[inline(always)]
     pub(crate) fn xi_of(&self, s: [f64; 2], segment: usize) -> f64 {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.now.of(n));
@@ -241,9 +243,9 @@ impl SlaveNode<'_> {
     }
 }
 
-/// Motions of a node and of the ends of a segment, the node being raised along the normal by the overlap that a fit
-/// allows it at both ends of the path, and lowered by the bulge of the face (length): where it crosses the segment so, it crosses
-/// the face.
+/// Motions of a node and of the ends of a segment. At both ends of the path the node is raised along the normal by the
+/// overlap that a fit allows, and lowered by the bulge of the face (length). Where the raised node crosses the segment,
+/// the node crosses the face.
 pub(super) fn raised(
     [mut s, a, b]: [QuadraticMotion; 3],
     (bulge, allowed): (&Bulge, [f64; 2]),

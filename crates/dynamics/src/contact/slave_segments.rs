@@ -1,5 +1,5 @@
-//! Slave faces and master segments of contact from surface to surface, with the vertices at their ends.
-//! See docs/theory/geometry.md, From surface to surface.
+//! Where the raised node crosses the segment, the unraised node crosses the face. See docs/theory/geometry.md, From
+//! surface to surface.
 
 use super::bulge::Bulge;
 use super::lists::{Recycled, entries};
@@ -10,36 +10,37 @@ use crate::vectors::{difference, length};
 /// Slave faces and slave nodes of a contact from surface to surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlaveSegments {
-    /// Numbers of the slave nodes at the ends of every face, none of a node that takes no part.
+    /// Numbers of the slave nodes at the ends of every face; `None` for a node that takes no part
+    /// in the contact.
     pub ends: Vec<[Option<usize>; 2]>,
-    /// For every slave node its faces on both sides, two lists where it is a corner, each face with the end
-    /// (0 or 1) at which the node is.
+    /// For every slave node the faces on its sides, each with the end (0 or 1) at which the node lies. A slave node at
+    /// a corner has two lists of faces, one for each side.
     pub at_nodes: Vec<Vec<Vec<[usize; 2]>>>,
-    /// Number of the run of every master segment: segments without a corner between them.
+    /// Number of the run of every master segment; a run is a chain of segments without a corner.
     pub runs: Vec<usize>,
-    /// Rank of every segment of a surface that touches itself: of two faces the one of lower rank is slave.
+    /// Rank of every segment of a surface that touches itself: of two faces the one with the lower rank is the slave.
     pub ranks: Option<Vec<usize>>,
-    /// Ends of every slave face, and after them those of every master segment.
+    /// Ends of every slave face, followed by the ends of every master segment.
     pub vertices: Vec<[Vertex; 2]>,
-    /// Bulges of the same, for points.
+    /// Bulges of all slave faces and then of all master segments, for points.
     pub bulges: Vec<Bulge>,
-    /// Whether the faces are those of bodies of revolution.
+    /// Whether the bodies are bodies of revolution, so faces are rings.
     pub are_rings: bool,
 }
 
 /// A slave face or a master segment in one configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
-    /// Positions of its ends.
+    /// Positions of the ends.
     pub ends: [[f64; 2]; 2],
-    /// Unit vector from the first to the second.
+    /// Unit vector from the first end to the second.
     pub tangent: [f64; 2],
 }
 
 entries!(Edge);
 
 impl SlaveSegments {
-    /// All faces, and after them all segments, at some positions.
+    /// Edges of all slave faces, then of all master segments, at some positions.
     pub fn edges(&self, positions: Positions) -> Recycled<Edge> {
         let edge = |vertices: &[Vertex; 2]| {
             let ends = vertices.map(|vertex| vertex.place(|node| positions.of(node)));
@@ -83,7 +84,8 @@ impl SlaveSegments {
         &edges[self.ends.len() + segment]
     }
 
-    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta where it is a ring.
+    /// Weight of a part of a face in the reference configuration: its length, times the radius at eta if the face is a
+    /// ring.
     pub fn reference_weight(&self, face: usize, positions: Positions, eta: f64, part: f64) -> f64 {
         let x = positions.reference();
         let [a, b] = self.face(face).map(|vertex| vertex.place(|node| x[node]));
@@ -95,8 +97,8 @@ impl SlaveSegments {
     }
 }
 
-/// A vertex of the straight lines that the surfaces are made of: a node, or where a side has a node between its corners
-/// what takes its place, so that a pressure that is linear along the side has the right forces on all its nodes.
+/// A vertex of the straight edges of the surfaces: a node, or the point x_v that stands for a mid-side node. With x_v a
+/// pressure that is linear along the side gives the right forces on all nodes of the side.
 ///
 /// ```text
 /// x_v = 4/3 x_m - (x_a + x_b)/6    eq. (3.21)
@@ -105,12 +107,12 @@ impl SlaveSegments {
 pub struct Vertex {
     /// The node.
     pub node: usize,
-    /// Corners of the side that it is between.
+    /// Corners of the side if the node is a mid-side node.
     pub corners: Option<[usize; 2]>,
 }
 
 impl Vertex {
-    /// Calls `take` with each of its nodes and the node's part in the position.
+    /// Calls `take` with each node of the vertex and the node's part in its position.
     #[inline]
     pub fn each_share(self, mut take: impl FnMut(usize, f64)) {
         match self.corners {

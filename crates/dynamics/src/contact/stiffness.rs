@@ -1,20 +1,20 @@
-//! Stiffness of a closed constraint in K*: the change of its nodal forces with the iterate, and what
-//! holds it closed. See docs/theory/time.md.
+//! Stiffness of a closed constraint in K*: the change of its nodal forces with the iterate, and the stiffening that
+//! keeps it closed. See docs/theory/time.md.
 //!
 //! # Derivation
 //!
-//! With z = (r, e), r = x_s - x_a, e = x_b - x_a, the products of eq. (7.1) are pi_i = z.H_i z/2 with
-//! constant H_i, and grad pi_i = H_i z. Of the discrete gradients Bn = alpha H2 zm + beta H3 zm and
-//! Bt = gamma H1 zm + delta H3 zm, eq. (7.2), eq. (7.3), zm = (z0 + z1)/2, the derivatives with respect
-//! to the end are (rows: force; columns: d of the end)
+//! With z = (r, e), r = x_s - x_a, e = x_b - x_a, the products of eq. (7.1) are pi_i = z.H_i z/2 with constant H_i, and
+//! grad pi_i = H_i z. The discrete gradients are Bn = alpha H2 zm + beta H3 zm and Bt = gamma H1 zm + delta H3 zm, eq.
+//! (7.2), eq. (7.3), with zm = (z0 + z1)/2. The derivatives of Bn and Bt with respect to the end are (rows: force;
+//! columns: d of the end)
 //!
 //! ```text
 //! dBn = (alpha H2 + beta H3)/2 + H2 zm dalpha + H3 zm dbeta
 //! dBt = (gamma H1 + delta H3)/2 + H1 zm dgamma + H3 zm ddelta
 //! ```
 //!
-//! Of the end rows Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t + (h/l) e_n), eq. (3.4), with de_n = -e_t (e_n.de)/l,
-//! de_t = e_n (e_n.de)/l and constant h,
+//! The end rows are Bn = (e_n, -xi e_n) and Bt = (e_t, -xi e_t + (h/l) e_n), eq. (3.4). With de_n = -e_t (e_n.de)/l,
+//! de_t = e_n (e_n.de)/l and constant h, the derivatives of the end rows are
 //!
 //! ```text
 //! dBn = -(e_t, -xi e_t) (e_n.de)/l - (0, e_n) dxi
@@ -34,7 +34,8 @@ use super::target::{CornerContact, Pair, Segment, SegmentContact};
 const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
 
 impl SegmentContact {
-    /// Change of the contact force Pn, Pt of the constraint, over its dofs (force/length).
+    /// Derivative of the contact force of the constraint at constant Pn and Pt, over its dofs
+    /// (force/length).
     pub(super) fn change(
         &self,
         constraint: &Constraint,
@@ -70,8 +71,8 @@ impl SegmentContact {
 }
 
 impl CornerContact {
-    /// Change of the contact force Pn, Pt, over the dofs of the constraint (force/length). The weight of the corner and
-    /// the length of its normal are those of the iterate.
+    /// Derivative of the contact force of a corner at constant Pn and Pt, over the dofs of the constraint
+    /// (force/length). The weight of the corner and the length of its normal are taken from the iterate, as constants.
     pub(super) fn change(
         &self,
         pair: &Pair,
@@ -108,8 +109,7 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, places: &[usize; 6]) {
 }
 
 impl Constraint {
-    /// Gn^T Gn, and Gt^T Gt where the constraint `sticks`, eq. (4.13), over its dofs
-    /// (dimensionless).
+    /// Gn^T Gn, plus Gt^T Gt if the constraint `sticks`, eq. (4.13), over its dofs (dimensionless).
     pub fn stiffening(&self, sticks: bool) -> DMatrix<f64> {
         let rows = self.derivative_rows();
         let normal = DVector::from_column_slice(&rows.normal);
@@ -122,8 +122,9 @@ impl Constraint {
     }
 }
 
-/// d(Bn^T Pn + Bt^T (Pt + kappa Pn)) at constant kappa Pn, the `leaning` force, of a node s on the segment from a to b, which may
-/// overlap and has the given rows if its face bends, with respect to the end, over s, a and b.
+/// Derivative of Bn^T Pn + Bt^T (Pt + kappa Pn) with respect to the end, over s, a and b, at constant kappa Pn
+/// (`leaning`). The node s is at the segment from a to b and may have an allowed overlap; `rows` are given if the face
+/// bends.
 fn changes(
     (nodes, allowed): ([usize; 3], f64),
     rows: Option<&SegmentRows>,
@@ -145,7 +146,7 @@ fn changes(
     k
 }
 
-/// The same of a face that bends, at a constant height over the chord.
+/// Derivative of the force at a face that bends, at a constant height over the chord.
 pub(super) fn changes_of_face(
     places: [[[f64; 2]; 3]; 2],
     (height, bend): (f64, &Bend),
@@ -165,7 +166,8 @@ fn displacements(nodes: [usize; 3], at: &Configurations) -> [f64; 6] {
     })
 }
 
-/// The same between the positions of s, a and b at start and end, of a force at a constant height.
+/// Derivative of a force at a constant height, between the positions of s, a and b at start and
+/// end.
 pub(super) fn changes_between(
     [start, end]: [[[f64; 2]; 3]; 2],
     height: f64,
@@ -189,7 +191,7 @@ pub(super) fn changes_between(
     nodal * k * nodal.transpose()
 }
 
-/// Over (r, e), of the rows of the end configuration.
+/// Derivative of the force with the rows of the end configuration, over (r, e).
 fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], height: f64, [pn, pt]: [f64; 2]) -> Matrix4<f64> {
     let p = project(s, a, b);
     let row = |e: [f64; 2]| Vector4::new(e[0], e[1], -p.xi * e[0], -p.xi * e[1]);
@@ -205,8 +207,8 @@ fn changes_of_end_rows([s, a, b]: [[f64; 2]; 3], height: f64, [pn, pt]: [f64; 2]
     normal * pn + tangential * pt
 }
 
-/// Over (r, e), of the discrete gradients between the start and the end. With L = (l0 + l1)/2,
-/// D = l0 l1 (l0 + l1), the means p1, p2 of pi1, pi2 and dl = H3 z1/(2 l1):
+/// Derivative of the force with the discrete gradients between start and end, over (r, e). Here L =
+/// (l0 + l1)/2, D = l0 l1 (l0 + l1), p1 and p2 are the means of pi1 and pi2, and dl = H3 z1/(2 l1):
 ///
 /// ```text
 /// dalpha = -dl/(2 l1²)
@@ -248,7 +250,7 @@ fn changes_of_discrete_gradients(
     normal * pn + tangential * pt
 }
 
-/// H1, H2 and H3 of pi1 = r.e, pi2 = r x e and pi3 = e.e.
+/// H1, H2 and H3 of the products pi1 = r.e, pi2 = r x e and pi3 = e.e.
 fn products() -> [Matrix4<f64>; 3] {
     #[rustfmt::skip]
     let h1 = Matrix4::new(
@@ -285,7 +287,7 @@ mod tests {
     const FORCE: [f64; 2] = [1.3, -0.4];
     const FORMS: [RowForm; 2] = [RowForm::End, RowForm::DiscreteGradient];
 
-    /// Node 0 at the face from node 1 to node 2, to which it may have slid on.
+    /// Contact of node 0 with the curved face from node 1 to node 2, on to which it may have slid.
     fn bent(from: Option<[usize; 2]>, bulge: Bulge) -> SegmentContact {
         let segment = |number: usize, ends: [usize; 2]| Segment {
             bulge,

@@ -1,8 +1,8 @@
-//! Constraints from surface to surface: one for every slave node, whose gap is a weighted mean of the
-//! gaps of points inside the slave faces. See docs/theory/geometry.md, From surface to surface.
+//! Constraints from surface to surface: a slave node has one for each side, whose gap is a weighted mean of the gaps of
+//! points inside the slave faces. See docs/theory/geometry.md, From surface to surface.
 //!
-//! A point is a node that is not there: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in
-//! the positions of the nodes, so that rows and stiffness are those of a node on a segment.
+//! A point moves like a node: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in the positions of the nodes,
+//! so its rows and stiffness are those of a node on a segment.
 
 use std::array::from_fn;
 
@@ -31,22 +31,23 @@ use crate::vectors::{cross, difference, dot, length};
 /// The points of one side of a slave node over one run of the master.
 struct Mean {
     run: usize,
-    /// Segment of the point of the largest hat function, and this value.
+    /// Segment of the point with the largest hat function, and the value of the hat function there.
     nearest: (usize, f64),
     covered: f64,
     points: Recycled<SurfacePoint>,
 }
 
-/// Adds the points of all slave nodes of a contact between start and iterate, a constraint for each side of a node
+/// Adds the pairs of all slave nodes of a contact between start and iterate: one constraint for each side of a node
 /// over each run of master segments that covers it.
 ///
 /// ```text
 /// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
 /// ```
 ///
-/// w_q is half the reference length of its cell, times the radius of the point in bodies of revolution: two Gauss points
-/// in a cell, where N_j g_q is quadratic and its product with the radius cubic. Cells end on the bisectors of the
-/// master's vertices, of the iterate and, between which rows are exact differences, of the start as well.
+/// A cell has two Gauss points where N_j g_q is quadratic, or cubic with the radius; w_q is then half the reference
+/// length of the cell, times the radius of the point in bodies of revolution. Cells end on the bisectors of the
+/// master's vertices in the iterate. With discrete gradients the cells also end on the bisectors at the start, since
+/// rows are exact differences between the two configurations.
 pub(super) fn find_points(
     territory: &Territory,
     positions: [Positions; 2],
@@ -97,8 +98,9 @@ pub(super) fn find_points(
     }
 }
 
-/// Gauss points of a cell of length h: their places +-h/sqrt(k) or 0 from its middle, as sign and k, and their shares of h. Two where
-/// gap times hat function, in rings times radius, is a cubic at most; three where it has the degree four or five.
+/// Gauss points of a cell of length h as (sign, k, share): the place is sign h/sqrt(k) from the middle, the weight is
+/// share h. Two points are enough where gap times hat function, in rings also times radius, is at most a cubic; three
+/// for the degrees four and five.
 fn gauss_points<'b>(
     mut bulges: impl Iterator<Item = &'b Bulge>,
     are_rings: bool,
@@ -116,11 +118,12 @@ fn gauss_points<'b>(
     }
 }
 
-/// Leaves out means of a slave node that cover a sliver beyond a convex vertex, compared with its largest mean: c_j < 1e-2 max c.
+/// Removes means of a slave node that cover only a sliver beyond a convex vertex: their c_j is below 1e-2 of the
+/// largest c_j of the node.
 ///
-/// At a vertex of the master both ends of a sliver's segment are behind the line of the largest mean's segment. At a vertex
-/// of the slave the face of a sliver leads away from that segment. A sliver has the gap of the node alone, the
-/// largest mean holds what is there.
+/// At a vertex of the master both ends of a sliver's segment are behind the line of the largest mean's segment. At a
+/// vertex of the slave the face of a sliver leads away from that segment. The gap of a sliver is the gap of the node
+/// alone; the largest mean already keeps the faces there apart.
 fn leave_out_slivers(
     of_sides: &mut [SmallVec<[Mean; 2]>],
     slave: &SlaveSegments,
@@ -140,7 +143,7 @@ fn leave_out_slivers(
     let is_beyond = |point: &SurfacePoint| {
         let [x1, x2, c, d] = point.vertices.map(at);
         if [c, d] == [a, b] {
-            // from the end of the face that the node is at to the other
+            // from the end of the face at the node to the other end
             let ends = if point.eta < 0.5 { [x1, x2] } else { [x2, x1] };
             let [near, far] = ends.map(gap);
             return far >= near;
@@ -153,22 +156,22 @@ fn leave_out_slivers(
     }
 }
 
-/// The points of all slave faces, each with the segment that it is over, its weight w_q (length).
+/// The points of all slave faces, each with its segment and its weight w_q (length).
 struct PointsOfFaces {
     points: Recycled<(usize, SurfacePoint)>,
-    /// Where those of every face begin, and the number of all.
+    /// Start of the points of every face, and the number of all points.
     starts: Recycled<usize>,
 }
 
 impl PointsOfFaces {
-    /// Those of faces that are turned to some segments at the start, and have edges `now` in the iterate.
+    /// Points of the slave faces for the runs that they face at the start; `now` are the edges in the iterate.
     fn new(finder: &Finder, faced: &[FacedRun], now: &[Edge], form: RowForm) -> Self {
         let faces = finder.slave.ends.len();
         let mut all = PointsOfFaces {
             points: Recycled::with_room(),
             starts: Recycled::with_room(),
         };
-        // room for those of the increments that follow too
+        // room for the points of later increments too
         all.points.reserve(16 * faced.len());
         let mut faced = faced.iter().peekable();
         for face in 0..faces {
@@ -185,7 +188,7 @@ impl PointsOfFaces {
         &self.points[self.starts[face]..self.starts[face + 1]]
     }
 
-    /// The means of one side of a slave node that has some faces, with increasing runs.
+    /// The means of one side of a slave node, whose `faces` are given, with increasing runs.
     fn means(
         &self,
         slave: &SlaveSegments,
@@ -227,12 +230,13 @@ impl PointsOfFaces {
     }
 }
 
-/// Finds what slave faces are turned to at the start of an increment, and their points.
+/// Finds the segments that slave faces face at the start of an increment, and the points of the
+/// faces.
 struct Finder<'a> {
     territory: &'a Territory<'a>,
     surfaces: &'a ContactSurfaces,
     slave: &'a SlaveSegments,
-    /// Edges of the start, and positions there.
+    /// Edges of the surfaces and positions of the nodes at the start.
     start: &'a [Edge],
     positions: Positions<'a>,
 }
@@ -253,7 +257,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// For every face the segments that it is turned to, and its cells over them, a run each.
+    /// For every face one entry for each run of the master, with the segments of the run that it
+    /// faces and its cells over them.
     fn all_faced(&self) -> Vec<FacedRun> {
         let mut all = Vec::new();
         for face in 0..self.slave.ends.len() {
@@ -269,7 +274,7 @@ impl<'a> Finder<'a> {
         all
     }
 
-    /// Adds the points of a face over one run.
+    /// Adds the points of a face over one run of the master.
     fn add_points(
         &self,
         faced: &FacedRun,
@@ -309,7 +314,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// A point that was over segment i at the start and is over j now, with its segment.
+    /// A point that was over segment i at the start and is over j in the iterate, with the number
+    /// j.
     fn point(
         &self,
         face: usize,
@@ -335,7 +341,7 @@ impl<'a> Finder<'a> {
         (j, point)
     }
 
-    /// Segments that a face is turned to at the start, within reach, one run after the other.
+    /// Segments within reach that a face faces at the start, one run after the other.
     fn faced(&self, face: usize) -> Faced {
         let mut faced = Faced::new();
         let x = self.slave.edge_of_face(self.start, face).ends;
@@ -358,8 +364,8 @@ impl<'a> Finder<'a> {
         faced
     }
 
-    /// Whether a face and a segment may be slave and master: they have no common node, and where a surface touches
-    /// itself the face comes first.
+    /// Whether a face may be the slave of a segment: they have no common node, and on a surface that touches itself the
+    /// face has the lower rank.
     fn may_meet(&self, face: usize, segment: usize) -> bool {
         let ends = self.surfaces.slave_faces[face];
         let has_own = (ends.into_iter()).any(|node| self.surfaces.is_end(node, segment));
@@ -367,12 +373,13 @@ impl<'a> Finder<'a> {
         !has_own && ranks.is_none_or(|ranks| ranks[face] < ranks[segment])
     }
 
-    /// Whether a face was in front of a segment at the start, where its ends have the given projections, or of another
-    /// from which it may slide on to this one, or has penetrated the body through it: not the far side of a thin body, nor of one that is behind another, nor a face
-    /// that has come in through another segment or lies on it.
+    /// Whether a face was in front of a segment at the start, or in front of another segment from which it may slide on
+    /// to this one, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of the
+    /// face. The result is false for the far side of a thin body or of a body behind it, for a face that has entered
+    /// through another segment, and for one that lies on another segment.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
-        // gaps at the ends of the part of the face that is over the segment: beyond it a face of a bent thin body may be in front
-        // of the line of a segment on the other side
+        // the gaps at the ends of the part of the face over the segment decide: beyond this part a face of a bent thin
+        // body may be in front of the line of a segment on the other side
         let part = |xi: f64| (xi.clamp(0.0, 1.0) - p.xi) / (q.xi - p.xi);
         let bulges = [
             self.slave.face_bulge(face),
@@ -388,7 +395,7 @@ impl<'a> Finder<'a> {
         };
         let [first, last] = [part(p.xi), part(q.xi)];
         let is_open = |eta: f64| gap(eta) >= -CLOSED_GAP * p.length;
-        // between the ends of a part a gap of curved faces may be larger than at both
+        // between curved faces the gap may be larger within the part than at its ends
         if is_open(first) || is_open(last) || (is_curved && is_open(f64::midpoint(first, last))) {
             return true;
         }
@@ -410,14 +417,16 @@ impl<'a> Finder<'a> {
             (-CLOSED_GAP..=1.0 + CLOSED_GAP).contains(&p.xi)
                 && (-NEARER_DEPTH * depth..=on_it).contains(&p.gap)
         };
-        // beyond convex vertices from a segment: not on the side on which a thin body that is bent comes in front of its line
+        // whether this segment lies behind the line of another, as beyond convex vertices; on the other side of a bent
+        // thin body it does not
         let leads_behind = |other: usize| {
             let [a, b] = self.slave.edge_of_segment(self.start, other).ends;
             let ends = self.slave.edge_of_segment(self.start, segment).ends;
             let mut places = ends.iter().map(|&end| project(end, a, b));
             places.all(|p| p.gap <= CLOSED_GAP * p.length)
         };
-        // it is in front of a segment before or after, from which it may slide on to this one
+        // whether the face is in front of a segment before or after, from which it may slide on to
+        // this one
         let is_beside = |other: usize| {
             let p = at(other);
             self.slave.runs[other] == self.slave.runs[segment]
@@ -439,15 +448,15 @@ impl<'a> Finder<'a> {
             || (is_inside() && !others().any(|other| is_nearer(other.segment)))
     }
 
-    /// Whether a face and a segment are turned to each other at the start.
+    /// Whether a face and a segment faced each other at the start.
     fn faces(&self, face: usize, segment: usize) -> bool {
         let e = self.slave.edge_of_face(self.start, face).tangent;
         let f = self.slave.edge_of_segment(self.start, segment).tangent;
         dot(e, f) < -FACING_COSINE
     }
 
-    /// The parts of a face over some segments of a run, where they have the given edges: those between the bisectors of the
-    /// vertices, or the normals at the ends of the run.
+    /// The parts of a face over some segments of a run, for the given edges. The parts end at the bisectors of the
+    /// vertices, and at the normals of the ends of the run.
     ///
     /// ```text
     /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
@@ -486,7 +495,7 @@ impl<'a> Finder<'a> {
         cells
     }
 
-    /// The nearest segment that a place of a face is over, where they have the given edges.
+    /// The nearest segment under a place of a face, for the given edges.
     fn over(&self, face: usize, cells: &Cells, eta: f64, edges: &[Edge]) -> Option<usize> {
         let mut over = (cells.iter())
             .filter(|(low, high, _)| (*low..=*high).contains(&eta))
@@ -522,7 +531,8 @@ impl SurfacePoint {
         ]
     }
 
-    /// Tilt of the force at a point that was over segment i at the start, between the positions of the point, a and b.
+    /// Tilt of the force at a point that was over another segment i at the start; the positions are those of the point,
+    /// a and b at start and end.
     fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
         let over = |bulge: &Bulge, [s, a, b]: [[f64; 2]; 3]| {
             bulge.below(project(s, a, b)).raised(-self.rise)
@@ -535,7 +545,7 @@ impl SurfacePoint {
                 let from = over(&bulge, [start[0], a, b]);
                 (from.gap, cross(from.tangent, p.tangent).abs())
             }
-            // it may slide along its face over the end of the master
+            // the point may slide along its face over the end of the master
             StartSegment::Outside => {
                 let [x1, x2] = [0, 1].map(|i| self.vertices[i].place(&at_start));
                 let face = project(x1, x1, x2).tangent;
@@ -545,7 +555,7 @@ impl SurfacePoint {
         Tilt::new(p.gap - before, slip(&p, &q), POINT_TILT.max(2.0 * turn))
     }
 
-    /// Gap of the point in the iterate, between the faces and between their chords:
+    /// Gaps of the point in the iterate, between the faces and between their chords:
     ///
     /// ```text
     /// G_q = g_q - b_m(xi_q) - b_s(eta_q)    eq. (3.32)
@@ -556,14 +566,14 @@ impl SurfacePoint {
         [self.bulge.below(p).raised(-self.rise).gap, p.gap]
     }
 
-    /// (e_n.d_e)/l: the turn of its segment in the increment.
+    /// (e_n.d_e)/l: the rotation of the segment in the increment.
     fn turn(&self, p: &Projection, at: &Configurations) -> f64 {
         let [start, end] = self.configurations(at).map(|[_, a, b]| difference(a, b));
         dot(p.normal, difference(start, end)) / p.length
     }
 
-    /// Projection and rows over the point, a and b, the force row tilted, eq. (7.8); and the tilt. The gap of the constraint
-    /// is given: when it closes the point is lower by that.
+    /// Projection and rows over the point, a and b, with the tilted force row of eq. (7.8), and the tilt. `gap` is the
+    /// gap of the constraint: when the constraint closes, the point is lower by this gap.
     fn rows(&self, gap: f64, at: &Configurations) -> (SegmentRows, Tilt) {
         let places = self.configurations(at);
         let [_, of_chord] = self.gaps(at);
@@ -579,8 +589,8 @@ impl SurfacePoint {
         (rows, tilt)
     }
 
-    /// Calls `take` with the place of each of its nodes among those of a constraint, the number of s, a or b that the node
-    /// belongs to, and its part of that.
+    /// Calls `take` for each node of the point with its place in `nodes`, the number (0, 1 or 2) of the vertex s, a or
+    /// b to which it belongs, and its part of this vertex.
     #[inline]
     fn each_share(&self, nodes: &[usize], mut take: impl FnMut(usize, usize, f64)) {
         let own = [(0, 1.0 - self.eta), (0, self.eta), (1, 1.0), (2, 1.0)];
@@ -601,7 +611,7 @@ struct Tilt {
 }
 
 impl Tilt {
-    /// That of a rise g0_j - g0_i over a slip s, at most `most`.
+    /// Tilt for a rise g0_j - g0_i over a slip s, at most `most`.
     ///
     /// ```text
     /// kappa = (g0_j - g0_i)/s,   kappa <- most^2/kappa   where |kappa| > most    eq. (7.8)
@@ -622,13 +632,13 @@ impl Tilt {
     }
 }
 
-/// L (xi1 - xi0)
+/// The slip L (xi1 - xi0) of a point.
 fn slip(start: &Projection, end: &Projection) -> f64 {
     (start.length + end.length) / 2.0 * (end.xi - start.xi)
 }
 
 impl MeanContact {
-    /// Nodes of a constraint, its slave nodes first, of them the one that it is named by; and the number of slave nodes.
+    /// Nodes of a constraint, slave nodes first and the naming node before all, and the number of slave nodes.
     fn nodes(&self, slave: usize) -> (Recycled<usize>, usize) {
         let mut nodes = Recycled::with_room();
         nodes.push(slave);
@@ -650,13 +660,13 @@ impl MeanContact {
         (nodes, slaves)
     }
 
-    /// The constraint of a slave node with its points: sums of their gaps and rows by their weights,
+    /// The constraint of a slave node: gaps and rows of its points, summed with their weights,
     ///
     /// ```text
     /// Bn_j = sum_q C_jq Bn_q,  Gn_j = sum_q C_jq Gn_q,  s_j = Bt_j d,   C_jq = w_q N_j/c_j    eq. (3.20)
     /// ```
     ///
-    /// A point is at the height g_q - g_j when the constraint is closed, which changes with both gaps:
+    /// When the constraint is closed a point is at the height g_q - g_j, which depends on both gaps:
     ///
     /// ```text
     /// Gt_j = sum_q C_jq (Gt_q + (e_n.d_e)/l (Gn_q - Gn_j))   of end rows, Gt_q with constant heights
@@ -705,7 +715,7 @@ impl MeanContact {
         let [n, t, gn, mut gt] = sums;
         gt.iter_mut().zip(&gn).for_each(|(gt, gn)| *gt -= turn * gn);
         let (mut start_gap, slip) = (mean - product(&n) + allowed_before, product(&t));
-        // what overlaps at the start stays, eq. (7.9)
+        // an overlap at the start stays, eq. (7.9)
         if at.form == RowForm::DiscreteGradient && start_gap < 0.0 {
             gap -= start_gap;
             start_gap = 0.0;
@@ -730,7 +740,7 @@ impl MeanContact {
             slip,
             mu: 0.0,
             mu_varies: false,
-            // of straight faces one, whatever round-off the weights have
+            // for straight faces s is exactly 1, without the round-off of the weights
             stretch: match self.points.iter().all(|q| q.bulge.is_flat()) {
                 true => 1.0,
                 false => stretch,
@@ -745,8 +755,7 @@ impl MeanContact {
         }
     }
 
-    /// Change of the contact force of the constraint: the sum of those of its points, the weights as
-    /// they are.
+    /// Derivative of the contact force of the constraint: the sum over its points at constant weights.
     pub(super) fn change(
         &self,
         constraint: &Constraint,
@@ -755,7 +764,7 @@ impl MeanContact {
     ) -> DMatrix<f64> {
         let nodes: SmallVec<[usize; 16]> = constraint.nodes().collect();
         let mut k = DMatrix::zeros(constraint.dofs.len(), constraint.dofs.len());
-        // of heights, end rows alone
+        // sum for the changes of heights, which only end rows have
         let mut couples = DVector::zeros(constraint.dofs.len());
         for point in self.points.iter() {
             let places = point.configurations(at);
@@ -811,7 +820,8 @@ mod tests {
     use crate::model::Mesh;
     use crate::vectors::COMPARED;
 
-    /// Three slave nodes above the master nodes 3, 4 and 5, which the surface runs through from right to left.
+    /// Positions of three slave nodes above the master nodes 3, 4 and 5, through which the surface runs from right to
+    /// left.
     const X: [[f64; 2]; 6] = [
         [0.1, 0.3],
         [0.9, 0.2],
@@ -827,7 +837,7 @@ mod tests {
         0.11, -0.05, 0.08, -0.02, 0.15, 0.03, -0.04, 0.06, 0.03, -0.02, 0.05, 0.04,
     ];
 
-    /// The pair that is named by node 1.
+    /// The pair that node 1 names.
     fn pair() -> Pair {
         Pair {
             slave: 1,
@@ -835,12 +845,13 @@ mod tests {
         }
     }
 
-    /// The constraint of node 1 with points over both segments; one has come from the other segment.
+    /// The constraint of node 1 with points over both segments; one point has come from the other segment.
     fn source() -> MeanContact {
         source_of([Bulge::FLAT; 2])
     }
 
-    /// The same between faces that bend, those of the slave by a constant rise.
+    /// The constraint of node 1 between straight faces and between curved ones; the slave faces
+    /// bulge by a constant rise.
     fn sources() -> [MeanContact; 2] {
         [Bulge::FLAT, Bulge::steep(1.2)].map(|bulge| source_of([bulge; 2]))
     }
@@ -882,8 +893,8 @@ mod tests {
         Configurations { form, x, u0, u }
     }
 
-    /// The weighted mean of the gaps of the points at some displacements, each over its segment of the start or of the
-    /// end.
+    /// The weighted mean of the gaps of the points at some displacements; each point is over its segment of the start
+    /// or of the end.
     fn gap(u: &[f64], is_start: bool) -> f64 {
         gap_of(&source(), u, is_start)
     }
@@ -904,8 +915,8 @@ mod tests {
         gaps.sum()
     }
 
-    /// Pairs of circles that a search compares, candidates that it lists and points that follow, of the slave faces and master
-    /// segments of two open chains of nodes, or of one that touches itself.
+    /// Work of a search over two open chains of nodes, or one that touches itself: pairs of circles compared,
+    /// candidates listed, and points that follow.
     fn work(chains: &[Vec<[f64; 2]>]) -> [usize; 3] {
         let coordinates: Vec<[f64; 2]> = chains.concat();
         let mut first = 0;
@@ -969,8 +980,8 @@ mod tests {
         }
     }
 
-    /// Runs of the master that the upper end of a slave face has means over. The face has the length 1 and is `over` the
-    /// vertex of a master that runs up to it and turns there by 40 degrees.
+    /// Number of runs of the master over which the upper end of a slave face has means. The face has length 1; its part
+    /// `over` lies beyond the vertex at which the master turns by the angle `turn`.
     fn runs_over_a_vertex(over: f64, turn: f64) -> usize {
         let (sin, cos) = turn.to_radians().sin_cos();
         // bodies on the left: the master's face looks to the right
@@ -1016,7 +1027,8 @@ mod tests {
         }
     }
 
-    /// Whether its unit forces have neither resultant nor moment half-way.
+    /// Checks that unit forces of the constraint have neither a resultant nor a moment in the mid
+    /// configuration.
     fn check_momenta(constraint: &Constraint) {
         let Rows { normal, tangential } = &constraint.force_rows;
         for row in [normal, tangential] {

@@ -1,7 +1,7 @@
-//! Targets of slave nodes: what is selected for a node, and what a constraint is made from, by kind.
-//! See docs/theory/contact.md and docs/theory/geometry.md.
+//! Targets of slave nodes: what is selected for a node, and from what a constraint of each kind is made. See
+//! docs/theory/contact.md and docs/theory/geometry.md.
 //!
-//! Constraints of each kind are made in a file of their own; `kinds` leads to them.
+//! Constraints of each kind are made in a file of their own; the module `kinds` chooses among them.
 
 use smallvec::SmallVec;
 
@@ -12,21 +12,21 @@ use super::lists::{Recycled, entries};
 use super::projection::project;
 use super::slave_segments::Vertex;
 
-/// What a constraint is made from: a slave node and its target.
+/// A slave node and its target, from which a constraint is made.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PairTarget {
-    /// The slave node, with what all kinds have in common.
+    /// The slave node, with the data that all kinds share.
     pub pair: Pair,
     /// What the slave node must not penetrate.
     pub target: Target,
 }
 
-/// What the pairs of all kinds have in common.
+/// Data that the pairs of all kinds share.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pair {
     /// Key of the constraint.
     pub key: ConstraintKey,
-    /// The slave node that the constraint is named by.
+    /// The slave node that names the constraint.
     pub slave: usize,
     /// Overlap that a fit allows the node at the start of the increment and at its end (length), eq. (3.15).
     pub allowed: [f64; 2],
@@ -41,20 +41,20 @@ pub enum Target {
     Segment(SegmentContact),
     /// A corner of the master, or the vertex of a face.
     Corner(CornerContact),
-    /// Segments of the master that points of slave faces are over: the mean of the gaps is not negative.
+    /// Segments of the master under points of slave faces, whose mean gap must not become negative.
     Mean(MeanContact),
-    /// A segment, an arc or a vertex of the master; the slave node is the centre of a disc.
+    /// A segment, an arc or a vertex of the master whose slave node is the centre of a disc.
     Disc(DiscContact),
 }
 
 /// A segment with the shape of its face.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Segment {
-    /// Its number in the contact.
+    /// Number of the segment in its contact.
     pub number: usize,
-    /// Its ends a and b.
+    /// Ends a and b of the segment.
     pub ends: [usize; 2],
-    /// How far the face is outside of the chord.
+    /// Bulge of the face over the chord.
     pub bulge: Bulge,
 }
 
@@ -63,7 +63,7 @@ pub struct Segment {
 pub struct SegmentContact {
     /// The segment.
     pub segment: Segment,
-    /// The segment that the node was closed on at the start, if it has slid on from there to this one.
+    /// The segment on which the node was closed at the start, if it has slid on from there to this one.
     pub from: Option<Segment>,
 }
 
@@ -74,14 +74,14 @@ pub struct CornerContact {
     pub before: Segment,
     /// The segment from the corner b to c.
     pub behind: Segment,
-    /// Weight of the normal of the segment behind, between 0 and 1; that of the segment before is 1 - weight.
+    /// Weight of the normal of the segment behind, between 0 and 1; the segment before has the weight 1 - weight.
     pub weight: f64,
 }
 
-/// Points of slave faces whose mean gap is not negative, and the segments of the master that they are over.
+/// Points of slave faces whose mean gap must not become negative, and the segments of the master under them.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MeanContact {
-    /// Ends a and b of the segment that the point of the largest hat function is over: what messages name.
+    /// Ends a and b of the segment under the point with the largest hat function; messages name it.
     pub nearest: [usize; 2],
     /// The points.
     pub points: Recycled<SurfacePoint>,
@@ -94,26 +94,26 @@ pub struct SurfacePoint {
     pub vertices: [Vertex; 4],
     /// Place on the slave face, 0 at its first end and 1 at its second.
     pub eta: f64,
-    /// How far the slave face is outside of its chord there (length).
+    /// Bulge of the slave face at the place of the point (length).
     pub rise: f64,
-    /// Bulge of the master segment.
+    /// Bulge of the master segment under the point.
     pub bulge: Bulge,
-    /// Part of its gap in that of the constraint, w N/c of eq. (3.18).
+    /// Part of the gap of the point in the gap of the constraint, w N/c of eq. (3.18).
     pub weight: f64,
-    /// Where it was at the start of the increment.
+    /// Segment of the point at the start of the increment.
     pub from: StartSegment,
 }
 
 entries!(SurfacePoint, (usize, SurfacePoint));
 
-/// The master segment that a point was over at the start of the increment.
+/// The master segment under a point at the start of the increment.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum StartSegment {
-    /// The same segment as at the end.
+    /// The point was over the same segment as at the end.
     Same,
-    /// Another one, with these ends and this bulge.
+    /// The point was over another segment, with these ends and this bulge.
     Other([Vertex; 2], Bulge),
-    /// None: it has come in over the end of the master surface.
+    /// The point was over no segment: it has come in over the end of the master surface.
     Outside,
 }
 
@@ -124,11 +124,11 @@ pub struct DiscContact {
     pub radius: f64,
     /// The node that turns with the disc about its centre.
     pub arm: usize,
-    /// Number of the segment, or of one at the arc or vertex.
+    /// Number of the segment, or of one segment at the arc or vertex.
     pub segment: usize,
-    /// What the centre is over.
+    /// The segment, arc or vertex under the centre of the disc.
     pub feature: MasterFeature,
-    /// What the centre was over at the start, where that was something else.
+    /// The segment, arc or vertex under the centre at the start, if it was another one.
     pub from: Option<MasterFeature>,
 }
 
@@ -137,13 +137,13 @@ pub struct DiscContact {
 pub struct MasterFeature {
     /// Ends a and b of the segment; the nodes p and q that move the arc.
     pub nodes: [usize; 2],
-    /// The arc, or the vertex p, an arc without radius; none of a segment.
+    /// The arc, or the vertex p as an arc of radius 0; `None` for a segment.
     pub arc: Option<MasterArc>,
 }
 
 impl Pair {
-    /// The same pair in one configuration: with the overlap that is allowed at the start of the increment (0) or at its
-    /// end (1).
+    /// The same pair in one configuration: with the overlap allowed at the start of the increment (0) or at its end
+    /// (1).
     fn in_one(self, configuration: usize) -> Self {
         Pair {
             allowed: [self.allowed[configuration]; 2],
@@ -153,7 +153,7 @@ impl Pair {
 }
 
 impl PairTarget {
-    /// The pair at the start of the increment, with the target that the slave node was closed on there.
+    /// The pair at the start of the increment, with the target on which the slave node was closed there.
     pub(super) fn at_start(self) -> Self {
         PairTarget {
             pair: self.pair.in_one(0),
@@ -161,7 +161,8 @@ impl PairTarget {
         }
     }
 
-    /// The pair at the end of the increment, as one closed on its target since the start.
+    /// The pair at the end of the increment, as if it had been closed on its target since the
+    /// start.
     pub(super) fn at_end(self) -> Self {
         PairTarget {
             pair: self.pair.in_one(1),
@@ -169,7 +170,7 @@ impl PairTarget {
         }
     }
 
-    /// The slave node and the segment that it meets, at a corner that before it: what messages name.
+    /// The slave node and its segment, which messages name; at a corner the segment before the corner.
     pub(super) fn named(&self) -> NodeAtSegment {
         self.at_ends(self.target.ends())
     }
@@ -182,7 +183,7 @@ impl PairTarget {
         }
     }
 
-    /// Whether a condition holds for one of its nodes.
+    /// Whether the condition is true for any of the nodes.
     pub fn any_node(&self, holds: impl Fn(usize) -> bool) -> bool {
         let named = self.named().nodes;
         named.into_iter().any(&holds)
@@ -194,7 +195,7 @@ impl PairTarget {
             }
     }
 
-    /// The slave node and the corner of the master that it meets, if it meets one.
+    /// The slave node and the node of the corner of the master that it meets, if any.
     pub(super) fn at_corner(&self) -> Option<[usize; 2]> {
         match &self.target {
             Target::Corner(corner) => Some([self.pair.slave, corner.tip()]),
@@ -204,7 +205,7 @@ impl PairTarget {
 }
 
 impl Target {
-    /// The same target, whatever the slave node was closed on at the start.
+    /// The same target without the target on which the slave node was closed at the start.
     pub(super) fn untilted(self) -> Self {
         match self {
             Target::Segment(contact) => Target::Segment(SegmentContact::new(contact.segment)),
@@ -214,10 +215,10 @@ impl Target {
         }
     }
 
-    /// What the slave node was closed on at the start.
+    /// The target on which the slave node was closed at the start.
     fn at_start(self) -> Self {
         match self {
-            // the key of the constraint has the number, which stays
+            // the number of the segment stays, since the key of the constraint contains it
             Target::Segment(SegmentContact { segment, from }) => {
                 Target::Segment(SegmentContact::new(Segment {
                     number: segment.number,
@@ -234,8 +235,8 @@ impl Target {
         }
     }
 
-    /// Ends of its segment, at a corner of that before it; of a mean, of the segment that counts most; of a disc, the
-    /// nodes of the segment or arc.
+    /// Ends of the segment of the target: at a corner the segment before the corner, for a mean the segment that counts
+    /// most, for a disc the nodes of the segment or arc.
     fn ends(&self) -> [usize; 2] {
         match self {
             Target::Segment(contact) => contact.segment.ends,
@@ -245,7 +246,7 @@ impl Target {
         }
     }
 
-    /// Numbers of the segments that it holds its slave node at; none of a mean, which holds no single node.
+    /// Numbers of the segments out of which the slave node is kept; empty for a mean, which keeps out no single node.
     pub(super) fn segments(&self) -> impl Iterator<Item = usize> {
         let numbers = match self {
             Target::Segment(contact) => [Some(contact.segment.number), None],
@@ -256,7 +257,8 @@ impl Target {
         numbers.into_iter().flatten()
     }
 
-    /// What was selected for its node. Means and discs are not selected: their targets do not depend on the pass before.
+    /// The target as it was selected for the node; `None` for means and discs, whose targets do not depend on the last
+    /// pass.
     pub(super) fn selected(&self) -> Option<ContactTarget> {
         match self {
             Target::Segment(SegmentContact { segment, from }) => Some(ContactTarget {
@@ -271,7 +273,7 @@ impl Target {
         }
     }
 
-    /// The mean, if it is one.
+    /// The mean, if the target is a mean.
     pub(super) fn mean(&self) -> Option<&MeanContact> {
         match self {
             Target::Mean(mean) => Some(mean),
@@ -281,7 +283,7 @@ impl Target {
 }
 
 impl SegmentContact {
-    /// A segment that its node has been closed on since the start.
+    /// A segment on which the node has been closed since the start.
     pub fn new(segment: Segment) -> Self {
         SegmentContact {
             segment,
@@ -296,7 +298,7 @@ impl CornerContact {
         self.before.ends[1]
     }
 
-    /// The corner as it is selected for a node.
+    /// The corner in the form in which it is selected for a node.
     pub(super) fn corner(&self) -> Corner {
         Corner {
             next: self.behind.number,
@@ -314,13 +316,13 @@ impl CornerContact {
 }
 
 impl MeanContact {
-    /// Whether one of its points depends on the position of a node.
+    /// Whether one of the points depends on the position of a node.
     pub(super) fn has(&self, node: usize) -> bool {
         let mut nodes = self.points.iter().flat_map(SurfacePoint::nodes);
         nodes.any(|other| other == node)
     }
 
-    /// The same points, whatever they were over at the start.
+    /// The same points as if each had been over its present segment at the start.
     pub(super) fn untilted(mut self) -> Self {
         for point in self.points.iter_mut() {
             point.from = StartSegment::Same;
@@ -328,7 +330,7 @@ impl MeanContact {
         self
     }
 
-    /// The points at the start of the increment; those that have come in later are left out.
+    /// The points at the start of the increment, without those that have come in later.
     fn at_start(mut self) -> Self {
         let is_inside = |q: &SurfacePoint| q.from != StartSegment::Outside;
         if self.points.iter().any(is_inside) {
@@ -346,14 +348,14 @@ impl MeanContact {
 }
 
 impl SurfacePoint {
-    /// Nodes whose positions it depends on; some may come twice.
+    /// Nodes on whose positions the feature depends; some may come twice.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         self.vertices.into_iter().flat_map(Vertex::nodes)
     }
 }
 
 impl MasterFeature {
-    /// Distance of a point out of the body (length).
+    /// Distance of a point from the body of the feature (length).
     pub(super) fn gap(&self, s: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let [a, b] = self.nodes.map(at);
         match self.arc {
@@ -370,12 +372,12 @@ pub struct ContactTarget {
     pub segment: usize,
     /// The corner at the segment's end b, if the node meets the corner.
     pub corner: Option<Corner>,
-    /// The segment that the node was closed on at the start, if it has slid on from there to this one.
+    /// The segment on which the node was closed at the start, if it has slid on from there to this one.
     pub from: Option<usize>,
 }
 
 impl ContactTarget {
-    /// A segment that is met between its ends.
+    /// The target of a node that meets a segment between its ends.
     pub fn face(segment: usize) -> Self {
         ContactTarget {
             segment,
@@ -384,7 +386,7 @@ impl ContactTarget {
         }
     }
 
-    /// Takes the weight that the same corner has in another iterate.
+    /// Sets the weight to the one that the same corner has in another iterate.
     pub fn take_weight(&mut self, other: &ContactTarget) {
         if let (Some(corner), Some(now)) = (&mut self.corner, other.corner)
             && [self.segment, corner.next] == [other.segment, now.next]
@@ -393,7 +395,7 @@ impl ContactTarget {
         }
     }
 
-    /// Segments it is made of.
+    /// Segments of the target: one, or both at a corner.
     pub fn segments(&self) -> impl Iterator<Item = usize> + use<> {
         [Some(self.segment), self.corner.map(|v| v.next)]
             .into_iter()
@@ -404,18 +406,19 @@ impl ContactTarget {
 /// A convex corner or the vertex of a face, between a segment and the next, as the target of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Corner {
-    /// The segment after the corner.
+    /// The segment that starts at the corner.
     pub next: usize,
-    /// Weight of its normal, between 0 and 1; that of the segment before the corner is 1 - weight.
+    /// Weight of the normal of the segment after the corner, between 0 and 1; the segment before
+    /// the corner has the weight 1 - weight.
     pub weight: f64,
 }
 
 impl Corner {
-    /// The sum of two quantities with the weights of the corner.
+    /// The sum of two quantities of the segments before and after, with the weights of the corner.
     pub fn blend(&self, before: f64, after: f64) -> f64 {
         (1.0 - self.weight) * before + self.weight * after
     }
 }
 
-/// The targets of a node, mostly one.
+/// The targets of a node; usually there is one.
 pub type ContactTargets = SmallVec<[ContactTarget; 4]>;

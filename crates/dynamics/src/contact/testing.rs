@@ -24,7 +24,7 @@ pub(crate) fn pair(key: ConstraintKey, slave: usize, target: Target) -> PairTarg
     PairTarget { pair, target }
 }
 
-/// A straight segment.
+/// A straight segment as a target.
 pub(crate) fn segment(number: usize, ends: [usize; 2]) -> Segment {
     Segment {
         number,
@@ -33,7 +33,7 @@ pub(crate) fn segment(number: usize, ends: [usize; 2]) -> Segment {
     }
 }
 
-/// Node 0 at a segment, which has held it since the start.
+/// Node 0 at a segment on which it has been closed since the start.
 pub(crate) fn at_segment(segment: Segment) -> PairTarget {
     let contact = SegmentContact::new(segment);
     pair(key(0, segment.number), 0, Target::Segment(contact))
@@ -66,8 +66,8 @@ pub(crate) fn at_face([gap, slip]: [f64; 2]) -> Constraint {
     Constraint::new(face(), &at)
 }
 
-/// A constraint of some dofs with the given rows as force rows and derivative rows: no gap, no slip, mu = 0.5, the
-/// length 1; the first node is its slave node.
+/// A constraint of some dofs whose force rows and derivative rows are `rows`. The constraint has no gap, no slip, mu =
+/// 0.5 and the length 1; its slave node is the first node.
 pub(crate) fn made_up(dofs: &[usize], rows: Rows) -> Constraint {
     let source = face();
     Constraint {

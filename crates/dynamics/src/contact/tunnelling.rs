@@ -1,8 +1,8 @@
 //! Tunnelling check of a converged increment: slave nodes that pass into or through a body on
 //! their straight paths from U0 to U1. See docs/theory/geometry.md, Penetration check.
 //!
-//! Edges of slave surfaces that cross segments, as they may at corners though no slave node is inside.
-//! See docs/theory/geometry.md, Penetration check.
+//! Edges of slave surfaces that cross segments, as at corners, although no slave node is inside. See
+//! docs/theory/geometry.md, Penetration check.
 
 use super::bulge::Bulge;
 use super::closed_pairs::ClosedPairs;
@@ -21,13 +21,13 @@ use crate::linear::{larger, largest};
 use crate::vectors::{Circle, CircleTree, cross, difference, length};
 use std::collections::HashSet;
 
-/// The first slave node that penetrates a body on its straight path from the displacements `u0` to
-/// `u1`, if there is one, with the segment through which it has entered. The search must cover the paths; `closed` are the pairs in contact before
-/// the increment and at its end; `unsolved` is the error of every node's displacement that the
-/// tolerance of the increment allows (length), a depth that does not count.
+/// Returns the first slave node that penetrates a body on its straight path from the displacements `u0` to `u1`, with
+/// the segment through which it has entered, or `None`. The search must cover the paths. `closed` are the pairs in
+/// contact before the increment and at its end. `unsolved` is the error of every node's displacement that the tolerance
+/// of the increment allows (length); a depth up to this error does not count.
 ///
-/// A node may enter through a segment at which it carries a force, or leave again in contact: the
-/// straight path of a node that slides round a corner cuts the corner.
+/// A node may enter through a segment at which it carries a force, or leave again in contact: its
+/// straight path cuts the corner that the node slides round.
 pub fn find_penetration(
     search: &Search,
     [u0, u1]: [&[f64]; 2],
@@ -46,7 +46,8 @@ pub fn find_penetration(
             key: listed.key,
             closed,
             unsolved,
-            // between its ends the path of a corner may cut a face deeper than its row lets it be
+            // between its ends the path of a corner may be deeper in a face than the constraint
+            // allows at the ends
             allowed: match listed.is_corner() {
                 true => (listed.allowed()).map(|depth| depth / CORNER_DEPTH * CORNER_PATH_DEPTH),
                 false => listed.allowed(),
@@ -76,7 +77,7 @@ struct NodePath<'a> {
     x: &'a [[f64; 2]],
     u: [&'a [f64]; 2],
     slave: usize,
-    /// Its positions at the start and at the end.
+    /// Positions of the node at the start and at the end.
     ends: [[f64; 2]; 2],
     key: SlaveKey,
     /// Closed pairs before the increment and at its end.
@@ -84,20 +85,20 @@ struct NodePath<'a> {
     unsolved: &'a [f64],
     /// Overlap that a fit allows the node at the start and at the end (length).
     allowed: [f64; 2],
-    /// Whether it is a corner from surface to surface.
+    /// Whether the slave node is a corner of contact from surface to surface.
     is_corner: bool,
-    /// Depth that is none (segment lengths).
+    /// Depth up to which the node does not count as inside (segment lengths).
     depth: f64,
 }
 
 impl NodePath<'_> {
-    /// Whether the node was in contact before the increment, or is a corner of a face in whose means it was.
+    /// Whether the node was in contact before the increment, or is a corner of a face whose mean was closed.
     fn was_closed(&self) -> bool {
         let before = self.closed[0];
         !before.of_slave(self.key).is_empty() || self.is_corner && before.means_have(self.slave)
     }
 
-    /// Segments that the node is closed on at the end.
+    /// Segments on which the node is closed at the end.
     fn closed_on(&self) -> impl Iterator<Item = usize> {
         let pairs = self.closed[1].of_slave(self.key).iter();
         pairs.flat_map(|pair| pair.source.target.segments())
@@ -121,7 +122,7 @@ impl NodePath<'_> {
         project(s, a, b)
     }
 
-    /// The segment through which the node enters a body and may not.
+    /// The segment through which the node enters a body without permission, if any.
     fn entry(&self, events: &mut [(usize, Crossing)]) -> Option<usize> {
         events.sort_by(|(_, c), (_, d)| c.time.total_cmp(&d.time));
         for (n, (segment, entering)) in events.iter().enumerate() {
@@ -130,7 +131,7 @@ impl NodePath<'_> {
             }
             let is_out = |c: &Crossing| match c.direction {
                 CrossingSense::Leaving => true,
-                // it ends on the surface
+                // the path ends on the surface
                 CrossingSense::Touching => c.time >= 1.0,
                 CrossingSense::Entering => false,
             };
@@ -149,7 +150,7 @@ impl NodePath<'_> {
     }
 
     /// The nearest segment at the end, if the node is behind it without a force although it was
-    /// outside at the start: it has come round a corner that has turned concave.
+    /// outside at the start: such a node has come round a corner that has turned concave.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
         let is_own = |i: &usize| self.contact.is_end(self.slave, *i);
         let others = segments.filter(|i| !is_own(i));
@@ -177,7 +178,8 @@ impl NodePath<'_> {
         (is_nearest && !is_closed_on && others.clone().any(was_outside)).then_some(i)
     }
 
-    /// Whether the node is clearly in front of a segment at the end, where no fit lets it overlap.
+    /// Whether the node is clearly in front of a segment at the end, and no fit lets it overlap
+    /// there.
     fn ends_in_front(&self, i: usize) -> bool {
         let [a, b] = self.contact.segments[i].map(|node| position(self.x, self.u[1], node));
         let is_plain = self.allowed == [0.0; 2] && self.contact.bulges[i].is_flat();
@@ -200,8 +202,8 @@ impl NodePath<'_> {
         beyond.hypot(p.gap)
     }
 
-    /// Whether a node that enters through one segment may leave through another. Through the same one it
-    /// comes back to the side that it came from.
+    /// Whether a node that enters through one segment may leave through another. A node that leaves through the segment
+    /// of its entry returns to the side from which it came.
     fn may_leave(&self, (i, entered): (usize, f64), (j, left): (usize, f64)) -> bool {
         if i == j {
             return true;
@@ -217,8 +219,8 @@ impl NodePath<'_> {
             || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
     }
 
-    /// Whether a node that enters through a segment and never leaves is outside the body all the
-    /// same.
+    /// Whether a node that enters through a segment and never leaves is outside the body
+    /// nevertheless.
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.project(i, 1.0);
         if self.is_round_off(i, -p.gap, p.length)
@@ -232,20 +234,20 @@ impl NodePath<'_> {
             || (self.was_closed() && self.has_slid_off(i, &p))
     }
 
-    /// Whether a depth behind segment `i` of the given length is within the tolerance of the
+    /// Whether a depth behind segment `i`, whose length is given, is within the tolerance of the
     /// solution.
     fn is_round_off(&self, i: usize, depth: f64, length: f64) -> bool {
         let [a, b] = self.contact.segments[i];
         let unsolved = [self.slave, a, b].map(|node| self.unsolved[node]);
-        // arcs hold discs, not their chords
+        // discs touch the arcs, not their chords
         let is_chord = self.contact.disc.is_some() && self.contact.arc_of(i).is_some();
         let part = if is_chord { NODE_DEPTH } else { self.depth };
         depth <= largest(&unsolved) + part * length
     }
 
-    /// Whether the node has crossed a segment near its end and is outside the corner there: behind the
-    /// line of this segment and in front of that of its neighbour. On the neighbour it need not leave
-    /// the body again, where it has only clipped the corner.
+    /// Whether the node has crossed a segment near its end and lies outside the corner there: behind the line of this
+    /// segment and in front of the line of its neighbour. If the node has only clipped the corner, it need not leave
+    /// the body through the neighbour.
     fn is_outside_corner(&self, i: usize, xi: f64, p: &Projection) -> bool {
         let (is_end_b, from_end) = (xi > 0.5, xi.min(1.0 - xi));
         let neighbour = if is_end_b {
@@ -265,8 +267,8 @@ impl NodePath<'_> {
         from_end <= CORNER_CLIP_DEPTH && is_convex && self.is_round_off(j, -q.gap, q.length)
     }
 
-    /// Whether a node that may overlap with a segment `i` is still in front of the line of a neighbour at a convex corner,
-    /// raised as well: near the corner it is outside the body that is smaller by the overlap.
+    /// Whether a node that may overlap segment `i` is still in front of the line of a neighbour at a convex corner,
+    /// when raised by the allowed overlap. Near the corner the node is then outside the body reduced by the overlap.
     fn is_before_corner(&self, i: usize, p: &Projection) -> bool {
         let is_before = |(j, is_next): (Option<usize>, bool)| {
             let Some(q) = j.map(|j| self.project(j, 1.0)) else {
@@ -288,8 +290,9 @@ impl NodePath<'_> {
             || (p.xi < 0.0 && self.leads(i, Along::Backward, None))
     }
 
-    /// Whether two segments are neighbours on the surface, or the surface between them is not
-    /// longer than twice the displacement of the node: the far side of a thin body is not near.
+    /// Whether two segments are neighbours on the surface, or the surface between them is at most
+    /// twice as long as the displacement of the node. The bound excludes the far side of a thin
+    /// body.
     fn are_near(&self, i: usize, j: usize) -> bool {
         let leads = |i: usize, j: usize| self.leads(i, Along::Forward, Some(j));
         i == j || leads(i, j) || leads(j, i)
@@ -314,19 +317,20 @@ impl NodePath<'_> {
     }
 }
 
-/// Whether the corner from one segment to the next turns left, so that it is convex.
+/// Whether the corner between two successive segments turns left, so it is convex.
 fn turns_left(first: &Projection, second: &Projection) -> bool {
     cross(first.tangent, second.tangent) > 0.0
 }
 
-/// How far a face of a slave surface and a segment have crossed in the displacements `u`, the most of all, 0 where none cross:
+/// Largest depth by which a face of a slave surface and a segment cross at the displacements `u`; 0 if none cross:
 ///
 /// ```text
 /// min(|h_p|, |h_q|)/|b - a|, min(|h_a|, |h_b|)/|q - p|   the smaller    eq. (10.6)
 /// ```
 ///
-/// h being the distances of the ends p and q of the face from the line of the segment from a to b, and the other
-/// way round. Edges with a common node do not count, nor do those of contact from surface to surface, whose gaps are means.
+/// h are the distances of the ends p and q of the face from the line of the segment from a to b, and of a and b from
+/// the line of the face. Edges with a common node do not count, nor do edges of contact from surface to surface, whose
+/// gaps are means.
 pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let (mut most, mut found) = (0.0, Vec::new());
@@ -366,15 +370,15 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     most
 }
 
-/// How deep a slave node of contact from surface to surface, whose gaps are means, is inside of a master, the most of
-/// all that the search lists in the displacements `u`, 0 where none is inside:
+/// Largest depth of a slave node inside a master, over the listed slave nodes of contact from surface to surface, whose
+/// gaps are means, at the displacements `u`; 0 if none is inside:
 ///
 /// ```text
 /// |x_s - x_m|/L    eq. (10.7)
 /// ```
 ///
-/// x_m being the nearest place of the master, L the length of the segment there; behind a rigid one that of the longer
-/// edge at the node. A vertex between means is as deep as eq. (10.8) says.
+/// x_m is the nearest point of the master, and L the length of the segment there; behind a rigid segment L is the
+/// longer edge at the node. The depth of a vertex between means is given by eq. (10.8).
 pub fn sunk_nodes(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let is_of_mean = |listed: &ListedSlave| !listed.is_fitted() && !listed.meets_segments();
@@ -382,7 +386,7 @@ pub fn sunk_nodes(search: &Search, u: &[f64]) -> f64 {
     slaves.fold(0.0, |most, listed| larger(most, depth_of(&listed, at)))
 }
 
-/// The same for one node.
+/// Depth of one node inside the master, or 0.
 fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 {
     let (node, surfaces) = (listed.node(), listed.surfaces);
     let s = at(node);
@@ -421,12 +425,13 @@ fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 
     }
 }
 
-/// How far one edge and one segment cross, each with its bulge, eq. (10.6); none if they do not.
+/// Depth by which one edge and one segment, each with its bulge, cross, eq. (10.6); `None` if they
+/// do not.
 fn crossed_by(edge: ([[f64; 2]; 2], Bulge), segment: ([[f64; 2]; 2], Bulge)) -> Option<f64> {
     let depth = |ends: [[f64; 2]; 2], ([a, b], bulge): ([[f64; 2]; 2], Bulge)| {
         let [p, q] = ends.map(|end| {
             let p = project(end, a, b);
-            // beyond its ends the line counts
+            // beyond the ends of the segment the bulge is that at the end
             let rise = bulge.at(p.xi.clamp(0.0, 1.0));
             p.raised(-rise)
         });
@@ -448,7 +453,7 @@ mod tests {
         assert_eq!(by([1.0, -0.4], [1.0, 2.0]), Some(0.1));
         assert_eq!(by([1.0, 2.0], [1.0, 0.4]), None, "above");
         assert_eq!(by([5.0, 2.0], [5.0, -2.0]), None, "beside");
-        // the end of the segment is nearer to the edge than the ends of the edge to the segment
+        // the end of the segment is nearer to the edge than the ends of the edge are to the segment
         assert_eq!(by([3.75, 2.0], [3.75, -2.0]), Some(0.0625));
         assert_eq!(by([1.0, 0.0], [1.0, -2.0]), None, "an end on the segment");
     }

@@ -7,8 +7,8 @@ use super::search::Search;
 use super::testing::{closed_pair, key};
 use super::tunnelling::find_penetration;
 
-/// A plate from (0, 0) to (8, 0.5) with segments of length 1 along and 0.5 across, its body on
-/// the left of the way; node 0 is the slave.
+/// Surfaces and node positions of a plate from (0, 0) to (8, 0.5) with segments of length 1 along
+/// and 0.5 across, the body on the left; node 0 is the slave.
 fn plate(closed: bool) -> (ContactSurfaces, Vec<[f64; 2]>) {
     let mut x = vec![[0.0, 0.0]];
     x.extend((0..=8).map(|i| [f64::from(i), 0.0]));
@@ -45,7 +45,8 @@ fn passes(from: [f64; 2], to: [f64; 2], contact: Contact) -> Option<[usize; 2]> 
     passes_of(true, from, to, contact)
 }
 
-/// Contact of the slave node: whether it was held before, and by which segment it is at the end.
+/// Contact of the slave node: whether it was closed before, and on which segment it is closed at
+/// the end.
 #[derive(Clone, Copy)]
 struct Contact {
     before: bool,
@@ -64,12 +65,12 @@ const FREE: Contact = Contact {
     before: false,
     now: None,
 };
-/// In contact before and no more.
+/// The node was in contact before and is not at the end.
 const LEAVES: Contact = Contact {
     before: true,
     now: None,
 };
-/// The segments from (5, 0.5) to (4, 0.5) on top and from (4, 0) to (5, 0) below.
+/// Numbers of the segments from (5, 0.5) to (4, 0.5) on top and from (4, 0) to (5, 0) below.
 const TOP: [usize; 2] = [13, 14];
 const BOTTOM: [usize; 2] = [5, 6];
 

@@ -1,5 +1,5 @@
 //! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
-//! its time being the solution of T(tau) = tau. See docs/theory/impacts.md, Impacts as events.
+//! whose time solves T(tau) = tau. See docs/theory/impacts.md, Impacts as events.
 
 use super::impact_search::{EventTrial, ImpactSearch};
 use super::increment::{Attempt, Failed, Path, Solved, StaticRates};
@@ -12,19 +12,19 @@ use crate::contact::{
     ListedSlave, NodeAtSegment, Projection, QuadraticMotion, crossings, line_crossings, project,
 };
 
-/// Part of a nominal increment within which impacts are taken together; no subincrement is
+/// Part of a nominal increment within which impacts are treated as simultaneous; no subincrement is
 /// shorter.
 const IMPACT_GROUPING_TIME: f64 = 1e-3;
 /// Accuracy of the time of an impact, in nominal increments.
 const TIME_ACCURACY: f64 = 1e-10;
-/// Attempts to find the time of an impact.
+/// Largest number of attempts to find the time of an impact.
 const MOST_TRIALS: usize = 12;
 
 /// A converged part of an increment that ends at the next impact, or at the end of the increment.
 pub(crate) struct Subincrement {
     pub interval: Interval,
     pub solved: Solved,
-    /// Whether an impact ends it.
+    /// Whether an impact ends the subincrement.
     pub is_cut: bool,
 }
 
@@ -36,24 +36,24 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
-    /// What is left of the increment.
+    /// The part of the nominal increment that is left.
     pub rest: Interval,
     /// Length of the nominal increment.
     pub nominal: f64,
 }
 
-/// A node goes into a body, or a mean gap from surface to surface becomes negative.
+/// Event of a node that enters a body, or of a mean gap (surface to surface) that becomes negative.
 #[derive(Debug, Clone, Copy)]
 struct Intrusion {
     pair: NodeAtSegment,
-    /// What the gap of the node to the chord of the segment counts more by; none of a mean.
+    /// Lift of the node over the chord of the segment; `None` for a mean.
     lift: Option<Lift>,
-    /// Time since the start of the subincrement, by the motion between its ends.
+    /// Time of the event since the start of the subincrement, by the motion between its ends.
     time: f64,
 }
 
 impl Intrusion {
-    /// Its gap at the end of a trial and the length that this is relative to; no number where the mean is over nothing.
+    /// Gap of the pair at the end of a trial and the length to which it is relative; NaN for a mean over no segment.
     fn gap(&self, problem: &StepProblem, trial: &EventTrial) -> [f64; 2] {
         match self.lift {
             Some(lift) => {
@@ -68,21 +68,21 @@ impl Intrusion {
 /// Second-order motion of all nodes from the start of a subincrement.
 struct FreeMotion<'a> {
     path: &'a Path,
-    /// End of the subincrement, where this is its own converged motion.
+    /// End of the subincrement if the motion is that of a converged subincrement; else 0.
     end: f64,
-    /// How long it is followed.
+    /// Time for which the motion is followed.
     duration: f64,
 }
 
 impl FreeMotion<'_> {
-    /// U0 + t V + t²/2 A at the end.
+    /// Displacement U0 + t V + t²/2 A at the end of the motion.
     fn displacement(&self, u0: &[f64]) -> Vec<f64> {
         let travel = self.path.displacement(self.duration);
         u0.iter().zip(&travel).map(|(u, d)| u + d).collect()
     }
 
-    /// Whether the nodes move far enough relative to each other to meet: a node that meets a segment at xi
-    /// was at most (1 - xi) and xi times its ways relative to the ends a and b away from there.
+    /// Whether the nodes move far enough relative to each other to meet. A node that meets a segment at xi was at most
+    /// (1 - xi) times its path relative to the end a, plus xi times its path relative to b, away from there.
     fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
         let Path {
             v, a: acceleration, ..
@@ -96,8 +96,8 @@ impl FreeMotion<'_> {
         beyond.hypot(start.gap) <= travel(a).max(travel(b)) + round_off
     }
 
-    /// Motions of a node that counts as higher over a segment, and of the ends of the segment. What a bulge lowers it by is that of
-    /// its places at the start, in the middle and at the end.
+    /// Motions of a node raised over a segment by its lift, and of the ends of the segment. The share of the bulge in
+    /// the lift is interpolated from the places of the node at the start, in the middle and at the end.
     fn motions(
         &self,
         problem: &StepProblem,
@@ -128,7 +128,7 @@ impl FreeMotion<'_> {
         [s, a, b]
     }
 
-    /// When a slave node that may overlap by some length goes in through a segment.
+    /// Time at which a slave node with an allowed overlap enters through a segment.
     fn entry(
         &self,
         problem: &StepProblem,
@@ -139,8 +139,8 @@ impl FreeMotion<'_> {
         self.first_to_stay(&crossings(&motions, self.duration))
     }
 
-    /// When a constraint that did not count, and that ends with an overlap, has closed: its slave node has gone behind the
-    /// line of the segment.
+    /// Time at which a constraint outside the active ones, which ends with an overlap, has closed: its slave node has
+    /// moved behind the line of the segment.
     fn overlap(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> Option<f64> {
         let Some(lift) = constraint.lift_at_start() else {
             return constraint.closing_time([&self.path.v, &self.path.a], self.duration);
@@ -149,8 +149,8 @@ impl FreeMotion<'_> {
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
 
-    /// The first entry. A node that comes out again before the end of the subincrement has not gone in:
-    /// between its ends its motion is an estimate.
+    /// Time of the first entry of a node that stays inside. A node that leaves the body before the end of the
+    /// subincrement does not count, since the motion between the ends is an estimate.
     fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
         let stays = |&(k, crossing): &(usize, &Crossing)| {
             let is_out = |c: &Crossing| c.direction == CrossingSense::Leaving && c.time < self.end;
@@ -164,15 +164,15 @@ impl FreeMotion<'_> {
 impl<'m> Subincrements<'_, 'm> {
     /// The subincrement up to the earliest impact of a pair that does not touch at the start.
     ///
-    /// All that is left of the increment is tried first. The pairs that stay out and have gone in at the end of
-    /// the trial of length tau tell of an impact; the subincrement ends at the first of them,
+    /// The whole rest of the increment is tried first. Inactive pairs that overlap at the end of the trial of length
+    /// tau show an impact; the subincrement ends at the first of them,
     ///
     /// ```text
     /// g(tau) = 0    eq. (6.4)
     /// ```
     ///
-    /// g being the gap at the end of a subincrement of the length tau. Where the whole does not converge, the
-    /// second-order motion of the start (paper eq. 50) predicts tau.
+    /// g is the gap at the end of a subincrement of length tau. If the whole rest does not converge, the second-order
+    /// motion of the start (paper eq. 50) predicts tau.
     pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let search = &mut self.workspace.search;
@@ -211,7 +211,7 @@ impl<'m> Subincrements<'_, 'm> {
             }
             let trial = EventTrial::new(tau, &solved.end.u, &solved.contact.forces.constraints);
             impact.record(trial.clone(), is_before);
-            // a node that has just bounced off has hardly a gap at the start: there its motion tells
+            // a node that has just bounced off has hardly a gap at the start: its motion then gives the time
             let expected = |entry: &Intrusion| {
                 let gap = |trial: &EventTrial| entry.gap(problem, trial)[0];
                 let root = impact.root(gap).filter(|root| *root >= group);
@@ -231,7 +231,8 @@ impl<'m> Subincrements<'_, 'm> {
             let at_start = lands(&|time| time < group);
             let at_end = lands(&|time| time > rest - group);
             if !at_start.is_empty() || root.is_none_or(|root| root > rest - group) {
-                // they join, the latter to land at the very end of all that is left
+                // both groups join the active pairs; the nodes of `at_end` land at the very end of
+                // the rest of the increment
                 at_start
                     .iter()
                     .for_each(|entry| self.join_at_start(&mut active, *entry));
@@ -260,19 +261,19 @@ impl<'m> Subincrements<'_, 'm> {
             guess = Some(path);
         }
         match before {
-            // not as far as the impact
+            // this subincrement ends before the impact
             Some((tau, solved)) if tau >= group => Ok(self.converged(tau, solved)),
             _ => self.rest(),
         }
     }
 
-    /// All that is left of the increment; nodes land within it.
+    /// Solves the whole rest of the increment; nodes land within it.
     pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let solved = self.attempt(self.rest.dt, ConstraintSet::All, None)?;
         Ok(self.converged(self.rest.dt, solved))
     }
 
-    /// Length of the subincrement by the motion of the start.
+    /// Length of the subincrement that the motion of the start predicts.
     fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let path = Path {
@@ -306,9 +307,9 @@ impl<'m> Subincrements<'_, 'm> {
         active.join_at_start(entry.pair, p.normal);
     }
 
-    /// The nodes that go into bodies, and are not kept out of them, within the time tau of a motion: that of a
-    /// converged subincrement, or else a prediction. In the former they stay in to its end, or go through
-    /// the body.
+    /// Events of the nodes that enter bodies, and are not kept out of them, within the time tau of a motion. The motion
+    /// is that of a converged subincrement, or a prediction. The nodes that enter in a converged subincrement stay
+    /// inside to its end, or go through the body.
     fn entries(
         &mut self,
         active: &ActiveConstraints,
@@ -333,7 +334,7 @@ impl<'m> Subincrements<'_, 'm> {
         let place = |u: &[f64], (pair, lift): (NodeAtSegment, Lift)| {
             lift.of(problem.positions(u).place(pair.nodes))
         };
-        // between its ends the motion is an estimate: what is in front at the end has not gone in
+        // between its ends the motion is an estimate: a node in front at the end has not entered
         let ends_behind = |at: (NodeAtSegment, Lift)| {
             solved.is_none_or(|solved| place(&solved.end.u, at).gap < 0.0)
         };
@@ -345,7 +346,7 @@ impl<'m> Subincrements<'_, 'm> {
         };
         let mut entries: Vec<Intrusion> = Vec::new();
         for c in left_out {
-            // nodes that have gone in by less are found by their motion
+            // nodes that have entered less deeply are found by their motion
             let lift = c.lift_at_start();
             let least = lift.map_or(0.0, |_| CLOSED_GAP);
             if c.gap < -least * c.scale {
@@ -387,8 +388,8 @@ impl<'m> Subincrements<'_, 'm> {
         entries
     }
 
-    /// The node that goes into or through a body by the check that a converged subincrement must pass,
-    /// unless it has joined.
+    /// The node that the penetration check of a converged subincrement finds inside or beyond a body, unless the node
+    /// has joined the active pairs.
     fn tunnelled(
         &mut self,
         active: &ActiveConstraints,
@@ -444,7 +445,8 @@ impl<'m> Subincrements<'_, 'm> {
         }
     }
 
-    /// The first part, of length `tau`, of what is left; all of it when that is its length.
+    /// The first part, of length `tau`, of the rest of the increment; the whole rest if `tau` is
+    /// its length.
     fn interval(&self, tau: f64) -> Interval {
         let Interval { start, end, dt } = self.rest;
         let end = match tau == dt {

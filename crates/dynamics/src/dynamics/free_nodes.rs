@@ -1,5 +1,5 @@
-//! Nodes without mass that carry no contact force, with the stiffness that holds them.
-//! See docs/theory/impacts.md, Releases.
+//! Nodes without mass that carry no contact force, and the stiffness of the elements at them. See
+//! docs/theory/impacts.md, Releases.
 
 use std::collections::BTreeSet;
 
@@ -12,16 +12,16 @@ use crate::linear::{Assembled, Transformation, linear_solver};
 
 /// The free nodes without mass of some bodies.
 pub(super) struct FreeNodes {
-    /// Their dofs as unknowns.
+    /// Map from the dofs of the free nodes to unknowns.
     pub map: Transformation,
-    /// Elements at them.
+    /// Elements at the free nodes.
     elements: Vec<usize>,
-    /// Pattern of their stiffness.
+    /// Pattern of the stiffness of the elements at the free nodes.
     pattern: Assembled,
 }
 
 impl FreeNodes {
-    /// Those of the bodies of the pairs `opened` that no closed pair holds at the end of an increment.
+    /// The free nodes of the bodies of the pairs `opened`: no closed pair acts on them at the end of an increment.
     pub fn new(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Self {
         let is_free = free(problem, solved, opened);
         let touches = |&element: &usize| {
@@ -50,7 +50,7 @@ impl FreeNodes {
         }
     }
 
-    /// Their stiffness K_ii in the configuration of a motion.
+    /// Stiffness K_ii of the free nodes in the configuration of a motion.
     pub fn stiffness(&self, problem: &StepProblem, motion: Motion) -> FactoredMatrix {
         let mut k = self.pattern.clone();
         for (list, &element) in self.elements.iter().enumerate() {
@@ -63,7 +63,7 @@ impl FreeNodes {
         )
     }
 
-    /// Whether the gap of a constraint depends on them.
+    /// Whether the gap of a constraint depends on free nodes.
     pub fn open(&self, constraint: &Constraint) -> bool {
         let rows = &constraint.derivative_rows().normal;
         let mut entries = constraint.dofs.iter().zip(rows);
@@ -71,7 +71,8 @@ impl FreeNodes {
     }
 }
 
-/// Which nodes are without mass, of the bodies of the pairs `opened`, and held by no closed pair.
+/// For every node whether it is without mass, belongs to a body of the pairs `opened`, and has no
+/// closed pair.
 fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<bool> {
     let body_of = problem.parts.of_nodes();
     let nodes = opened.iter().flat_map(|closed| closed.pair().nodes);
@@ -81,7 +82,7 @@ fn free(problem: &StepProblem, solved: &Solved, opened: &[&ClosedPair]) -> Vec<b
         free[node] = bodies.contains(&body_of[node]);
     }
     for (constraint, _) in solved.contact.forces.acting() {
-        // next to a vertex the far end of a segment takes nothing but round-off
+        // next to a vertex the row at the far end of the segment is only round-off
         let rows = (constraint.dofs.iter()).zip(&constraint.derivative_rows().normal);
         let held = rows.filter(|(_, b)| b.abs() > TIED_ROW);
         held.for_each(|(&dof, _)| free[dof / 2] = false);

@@ -1,21 +1,23 @@
-//! Time of an impact: the length tau of a subincrement at whose end a gap that stays out of the constraints
-//! is zero, eq. (6.4), bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
+//! Time of an impact: the length tau of a subincrement at whose end the gap of an inactive pair is zero, eq. (6.4); it
+//! is bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
 
 use crate::contact::{Constraint, ConstraintKey};
 
-/// A converged subincrement that starts like the others.
+/// A converged subincrement from the common start of all trials.
 #[derive(Clone)]
 pub(crate) struct EventTrial {
-    /// Its length tau.
+    /// Length tau of the trial.
     length: f64,
-    /// Displacements at its end.
+    /// Displacements at the end of the trial.
     pub u: Vec<f64>,
-    /// Mean gaps from surface to surface at its end, with increasing keys, and the lengths that they are relative to.
+    /// Mean gaps (surface to surface) at the end of the trial, with increasing keys, and the lengths to which they are
+    /// relative.
     means: Vec<(ConstraintKey, [f64; 2])>,
 }
 
 impl EventTrial {
-    /// That of the given length, whose end has the displacements `u` and some constraints.
+    /// Trial of the given length; `u` and `constraints` are the displacements and constraints at
+    /// its end.
     pub fn new(length: f64, u: &[f64], constraints: &[Constraint]) -> Self {
         let means = constraints.iter().filter(|c| c.is_mean());
         let mut means: Vec<_> = means.map(|c| (c.key, [c.gap, c.scale])).collect();
@@ -27,27 +29,27 @@ impl EventTrial {
         }
     }
 
-    /// The mean gap of a constraint and the length that it is relative to; no number where it has none.
+    /// The mean gap of a constraint and the length to which it is relative; NaN if the trial has no such mean.
     pub fn mean(&self, key: ConstraintKey) -> [f64; 2] {
         let place = self.means.binary_search_by_key(&key, |(key, _)| *key);
         place.map_or([f64::NAN; 2], |place| self.means[place].1)
     }
 }
 
-/// Looks for the length of a subincrement that ends at the first impact.
+/// Search for the length of a subincrement that ends at the first impact.
 pub(crate) struct ImpactSearch {
     /// The longest trial that ends before an impact; at first the start.
     before: EventTrial,
-    /// The shortest one that ends after it.
+    /// The shortest trial that ends after an impact.
     after: Option<EventTrial>,
-    /// The one that the last trial has taken the place of.
+    /// The trial before or after an impact that the last trial has replaced.
     old: Option<EventTrial>,
-    /// The last two changes of the length.
+    /// The last two changes of the trial length.
     steps: [f64; 2],
 }
 
 impl ImpactSearch {
-    /// Begins with the start, a trial without length.
+    /// A search that begins with the start, as a trial of length zero.
     pub fn new(start: EventTrial) -> Self {
         ImpactSearch {
             before: start,
@@ -65,8 +67,8 @@ impl ImpactSearch {
         };
     }
 
-    /// When the gap that a pair has at the end of a trial is zero: by inverse quadratic interpolation of
-    /// three trials, or else linear interpolation of two. None where it has no change of sign.
+    /// Length at which the gap of a pair is zero: by inverse quadratic interpolation of three trials, else by linear
+    /// interpolation of two. Returns `None` if the gap has no change of sign.
     pub fn root(&self, gap: impl Fn(&EventTrial) -> f64) -> Option<f64> {
         let (low, high) = (&self.before, self.after.as_ref()?);
         let (g, h) = (gap(low), gap(high));
@@ -86,8 +88,9 @@ impl ImpactSearch {
         Some(quadratic.filter(is_inside).unwrap_or(linear))
     }
 
-    /// The length to try after the last one, `tau`, where the impact is expected at `root`: halfway between
-    /// the trials before and after where it is not, or where the steps become hardly smaller.
+    /// The length to try after the last one, `tau`: the expected length `root` of the impact. If `root` is not between
+    /// the trials before and after the impact, or the steps hardly decrease, the result is halfway between these
+    /// trials.
     pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
         let (low, high) = (
             self.before.length,
@@ -106,7 +109,7 @@ impl ImpactSearch {
 mod tests {
     use super::*;
 
-    /// Number of trials until the root of a gap is found to 1e-10, from the length 1 on.
+    /// Number of trials, from the length 1 on, until the root of a gap is found to 1e-10.
     fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
         let trial = |tau: f64| EventTrial::new(tau, &[gap(tau)], &[]);
         let (mut search, mut tau) = (ImpactSearch::new(trial(0.0)), 1.0);
@@ -125,7 +128,7 @@ mod tests {
         let falls = |t: f64| 0.3 - 0.5 * t - t * t / 2.0;
         let found = trials(falls, (0.25_f64 + 0.6).sqrt() - 0.5);
         assert!(found.unwrap() <= 6, "{found:?}");
-        // the surface swings: the gap as a function of the length is bent
+        // the surface swings, so the gap is a curved function of the length
         let swings = |t: f64| 0.02 - 0.5 * t - 0.05 * (20.0 * t).sin();
         let root = (0..60).fold([0.0, 0.05], |[low, high], _| {
             let middle = (low + high) / 2.0;

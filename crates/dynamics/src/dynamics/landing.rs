@@ -1,5 +1,5 @@
-//! What landing pairs lose in an increment, given back to the velocities of its end.
-//! See docs/theory/impacts.md, Landing return.
+//! Landing return: energy lost by landing pairs in an increment is given back to the velocities at
+//! its end. See docs/theory/impacts.md, Landing return.
 
 use nalgebra::DMatrix;
 
@@ -13,11 +13,11 @@ use super::step::{ClosedConstraints, HeldMotions, StepProblem, Workspace, differ
 use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 
-/// Gives back what the landings of a converged increment of length `dt` from `start` have taken, where the step
-/// asks for it (`LANDING=RETURN`).
+/// Gives back the energy that the landings of a converged increment of length `dt` from `start` have removed, if the
+/// step asks for it (`LANDING=RETURN`).
 ///
 /// # Errors
-/// Solves with K* that fail.
+/// Returns an error if a solve with K* fails.
 pub(crate) fn return_landings(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -48,13 +48,13 @@ pub(crate) fn return_landings(
     Ok(())
 }
 
-/// Whether a constraint acts on a body that a rigid one that turns is a part of: its landings take what they take.
+/// Whether a constraint acts on a body that contains a rigid body that turns; energy of its landings is not given back.
 pub(super) fn touches(problem: &StepProblem, turns: &[bool], constraint: &Constraint) -> bool {
     let body_of = problem.parts.of_nodes();
     constraint.nodes().any(|node| turns[body_of[node]])
 }
 
-/// Part of the energy of a load below which what is left of it is round-off.
+/// Part of the energy of a load below which its rest is round-off.
 const REST_ROUND_OFF: f64 = 1e-12;
 
 /// A pair that lands.
@@ -62,15 +62,16 @@ struct LandedPair {
     key: ConstraintKey,
     /// Pt/Pn.
     ratio: f64,
-    /// Length s of its normal row in the increment, eq. (3.31): where all of a force is taken back, nothing is left.
+    /// Length s of the normal row in the increment, eq. (3.31); with it no impulse is left if all of a force is taken
+    /// back.
     stretch: f64,
-    /// Rows Gn and Gt of the end, summed over the nodes of the contact's slave surface.
+    /// Rows Gn and Gt at the end, summed over the nodes of the contact's slave surface.
     rows: [[f64; 2]; 2],
 }
 
 impl LandedPair {
-    /// What it is given by the share y of its load: the impulse (dt²/2) y along the normal, and along its
-    /// friction where y takes a part of its force back.
+    /// Return of the pair for the share y of its load: the impulse (dt²/2) y along the normal, and an impulse along its
+    /// friction if y takes a part of its force back.
     fn share(&self, load: &ReturnLoad, dt: f64, y: f64, energy: f64) -> Option<PairReturn> {
         let normal = dt * dt / 2.0 * y;
         let (tangential, friction) = match &load.friction {
@@ -89,10 +90,10 @@ impl LandedPair {
     }
 }
 
-/// A pair that lands, with its load; none of one that was closed at the start.
+/// A pair that lands, with its load; `None` for a pair that was closed at the start.
 ///
-/// D = -Pn (Bn d), eq. (6.5), is what its force has taken; the load is Gn^T of the end, whose moments
-/// about the positions of the end cancel, and (Pt/Pn) Gt^T for its friction.
+/// D = -Pn (Bn d), eq. (6.5), is the energy that the force of the pair has removed. The load is Gn^T at the end, whose
+/// moments about the end positions cancel, and (Pt/Pn) Gt^T for friction.
 fn landing(
     problem: &StepProblem,
     solved: &Solved,
@@ -128,7 +129,7 @@ fn landing(
         rows: [normal, tangential].map(|row| {
             let own = row[..at_end.slave_dofs].chunks(2);
             let sum = own.fold([0.0; 2], |sum, b| [sum[0] + b[0], sum[1] + b[1]]);
-            // a corner of the master is pushed the other way
+            // on a corner of the master the force acts in the opposite direction
             sum.map(|b| if at_end.is_of_master() { -b } else { b })
         }),
     };
@@ -146,11 +147,10 @@ fn landing(
     ))
 }
 
-/// Factorises K* of the converged increment from `start`, so that what it is used for does not depend on the age of the
-/// factors.
+/// Factorises K* of the converged increment from `start`, so that results do not depend on the age of the factors.
 ///
 /// # Errors
-/// [`Cause::Indefinite`], or those of the solver.
+/// Returns [`Cause::Indefinite`], or the errors of the solver.
 pub(super) fn factorize_anew(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -173,14 +173,14 @@ pub(super) fn factorize_anew(
     factorized.map_err(|error| problem.unsolvable(error))
 }
 
-/// What was given back along the patterns of some loads.
+/// Energy given back along the patterns of some loads.
 #[derive(Default)]
 pub(super) struct GivenBack {
-    /// Share of every pattern.
+    /// Share y of each pattern in the velocities.
     pub y: Vec<f64>,
-    /// Energy that each share has given.
+    /// Energy that each share has given back.
     pub energies: Vec<f64>,
-    /// Work of the supports, which hold their velocity (energy).
+    /// Work of the supports, which keep their velocity (energy).
     pub support_work: f64,
 }
 
@@ -189,7 +189,7 @@ pub(super) struct GivenBack {
 /// V1 <- V1 + sum y_j w_j, eq. (6.8)
 ///
 /// # Errors
-/// Solves with K* that fail.
+/// Returns an error if a solve with K* fails.
 pub(super) fn give_back(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -226,7 +226,7 @@ pub(super) fn give_back(
     };
     let energies: Vec<f64> = loads.iter().map(|load| load.energy).collect();
     let signs = signs(&products(&patterns), &b, &energies);
-    // what takes a force back takes its friction back, with its work
+    // a return that takes a force back also takes back its friction, with the work of the friction
     for (j, load) in loads.iter().enumerate() {
         if let Some(friction) = load.friction.as_ref().filter(|_| signs[j] < 0.0) {
             let of_friction = respond(&friction.force)?;
@@ -255,14 +255,15 @@ pub(super) fn give_back(
     })
 }
 
-/// Gives what loads have left of their energies to the vibration of their free bodies, and enters it in what is `given`:
+/// Gives the rests of the energies of loads, those not yet in `given`, to the vibration of their free bodies, and adds
+/// them to `given`:
 ///
 /// ```text
 /// V1 <- V1 + z V',  sum M V' = 0,  sum r x M V' = 0
 /// (z + z²/2) V'.M V' = sum (D_j - G_j),   eq. (6.12)
 /// ```
 ///
-/// A rest larger than the energy of the vibration is lost.
+/// If the sum of the rests is larger than the energy of the vibration, the rests are lost.
 fn give_rests(
     problem: &StepProblem,
     bodies: &RigidBodies,

@@ -1,5 +1,5 @@
-//! Patterns of velocity along which energy is given back, with the momenta of the loads that they
-//! belong to. See docs/theory/impacts.md, Landing return.
+//! Patterns of velocity along which energy is given back, with the momenta of their loads. See
+//! docs/theory/impacts.md, Landing return.
 
 use super::results::Cause;
 use super::step::{Hold, StepProblem, Workspace, holds};
@@ -7,37 +7,38 @@ use crate::vectors::{cross, difference, dot};
 
 /// A load along whose response energy is given back.
 pub(crate) struct ReturnLoad {
-    /// Nodal forces over all dofs, at the positions of the end, as Gn^T of a pair.
+    /// Nodal forces over all dofs, at the end positions; for a pair they are Gn^T.
     pub force: Vec<f64>,
-    /// Friction that is taken back where the load is.
+    /// Friction that is taken back together with the load.
     pub friction: Option<FrictionLoad>,
-    /// Energy to be given back.
+    /// Energy that is to be given back along the response.
     pub energy: f64,
-    /// Largest share, of either sign: its impulse is that of the force of the increment.
+    /// Largest absolute value of the share: at this value the impulse is that of the force of the
+    /// increment.
     pub most: f64,
-    /// Whether the share may be negative: a force of the increment is taken back.
+    /// Whether the share may be negative, so a force of the increment is taken back.
     pub pulls: bool,
 }
 
-/// The friction that goes with a load.
+/// The friction of the pair of a load.
 pub(crate) struct FrictionLoad {
-    /// Nodal forces over all dofs, as (Pt/Pn) Gt^T of a pair.
+    /// Nodal forces over all dofs; for a pair they are (Pt/Pn) Gt^T.
     pub force: Vec<f64>,
-    /// c: what friction has dissipated, for a share y of -1 (energy).
+    /// Work c that friction has dissipated, for a share y of -1 (energy).
     pub work: f64,
 }
 
-/// A pattern of velocity.
+/// A pattern of velocity along which energy is given back.
 #[derive(Clone)]
 pub(super) struct VelocityPattern {
-    /// w, over all dofs.
+    /// Velocities w over all dofs.
     pub w: Vec<f64>,
     /// M w.
     pub momentum: Vec<f64>,
 }
 
 impl VelocityPattern {
-    /// Adds another pattern.
+    /// Adds another pattern to this one.
     pub fn add(&mut self, other: &VelocityPattern) {
         let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
         add(&mut self.w, &other.w);
@@ -45,12 +46,13 @@ impl VelocityPattern {
     }
 }
 
-/// The pattern of the forces of a load at the end of an increment of length `dt`, where the bodies are `bodies`.
+/// The velocity pattern of a load at the end of an increment of length `dt`, with the bodies in the configuration
+/// `bodies`.
 ///
-/// w = K*^-1 Gn^T, eq. (6.6): what a load changes in the velocity of the end, but for a factor.
+/// w = K*^-1 Gn^T, eq. (6.6), is up to a factor the change of the end velocity by the load.
 ///
 /// # Errors
-/// Solves with K* that fail.
+/// Returns an error if a solve with K* fails.
 pub(super) fn pattern(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -65,7 +67,8 @@ pub(super) fn pattern(
     Ok(VelocityPattern { w, momentum })
 }
 
-/// Whether a rigid body that turns in this step is a part of each body: one whose rotation is held moves as bodies do.
+/// For every body whether it contains a rigid body that turns in this step; a rigid body whose rotation is held moves
+/// as other bodies do.
 pub(super) fn turning_bodies(problem: &StepProblem) -> Vec<bool> {
     let mut turns = vec![false; problem.parts.bodies()];
     let turning = problem.unknowns.turning.bodies.iter();
@@ -75,19 +78,19 @@ pub(super) fn turning_bodies(problem: &StepProblem) -> Vec<bool> {
     turns
 }
 
-/// The free bodies as rigid ones.
+/// The free bodies, regarded as rigid.
 pub(super) struct RigidBodies {
     is_free: Vec<bool>,
-    /// Whether a rigid body that turns is a part of it.
+    /// For every body whether it contains a rigid body that turns.
     turns: Vec<bool>,
     /// Mass and moment of inertia of every body.
     inertia: Vec<[f64; 2]>,
-    /// Arms from the centres of mass, over all dofs.
+    /// Arms of the nodes from the centres of mass, over all dofs.
     arms: Vec<f64>,
 }
 
 impl RigidBodies {
-    /// The bodies at the displacements `u`.
+    /// The free bodies at the displacements `u`.
     pub fn new(problem: &StepProblem, u: &[f64]) -> Self {
         let is_free: Vec<bool> = holds(problem).iter().map(|&h| h == Hold::Free).collect();
         let body_of = problem.parts.of_nodes();
@@ -114,8 +117,9 @@ impl RigidBodies {
         bodies
     }
 
-    /// V_s over all dofs, if the dofs have the velocities `v`. V_s is one vector for each body. Its component in a
-    /// direction is the mean velocity of the supports in this direction; without supports, that of the mass.
+    /// Velocity V_s of the supports over all dofs, if the dofs have the velocities `v`. V_s is one vector for each
+    /// body. The component of V_s in a direction is the mean velocity of the supports in this direction; without
+    /// supports it is the mean velocity of the mass.
     pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let body_of = problem.parts.of_nodes();
         // sums of the velocities and their number, and of the momenta and masses
@@ -146,7 +150,7 @@ impl RigidBodies {
         (0..v.len()).map(of_dof).collect()
     }
 
-    /// Takes rigid bodies that turn, and what is coupled to them, out of a pattern: they are given nothing.
+    /// Sets a pattern to zero on bodies that contain a rigid body that turns: they are given no energy.
     fn keep_turning(&self, problem: &StepProblem, w: &mut [f64]) {
         let body_of = problem.parts.of_nodes();
         let all = w.iter_mut().enumerate();
@@ -154,9 +158,9 @@ impl RigidBodies {
             .for_each(|(_, w)| *w = 0.0);
     }
 
-    /// What the velocities `v` of the free bodies have besides a rigid motion, over all dofs: its momenta are zero.
+    /// Vibration: the part of the velocities `v` of the free bodies that is not a rigid motion, over all dofs.
     ///
-    /// Bodies that are not free have none.
+    /// The vibration has no momenta, and is zero on bodies that are not free.
     pub fn vibration(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let mut vibration = v.to_vec();
         self.correct(problem, 0.0, &vec![0.0; v.len()], &mut vibration);
@@ -171,7 +175,7 @@ impl RigidBodies {
         vibration.into_iter().enumerate().map(of_dof).collect()
     }
 
-    /// Sums of forces or momenta over the dofs of every body, and of their moments.
+    /// Sums over the dofs of every body of forces or momenta, and of their moments.
     fn sums(&self, problem: &StepProblem, v: &[f64]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.is_free.len()];
         for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
@@ -181,15 +185,16 @@ impl RigidBodies {
         sums
     }
 
-    /// Gives every free body the momenta of its load by a rigid motion of its own,
+    /// Adds a rigid motion to every free body so that it has exactly the momenta of its load,
     ///
     /// ```text
     /// w <- w + dv + domega e_z x r
     /// sum p = (dt²/2) sum f,  sum r x p = (dt²/2) sum r x f,   eq. (6.7)
     /// ```
     ///
-    /// p = M w, f the load, r from the centre of mass. K* alone does not quite: it is that of another
-    /// configuration, holds contact stiffness, and its factors may have been turned with the bodies.
+    /// p = M w, f is the load, and r is the vector from the centre of mass. The response of K* alone does not have
+    /// exactly the momenta of the load: K* belongs to another configuration, contains contact stiffness, and its
+    /// factors may have been turned with the bodies.
     fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
         let loads = self.sums(problem, force);
         let own = self.sums(problem, &problem.mass.times(w));
@@ -211,7 +216,7 @@ impl RigidBodies {
     }
 }
 
-/// x and y of a node.
+/// The components x and y of a vector at a node.
 fn at(v: &[f64], node: usize) -> [f64; 2] {
     [v[2 * node], v[2 * node + 1]]
 }

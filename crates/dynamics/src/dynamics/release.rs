@@ -1,5 +1,5 @@
-//! Rest of nodes without mass at the end of an increment in which pairs open.
-//! See docs/theory/impacts.md, Releases.
+//! Rest of nodes without mass at the end of an increment in which pairs open. See
+//! docs/theory/impacts.md, Releases.
 
 use super::free_nodes::FreeNodes;
 use super::increment::{ContactForces, Release, Solved};
@@ -9,19 +9,19 @@ use crate::contact::{ClosedPair, Constraint, SlaveChoice};
 use crate::elements::Motion;
 use crate::linear::{larger, largest};
 
-/// Most Newton steps to the rest.
+/// Largest number of Newton steps until the free nodes are at rest.
 const MOST_STEPS: usize = 10;
-/// Last Newton step beside the way from which on the next is round-off.
+/// Length of a Newton step, relative to the path so far, from which on the next step is round-off.
 const LAST_STEP: f64 = 1e-6;
 /// Overlap, in lengths of the segment, that is round-off of positions.
 const OVERLAP_ROUND_OFF: f64 = 1e-12;
 /// Round-off of displacements, and of the sums of a strain energy.
 const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// Lets nodes without mass come to rest at the end of an increment in which pairs have opened, if they
-/// carry no force: the mid-point rule fixes the mean of start and end alone, so that their deviation from
-/// rest would change its sign in every increment. Where there is no rest, or a node would go through a
-/// surface on the way, they stay as they are. Gives what this takes.
+/// Brings nodes without mass that carry no force to rest at the end of an increment in which pairs have opened. The
+/// mid-point rule fixes only the mean of start and end, so without the rest the deviation of these nodes would change
+/// its sign in every increment. If there is no rest, or a node would pass through a surface on the way, the nodes stay
+/// as they are. Returns the energy that is lost as the nodes come to rest.
 pub(crate) fn bring_to_rest(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -68,7 +68,7 @@ struct Releasing<'a, 'm> {
     problem: &'a StepProblem<'a>,
     workspace: &'a mut Workspace<'m>,
     interval: Interval,
-    /// State at the end of the increment before the rest.
+    /// State at the end of the increment before the nodes come to rest.
     end: &'a State,
     free: FreeNodes,
     /// The open constraints of the last pass.
@@ -76,8 +76,8 @@ struct Releasing<'a, 'm> {
 }
 
 impl Releasing<'_, '_> {
-    /// Displacements with the free nodes at rest: W - R.u is least with all gaps >= min(g1, 0), by Newton
-    /// steps with the contact forces of the pairs that the nodes meet. None where they do not converge.
+    /// Displacements with the free nodes at rest: they minimise W - R.u with all gaps >= min(g1, 0). Newton steps
+    /// include the contact forces of the pairs that the nodes meet. Returns `None` if the steps do not converge.
     fn rest(&mut self) -> Option<Vec<f64>> {
         let mut u = self.end.u.clone();
         for _ in 0..MOST_STEPS {
@@ -94,7 +94,8 @@ impl Releasing<'_, '_> {
         None
     }
 
-    /// dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.14), Pn of the complementarity problem of the gaps.
+    /// A Newton step dU = K_ii^-1 (R - F + Bn^T Pn), eq. (6.14), with Pn from the complementarity
+    /// problem of the gaps.
     fn newton_step(&mut self, u: &[f64]) -> Option<Vec<f64>> {
         let (problem, end) = (self.problem, self.interval.end);
         let motion = Motion {
@@ -117,8 +118,8 @@ impl Releasing<'_, '_> {
         Some(du)
     }
 
-    /// Constraints at the displacements `u` that the free nodes can close, those found anew and those of the
-    /// last pass, without friction, their gaps above what they may be.
+    /// Constraints at the displacements `u` that the free nodes can close, without friction: new constraints and those
+    /// of the last pass. The gaps of constraints that free nodes can close are measured from the least allowed value.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;
         let (increment, mut found) = ([start.as_slice(), u], Vec::new());
@@ -144,7 +145,7 @@ impl Releasing<'_, '_> {
         all.into_iter().map(above_least).collect()
     }
 
-    /// Whether a node has gone into a body on its straight path from the start to the displacements `u`.
+    /// Whether a node enters a body on its straight path from the start to the displacements `u`.
     fn goes_through(&mut self, start: &State, u: &[f64]) -> bool {
         let unsolved = self.problem.unsolved(&difference(u, &start.u));
         let closed = [&start.contact, &self.end.contact];
@@ -152,8 +153,8 @@ impl Releasing<'_, '_> {
         found.is_some()
     }
 
-    /// What the rest at the displacements `u` takes, eq. (6.15), and the internal variables there; none if it would
-    /// give energy.
+    /// Energy that is lost if the nodes are at rest at the displacements `u`, eq. (6.15), and the internal variables
+    /// there; `None` if energy would be added.
     fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
         let (elements, end) = (self.problem.elements, self.interval.end);
         let before = elements.evaluate(self.end.motion());

@@ -1,4 +1,4 @@
-//! What releases take of nodes without mass, given back to the velocities of the end.
+//! Return of the energy that releases remove from nodes without mass, to the velocities at the end.
 //! See docs/theory/impacts.md, Releases.
 
 use super::increment::{PairReturn, Release, Solved};
@@ -8,12 +8,12 @@ use super::results::{Cause, State};
 use super::step::{StepProblem, Workspace};
 use crate::contact::Constraint;
 
-/// Enters the release at the end of an increment of length `dt` from `start` and, where the step asks for it
-/// (`LANDING=RETURN`), gives back what it has taken: along the pattern of the forces that the opened pairs
-/// carried before, each by its normal force.
+/// Enters the release at the end of an increment of length `dt` from `start`. If the step asks for returns
+/// (`LANDING=RETURN`), the lost energy is given back along the pattern of the earlier forces of the opened pairs, in
+/// proportion to their normal forces.
 ///
 /// # Errors
-/// Solves with K* that fail.
+/// Returns an error if a solve with K* fails.
 pub(crate) fn return_release(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -54,7 +54,8 @@ pub(crate) fn return_release(
     Ok(())
 }
 
-/// What every pair has of a return of `energy` whose load is `factor` times the forces before.
+/// Parts of the opened pairs in a return of `energy`, whose load is `factor` times the earlier
+/// forces of the pairs.
 fn parts(release: &Release, factor: f64, energy: f64) -> Vec<PairReturn> {
     if energy == 0.0 {
         return Vec::new();

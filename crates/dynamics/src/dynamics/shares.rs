@@ -1,18 +1,19 @@
-//! How much of every pattern is added to the velocities, so that each gives its own energy.
-//! See docs/theory/impacts.md, Landing return.
+//! Shares of the patterns that are added to the velocities, so that each gives its own energy. See
+//! docs/theory/impacts.md, Landing return.
 
 use nalgebra::DMatrix;
 
-/// Relative change of the shares at which the sweeps end. The total of the shares is exact in any case.
+/// Relative change of the shares at which the sweeps end. The energy of all shares together is exact whatever the
+/// tolerance is.
 const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
 const MOST_SWEEPS: usize = 1000;
-/// Momentum along a pattern, as a part of that of the energy to be given, that is round-off of a
-/// velocity of zero.
+/// Momentum along a pattern that is round-off of a zero velocity, relative to the momentum of the
+/// energy to be given.
 const REST_MOMENTUM: f64 = 1e-8;
 
-/// Signs of the shares: those of b, which strengthen the motion along each pattern and never reverse it; without any
-/// motion the pattern of the force is taken.
+/// Signs of the shares: those of b, so each share strengthens the motion along its pattern and never reverses it.
+/// Without any motion the sign of a share is that of the force.
 pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
     let sign = |j: usize| {
         let is_at_rest = b[j].abs() <= REST_MOMENTUM * (2.0 * a[(j, j)] * energies[j]).sqrt();
@@ -21,15 +22,16 @@ pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
     (0..b.len()).map(sign).collect()
 }
 
-/// Shares y of the patterns with the given signs,
+/// Shares y of the patterns, with the given signs,
 ///
 /// ```text
 /// y_j (b_j + sum_k A_jk y_k / 2) = D_j  or  |y_j| = Y_j,   eq. (6.9)
 /// ```
 ///
-/// A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j, `energies` D_j > 0, `most` Y_j. There is one solution
-/// for any signs of y where no Y_j is reached: the minimum of a convex function, found coordinate by coordinate. A pattern
-/// without energy has no share, nor has one whose share would take energy at Y_j.
+/// Here A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j; `energies` are D_j > 0 and `most` are Y_j. For
+/// any signs of y there is exactly one solution if no limit Y_j is reached: the minimum of a convex function, which is
+/// found coordinate by coordinate. A pattern has no share if it has no energy, or if its share at the limit Y_j would
+/// remove energy.
 pub(super) fn shares(
     a: &DMatrix<f64>,
     b: &[f64],
@@ -57,13 +59,13 @@ pub(super) fn shares(
     y
 }
 
-/// Energy that every share gives, y_j (b_j + sum_k A_jk y_k/2): their sum is what all of them change, eq. (6.9).
+/// Energy given by every share, y_j (b_j + sum_k A_jk y_k/2); the sum is the change of energy by all shares, eq. (6.9).
 pub(super) fn given(a: &DMatrix<f64>, b: &[f64], y: &[f64]) -> Vec<f64> {
     let half = |j: usize| (0..y.len()).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
     (0..y.len()).map(|j| y[j] * (b[j] + half(j))).collect()
 }
 
-/// The root y > 0 of a y² + b y = D for a, D > 0; 0 where there is no pattern, a = 0.
+/// The root y > 0 of a y² + b y = D for a, D > 0; 0 without a pattern (a = 0).
 fn positive_root(a: f64, b: f64, energy: f64) -> f64 {
     if a <= 0.0 {
         return 0.0;
@@ -81,7 +83,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Random patterns of 4 velocities, at most as many independent ones, also alike.
+        /// The patterns are random over 4 velocities: up to 4 independent ones, and also equal
+        /// ones.
         #[test]
         fn every_share_gives_its_own_energy_and_strengthens_the_motion(
             w in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 4), 1..7),
@@ -99,7 +102,7 @@ mod tests {
                 prop_assert!((given - d[j]).abs() < 1e-6, "{given} {}", d[j]);
                 prop_assert!(y[j] * b[j] >= 0.0);
             }
-            // no share is above its bound, and one at its bound gives a part of its energy
+            // no share is above its bound, and a share at its bound gives only a part of its energy
             let y = shares(&a, &b, &d[..n], &signs, &[bound; 7]);
             for (j, given) in given(&a, &b, &y).into_iter().enumerate() {
                 prop_assert!(y[j].abs() <= bound && given > -1e-6 && given < d[j] + 1e-6);
@@ -110,8 +113,8 @@ mod tests {
 
     #[test]
     fn a_point_mass_keeps_its_speed_whenever_it_lands() {
-        // it lands after the part s of the increment and leaves it with -(1 - 2 s) of its speed of 1:
-        // mass 1, D = 2 s (1 - s)
+        // a mass 1 with the speed 1 lands after the part s of the increment and ends it with the velocity -(1 - 2 s),
+        // so D = 2 s (1 - s)
         for s in [0.0625, 0.25, 0.5, 0.75, 0.9375] {
             let (v, d) = (1.0 - 2.0 * s, 2.0 * s * (1.0 - s));
             let (a, b) = (DMatrix::from_element(1, 1, 4.0), [2.0 * v]);

@@ -10,7 +10,7 @@ use crate::model::{Adjust, Contact, Element, Model, Reach};
 use crate::vectors::distance;
 use std::collections::{HashMap, HashSet};
 
-/// Most sweeps over the nodes of a surface that touches itself.
+/// Largest number of sweeps over the nodes of a surface that touches itself.
 const SWEEPS: usize = 20;
 
 /// Nodes moved for a contact.
@@ -20,16 +20,16 @@ pub struct Adjusted {
     pub contact: usize,
     /// Number of nodes moved.
     pub count: usize,
-    /// The node moved most (index).
+    /// Index of the node with the largest move.
     pub node: usize,
-    /// How far it was moved (length).
+    /// Length of the largest move.
     pub largest: f64,
     /// An element that the moves turned inside out or flattened, if any.
     pub spoiled: Option<usize>,
 }
 
 /// Moves slave nodes onto the master surfaces as the contacts of a model require, one contact after
-/// the other: the reference coordinates change, so that nothing is strained.
+/// the other. The reference coordinates change, so the moves cause no strain.
 pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adjusted> {
     if model
         .contacts
@@ -73,9 +73,9 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
     adjusted
 }
 
-/// Those of the nodes that face segments at rest: of a node and the segment that it faces only one is
-/// moved in a sweep. The deepest nodes come first; of nodes equally deep but for round-off those that face the longest
-/// segments, since nodes of a fine mesh follow the shape of a coarse one; then those before others in the model.
+/// Chooses the nodes that move in a sweep: of a node and the segment that it faces only one moves. The deepest nodes
+/// come first; of nodes equally deep but for round-off, those that face the longest segments come first, since nodes of
+/// a fine mesh follow the shape of a coarse one. Nodes equal in both respects come in the order of the model.
 fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     let depths = ranks(&gaps, |gap| gap.gap);
     let lengths = ranks(&gaps, |gap| -gap.length);
@@ -93,8 +93,8 @@ fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     gaps
 }
 
-/// Rank of each slave node by a length, from the least on; lengths that differ by no more than the round-off of coordinates
-/// have the same rank.
+/// Rank of each slave node by a length, the least first; lengths that differ by no more than the round-off of
+/// coordinates have the same rank.
 fn ranks(gaps: &[InitialGap], length: impl Fn(&InitialGap) -> f64) -> HashMap<usize, usize> {
     let mut ordered: Vec<&InitialGap> = gaps.iter().collect();
     ordered.sort_by(|a, b| length(a).total_cmp(&length(b)));
@@ -121,7 +121,8 @@ fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
     }
 }
 
-/// Moves nodes to their feet on the master surface, or to a clearance above these.
+/// Moves nodes to the feet of their projections on the master surface, or to a clearance above
+/// them.
 fn move_nodes(model: &mut Model, moved: &[InitialGap], clearance: f64) {
     let before = model.mesh.coordinates.clone();
     for gap in moved {
@@ -137,7 +138,7 @@ fn move_nodes(model: &mut Model, moved: &[InitialGap], clearance: f64) {
     }
 }
 
-/// What has become of the slave nodes of a contact since they were at the places `before`.
+/// Moves of the slave nodes of a contact from the positions `before`; `None` if no node has moved.
 fn adjusted_of(
     model: &Model,
     contact: usize,
@@ -160,7 +161,7 @@ fn adjusted_of(
     })
 }
 
-/// Reports the moved nodes; an element that was spoiled is an error.
+/// Reports the moved nodes; a spoiled element is an error.
 pub(super) fn report_adjusted(model: &Model, adjusted: &[Adjusted], d: &mut Diagnostics) {
     for moved in adjusted {
         let contact = &model.contacts[moved.contact];
@@ -206,7 +207,7 @@ mod tests {
     use crate::contact::contact_surfaces;
     use crate::model::{ElementType, Face, Interaction, Surface, SurfaceKind};
 
-    /// Whether moving the upper corners of a slightly sheared square spoils it, in a unit of length.
+    /// Whether moving the upper corners of a slightly sheared square spoils it; `unit` scales all lengths.
     fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
         let square = [[0.0, 0.0], [1.0, 0.03], [1.02, 1.01], [0.01, 0.98]];
         let moved = [square[0], square[1], upper[0], upper[1]];
@@ -261,8 +262,7 @@ mod tests {
         assert_eq!(moved([-1e-3, 0.0, 0.0], [1.0; 3]), [9, 7]);
     }
 
-    /// Number of nodes that are moved of a square that lies above another, the gap being a part of the
-    /// length of an edge.
+    /// Number of moved nodes of a square above another; the gap is `part` times the length of an edge.
     fn moved_from(part: f64, edge: f64) -> usize {
         let mut model = Model::default();
         for (first, height) in [(0, 0.0), (4, 1.0 + part)] {

@@ -9,22 +9,22 @@ use crate::contact::tolerances::{COORDINATE_ROUND_OFF, FACING_SINE, PROJECTION_B
 use crate::contact::{ContactSurfaces, Projection, project, shortest_faces};
 use crate::vectors::{Circle, CircleTree, difference, distance, dot, length};
 
-/// Gap of a slave node to the segment it faces in the reference configuration.
+/// Gap of a slave node to the segment that it faces in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InitialGap {
     /// Slave node (index).
     pub slave: usize,
     /// Nodes [a, b] of the segment.
     pub segment: [usize; 2],
-    /// Foot of the perpendicular, 0 at a and 1 at b.
+    /// Foot of the perpendicular on the segment, 0 at a and 1 at b.
     pub xi: f64,
     /// Gap (length), negative when the node is inside the body.
     pub gap: f64,
-    /// How far the face is outside of its chord there (length).
+    /// Bulge of the face over its chord at the foot (length).
     pub rise: f64,
     /// Length of the segment.
     pub length: f64,
-    /// The smaller of the lengths of the segment and of the faces of the slave node: what a depth is measured by.
+    /// The smallest of the lengths of the segment and of the faces of the slave node; depths are relative to it.
     pub edge: f64,
 }
 
@@ -40,8 +40,8 @@ impl InitialGap {
     }
 }
 
-/// Gaps of the slave nodes of a contact at the positions `x`; nodes that face no segment are left
-/// out. Nodes of a contact that presses its overlap out may lie deeper behind a segment, which their own surface faces.
+/// Gaps of the slave nodes of a contact at the positions `x`, without nodes that face no segment. If a contact presses
+/// its overlap out, its nodes may lie deeper behind a segment that their own surface faces.
 pub(super) fn gaps(
     contact: &ContactSurfaces,
     x: &[[f64; 2]],
@@ -57,7 +57,7 @@ pub(super) fn gaps(
     found.map(of_circle).collect()
 }
 
-/// Circle about a segment with the ends beyond which a projection is still accepted.
+/// Circle about a segment, including the ends beyond which a projection is still accepted.
 fn circle(a: [f64; 2], b: [f64; 2]) -> Circle {
     Circle {
         centre: [0, 1].map(|i| a[i] + (b[i] - a[i]) / 2.0),
@@ -76,13 +76,14 @@ struct Start<'m> {
     fans: Vec<Option<NormalFan>>,
     /// Length of the shortest face at every slave node that has one.
     shortest: HashMap<usize, f64>,
-    /// Nodes before and after every slave node on its own surface, where the contact presses its overlap out.
+    /// Nodes before and after every slave node on its own surface, if the contact presses its overlap out.
     adjacent: Option<HashMap<usize, [usize; 2]>>,
-    /// How deep behind a segment a node may face it (segment lengths).
+    /// Depth behind a segment up to which a node may face it (segment lengths).
     deepest: f64,
 }
 
-/// How deep behind a segment a node may lie whose overlap is pressed out (segment lengths).
+/// Depth behind a segment up to which a node may lie whose overlap is pressed out (segment
+/// lengths).
 const DEEPEST_FIT: f64 = 8.0;
 
 impl<'m> Start<'m> {
@@ -114,8 +115,8 @@ impl<'m> Start<'m> {
         }
     }
 
-    /// Visits the segments that a point may face, in about the order of their distance, up to the limit
-    /// (length) that the last visit gave.
+    /// Visits the segments that a point may face, approximately in the order of their distance, up to the limit
+    /// (length) that the last visit returned.
     fn visit_faced(&self, point: [f64; 2], visit: impl FnMut(usize) -> f64) {
         let may_face = |group: usize, circle: &Circle| {
             self.fans[group].is_some_and(|fan| fan.may_face(point, circle))
@@ -123,7 +124,7 @@ impl<'m> Start<'m> {
         self.tree.visit_near(point, may_face, visit);
     }
 
-    /// Gap to the closest segment that the node projects into, or in whose wedge with the next
+    /// Gap to the closest segment into which the node projects, or in whose wedge with the next
     /// segment it lies.
     fn gap(&self, slave: usize) -> Option<InitialGap> {
         let mut closest: Option<(f64, usize)> = None;
@@ -163,9 +164,9 @@ impl<'m> Start<'m> {
         is_over.then_some((p.gap.abs(), i))
     }
 
-    /// Distance from the end of segment `i` where the node lies between the normals of `i` and the
-    /// next; of the two the one with the larger gap outside a convex corner and with the smaller
-    /// gap inside a concave one.
+    /// Distance from the end of segment `i`, if the node lies between the normals of `i` and the
+    /// next segment. The function returns the segment with the larger gap outside a convex corner,
+    /// and with the smaller gap inside a concave one.
     fn in_wedge(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let j = self.contact.next[i]?;
         let (p, q) = (self.faced(slave, i)?, self.faced(slave, j)?);
@@ -176,14 +177,14 @@ impl<'m> Start<'m> {
         is_between.then_some((distance, segment))
     }
 
-    /// Projection of a node on a segment that it may face: a segment without the node, penetrated by
-    /// less than its length, and with the node in front if both belong to the same body.
+    /// Projection of a node on a segment that it may face. The segment must not contain the node, and must be
+    /// penetrated by less than its length; if node and segment belong to the same body, the node must be in front.
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);
         let interior = &self.contact.interior;
         let at = |node: usize| self.x[node];
-        // deeper nodes are those of a fit that lie in the body, nearer to this side than to the far one
+        // deeper nodes must belong to a fit and lie in the body, nearer to this side than to the far side
         let may_face = || {
             p.gap >= -p.length
                 || (p.gap >= -self.deepest * p.length && interior.takes_in([a, b], slave, at))
@@ -196,8 +197,8 @@ impl<'m> Start<'m> {
             .then_some(p)
     }
 
-    /// Whether the surface of a node that may be pressed out of a body faces a segment: it lies in front of the parallel
-    /// to it through the node.
+    /// Whether the surface of a node that may be pressed out of a body faces a segment, that is, lies in front of the
+    /// parallel to the segment through the node.
     fn is_opposite(&self, slave: usize, p: &Projection) -> bool {
         let adjacent = self.adjacent.as_ref().and_then(|all| all.get(&slave));
         adjacent.into_iter().flatten().all(|&adjacent| {
@@ -207,23 +208,24 @@ impl<'m> Start<'m> {
     }
 }
 
-/// Angle (rad) that covers the round-off of directions and projections beyond the ends of a segment.
+/// Angle (rad) that covers the round-off of directions, and projections beyond the ends of a segment.
 const ANGLE_ROUND_OFF: f64 = 1e-5;
 
-/// Normals of some segments and of those that follow them: all directions within an angle of the middle
-/// one.
+/// Fan of the normals of some segments and of the corners behind them: all directions within an angle from a middle
+/// direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NormalFan {
-    /// Direction of the middle (rad).
+    /// Middle direction (rad).
     middle: f64,
-    /// Largest angle from it (rad); pi for all directions.
+    /// Largest angle from the middle direction (rad); pi for all directions.
     half: f64,
-    /// How deep a node may lie behind them: the length of the longest segment, or more.
+    /// Depth up to which a node may lie behind the segments: the length of the longest segment, or
+    /// more.
     deepest: f64,
 }
 
 impl NormalFan {
-    /// The fan of a segment with the ends `[a, b]` and of the corner between it and the next.
+    /// The fan of a segment with the ends `[a, b]` and of the corner between it and the `next` one.
     pub fn new([a, b]: [[f64; 2]; 2], next: Option<[[f64; 2]; 2]>) -> Self {
         let of = |[a, b]: [[f64; 2]; 2]| {
             let normal = project(a, a, b).normal;
@@ -240,7 +242,7 @@ impl NormalFan {
         }
     }
 
-    /// The fan of two groups.
+    /// The fan of both groups of segments.
     pub fn join(self, other: Self) -> Self {
         let apart = turn(self.middle, other.middle);
         let low = f64::min(-self.half, apart - other.half);
@@ -252,12 +254,12 @@ impl NormalFan {
         }
     }
 
-    /// Whether a point may face one of the segments, all of them within a circle.
+    /// Whether a point may face one of the segments, which all lie within a circle.
     ///
-    /// The point p lies along a normal of the fan from some place of the circle, in front of it, or
-    /// behind it by no more than the longest segment h: the angle phi between p - c and the middle of the
-    /// fan is at most alpha + beta, sin beta = r/|p - c|, or at least pi - alpha - beta with
-    /// |p - c| cos(phi - alpha) + r >= -h.
+    /// A point p may face a segment if p lies along a normal of the fan from a point of the circle, in front of it or
+    /// at most the longest segment h behind it. The angle phi between p - c and the middle of the fan is then at most
+    /// alpha + beta, with sin beta = r/|p - c|; or it is at least pi - alpha - beta with |p - c| cos(phi - alpha) + r
+    /// >= -h.
     pub fn may_face(&self, point: [f64; 2], circle: &Circle) -> bool {
         let d = difference(circle.centre, point);
         let distance = length(d);
@@ -287,8 +289,8 @@ mod tests {
     use crate::contact::Interior;
     use crate::model::{Element, ElementType, Mesh};
 
-    /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at heights 0, `top`, 0, whose body
-    /// is `body`.
+    /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at the heights 0, `top`, 0; the roof
+    /// has the body `body`.
     fn gap(top: f64, s: [f64; 2], body: usize) -> Option<f64> {
         let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]]);
         let x = [s, [2.0, 0.0], [0.0, top], [-2.0, 0.0]];
@@ -306,8 +308,8 @@ mod tests {
         assert!(gap(-1.0, [0.01, -1.1], 1).is_some_and(|g| g < 0.0));
     }
 
-    /// Gap of a node at `s` to the top of a plate of two elements and the thickness `t`, as a node of
-    /// the same body that is none of theirs, and that of a node below on the plate itself.
+    /// Gaps to the top of a plate of two elements with the thickness `t`: of a node at `s` of the same body but of
+    /// neither element, and of a node on the lower side of the plate.
     fn own_gaps(t: f64, s: [f64; 2]) -> [Option<f64>; 2] {
         let x = [[2.0, 0.0], [0.0, 0.0], [-2.0, 0.0]];
         let below = x.map(|[x, y]| [x, y - t]);
@@ -339,7 +341,7 @@ mod tests {
         }
     }
 
-    /// Segments that the nodes of a closed outline visit at most, per node.
+    /// Largest number of segments visited per node for a closed outline.
     fn visits_per_node(outline: impl Fn(f64) -> [f64; 2], count: usize) -> f64 {
         let at = |i: usize| outline(i as f64 / count as f64);
         let x: Vec<[f64; 2]> = (0..count).map(at).collect();

@@ -1,5 +1,6 @@
-//! Check of the initial configuration: penetrated nodes, overlapping bodies and surfaces that do
-//! not face each other, reported as diagnostics at the contact in the deck.
+//! Check of the initial configuration for penetration. The check reports penetrated nodes,
+//! overlapping bodies, and surfaces that do not face each other as diagnostics at the contact in
+//! the deck.
 
 use super::initial_gaps::{InitialGap, gaps};
 use crate::contact::tolerances::{COORDINATE_ROUND_OFF, PENETRATION_FAULT};
@@ -8,12 +9,12 @@ use crate::diagnostics::{Code, Diagnostic, Diagnostics};
 use crate::model::{ALL_EXTERIOR, Contact, Model, Surface, SurfaceKind};
 use std::collections::{HashMap, HashSet};
 
-/// Nodes that stand for a slave surface.
+/// Number of nodes that are examined for a slave surface.
 const FEW: usize = 8;
 
 /// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
-/// the first increment pushes out, as warnings. Bodies that lie on the same side of a common face
-/// are errors too: all gaps are zero there, and contact would never close. A pair of which no node
+/// the first increment pushes out, as warnings. Bodies on the same side of a common face are errors
+/// too, since all gaps are zero there and contact would never close. A pair without a node that
 /// faces the other surface is a warning.
 pub(super) fn report_penetrations(
     model: &Model,
@@ -54,8 +55,7 @@ pub(super) fn report_penetrations(
     }
 }
 
-/// Initial gaps of a contact, larger by the overlaps that it allows its slave nodes at the start: own ones, or one for
-/// all.
+/// Initial gaps of a contact plus the overlaps that it allows at the start: one for each slave node, or one for all.
 fn left_gaps(
     gaps: &[InitialGap],
     contact: &ContactSurfaces,
@@ -70,11 +70,11 @@ fn left_gaps(
     gaps.iter().map(left).collect()
 }
 
-/// Warns about contacts that shall press an overlap out and have none.
+/// Warns about contacts that are to press out an overlap although there is none.
 fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) {
     let has_overlap = |contact: usize| overlaps[contact].iter().any(|o| *o > 0.0);
     for (i, contact) in model.contacts.iter().enumerate() {
-        // of general contact all bodies and rigid surfaces are meant
+        // in general contact an overlap may be between any two bodies or rigid surfaces
         let others = model.contacts.iter().enumerate();
         let mut others = others.filter(|(_, other)| {
             let [a, b] = [contact, *other].map(|contact| [contact.slave, contact.master]);
@@ -93,8 +93,8 @@ fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) 
     }
 }
 
-/// The deepest slave node of a contact at the positions `x` that is deeper inside the master body than it may be at the
-/// start.
+/// The deepest slave node of a contact that is deeper inside the master body, at the positions `x`, than it may be at
+/// the start.
 pub(crate) fn deepest_fault(
     contact: &ContactSurfaces,
     x: &[[f64; 2]],
@@ -106,7 +106,8 @@ pub(crate) fn deepest_fault(
     faults.max_by(|a, b| depth(a).total_cmp(&depth(b)))
 }
 
-/// Warns about pairs without a node that faces the master, in both orders if both are given.
+/// Warns about pairs without a node that faces the master; of pairs given in both orders only those
+/// without such a node in either order.
 fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnostics) {
     let faced: HashSet<[usize; 2]> = model
         .contacts
@@ -150,8 +151,8 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
     }
 }
 
-/// Whether the nodes of a slave surface project onto segments of the master and lie behind them. A few nodes are examined
-/// for all.
+/// Whether the nodes of a slave surface project on segments of the master and lie behind them. The function examines a
+/// few nodes instead of all.
 fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
     let x = &model.mesh.coordinates;
     let (nodes, segments) = (slave.nodes(&model.mesh), master.segments(&model.mesh));
@@ -167,7 +168,7 @@ fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
 }
 
 /// The first slave node that lies behind the master surface at a depth that is an error, but in
-/// none of the elements there: the surface looks away from it.
+/// none of its elements: the surface faces away from the node.
 fn behind_the_body<'g>(
     model: &Model,
     surfaces: &ContactSurfaces,
@@ -190,7 +191,7 @@ fn facing_away(model: &Model, contact: &Contact, behind: &InitialGap) -> Diagnos
     error.help("name the faces that look at each other: a face looks out of its body")
 }
 
-/// A slave face that lies on a master face, both with the same outward normal.
+/// A slave face that lies on a master face with the same outward normal.
 fn common_face(model: &Model, contact: &Contact, gaps: &[InitialGap]) -> Option<[usize; 2]> {
     let x = &model.mesh.coordinates;
     let touching: HashMap<usize, [usize; 2]> = gaps
@@ -257,7 +258,7 @@ fn diagnostic(model: &Model, contact: &Contact, deepest: &InitialGap, count: usi
     }
 }
 
-/// What to do about nodes that are deep inside a body.
+/// Advice for nodes that are deep inside a body.
 fn remedy(model: &Model, contact: &Contact) -> String {
     let apart = "move the bodies apart: pushing the nodes out would add energy";
     let adjust = "ADJUST= on *CONTACT PAIR moves the nodes onto the master before the start, free \

@@ -1,5 +1,4 @@
-//! Memory that a run needs, estimated before it from the mesh, the fill of the factors and the pairs that
-//! are near at the start.
+//! Memory that a run needs, estimated from the mesh, the fill of the factors and the pairs that are near at the start.
 
 use std::collections::BTreeMap;
 
@@ -7,30 +6,30 @@ use super::{InitialGap, PreparedModel};
 use crate::linear::factor_entries;
 use crate::model::{Bodies, Mesh};
 
-/// Bytes of the program before it has read a model.
+/// Bytes of the program before it reads a model.
 const PROGRAM: usize = 30 << 20;
 
 /// Bytes of a number or an index.
 const WORD: usize = 8;
 
-/// Vectors over the dofs that a run holds: deck, states, results, frames, iterates.
+/// Number of vectors over the dofs in a run: deck, states, results, frames, iterates.
 const VECTORS: usize = 70;
 
-/// Words for each entry of the pattern of the mesh: values of K* and M, indices of half a word for the pattern and for the
-/// places of the entries in the fronts. With contacts also the sum with contact stiffness, and the places for M.
+/// Words for each entry of the pattern of the mesh: the values of K* and M, and half a word each for the index in the
+/// pattern and the place of the entry in the fronts. With contacts an entry needs further words for the sum with
+/// contact stiffness, and for the places of M.
 const MATRICES: usize = 3;
 const CONTACT_MATRICES: usize = 2;
 
-/// Factors: that of K*, and the lists, fronts and rests that factorisations go through, which take as much. With contacts
-/// that of M, for impulses.
+/// Number of factors: those of K*, and the lists, fronts and remainders during a factorisation, which need as much
+/// memory. With contacts there are also the factors of M, which impulses need.
 const FACTORS: usize = 2;
 const CONTACT_FACTORS: usize = 1;
 
-/// Dense matrices over the unknowns of the pairs: the compliance of K* and that of M, while they are
-/// computed.
+/// Number of dense matrices over the unknowns of the pairs: the compliances of K* and of M, while they are computed.
 const COMPLIANCES: usize = 4;
 
-/// Bytes that a run needs, by what they are for.
+/// Bytes that a run needs, by purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemoryNeed {
     /// Mesh, states and results.
@@ -44,7 +43,7 @@ pub struct MemoryNeed {
 }
 
 impl MemoryNeed {
-    /// Estimates what a run of a model needs.
+    /// Estimates the memory that a run of a model needs.
     pub fn new(prepared: &PreparedModel) -> Self {
         let mesh = &prepared.model.mesh;
         let neighbours = neighbours(mesh);
@@ -67,13 +66,13 @@ impl MemoryNeed {
         }
     }
 
-    /// All of it.
+    /// Sum of all bytes.
     pub fn total(&self) -> u64 {
         self.mesh + self.matrices + self.factors + self.contact
     }
 }
 
-/// Near pairs between the same bodies.
+/// Near pairs, all or those between the same bodies.
 #[derive(Default)]
 struct NearPairs {
     nodes: Vec<usize>,
@@ -87,7 +86,7 @@ impl NearPairs {
             .extend([gap.slave, gap.segment[0], gap.segment[1]]);
     }
 
-    /// Compliance over the unknowns of the nodes, and Q of the pairs.
+    /// Bytes of the compliance over the unknowns of the nodes, and of Q of the pairs.
     fn bytes(mut self) -> u64 {
         self.nodes.sort_unstable();
         self.nodes.dedup();
@@ -96,8 +95,8 @@ impl NearPairs {
     }
 }
 
-/// What near pairs need: all of them, or, where that is much less, those between the same bodies, whose
-/// problems are then solved by blocks.
+/// Memory for the near pairs. If the memory of the pairs between the same bodies is much less, it is used instead,
+/// since their problems are then solved by blocks.
 fn contact(prepared: &PreparedModel) -> u64 {
     let bodies = Bodies::new(&prepared.model.mesh).of_node;
     let gaps = prepared.gaps.iter().flatten();
@@ -115,7 +114,7 @@ fn contact(prepared: &PreparedModel) -> u64 {
     if blocks <= all / 4 { blocks } else { all }
 }
 
-/// Nodes that the elements couple each node with, in increasing order, and itself.
+/// For each node the nodes that elements couple it with, and itself, in increasing order.
 fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
     let mut counts = vec![1; mesh.node_count()];
     for nodes in mesh.elements.iter().map(|element| &element.nodes) {

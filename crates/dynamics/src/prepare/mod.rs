@@ -1,6 +1,5 @@
-//! Preparation of a model before its run: adjustment of slave nodes onto their masters, contact
-//! surfaces, initial gaps, the check for initial penetration, the redistribution of mass, and what memory a
-//! run needs.
+//! Preparation of a model before its run: adjustment of slave nodes onto their masters, contact surfaces, initial gaps,
+//! the check for initial penetration, the redistribution of mass, and the memory that a run needs.
 
 mod adjustment;
 mod initial_gaps;

@@ -1,5 +1,6 @@
 //! A model that is ready to run, and its preparation: nodes adjusted, contact surfaces and initial
-//! gaps computed, initial penetration reported. Program and library both use it.
+//! gaps computed, initial penetration reported. Both the program and users of the library start
+//! from a prepared model.
 
 use super::adjustment::{Adjusted, adjust, report_adjusted};
 use super::initial_gaps::{InitialGap, gaps};
@@ -10,27 +11,28 @@ use crate::diagnostics::Diagnostics;
 use crate::model::Model;
 use std::collections::HashMap;
 
-/// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and
-/// contacts stay as they are from here on; the settings of steps may change.
+/// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and contacts of a
+/// prepared model do not change any more; the settings of steps may.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreparedModel {
-    /// The model, nodes adjusted.
+    /// The model with adjusted nodes.
     pub model: Model,
     /// Surfaces of every contact.
     pub surfaces: Vec<ContactSurfaces>,
-    /// Gaps of the slave nodes of each contact in the reference configuration; nodes that face no
-    /// segment are left out.
+    /// Gaps of the slave nodes of each contact in the reference configuration, without nodes that
+    /// face no segment.
     pub gaps: Vec<Vec<InitialGap>>,
-    /// Overlaps of all slave nodes of the contacts that press them out in the first step (length); of others none.
+    /// Overlaps of all slave nodes of contacts that press them out in the first step (length); empty for other
+    /// contacts.
     pub overlaps: Vec<Vec<f64>>,
-    /// Moved nodes, contact by contact.
+    /// Moved nodes, one contact after the other.
     pub adjusted: Vec<Adjusted>,
-    /// Nodes without mass, and those that carry it.
+    /// Nodes without mass, and the nodes that carry their mass.
     pub redistribution: Redistribution,
 }
 
 /// Prepares a model; reports adjusted nodes, elements that the adjustment spoils, and initial
-/// penetration. `None` if there are errors.
+/// penetration. Returns `None` if there are errors.
 pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     let prepared = PreparedModel::new(model);
     report_adjusted(&prepared.model, &prepared.adjusted, d);
@@ -47,7 +49,7 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     (!d.has_errors()).then_some(prepared)
 }
 
-/// Overlaps of all slave nodes of a contact (length): how deep they lie in a body that their own surface faces.
+/// Overlaps of all slave nodes of a contact (length): their depths in a body that their own surface faces.
 fn overlaps(contact: &ContactSurfaces, gaps: &[InitialGap], x: &[[f64; 2]]) -> Vec<f64> {
     let inside = gaps.iter().filter(|gap| gap.is_inside(contact, x));
     let depths: HashMap<usize, f64> = inside.map(|gap| (gap.slave, -gap.gap)).collect();

@@ -1,8 +1,8 @@
-//! Redistribution of the mass of contact surfaces: which nodes are without mass, and the nodes that
-//! carry it for them, V = P V. See docs/theory/elements.md, Redistributed mass.
+//! Redistribution of the mass of contact surfaces: nodes without mass, and the nodes that carry
+//! their mass, V = P V. See docs/theory/elements.md, Redistributed mass.
 //!
-//! With `LANDING=RETURN` a bar of 50 elements that hits a wall keeps 1.0000 of its energy, where it keeps 0.994 with the
-//! mass at the surface (docs/impact.md).
+//! With `LANDING=RETURN` a bar of 50 elements that hits a wall keeps 1.0000 of its energy; with the mass at the surface
+//! it keeps 0.994 (docs/impact.md).
 
 use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
@@ -13,16 +13,15 @@ use crate::contact::ContactSurfaces;
 use crate::model::{ElementsAtNodes, Face, Mesh, Model};
 use crate::vectors::{angle, difference, length, polygon_area};
 
-/// Rings of elements round a node in which its donors are looked for: the wider where the narrower do
-/// not do.
+/// Rings of elements round a node in which its donors are sought: the wider number if the narrower one is not
+/// sufficient.
 const RINGS: [usize; 2] = [2, 3];
 
-/// A node with the weight of its velocity in that of another.
+/// A node with its weight in the velocity of another node.
 type Donor = (usize, f64);
 
-/// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the
-/// kinetic energy are those of their donors, v_i = sum w_ij v_j, eq. (2.17). Empty with
-/// `CONTACT MASS=CONSISTENT`.
+/// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the kinetic energy are
+/// those of their donors, v_i = sum w_ij v_j, eq. (2.17). The redistribution is empty with `CONTACT MASS=CONSISTENT`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Redistribution {
     /// Nodes without mass, increasing, with their donors, which have mass.
@@ -34,8 +33,8 @@ pub struct Redistribution {
 impl Redistribution {
     /// The redistribution of the mass at the given contacts of a model.
     ///
-    /// Donors are nodes that cannot be without mass. Nodes that find no weights join them, until all
-    /// others do: no answer depends on the order of the nodes.
+    /// Donors are nodes that cannot be without mass. Nodes without suitable weights become donors too, until all others
+    /// have weights; the result does not depend on the order of the nodes.
     pub fn new(model: &Model, contacts: &[ContactSurfaces]) -> Self {
         let around = Neighbours::new(&model.mesh);
         let nodes = contact_nodes(model, contacts);
@@ -65,7 +64,7 @@ impl Redistribution {
         &self.kept
     }
 
-    /// Whether every node has its mass.
+    /// Whether every node keeps its mass.
     pub fn is_empty(&self) -> bool {
         self.massless.is_empty()
     }
@@ -81,7 +80,7 @@ impl Redistribution {
         place.ok().map(|place| self.massless[place].1.as_slice())
     }
 
-    /// v <- P v over all dofs, at the dofs that `moves` names.
+    /// v <- P v over all dofs, at those dofs for which `moves` is true.
     pub fn follow(&self, v: &mut [f64], moves: impl Fn(usize) -> bool) {
         for (node, donors) in &self.massless {
             for i in 0..2 {
@@ -127,7 +126,8 @@ impl<'m> Neighbours<'m> {
         Neighbours { mesh, elements }
     }
 
-    /// Donors of a node among those that are not in `massless` (increasing), with their weights.
+    /// Donors of a node, with their weights, among the nodes that are not in `massless`
+    /// (increasing).
     fn donors(&self, node: usize, massless: &[usize]) -> Option<Vec<Donor>> {
         let x = &self.mesh.coordinates;
         RINGS.iter().find_map(|&rings| {
@@ -157,8 +157,8 @@ impl<'m> Neighbours<'m> {
     }
 }
 
-/// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without
-/// mass: nodes at the edge of a hole may not, nor those that equations, springs, dashpots and rigid bodies tie.
+/// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without mass. Nodes at
+/// the edge of a hole may not be without mass, nor may those that equations, springs, dashpots or rigid bodies tie.
 pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<(usize, bool)> {
     let mesh = &model.mesh;
     let mut may = outer_nodes(mesh);
@@ -172,7 +172,7 @@ pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<
             *may = false;
         }
     }
-    // nodes that turn with a rigid body keep the mass of the elements that deform, and have no other
+    // nodes that turn with a rigid body keep the mass of the elements that deform, which is their only mass
     let mut deforms = vec![false; mesh.node_count()];
     let rigid: BTreeSet<usize> = (model.rigid_bodies.iter())
         .flat_map(|body| body.elements.iter().copied())
@@ -202,7 +202,8 @@ pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<
     nodes.into_iter().filter_map(on_body).collect()
 }
 
-/// Whether a node of an exterior face is only on outer edges of bodies; none inside and without elements.
+/// For every node of an exterior face, whether it lies only on outer edges of bodies; `None` for nodes inside and
+/// without elements.
 fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
     let mut outer = vec![None; mesh.node_count()];
     for edge in edges(mesh) {
@@ -216,8 +217,8 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
     outer
 }
 
-/// Closed edges of the bodies, as their faces in order. Where elements meet in a node only, the edge goes on
-/// along the element that it has come by.
+/// Closed edges of the bodies, each as its faces in order. If elements meet in only a node, the edge continues along
+/// the element from which it came to the node.
 fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
     let segments = |face: &Face| face.segments(mesh);
     let faces: Vec<[usize; 2]> = mesh.outline().iter().flat_map(segments).collect();
@@ -234,7 +235,8 @@ fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
             is_left[face] = false;
             let [a, b] = faces[face];
             edge.push([a, b]);
-            // of the faces that go on from b the first clockwise from the way back
+            // the edge goes on along the face from b that comes first clockwise from the face back
+            // to a
             let arm = |node: usize| difference(mesh.coordinates[b], mesh.coordinates[node]);
             let clockwise = |&face: &usize| match angle(arm(faces[face][1]), arm(a)) {
                 turn if turn > 0.0 => turn,
@@ -251,24 +253,25 @@ fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
     edges
 }
 
-/// Least number of donors: three points make an affine function.
+/// Least number of donors: three points determine an affine function.
 const LEAST_DONORS: usize = 3;
-/// Largest sum of |w|: beyond it a node is not extrapolated from its donors. Weights of regular meshes are
-/// ratios of small numbers, and their sums may be 6; they are never so little more.
+/// Largest sum of |w|; a node whose weights have a larger sum is not extrapolated from its donors. Weights of regular
+/// meshes are ratios of small integers with sums up to 6; sums slightly above 6 do not occur there.
 const MOST_WEIGHT: f64 = 6.0 + 1e-6;
-/// Least width of the donors, as a part of their length: narrower ones lie on a line but for the digits of
-/// their coordinates.
+/// Least width of the donors, relative to their length: narrower donors lie on a line up to the digits of their
+/// coordinates.
 const LEAST_WIDTH: f64 = 1e-3;
 
-/// Weights of donors at the positions `donors` for a node at `x`, affine and the larger the nearer:
+/// Weights of donors at the positions `donors` for a node at `x`; they are affine, and larger for
+/// nearer donors:
 ///
 /// ```text
 /// p_j = (1, (X_j - X)/h),  phi_j = (h/r_j)²,  r_j = |X_j - X|,  h = min r_j
 /// w_j = phi_j p_j.G^-1 e1,  G = sum phi_j p_j p_j^T                           eq. (2.18)
 /// ```
 ///
-/// so that sum w_j = 1 and sum w_j X_j = X. None where the donors are too few, lie nearly on a line, or
-/// only on one side far away: neither a motion of all points nor their order decides.
+/// The weights satisfy sum w_j = 1 and sum w_j X_j = X. Returns `None` if the donors are too few, lie nearly on a line,
+/// or lie only on one side far away. Neither a rigid motion of all points nor their order changes the weights.
 pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     if donors.len() < LEAST_DONORS {
         return None;
@@ -286,7 +289,7 @@ pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     }
     let cholesky = g.cholesky()?;
     let mut w = vec![0.0; arms.len()];
-    // the second time for what round-off has left of sum w p = e1
+    // the second solve corrects the round-off in sum w p = e1
     for _ in 0..2 {
         let sum: Vector3<f64> = arms.iter().zip(&w).map(|(r, w)| *w * p(r)).sum();
         let solution = cholesky.solve(&(Vector3::x() - sum));
@@ -298,14 +301,14 @@ pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     (size <= MOST_WEIGHT).then_some(w)
 }
 
-/// Width of the donors as a part of their length: with the scatter of the arms about their mean, which is the
-/// Schur complement of G_11,
+/// Width of the donors relative to their length. The scatter of the arms about their mean is the Schur complement of
+/// G_11,
 ///
 /// ```text
 /// S = G_rr - G_r1 G_1r/G_11,  (width/length)² = det S/(tr S)²                 eq. (2.19)
 /// ```
 ///
-/// NaN where all donors are in one place.
+/// The width is NaN if all donors are in one place.
 fn width(g: &Matrix3<f64>) -> f64 {
     let scatter = |i: usize, k: usize| g[(i, k)] - g[(i, 0)] * g[(0, k)] / g[(0, 0)];
     let [xx, xy, yy] = [scatter(1, 1), scatter(1, 2), scatter(2, 2)];
@@ -317,7 +320,7 @@ fn width(g: &Matrix3<f64>) -> f64 {
 mod tests_of_weights {
     use super::*;
 
-    /// Points of a grid that is bent and scaled.
+    /// Points of a grid that is bent, times `scale`.
     fn grid(scale: f64) -> Vec<[f64; 2]> {
         let at = |k: u32| (f64::from(k % 5), f64::from(k / 5));
         let bent =
@@ -361,7 +364,7 @@ mod tests_of_weights {
         assert!(weights([2.0, 0.4], &thin).is_some());
     }
 
-    /// Points turned by an angle, mirrored if so, and moved.
+    /// Points turned by an angle, mirrored if `mirror` is -1, and moved.
     fn moved(points: &[[f64; 2]], angle: f64, mirror: f64, to: [f64; 2]) -> Vec<[f64; 2]> {
         let (sin, cos) = angle.sin_cos();
         let turn = |[x, y]: [f64; 2]| [cos * x - sin * y, mirror * (sin * x + cos * y)];
@@ -372,8 +375,8 @@ mod tests_of_weights {
     }
 
     proptest::proptest! {
-        /// A node on the line of its donors, or beside it, keeps its mass wherever the line lies and whatever
-        /// the last digits of its points; a layer of elements of any use gives its mass up.
+        /// A node on or near the line of its donors keeps its mass wherever the line lies and whatever the last digits
+        /// of its points are; with a layer of elements of usable thickness the node gives its mass up.
         #[test]
         fn donors_nearly_on_a_line_give_none_in_any_frame(
             angle in -4.0..4.0_f64,
@@ -423,7 +426,7 @@ mod tests_of_weights {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    //! Which nodes of meshes without regularity are without mass.
+    //! Tests which nodes of irregular meshes are without mass.
 
     use super::Redistribution;
     use crate::contact::contact_surfaces;
@@ -432,8 +435,8 @@ pub(crate) mod tests {
         Contact, Element, ElementType, Equation, Interaction, Model, Surface, SurfaceKind,
     };
 
-    /// A bent block of cells of two sizes, each a quadrilateral or two triangles, in contact with itself
-    /// all round; `has` says which cells there are.
+    /// A bent block of cells of two sizes, each a quadrilateral or two triangles, in contact with itself all round;
+    /// `has` tells which cells exist.
     pub(crate) fn block(
         [columns, rows]: [usize; 2],
         is_triangular: fn(usize, usize) -> bool,
@@ -480,7 +483,7 @@ pub(crate) mod tests {
         model
     }
 
-    /// Redistribution of a model.
+    /// Redistribution of the mass of a model.
     pub(crate) fn redistribution(model: &Model) -> Redistribution {
         Redistribution::new(model, &contact_surfaces(model, &model.mesh.bodies()))
     }
@@ -552,7 +555,7 @@ pub(crate) mod tests {
         assert_eq!(redistribution(&tied).kept(), [3, 50]);
     }
 
-    /// A flat block whose nodes are moved.
+    /// A flat block with moved nodes.
     fn flat(
         cells: [usize; 2],
         has: fn(usize, usize) -> bool,
@@ -566,7 +569,8 @@ pub(crate) mod tests {
         model
     }
 
-    /// Two layers have their donors on a line, some nodes on that line themselves; three layers have not.
+    /// With two layers the donors lie on a line, and some nodes lie on this line too; with three layers the donors do
+    /// not.
     #[test]
     fn round_off_turns_and_places_do_not_decide_over_mass() {
         for (rows, count) in [(2, 0), (3, 16)] {
@@ -590,7 +594,7 @@ pub(crate) mod tests {
         }
     }
 
-    /// A notch and a hole that meet in a node, between two elements that meet there only: one edge goes round both.
+    /// A notch and a hole meet in a node, between two elements that meet only there: one edge goes round both.
     #[test]
     fn the_order_of_elements_does_not_decide_over_mass() {
         let has = |i, j| (i, j) != (3, 0) && (i, j) != (4, 1);

@@ -13,28 +13,28 @@ macro_rules! codes {
             /// All codes, in the order of their numbers.
             pub const ALL: &'static [Code] = &[$(Code::$name),*];
 
-            /// The number shown in messages, such as `D103`.
+            /// The number shown in messages, for example `D103`.
             pub fn id(self) -> &'static str {
                 match self {
                     $(Code::$name => $id,)*
                 }
             }
 
-            /// One sentence on what the code stands for.
+            /// One sentence on the meaning of the diagnostic code.
             pub fn meaning(self) -> &'static str {
                 match self {
                     $(Code::$name => $meaning,)*
                 }
             }
 
-            /// How it usually comes about, or why it matters.
+            /// How the diagnostic usually comes about, or why it matters.
             pub fn cause(self) -> &'static str {
                 match self {
                     $(Code::$name => $cause,)*
                 }
             }
 
-            /// What to do about it.
+            /// Advice on what to do about the diagnostic.
             pub fn cure(self) -> &'static str {
                 match self {
                     $(Code::$name => $cure,)*

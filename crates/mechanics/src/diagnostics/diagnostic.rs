@@ -1,22 +1,21 @@
-//! Diagnostics: severity, code, place, message, label and help of each, in which overlong echoes of the
-//! deck are cut; the collection of those of one deck, with counts by severity, strictness and order by
-//! place.
+//! Diagnostics with severity, code, place, message, label and help, in which overlong echoes of the deck are cut. Also
+//! the collection of the diagnostics of one deck, with counts by severity, strictness, and order by place.
 
 use super::code::Code;
 use std::collections::{BinaryHeap, HashMap, HashSet};
 
-/// Longest word of a message, in characters: a name has 80 at most, a path is often longer.
+/// Longest word of a message, in characters: a name has at most 80, a path often more.
 const LONGEST_WORD: usize = 200;
 
 /// Longest message, in characters.
 const LONGEST_TEXT: usize = 1000;
 
-/// How serious a diagnostic is.
+/// Severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// The deck is rejected.
+    /// An error: the deck is rejected.
     Error,
-    /// The deck is read, but differently from what it says.
+    /// A warning: the deck is read, but differently from what it says.
     Warning,
     /// Worth knowing.
     Note,
@@ -25,21 +24,21 @@ pub enum Severity {
 /// One message about one place of a deck.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// How serious it is.
+    /// Severity of the diagnostic.
     pub severity: Severity,
-    /// What it is about.
+    /// Subject of the diagnostic.
     pub code: Code,
-    /// Where; `None` without a place in the deck.
+    /// Place in the deck; `None` if the diagnostic has no place.
     pub span: Option<Span>,
-    /// What was found and what was expected.
+    /// Text that says what was found and what was expected.
     pub message: String,
-    /// Text beside the caret.
+    /// Text next to the caret.
     pub label: Option<String>,
-    /// What was probably meant by the word at the caret.
+    /// Word that was probably meant at the caret.
     pub suggestion: Option<String>,
-    /// What to do about it.
+    /// Advice on what to do about the diagnostic.
     pub help: Option<String>,
-    /// The other card that it is about, and its place.
+    /// Another card that the diagnostic is about, and its place.
     pub other: Option<(String, Span)>,
 }
 
@@ -72,19 +71,19 @@ impl Diagnostic {
         }
     }
 
-    /// The same with text beside the caret.
+    /// The same diagnostic with text next to the caret.
     pub fn label(mut self, label: impl Into<String>) -> Diagnostic {
         self.label = Some(shortened(label.into()));
         self
     }
 
-    /// The same with advice.
+    /// The same diagnostic with advice.
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
         self.help = Some(shortened(help.into()));
         self
     }
 
-    /// The same with "did you mean ...?" beside the caret, if there is a suggestion.
+    /// The same diagnostic with "did you mean ...?" next to the caret, if there is a suggestion.
     pub fn suggest(self, suggestion: Option<impl AsRef<str>>) -> Diagnostic {
         match suggestion {
             Some(word) => Diagnostic {
@@ -96,16 +95,16 @@ impl Diagnostic {
     }
 }
 
-/// A diagnostic that has been added, unless the same was added before.
+/// A diagnostic that has been added, or `None` if it was added before.
 pub struct Added<'d>(Option<&'d mut Diagnostic>);
 
 impl Added<'_> {
-    /// Puts text beside its caret.
+    /// Puts text next to the caret of the diagnostic.
     pub fn label(self, label: impl Into<String>) -> Self {
         self.with(|added| added.label = Some(shortened(label.into())))
     }
 
-    /// Puts "did you mean ...?" beside its caret, if there is a suggestion.
+    /// Puts "did you mean ...?" next to the caret, if there is a suggestion.
     pub fn suggest(self, suggestion: Option<impl AsRef<str>>) -> Self {
         self.with(|added| *added = added.clone().suggest(suggestion))
     }
@@ -115,7 +114,7 @@ impl Added<'_> {
         self.with(|added| added.help = Some(shortened(help.into())))
     }
 
-    /// Names the other card that it is about, with its place.
+    /// Names another card that the diagnostic is about, with its place.
     pub fn other(self, what: impl Into<String>, span: Span) -> Self {
         self.with(|added| added.other = Some((shortened(what.into()), span)))
     }
@@ -135,7 +134,7 @@ fn shortened(text: String) -> String {
     cut(&words.collect::<Vec<_>>().join(" "), LONGEST_TEXT)
 }
 
-/// The beginning of a text, with three dots if it goes on.
+/// The beginning of a text, followed by three dots if the text is longer.
 fn cut(text: &str, length: usize) -> String {
     match text.char_indices().nth(length) {
         Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
@@ -143,7 +142,7 @@ fn cut(text: &str, length: usize) -> String {
     }
 }
 
-/// Most diagnostics of one severity that are shown.
+/// Largest number of diagnostics of one severity that are shown.
 pub(super) const SHOWN: usize = 20;
 
 /// Treatment of unknown keywords and of warnings.
@@ -164,22 +163,23 @@ pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
     counts: [usize; 3],
-    /// Places of the first diagnostics of each severity, as many as are shown.
+    /// Places of the first diagnostics of each severity, of as many as are shown.
     first: [BinaryHeap<Option<Span>>; 3],
     said: HashMap<Code, HashSet<String>>,
     /// Instance in which a line of a part was reported, by code and place.
     in_parts: HashMap<(Code, Span), u32>,
-    /// Errors found, those of the same line of a part in further instances included.
+    /// Number of errors found, including repetitions at the same line of a part in further
+    /// instances.
     errors: usize,
 }
 
 impl Diagnostics {
-    /// No diagnostics yet, normal strictness.
+    /// An empty collection with normal strictness.
     pub fn new() -> Diagnostics {
         Diagnostics::default()
     }
 
-    /// No diagnostics yet, with the rules of `strictness`.
+    /// An empty collection with the rules of `strictness`.
     pub fn with_strictness(strictness: Strictness) -> Diagnostics {
         Diagnostics {
             strictness,
@@ -197,7 +197,7 @@ impl Diagnostics {
         self.push(Diagnostic::error(code, span, message))
     }
 
-    /// Adds an error about a deck that cannot be opened: there is no line to show.
+    /// Adds an error about a deck that cannot be opened, so there is no line to show.
     pub fn error_without_place(&mut self, code: Code, message: impl Into<String>) -> Added<'_> {
         self.push(Diagnostic::new(Severity::Error, code, None, message.into()))
     }
@@ -240,7 +240,8 @@ impl Diagnostics {
         self.push(make(message.to_owned()))
     }
 
-    /// Adds a diagnostic; that of a line of a part once, however many instances the part has.
+    /// Adds a diagnostic; one at a line of a part is added once, however many instances the part
+    /// has.
     pub fn push(&mut self, mut diagnostic: Diagnostic) -> Added<'_> {
         diagnostic.severity = self.judge(&diagnostic);
         self.errors += usize::from(diagnostic.severity == Severity::Error);
@@ -257,7 +258,7 @@ impl Diagnostics {
         Added(self.items.last_mut())
     }
 
-    /// Whether the same line of the part has this diagnostic in another instance already.
+    /// Whether this diagnostic was already added for the same line of the part in another instance.
     fn is_of_another_instance(&mut self, diagnostic: &Diagnostic) -> bool {
         let Some(span) = diagnostic.span.filter(|span| span.instance > 0) else {
             return false;
@@ -270,13 +271,15 @@ impl Diagnostics {
         *first.or_insert(span.instance) != span.instance
     }
 
-    /// Number of errors found, more than are counted where a part has several instances.
+    /// Number of errors found; if a part has several instances, it is larger than the number of
+    /// errors counted.
     pub fn errors_found(&self) -> usize {
         self.errors
     }
 
-    /// Whether a diagnostic would be shown if it were the last one. Suggestions that take time are
-    /// made for such diagnostics only; further diagnostics never bring others back.
+    /// Whether a diagnostic would be shown if it were the last one. Suggestions that need time are
+    /// made only for diagnostics that would be shown; later diagnostics never make hidden ones
+    /// visible.
     pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
         let first = &self.first[self.judge(diagnostic) as usize];
         first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
@@ -304,7 +307,7 @@ impl Diagnostics {
         self.counts[severity as usize]
     }
 
-    /// All diagnostics but those of one code.
+    /// All diagnostics except those of one code.
     pub fn without(&self, code: Code) -> Diagnostics {
         let mut rest = Diagnostics::with_strictness(self.strictness);
         for item in self.items.iter().filter(|item| item.code != code) {
@@ -319,7 +322,8 @@ impl Diagnostics {
         self.items.iter()
     }
 
-    /// All diagnostics by their place: file, line, column; those without a place first.
+    /// All diagnostics in the order of their places (file, line, column); those without a place
+    /// come first.
     pub fn sorted(&self) -> Vec<&Diagnostic> {
         let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
         sorted.sort_by_key(|item| (item.span, item.severity));
@@ -342,7 +346,8 @@ pub struct Span {
     pub column: u32,
     /// Number of characters.
     pub length: u32,
-    /// Instance of a part whose copy of the line is meant, from 1; 0 for the line itself.
+    /// Number, from 1, of the instance of a part whose copy of the line is meant; 0 for the line
+    /// itself.
     pub instance: u32,
 }
 

@@ -1,10 +1,10 @@
-//! Diagnostics as JSON, for editors. docs/output.md, Messages as JSON.
+//! Diagnostics as JSON, for editors. See docs/output.md, Messages as JSON.
 
 use super::{Diagnostic, Diagnostics, Severity, Sources, Span};
 use serde_json::{Value, json};
 
 impl Diagnostics {
-    /// All diagnostics by their place, one JSON object.
+    /// All diagnostics in the order of their places, as one JSON object.
     pub fn json(&self, sources: &Sources) -> String {
         let all: Vec<Value> = self
             .sorted()
@@ -42,7 +42,8 @@ fn object(item: &Diagnostic, sources: &Sources) -> Value {
     })
 }
 
-/// File and range: lines and columns in characters, from 1; the end is behind the last character.
+/// File and range: lines and columns are in characters, from 1; the end is the column after the
+/// last character.
 fn place(span: Span, sources: &Sources) -> Value {
     let span = sources.typed(span);
     json!({

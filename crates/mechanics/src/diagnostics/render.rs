@@ -7,7 +7,8 @@ use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet}
 use std::ops::Range;
 
 impl Diagnostics {
-    /// Text of the diagnostics by their place, at most 20 of each severity and then their count.
+    /// Text of the diagnostics in the order of their places: at most 20 of each severity, then the
+    /// number of further ones.
     pub fn render(&self, sources: &Sources, colour: bool) -> String {
         let renderer = match colour {
             true => Renderer::styled(),
@@ -50,7 +51,7 @@ fn level(severity: Severity) -> Level<'static> {
     }
 }
 
-/// Title, source line with caret, where the file is included, advice.
+/// The parts of a message: title, source line with caret, place of inclusion of the file, advice.
 fn group<'a>(item: &'a Diagnostic, sources: &'a Sources) -> Group<'a> {
     let title = level(item.severity).primary_title(item.message.as_str());
     let mut group = Group::with_title(title.id(item.code.id()));
@@ -92,7 +93,7 @@ fn snippet<'a>(
     )
 }
 
-/// The place without source text, for a file without such a line: an empty file.
+/// The place without source text, for a file that has no such line, for example an empty file.
 fn origin(span: Span, sources: &Sources) -> Option<Origin<'_>> {
     let source = sources.get(span.file)?;
     let origin = Origin::path(source.name()).line(span.line as usize);
@@ -113,7 +114,7 @@ fn position(place: Span, sources: &Sources) -> String {
     format!("{name}:{}:{}", place.line, place.column)
 }
 
-/// Bytes of `line` that the characters of `span` take.
+/// Range of bytes of `line` with the characters of `span`.
 fn byte_range(line: &str, span: Span) -> Range<usize> {
     let byte_at = |character: usize| {
         let mut starts = line.char_indices().map(|(at, _)| at);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// Bytes of a piece of a text whose lines are counted together.
+/// Number of bytes in a piece of a text whose lines are counted together.
 const PIECE: usize = 1 << 12;
 
 /// One file of a deck.
@@ -17,22 +17,23 @@ pub struct Source {
     name: String,
     text: Arc<String>,
     included_at: Option<Span>,
-    /// Number of lines that end before every piece of the text, counted for the first message.
+    /// Number of lines that end before every piece of the text; they are counted for the first
+    /// message.
     ends_before: OnceLock<Vec<usize>>,
 }
 
 impl Source {
-    /// Name as given on the command line, or its path from the folder of the including file.
+    /// Name as given on the command line, or path from the folder of the including file.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Text without byte order mark.
+    /// Text of the file without byte order mark.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The same text, shared.
+    /// Text of the file, shared.
     pub fn shared_text(&self) -> Arc<String> {
         Arc::clone(&self.text)
     }
@@ -62,12 +63,12 @@ impl Source {
         })
     }
 
-    /// Byte at which a line starts that has `before` lines before it.
+    /// Byte at which the line with `before` lines before it starts.
     fn start(&self, before: usize) -> Option<usize> {
         if before == 0 {
             return Some(0);
         }
-        // the piece in which the line before it ends
+        // the piece of the text in which the line before this one ends
         let ends = self.ends_before();
         let piece = ends.partition_point(|&ends| ends < before).checked_sub(1)?;
         let text = self.text.as_bytes().get(piece * PIECE..)?;
@@ -84,18 +85,18 @@ impl Source {
     }
 }
 
-/// The deck of an earlier job, which a deck goes on from (`*RESTART, READ`).
+/// The deck of an earlier job that another deck continues (`*RESTART, READ`).
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct EarlierDeck {
-    /// Names and texts of its files, the deck itself first.
+    /// Names and texts of the files of the deck; the deck itself is first.
     pub files: Vec<(String, String)>,
-    /// Parameters `name=expression` that replaced those of its deck (`--set`).
+    /// Parameters `name=expression` that replaced values in the deck (`--set`).
     pub settings: Vec<String>,
-    /// Step and increment of the step at which the job goes on.
+    /// Step and increment of the step from which the job continues.
     pub place: [usize; 2],
-    /// Whether the increment is the last one of its step.
+    /// Whether the increment from which the job continues is the last one of its step.
     pub ends_step: bool,
-    /// The deck that the earlier one goes on from.
+    /// The deck that the earlier deck continues.
     pub before: Option<Box<EarlierDeck>>,
 }
 
@@ -103,36 +104,38 @@ pub struct EarlierDeck {
 #[derive(Debug, Clone, Default)]
 pub struct Sources {
     files: Vec<Source>,
-    /// Names of the instances of parts, and where each is placed.
+    /// Names of the instances of parts, and the place where each is defined.
     instances: Vec<(String, Span)>,
-    /// Values that the reader sees in place of what stands in a line, such as those of parameters.
+    /// Values that the reader of the deck sees in place of text in a line, for example of
+    /// parameters.
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
-    /// Values of parameters in place of those of the deck.
+    /// Values of parameters that replace those of the deck.
     settings: Vec<String>,
-    /// The deck that this one goes on from.
+    /// The deck that the main deck continues.
     earlier: Option<EarlierDeck>,
-    /// Texts of an editor that are read in place of files, by the whole paths of these.
+    /// Texts of an editor that are read in place of files, by the full paths of these files.
     unsaved: BTreeMap<PathBuf, String>,
-    /// Whether nobody waits for the deck any longer.
+    /// Request to stop reading the deck because its result is not needed any more.
     interrupt: Interrupt,
 }
 
-/// Asks the reading of a deck to end: nobody waits for what comes of it.
+/// Request to stop reading a deck because its result is not needed any more.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Asks for the end.
+    /// Requests the end of reading the deck.
     pub fn ask(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the end is asked for.
+    /// Whether the end of reading has been requested.
     pub fn is_asked(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Unwinds where the end is asked for, up to the one who asked, who catches it. Nothing is printed.
+    /// If the end of reading has been requested, unwinds to the caller that requested it, which catches the panic. The
+    /// panic prints nothing.
     pub fn end_if_asked(&self) {
         if self.is_asked() {
             std::panic::resume_unwind(Box::new(self.clone()));
@@ -140,30 +143,31 @@ impl Interrupt {
     }
 }
 
-/// A value that the reader sees in a line, and what was typed in its place.
+/// A value that the reader of the deck sees in a line, and the text that was typed in its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replaced {
-    /// Its first column in the line that the reader sees, from 1.
+    /// First column of the value in the line that the reader sees, from 1.
     pub column: u32,
-    /// Its length in characters.
+    /// Length of the value in characters.
     pub length: u32,
-    /// What was typed.
+    /// Place of the typed text.
     pub typed: Span,
 }
 
-/// The path of a file, the same for all paths to it; as given where there is no such file.
+/// The canonical path of a file, which is the same for all paths to it; the given path if the file
+/// does not exist.
 pub fn whole_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
 
 impl Sources {
-    /// No files yet.
+    /// Sources without files.
     pub fn new() -> Sources {
         Sources::default()
     }
 
-    /// No files yet; values `name=expression` of parameters in place of those of the deck, and the deck that it goes on
-    /// from.
+    /// Sources without files; `settings` are values `name=expression` of parameters in place of those in the deck, and
+    /// `earlier` is the deck that it continues.
     pub fn with_settings(settings: &[String], earlier: Option<EarlierDeck>) -> Sources {
         Sources {
             settings: settings.to_vec(),
@@ -172,7 +176,8 @@ impl Sources {
         }
     }
 
-    /// No files yet; texts of an editor that are read in place of files, by the whole paths of these.
+    /// Sources without files; `unsaved` are texts of an editor that are read in place of files, by the whole paths of
+    /// these files.
     pub fn with_unsaved(unsaved: BTreeMap<PathBuf, String>, interrupt: Interrupt) -> Sources {
         Sources {
             unsaved,
@@ -189,17 +194,17 @@ impl Sources {
         self.unsaved.get(&whole_path(path)).map(String::as_str)
     }
 
-    /// What asks the reading of the deck to end.
+    /// The object by which the end of reading can be requested.
     pub fn interrupt(&self) -> &Interrupt {
         &self.interrupt
     }
 
-    /// The deck that this one goes on from.
+    /// The deck that the main deck continues.
     pub fn earlier(&self) -> Option<&EarlierDeck> {
         self.earlier.as_ref()
     }
 
-    /// Values of parameters in place of those of the deck.
+    /// Values of parameters that replace those of the deck.
     pub fn settings(&self) -> &[String] {
         &self.settings
     }
@@ -225,35 +230,36 @@ impl Sources {
         id
     }
 
-    /// The id of the file that is added next.
+    /// The id of the next file that is added.
     pub fn next_id(&self) -> FileId {
         FileId(self.files.len() as u32)
     }
 
-    /// Adds an instance of a part that is placed at `place`; its number is that of spans.
+    /// Adds an instance of a part that is placed at `place`; returns the number by which spans
+    /// refer to it.
     pub fn add_instance(&mut self, name: &str, place: Span) -> u32 {
         self.instances.push((name.to_string(), place));
         self.instances.len() as u32
     }
 
-    /// Name and place of the instance that a span belongs to.
+    /// Name and place of the instance to which a span belongs.
     pub fn instance_of(&self, span: Span) -> Option<(&str, Span)> {
         let index = (span.instance as usize).checked_sub(1)?;
         let (name, place) = self.instances.get(index)?;
         Some((name, *place))
     }
 
-    /// Notes what stands for something else in a line, from left to right.
+    /// Stores the values that replaced text in a line, from left to right.
     pub fn replace(&mut self, file: FileId, line: u32, replaced: Vec<Replaced>) {
         self.replaced.insert((file.0, line), replaced);
     }
 
-    /// The place that was typed of one that the reader has seen.
+    /// The place in the typed text for a place in the text that the reader sees.
     pub fn typed(&self, span: Span) -> Span {
         let Some(replaced) = self.replaced.get(&(span.file.0, span.line)) else {
             return span;
         };
-        // the place of a column, at whose value `side` says where
+        // place of a column in the typed text; within a value `side` gives its start or end
         let typed = |column: u32, side: fn(&Replaced) -> u32| {
             let before = replaced.iter().take_while(|value| value.column <= column);
             match before.last() {
@@ -274,7 +280,7 @@ impl Sources {
         }
     }
 
-    /// The file of an id.
+    /// The file with the given id.
     pub fn get(&self, file: FileId) -> Option<&Source> {
         self.files.get(file.0 as usize)
     }
@@ -289,7 +295,7 @@ impl Sources {
         self.files.iter().map(Source::line_count).sum()
     }
 
-    /// The texts of all files, each but the first headed by a comment line with its name.
+    /// The texts of all files; each except the first begins with a comment line with its name.
     pub fn full_text(&self) -> String {
         let mut all = String::new();
         for source in &self.files {
@@ -304,7 +310,7 @@ impl Sources {
         all
     }
 
-    /// Where the file of `span` is included, where that file is included, and so on.
+    /// Places at which the file of `span` is included, the including file is included, and so on.
     pub fn include_chain(&self, span: Span) -> Vec<Span> {
         let parent = |span: &Span| self.get(span.file).and_then(Source::included_at);
         std::iter::successors(parent(&span), parent).collect()

@@ -1,11 +1,11 @@
-//! Words and numbers in messages: suggestions for misspelt words, text in lines of the screen's width,
-//! and floating-point numbers.
+//! Words and numbers in messages: suggestions for misspelt words, text in lines of the screen's width, and
+//! floating-point numbers.
 
-/// Most typing errors for which a suggestion is made.
+/// Largest number of typing errors for which a suggestion is made.
 const MOST_ERRORS: usize = 2;
 
-/// The candidate that `word` is probably meant to be: the one with the fewest typing errors, if
-/// they are few for the word's length.
+/// The candidate that `word` was probably meant to be: the one with the fewest typing errors, if
+/// these are few relative to the length of the word.
 pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = capitals(word).collect();
     let allowed = (word.len() / 3).min(MOST_ERRORS);
@@ -30,8 +30,8 @@ fn capitals(word: &str) -> impl Iterator<Item = char> {
     word.chars().flat_map(char::to_uppercase)
 }
 
-/// Insertions, deletions, replacements and exchanges of neighbours between two words, if they are
-/// no more than allowed.
+/// Number of insertions, deletions, replacements and exchanges of neighbours between two words;
+/// `None` if it is more than allowed.
 fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
     let mut before_last = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();
@@ -57,10 +57,10 @@ fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
     Some(last[b.len()]).filter(|&errors| errors <= allowed)
 }
 
-/// Most names that a message lists.
+/// Largest number of names that a message lists.
 const LISTED: usize = 8;
 
-/// A list of the defined names, of the first few where there are many.
+/// Text that lists the defined names, or the first few if there are many.
 pub fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     let names: Vec<&str> = names.collect();
     let plural = match kind {
@@ -77,17 +77,18 @@ pub fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     }
 }
 
-/// Width of the screen and of the files for it, in columns.
+/// Width, in columns, of the screen and of text files for it.
 pub const WIDTH: usize = 80;
 
-/// A text in lines, each but the first behind so many blanks; the first keeps its own.
+/// A text in lines; each line except the first is indented by `blanks` blanks, and the first keeps
+/// its own indentation.
 pub fn wrapped(text: &str, blanks: usize) -> String {
     let own = text.len() - text.trim_start().len();
     let first = " ".repeat(own);
     in_lines(first, blanks, text.split_whitespace(), " ").join("\n") + "\n"
 }
 
-/// Items with a gap between them in lines, the first line behind its head, the others behind so many blanks.
+/// Items in lines, separated by `gap`; the first line begins with `head`, the others with `blanks` blanks.
 pub fn in_lines<'t>(
     head: String,
     blanks: usize,
@@ -112,10 +113,10 @@ pub fn in_lines<'t>(
     lines
 }
 
-/// Magnitudes that are written with all their digits.
+/// Range of magnitudes that are written without an exponent.
 const PLAIN: std::ops::Range<f64> = 1e-6..1e16;
 
-/// A number in a message, with an exponent when it would otherwise be a long row of zeros.
+/// A number in a message, with an exponent if it would otherwise be a long row of zeros.
 pub fn shown(x: f64) -> String {
     match x == 0.0 || PLAIN.contains(&x.abs()) {
         true => x.to_string(),

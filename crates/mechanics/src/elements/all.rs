@@ -16,17 +16,17 @@ use super::results::ElementResult;
 use super::{MAX_DOFS, MAX_NODES};
 use crate::model::{Element, ElementType, Model, Shape, Thickness};
 
-/// What the elements of one section and type have in common.
+/// Data that the elements of one section and type share.
 struct ElementGroup {
     element_type: ElementType,
     density: f64,
     thickness: Thickness,
 }
 
-/// Where the data of an element are.
+/// Place of the data of an element.
 #[derive(Clone, Copy)]
 enum ElementPlace {
-    /// In a chunk (index), at a place among its elements.
+    /// In a chunk (index), at a place among the elements of the chunk.
     Chunk(u32, u32),
     /// In a rigid body that turns, which no sweep visits.
     Rigid,
@@ -34,34 +34,34 @@ enum ElementPlace {
 
 /// All elements of a model, ready for integration. Displacements are vectors of 2 N entries.
 ///
-/// Sweeps over the elements run in parallel; their results are added up in the order of chunks and
-/// elements, so that they do not depend on the number of threads.
+/// Sweeps over the elements run in parallel. The results of a sweep are added up in the order of
+/// chunks and elements, so they do not depend on the number of threads.
 pub struct Elements {
     /// Nodes of the elements, one after the other.
     nodes: Vec<usize>,
-    /// Start of every element in `nodes`, and their end.
+    /// Start of every element in `nodes`, and the end of the last element.
     starts: Vec<usize>,
     kinds: Vec<ElementGroup>,
-    /// Kind (index) and place of every element.
+    /// Index of the kind of every element, and its place.
     places: Vec<(u32, ElementPlace)>,
     chunks: Vec<Box<dyn Chunk>>,
     /// Number of internal variables of all elements.
     variables: usize,
-    /// Damping of elements that is proportional to their mass, in the order of the elements.
+    /// Mass-proportional damping of elements, in the order of the elements.
     mass_damping: Vec<MassDamping>,
-    /// Springs and dashpots, whose places in lists follow those of the elements.
+    /// Springs and dashpots; in lists they follow the elements.
     connectors: Vec<PlacedConnector>,
-    /// Masses at nodes that belong to no rigid body (index, mass).
+    /// Masses at nodes that do not belong to a rigid body (index, mass).
     point_masses: Vec<(usize, f64)>,
     /// Reference positions of all nodes (length).
     coordinates: Vec<[f64; 2]>,
     dofs: usize,
-    /// Memory of the sweeps over tangents, kept between them and locked while one needs it.
+    /// Memory of the sweeps over tangents, kept between them and locked during a sweep.
     space: Mutex<Vec<f64>>,
 }
 
 impl Elements {
-    /// Masses at nodes that belong to no rigid body (index, mass).
+    /// Masses at nodes that do not belong to a rigid body (index, mass).
     pub fn point_masses(&self) -> &[(usize, f64)] {
         &self.point_masses
     }
@@ -102,7 +102,7 @@ impl Elements {
             }
             of_kind.retain(|&element| !is_rigid[element]);
             of_kind.sort_by_key(body);
-            // a body that rests costs nothing
+            // each body has its own chunks, so a body at rest costs nothing
             let bodies = of_kind.chunk_by(|a, b| body(a) == body(b));
             for elements in bodies.flat_map(|of_body| of_body.chunks(MAX_CHUNK)) {
                 let law = material.law.in_plane(element_type.plane);
@@ -152,7 +152,8 @@ impl Elements {
         &self.kinds[self.places[element].0 as usize]
     }
 
-    /// The chunk of an element, and its place among the elements there; none of an element of a rigid body that turns.
+    /// The chunk of an element, and its place among the elements there; `None` for an element of a rigid body that
+    /// turns.
     pub(super) fn chunk_of(&self, element: usize) -> Option<(&dyn Chunk, usize)> {
         match self.places[element].1 {
             ElementPlace::Chunk(chunk, place) => {
@@ -183,7 +184,7 @@ impl Elements {
         elements.chain(self.connectors.iter().map(PlacedConnector::nodes))
     }
 
-    /// Takes in the lengths of bodies that turn, by the pairs of dofs that their angles belong to.
+    /// Sets the lengths L of bodies that turn, each with the pair of dofs of its angle.
     pub fn measure_angles(&mut self, lengths: impl Iterator<Item = (usize, f64)>) {
         for (pair, length) in lengths {
             let connectors = self.connectors.iter_mut();
@@ -222,8 +223,7 @@ impl Elements {
         self.kind(element).thickness
     }
 
-    /// Share of each node of an element in a uniform force per volume (length^3); entries beyond its
-    /// nodes are 0.
+    /// Share of each node of an element in a uniform force per volume (length^3); entries after its nodes are 0.
     pub fn nodal_volumes(&self, element: usize) -> [f64; MAX_NODES] {
         self.geometry(element).nodal_volumes()
     }
@@ -244,14 +244,15 @@ impl Elements {
         }
     }
 
-    /// Internal variables of all points before the first increment, element by element: zero.
+    /// Internal variables of all points before the first increment, element by element; they are
+    /// all zero.
     pub fn initial_variables(&self) -> Vec<f64> {
         vec![0.0; self.variables]
     }
 }
 
-/// Elements (indices, increasing) of every section (index) and type, in the order of their first
-/// elements.
+/// Indices of the elements, increasing, of every section (index) and type, in the order of their
+/// first elements.
 fn by_kind(elements: &[Element]) -> Vec<((usize, ElementType), Vec<usize>)> {
     let (mut kinds, mut number) = (Vec::new(), HashMap::new());
     for (index, element) in elements.iter().enumerate() {
@@ -265,7 +266,7 @@ fn by_kind(elements: &[Element]) -> Vec<((usize, ElementType), Vec<usize>)> {
     kinds
 }
 
-/// Elements below which a sweep over them is not worth a second thread.
+/// Number of elements below which a sweep is not worth a second thread.
 const PARALLEL_CHUNK: usize = 1024;
 
 /// An element whose deformation gradient has a determinant that is not positive.
@@ -277,18 +278,18 @@ pub struct Inverted {
     pub determinant: f64,
 }
 
-/// Internal variables at the end of an increment.
+/// Internal variables of all elements at the end of an increment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Updated {
     /// Internal variables of all points, element by element.
     pub variables: Vec<f64>,
-    /// Energy dissipated on the way to them (force length).
+    /// Energy dissipated on the way to these variables (force length).
     pub dissipated: f64,
 }
 
 impl Elements {
-    /// Internal variables at the end of a motion, and what is dissipated on the way. Those that `motion` has stay as
-    /// they are: the increment commits or drops what this returns.
+    /// Internal variables at the end of a motion, and the energy dissipated on the way. The variables of `motion` do
+    /// not change: the increment commits or drops the returned variables.
     pub fn update(&self, motion: Motion) -> Updated {
         let mut updated = Updated {
             variables: motion.committed.to_vec(),
@@ -324,13 +325,14 @@ impl Elements {
         results
     }
 
-    /// Whether a material expands with its temperature.
+    /// Whether any material expands with its temperature.
     pub fn expand(&self) -> bool {
         self.chunks.iter().any(|chunk| chunk.expands())
     }
 
-    /// Potential of the elements that expand at the end of a motion, eq. (2.55) (force length): the energy that they store there and
-    /// what is dissipated on the way to it. What the internal force does of work at one temperature is its change.
+    /// Potential, at the end of a motion, of the elements that expand, eq. (2.55) (force length): the energy that they
+    /// store there, and the energy dissipated on the way. The work of the internal force at one temperature is the
+    /// change of this potential.
     ///
     /// ```text
     /// Phi(U; T) = min over z of W(U, z; T) + D(z)
@@ -350,7 +352,8 @@ impl Elements {
         potential
     }
 
-    /// Energy that the elements that expand store at the end of a motion, with the internal variables there (force length).
+    /// Energy, at the end of a motion, that the elements that expand store with the internal variables there (force
+    /// length).
     pub fn stored_by_expanding(&self, motion: Motion) -> f64 {
         let expanding = self.chunks.iter().filter(|chunk| chunk.expands());
         let results = expanding.flat_map(|chunk| chunk.evaluate(motion));
@@ -361,7 +364,7 @@ impl Elements {
     /// end, 2 N entries.
     ///
     /// # Errors
-    /// The first element that is turned inside out.
+    /// Returns the first element that is turned inside out, as an error.
     pub fn internal_force(&self, motion: Motion) -> Result<Vec<f64>, Inverted> {
         let mut force = vec![0.0; self.dofs];
         self.write_internal_force(motion, &mut force)?;
@@ -371,7 +374,7 @@ impl Elements {
     /// Writes [`Self::internal_force`] to `total`, 2 N entries.
     ///
     /// # Errors
-    /// The first element that is turned inside out.
+    /// Returns the first element that is turned inside out, as an error.
     pub fn write_internal_force(&self, motion: Motion, total: &mut [f64]) -> Result<(), Inverted> {
         if !self.sum_chunks(|chunk| chunk.sum_forces(motion)) {
             self.chunks.iter().for_each(|chunk| chunk.clear_sums());
@@ -385,12 +388,13 @@ impl Elements {
         Ok(())
     }
 
-    /// Whether there are threads, and elements enough for them.
+    /// Whether there are several threads, and enough elements for them.
     fn is_worth_threads(&self) -> bool {
         rayon::current_num_threads() > 1 && self.len() >= 2 * PARALLEL_CHUNK
     }
 
-    /// Sums up forces of the elements in chunks. False where one is turned inside out.
+    /// Adds up forces of the elements, chunk by chunk. Returns false if an element is turned inside
+    /// out.
     fn sum_chunks(&self, sum: impl Fn(&dyn Chunk) -> bool + Sync + Send) -> bool {
         if self.is_worth_threads() {
             let sums = self.chunks.par_iter().map(|chunk| sum(&**chunk));
@@ -400,7 +404,7 @@ impl Elements {
         }
     }
 
-    /// The first element that is turned inside out.
+    /// Returns the first element that is turned inside out.
     fn inverted(&self, motion: Motion) -> Inverted {
         let all = self.chunks.iter().flat_map(|chunk| {
             let elements = chunk.elements().iter().copied();
@@ -427,14 +431,14 @@ impl Elements {
         })
     }
 
-    /// Memory of the sweeps, of which there is one at a time.
+    /// Memory of the sweeps; only one sweep runs at a time.
     fn space(&self) -> MutexGuard<'_, Vec<f64>> {
         self.space.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Calls `add(place, k)` with the tangent of every element and spring that is `wanted`, and maybe of others
-    /// beside them, or its positive part, k being D x D column by column, in the configuration of
-    /// [`Self::internal_force`]. The places are those of [`Self::connected`].
+    /// Calls `add(place, k)` with the tangent, or its positive part, of every element and spring that is `wanted`, and
+    /// possibly of others. The matrix k is D x D, column by column, in the configuration of [`Self::internal_force`].
+    /// The places of the elements are those of [`Self::connected`].
     pub fn for_each_tangent(
         &self,
         motion: Motion,
@@ -445,7 +449,8 @@ impl Elements {
         self.sweep_tangents(motion, part, &wanted, &mut add);
     }
 
-    /// [`Self::for_each_tangent`], which is not compiled anew for every caller: there are many kinds of elements.
+    /// [`Self::for_each_tangent`] without a type parameter for the caller, so that it is compiled only once for the
+    /// many kinds of elements.
     fn sweep_tangents(
         &self,
         motion: Motion,
@@ -468,8 +473,8 @@ impl Elements {
         }
     }
 
-    /// Tangent of one element in the configuration of [`Self::internal_force`], D x D column by column; zero in a rigid body
-    /// that turns.
+    /// Tangent of one element in the configuration of [`Self::internal_force`], D x D column by column; zero in a rigid
+    /// body that turns.
     pub fn tangent(&self, element: usize, motion: Motion) -> Vec<f64> {
         let d = 2 * self.nodes(element).len();
         let chunk = self.chunk_of(element);
@@ -481,7 +486,7 @@ impl Elements {
 
 impl Elements {
     /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
-    /// at whose nodes `v` is zero cost nothing.
+    /// at whose nodes `v` is zero are skipped.
     pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
         let moves = |&node: &usize| v[2 * node] != 0.0 || v[2 * node + 1] != 0.0;
@@ -507,13 +512,13 @@ impl Elements {
             || self.dashpots().next().is_some()
     }
 
-    /// The dashpots with their places behind the elements.
+    /// The dashpots, each with its place, which follows those of the elements.
     fn dashpots(&self) -> impl Iterator<Item = (usize, &PlacedConnector)> {
         let all = (self.len()..).zip(&self.connectors);
         all.filter(|(_, connector)| connector.is_dashpot())
     }
 
-    /// Force of damping F_d in an increment of length `dt` with the displacement increment `d`, eq.
+    /// Damping force F_d in an increment of length `dt` with the displacement increment `d`, eq.
     /// (4.16), 2 N entries.
     pub fn damping_force(&self, increment: Increment, d: &[f64], dt: f64) -> Vec<f64> {
         let mut force = self.mass_damping_impulse(d);
@@ -531,8 +536,7 @@ impl Elements {
         force
     }
 
-    /// Impulse that mass-proportional damping takes in a displacement increment, alpha M d, 2 N entries
-    /// (force time).
+    /// Impulse that mass-proportional damping removes in a displacement increment, alpha M d, 2 N entries (force time).
     pub fn mass_damping_impulse(&self, d: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.dofs];
         for damping in &self.mass_damping {
@@ -555,9 +559,9 @@ impl Elements {
         (viscous.sum::<f64>() + of_mass.sum::<f64>() + dashpots.sum::<f64>()) / dt
     }
 
-    /// Calls `add(place, c)` with the damping matrices of every damped element and dashpot in an increment of length
-    /// `dt`, eq. (4.19), or their positive part, c being D x D column by column (force time/length). An element may
-    /// have two, one of the viscosity and one of its mass.
+    /// Calls `add(place, c)` with the damping matrices, or their positive parts, of every damped element and dashpot in
+    /// an increment of length `dt`, eq. (4.19). The matrix c is D x D, column by column (force time/length). An element
+    /// may have two matrices, one of the viscosity and one proportional to its mass.
     pub fn for_each_damping(
         &self,
         (increment, dt): (Increment, f64),
@@ -605,7 +609,7 @@ fn add_vector(nodes: &[usize], vector: &[f64], sum: &mut [f64]) {
     }
 }
 
-/// Adds k v to a product over all dofs, k being a matrix of an element with these nodes.
+/// Adds k v to a product over all dofs, where k is a matrix of an element with these nodes.
 fn add_product(nodes: &[usize], k: &[f64], v: &[f64], product: &mut [f64]) {
     let d = 2 * nodes.len();
     for (j, column) in dofs(nodes).enumerate() {
@@ -621,7 +625,7 @@ mod tests {
     use crate::materials::{Law, NeoHooke};
     use crate::model::{Damping, Element, ElementType, Formulation, Material, Model, Section};
 
-    /// A model of a law on three quadrilaterals and a triangle, with other types of the quadrilaterals.
+    /// A model of a law on three quadrilaterals of the type `quad` and a triangle.
     fn model(law: Law, quad: ElementType) -> Model {
         let mut model = Model::default();
         model.materials.push(Material {
@@ -741,7 +745,7 @@ mod tests {
     #[test]
     fn an_end_inside_out_is_found_where_halfway_nothing_is() {
         for model in models().iter().chain(&with_mean_dilatation()) {
-            // heights become -0.2 of themselves, halfway 0.4
+            // heights are multiplied by -0.2 at the end and by 0.4 halfway
             let coordinates = model.mesh.coordinates.iter();
             let u: Vec<f64> = coordinates.flat_map(|x| [0.0, -1.2 * x[1]]).collect();
             let start = vec![0.0; u.len()];

@@ -1,6 +1,6 @@
-//! Elements of one shape side by side, and their kinematics: displacement gradients and strains at the integration points at
-//! one configuration or between two (energy-momentum form), and the sums over the points that force and tangent are.
-//! See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
+//! Elements of one shape next to each other, and their kinematics: displacement gradients and strains at the
+//! integration points, in one configuration or between two (energy-momentum form). Also the sums over the integration
+//! points that give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -11,23 +11,23 @@ use super::shapes::{IntegratedShape, Jacobian};
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{Lanes, StrainChange, Strains};
 
-/// A symmetric tensor of several elements.
+/// A symmetric tensor for several elements.
 pub type SymmetricLanes = crate::materials::Symmetric<Lanes>;
-/// A tangent of several elements.
+/// A material tangent for several elements.
 pub type TangentLanes = crate::materials::Tangent<Lanes>;
 
-/// A tensor of the plane, row by row.
+/// A tensor of the plane, row by row, for several elements.
 pub type TensorLanes = [[Lanes; 2]; 2];
-/// Values x, then y, of the nodes.
+/// Values at the nodes for several elements, x before y.
 pub type NodalLanes<const N: usize> = [[Lanes; N]; 2];
 
-/// Elements of one shape side by side.
+/// Elements of one shape next to each other.
 pub struct ElementBlock<const N: usize, const P: usize> {
-    /// Nodes, numbered within the chunk.
+    /// Nodes of the elements, numbered within the chunk.
     pub nodes: [[u16; LANES]; N],
     /// (dX/dr)^-1 at the integration points (1/length).
     pub inverse: [TensorLanes; P],
-    /// Weights of the points (length^3).
+    /// Weights of the integration points (length^3).
     pub volume: [Lanes; P],
 }
 
@@ -36,40 +36,42 @@ pub struct ElementBlock<const N: usize, const P: usize> {
 pub enum BlockMotion<const N: usize> {
     /// Displacements u.
     At(NodalLanes<N>),
-    /// Energy-momentum form: the mid configuration (u0 + u1)/2 and half the way (u1 - u0)/2.
+    /// Energy-momentum form: the mid configuration (u0 + u1)/2, and half the displacement increment
+    /// (u1 - u0)/2.
     Between(NodalLanes<N>, NodalLanes<N>),
 }
 
 /// Displacement gradient at a point.
 #[derive(Clone, Copy, Default)]
 pub struct Gradient {
-    /// H in the section.
+    /// H in the plane of the section.
     pub h: TensorLanes,
-    /// h = u_r/R around the axis of a body of revolution.
+    /// h = u_r/R around the axis, in a body of revolution.
     pub around: Lanes,
 }
 
 /// Deformation at one integration point.
 #[derive(Clone, Copy)]
 pub struct Deformation {
-    /// Displacement gradient of the strain-displacement matrix: that of the mid configuration in the energy-momentum form.
+    /// Displacement gradient in the strain-displacement matrix; in the energy-momentum form that of the mid
+    /// configuration.
     pub gradient: Gradient,
     /// Strains at which the material is evaluated.
     pub strains: Strains<Lanes>,
 }
 
-/// A block in a motion, with what its formulation has in the reference configuration.
+/// A block in a motion, with the reference data of its formulation.
 pub struct MovedBlock<'a, const N: usize, const P: usize, R> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
-    /// 1/R at the points: zero in plane strain, the ring of an infinite radius; in elements of the plane none is read
-    /// (1/length).
+    /// 1/R at the integration points (1/length). The radius is infinite in plane strain, so 1/R is zero; elements of
+    /// the plane do not read it.
     pub over_radius: &'a [Lanes; P],
-    /// What the formulation has beside the points.
+    /// Reference data of the formulation other than the points.
     pub reference: &'a R,
     /// Displacements of the nodes.
     pub motion: BlockMotion<N>,
-    /// The elements' own variables that the last accepted increment has committed; none at the start.
+    /// The elements' own variables that the last accepted increment has committed; empty at the start.
     pub own_variables: [&'a [f64]; LANES],
 }
 
@@ -103,7 +105,7 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
 }
 
 impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
-    /// Displacement gradient H = du/dr J^-1 at a point, eq. (2.1), of displacements of the nodes.
+    /// Displacement gradient H = du/dr J^-1 at a point, eq. (2.1), from displacements of the nodes.
     #[inline(always)]
     pub fn gradient<S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
@@ -121,7 +123,7 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         }
     }
 
-    /// Deformation at a point; `positive` takes in det F.
+    /// Deformation at a point; det F is entered in `positive`.
     #[inline(always)]
     pub fn deformation<S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
@@ -137,13 +139,13 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         }
     }
 
-    /// h_a/R of the nodes at a point.
+    /// Row h_a/R of the nodes at a point.
     #[inline(always)]
     pub fn hoop_row<S: IntegratedShape<N, P>>(&self, p: usize) -> [Lanes; N] {
         from_fn(|a| self.over_radius[p] * S::FUNCTIONS.values[p][a])
     }
 
-    /// sum_p B_L^T S of stresses with their weights in displacement gradients (force).
+    /// sum_p B_L^T S for stresses with their weights, in displacement gradients (force).
     #[inline(always)]
     pub fn nodal_forces<'a, S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
@@ -157,7 +159,8 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         forces.sum::<S, N, HOOP>()
     }
 
-    /// Smallest det F at the points, halfway and at the end; NaN where one is.
+    /// Smallest det F at the points, in the mid configuration and at the end; NaN if one of them is
+    /// NaN.
     pub fn least_determinant<S: IntegratedShape<N, P>, const HOOP: bool>(&self) -> [f64; LANES] {
         let mut least = [f64::INFINITY; LANES];
         let mut take_in = |gradient: &Gradient| {
@@ -185,11 +188,11 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
     }
 }
 
-/// Stresses at the points, as forces follow from them.
+/// Stresses at the points, in the form from which forces are computed.
 pub struct PointForces<const P: usize> {
-    /// F S J^-T with the weight, row by row.
+    /// F S J^-T times the weight, row by row.
     q: [[[Lanes; 2]; P]; 2],
-    /// (1 + h) S_33/R with the weight; read in bodies of revolution alone.
+    /// (1 + h) S_33/R times the weight; only bodies of revolution read it.
     hoop: [Lanes; P],
 }
 
@@ -204,7 +207,7 @@ impl<const P: usize> Default for PointForces<P> {
 }
 
 impl<const P: usize> PointForces<P> {
-    /// Takes the stress of a point with its weight, in a displacement gradient.
+    /// Stores the stress of a point, multiplied by its weight, in a displacement gradient.
     #[inline(always)]
     pub fn take<const N: usize, const HOOP: bool, R>(
         &mut self,
@@ -221,7 +224,7 @@ impl<const P: usize> PointForces<P> {
         }
     }
 
-    /// sum_p B_L^T S (force), with (1 + h) S_33 h_a/R in the direction of the radius in a body of revolution, eq. (2.33).
+    /// sum_p B_L^T S (force); in a body of revolution (1 + h) S_33 h_a/R is added along the radius, eq. (2.33).
     #[inline(always)]
     pub fn sum<S: IntegratedShape<N, P>, const N: usize, const HOOP: bool>(&self) -> NodalLanes<N> {
         let mut force = [S::nodal_sums(&self.q[0]), S::nodal_sums(&self.q[1])];
@@ -236,7 +239,7 @@ impl<const P: usize> PointForces<P> {
     }
 }
 
-/// Sum over N nodes, points or components.
+/// Sum of N terms, of nodes, points or components.
 #[inline(always)]
 pub fn sum<const N: usize>(of: impl Fn(usize) -> Lanes) -> Lanes {
     let mut sum = Lanes::ZERO;
@@ -252,7 +255,7 @@ pub fn dot<const M: usize>(a: &[Lanes; M], b: &[Lanes; M]) -> Lanes {
     sum::<M>(|k| a[k] * b[k])
 }
 
-/// The smaller of two values; NaN when one is.
+/// The smaller of two values; NaN if one is NaN.
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
@@ -268,7 +271,8 @@ impl Deformation {
         }
     }
 
-    /// That between two, from H of the mid configuration and half its change.
+    /// The deformation between two configurations, from H of the mid configuration and half its
+    /// change.
     #[inline(always)]
     pub fn between<const HOOP: bool>(
         mid: Gradient,
@@ -285,7 +289,7 @@ impl Deformation {
 }
 
 impl Gradient {
-    /// Sum with another.
+    /// Sum of this gradient and another.
     #[inline(always)]
     pub fn plus(&self, other: &Gradient) -> Gradient {
         Gradient {
@@ -313,7 +317,8 @@ impl Gradient {
         }
     }
 
-    /// The strains of F - G and of F + G, G being half of the way.
+    /// Means and half differences of the strains of F - G and F + G, where G is half the change of
+    /// F.
     #[inline(always)]
     pub fn strain_change<const HOOP: bool>(&self, direction: &Gradient) -> StrainChange<Lanes> {
         let (mean, half) = strain_change(&self.h, &direction.h);
@@ -333,7 +338,7 @@ impl Gradient {
         )
     }
 
-    /// Takes in det F, and the stretch around the axis.
+    /// Enters det F, and in bodies of revolution the stretch around the axis.
     #[inline(always)]
     pub fn is_positive<const HOOP: bool>(&self, others: Positive) -> Positive {
         let with_section = others.and(determinant(&self.h));
@@ -344,20 +349,20 @@ impl Gradient {
     }
 }
 
-/// F = I + H.
+/// Deformation gradient F = I + H.
 #[inline(always)]
 pub fn deformation_gradient([[xx, xy], [yx, yy]]: &TensorLanes) -> TensorLanes {
     [[*xx + 1.0, *xy], [*yx, *yy + 1.0]]
 }
 
-/// det F = det(I + H).
+/// Determinant det F = det(I + H).
 #[inline(always)]
 pub fn determinant(h: &TensorLanes) -> Lanes {
     let [[xx, xy], [yx, yy]] = deformation_gradient(h);
     xx * yy - xy * yx
 }
 
-/// E = (H + H^T + H^T H)/2, eq. (2.2).
+/// Green-Lagrange strain E = (H + H^T + H^T H)/2, eq. (2.2).
 #[inline(always)]
 pub fn green_lagrange(h: &TensorLanes) -> SymmetricLanes {
     let [xx, yy, xy] = half_of_square(h);
@@ -365,7 +370,8 @@ pub fn green_lagrange(h: &TensorLanes) -> SymmetricLanes {
     in_plane([h[0][0] + xx, h[1][1] + yy, shear])
 }
 
-/// (E0 + E1)/2 and (E1 - E0)/2 of F0 = F - G and F1 = F + G, F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = 2 (F^T G + G^T F).
+/// (E0 + E1)/2 and (E1 - E0)/2 for F0 = F - G and F1 = F + G with F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = 2 (F^T
+/// G + G^T F).
 #[inline(always)]
 fn strain_change(h: &TensorLanes, g: &TensorLanes) -> (SymmetricLanes, SymmetricLanes) {
     let (e, square, f) = (
@@ -384,20 +390,20 @@ fn strain_change(h: &TensorLanes, g: &TensorLanes) -> (SymmetricLanes, Symmetric
     )
 }
 
-/// A tensor of the components 11, 22 and 12.
+/// A symmetric tensor with the components 11, 22 and 12.
 #[inline(always)]
 pub fn in_plane([x, y, w]: [Lanes; 3]) -> SymmetricLanes {
     SymmetricLanes::new(x, y, Lanes::ZERO, w)
 }
 
-/// A^T A/2, components 11, 22 and 12.
+/// A^T A/2, as components 11, 22 and 12.
 #[inline(always)]
 fn half_of_square(a: &TensorLanes) -> [Lanes; 3] {
     let product = |i: usize, j: usize| (a[0][i] * a[0][j] + a[1][i] * a[1][j]) * 0.5;
     [product(0, 0), product(1, 1), product(0, 1)]
 }
 
-/// A + B.
+/// The sum A + B.
 #[inline(always)]
 pub fn plus(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
     [
@@ -406,7 +412,7 @@ pub fn plus(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
     ]
 }
 
-/// A S with a symmetric S.
+/// The product A S with a symmetric S.
 #[inline(always)]
 pub fn times_symmetric(a: &TensorLanes, s: &SymmetricLanes) -> TensorLanes {
     let row = |[x, y]: [Lanes; 2]| [x * s.x + y * s.w, x * s.w + y * s.y];
@@ -423,8 +429,9 @@ pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
 /// Matrix between the nodes: entry [a][b] is the 2 x 2 block of the directions of a and b.
 pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 
-/// Adds what the strain around the axis brings to the tangent of a point, for a <= b: with its row b_a = (1 + h) h_a/R of B_L,
-/// which acts on displacements along the radius, and C_33 of each component of the strain in `c`,
+/// Adds the part of the strain around the axis to the tangent of a point, for a <= b. The row of B_L for the strain
+/// around the axis is b_a = (1 + h) h_a/R, which acts on displacements along the radius; `c` has C_33 of each component
+/// of the strain,
 ///
 /// ```text
 /// b_a C_33,. B_b + its transpose + b_a b_b C_3333 + S_33 h_a h_b/R²
@@ -471,12 +478,12 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
     }
 }
 
-/// Elasticity A = dP/dF, P = F S, of the first Piola-Kirchhoff stress.
+/// Elasticity A = dP/dF of the first Piola-Kirchhoff stress P = F S.
 ///
-/// A_iIjJ = F_iK C_KILJ F_jL + delta_ij S_IJ; entry [2 j + J] of the stress of row i, [I].
+/// A_iIjJ = F_iK C_KILJ F_jL + delta_ij S_IJ; entry [i][2 j + J][I].
 pub type Elasticity = [[[Lanes; 2]; 4]; 2];
 
-/// A of a deformation gradient, a stress and its tangent in Voigt order.
+/// Elasticity A for a deformation gradient, a stress and its tangent in Voigt order.
 #[inline(always)]
 pub fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elasticity {
     let mut a = [[[Lanes::ZERO; 2]; 4]; 2];
@@ -503,13 +510,13 @@ pub fn elasticity(f: &TensorLanes, s: &SymmetricLanes, c: &TangentLanes) -> Elas
     a
 }
 
-/// S v with a symmetric S.
+/// The product S v with a symmetric S.
 #[inline(always)]
 fn times(s: &SymmetricLanes, &[x, y]: &[Lanes; 2]) -> [Lanes; 2] {
     [s.x * x + s.w * y, s.w * x + s.y * y]
 }
 
-/// Adds g_a . A . g_b for a <= b.
+/// Adds the products g_a A g_b of the gradients for a <= b.
 #[inline(always)]
 pub fn add_products<const N: usize>(k: &mut MatrixLanes<N>, g: &[[Lanes; 2]; N], a: &Elasticity) {
     for second in 0..N {

@@ -1,5 +1,5 @@
-//! Chunks: elements of one type and material in blocks, with the nodes that they share. What a chunk
-//! reads and adds to fits the first caches, and chunks are swept on any number of threads.
+//! Chunks: elements of one type and material in blocks, with their common nodes. The data that a chunk reads and
+//! changes fit into the first caches; chunks are swept by any number of threads.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -25,10 +25,10 @@ use crate::materials::{
 };
 use crate::model::Thickness;
 
-/// Elements of a chunk at most.
+/// Largest number of elements of a chunk.
 pub const MAX_CHUNK: usize = 1024;
 
-/// Blocks whose tangents are not worth a second thread.
+/// Number of blocks up to which tangents are not worth a second thread.
 const PARALLEL_BLOCKS: usize = 64;
 
 /// A sweep over tangents.
@@ -36,41 +36,43 @@ const PARALLEL_BLOCKS: usize = 64;
 pub struct TangentSweep<'a> {
     pub motion: Motion<'a>,
     pub part: TangentPart,
-    /// Whether the viscous stress (`*DAMPING`) is differentiated, in place of that of the material.
+    /// Whether the viscous stress (`*DAMPING`) is differentiated instead of the stress of the
+    /// material.
     pub viscous: bool,
     /// Whether the tangent of an element is needed.
     pub wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
-/// Elements that are swept together. An element is named by its place among them where it is not by its index.
+/// Elements that are swept together. A place is the number of an element among those that are swept together; otherwise
+/// elements are named by their indices.
 pub trait Chunk: Send + Sync {
     /// Elements (indices).
     fn elements(&self) -> &[usize];
 
-    /// Where the internal variables of the elements are among those of all.
+    /// Range of the internal variables of these elements among those of all elements.
     fn variables(&self) -> Range<usize>;
 
-    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the
-    /// sums. False where an element is turned inside out.
+    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the sums.
+    /// Returns false if an element is turned inside out.
     fn sum_forces(&self, motion: Motion) -> bool;
 
     /// Whether the material has viscosity.
     fn is_viscous(&self) -> bool;
 
-    /// Adds the forces of the viscosity in a motion, over the length of the increment, to the sums, eq. (4.16).
+    /// Adds the viscous impulses in a motion, forces times the length of the increment, to the sums, eq. (4.16).
     fn sum_viscous(&self, motion: Motion);
 
-    /// Work of the viscosity in a motion, times the length of the increment, eq. (4.18) (force length time).
+    /// Viscous work in a motion, times the length of the increment, eq. (4.18) (force length time).
     fn viscous_work(&self, motion: Motion) -> f64;
 
-    /// Adds the sums to a vector over all dofs, and makes them zero.
+    /// Adds the sums to a vector over all dofs and resets them to zero.
     fn add_sums(&self, total: &mut [f64]);
 
-    /// Makes the sums zero.
+    /// Resets the sums to zero.
     fn clear_sums(&self);
 
-    /// Smallest determinant of the deformation gradient of every element, halfway and at the end of a motion; NaN where
-    /// an element has no force.
+    /// Smallest determinant of the deformation gradient of every element, in the mid configuration and at the end of a
+    /// motion; NaN if an element has no force.
     fn determinants(&self, motion: Motion) -> Vec<f64>;
 
     /// Strain energy, stress and strain of every element at the end of a motion.
@@ -82,16 +84,16 @@ pub trait Chunk: Send + Sync {
     /// Whether the material expands with its temperature.
     fn expands(&self) -> bool;
 
-    /// Writes the internal variables at the end of a motion into those of all elements, and gives the energy dissipated on
-    /// the way to them (force length).
+    /// Writes the internal variables of the elements at the end of a motion into those of all elements, and returns the
+    /// energy dissipated on the way (force length).
     fn update(&self, motion: Motion, updated: &mut [f64]) -> f64;
 
     /// Tangent of an element in a motion, D x D column by column.
     fn tangent(&self, place: usize, motion: Motion) -> Vec<f64>;
 
-    /// Calls `add(element, k)` with the tangent of every element that is wanted or in a block with one, D x
-    /// D column by column. The tangents are made in `space`: those of the whole chunk in parallel where there are
-    /// threads.
+    /// Calls `add(element, k)` with the tangent of every element that is wanted, or in a block with a wanted one, D x D
+    /// column by column. The tangents are made in `space`; with several threads those of the whole chunk are made in
+    /// parallel.
     fn for_each_tangent(
         &self,
         sweep: TangentSweep,
@@ -100,7 +102,7 @@ pub trait Chunk: Send + Sync {
     );
 }
 
-/// Internal variables of one element: those of its points, one after the other, and its own behind them.
+/// Numbers of internal variables of one element: the number at its points, one after the other, and then its own.
 #[derive(Clone, Copy)]
 struct VariableLayout {
     of_points: usize,
@@ -117,15 +119,16 @@ impl VariableLayout {
 struct Heating<const P: usize> {
     expansion: Expansion,
     plane: Plane,
-    /// Temperatures of the start of the analysis at the points of every block.
+    /// Temperatures at the start of the analysis at the points of every block.
     initial: Vec<[Lanes; P]>,
 }
 
-/// What the elements of a chunk are made of.
+/// Material of the elements of a chunk.
 pub struct ChunkMaterial<'a> {
     pub law: PlaneLaw,
     pub viscosity: Option<Viscosity>,
-    /// How they expand, and the temperature of every node at the start of the analysis, none where it is zero.
+    /// Thermal expansion, and the temperature of every node at the start of the analysis; the list is empty if all are
+    /// zero.
     pub expansion: Option<(Expansion, &'a [f64])>,
     pub plane: Plane,
 }
@@ -135,26 +138,27 @@ pub struct ShapeChunk<const N: usize, const P: usize, const HOOP: bool, S, F>
 where
     F: Formulation<N, P, HOOP>,
 {
-    /// Elements (indices), lane after lane and block after block.
+    /// Indices of the elements, lane after lane and block after block.
     elements: Vec<usize>,
-    /// Node indices, increasing; blocks have places in this list. Behind them are those of the places of the last block that
-    /// no element fills, which repeat the last element.
+    /// Node indices, increasing; blocks refer to places in this list. After the increasing indices come the nodes for
+    /// the places of the last block that no element fills; they repeat the last element.
     nodes: Vec<usize>,
-    /// Number of the former.
+    /// Number of the increasing node indices.
     node_count: usize,
     blocks: Vec<ElementBlock<N, P>>,
-    /// 1/R at the points of every block; zeros for all blocks of the plane (1/length).
+    /// 1/R at the points of every block (1/length); in the plane one entry of zeros serves for all
+    /// blocks.
     over_radius: Vec<[Lanes; P]>,
-    /// What the formulation has beside the points of every block.
+    /// Reference data of the formulation, other than the points, of every block.
     references: Vec<F::Reference>,
     law: PlaneLaw,
     viscosity: Option<Viscosity>,
     heating: Option<Heating<P>>,
     layout: VariableLayout,
-    /// Where the internal variables of the first element begin.
+    /// Start of the internal variables of the first element.
     first_variable: usize,
-    /// Sums of the last sweep over the nodes, zero once they have been read; locked by the thread that makes or reads
-    /// them.
+    /// Sums of the last sweep over the nodes, zero after they have been read; they are locked by the thread that
+    /// computes or reads them.
     sums: Mutex<Vec<[f64; 2]>>,
     kind: PhantomData<S>,
 }
@@ -164,8 +168,8 @@ where
     S: IntegratedShape<N, P> + Send + Sync,
     F: Formulation<N, P, HOOP>,
 {
-    /// A chunk of elements (indices) with their nodes, between nodes at the coordinates `x`, of the
-    /// thickness given. Their internal variables begin at a place.
+    /// A chunk of elements (indices) with the nodes `of` each, node coordinates `x` and the given
+    /// thickness. The internal variables of the chunk begin at `first_variable`.
     pub fn new(
         elements: Vec<usize>,
         of: &[[usize; N]],
@@ -257,8 +261,8 @@ where
         }
     }
 
-    /// Variables of the elements of a block among those of all; none where there are none. Places that no element fills have
-    /// those of the last.
+    /// Variables of the elements of a block among those of all elements; empty if there are none. Places that no
+    /// element fills have the variables of the last element.
     #[inline(always)]
     fn variables_of<'a>(&self, all: &'a [f64], block: usize) -> [&'a [f64]; LANES] {
         let count = self.layout.count();
@@ -289,14 +293,14 @@ where
         }
     }
 
-    /// At the end of a motion.
+    /// A block at the end of a motion.
     #[inline(always)]
     fn at<'a>(&'a self, number: usize, motion: Motion<'a>) -> MovedBlock<'a, N, P, F::Reference> {
         let end = self.gather(&self.blocks[number], motion.end);
         self.with(number, BlockMotion::At(end), motion.committed)
     }
 
-    /// Between displacements of the start and the end of a motion.
+    /// A block between the displacements at the start and at the end of a motion.
     #[inline(always)]
     fn between<'a>(
         &'a self,
@@ -330,7 +334,7 @@ where
         }
     }
 
-    /// Adds the forces of all blocks to the sums, of the material or of its viscosity.
+    /// Adds the forces of all blocks, of the material or of its viscosity, to the sums.
     fn sweep(&self, motion: Motion, viscosity: Option<&Viscosity>) -> Positive {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.is_strained(motion) {
@@ -360,7 +364,7 @@ where
         }
     }
 
-    /// Adds the forces of all blocks by a law without internal variables to the sums.
+    /// Adds the forces of all blocks, by a law without internal variables, to the sums.
     fn add_elastic(
         &self,
         motion: Motion,
@@ -376,24 +380,24 @@ where
         positive
     }
 
-    /// The force by any law, and whether det F is positive; compiled once.
+    /// The force by any law, and whether det F is positive; the function is compiled only once.
     #[inline(never)]
     fn force(at: &MovedBlock<N, P, F::Reference>, law: &AnyLaw<HOOP>) -> (NodalLanes<N>, Positive) {
         F::force::<S>(at, law)
     }
 
-    /// The results of points by any law; compiled once.
+    /// The results of points by any law; the function is compiled only once.
     #[inline(never)]
     fn results(at: &MovedBlock<N, P, F::Reference>, law: &AnyLaw<HOOP>) -> [ResultPoint; P] {
         F::results::<S>(at, law)
     }
 
-    /// The law of a block in a motion, with the variables of its points among those of all elements.
+    /// The law of a block in a motion, with the variables of its points, which are a part of those of all elements.
     fn law_of<'a>(&'a self, block: usize, motion: Motion<'a>) -> LawInLanes<'a> {
         self.law_with(block, motion, self.of_points(motion.committed, block))
     }
 
-    /// The law of a block at the temperatures of a motion, with variables of its points.
+    /// The law of a block at the temperatures of a motion, with the variables of its points.
     fn law_with<'a>(
         &'a self,
         block: usize,
@@ -434,8 +438,8 @@ where
         self.heating.is_some() && !motion.temperature.is_empty()
     }
 
-    /// Whether an element may be strained: nodes have unlike displacements or move along the radius, or the material is heated
-    /// or has internal variables. In bodies that are fixed none is.
+    /// Whether an element may be strained: its nodes have different displacements or move along the radius, or the
+    /// material is heated or has internal variables. No element of a fixed body is strained.
     fn is_strained(&self, motion: Motion) -> bool {
         let differs = |u: &[f64]| {
             let u = u.as_chunks::<2>().0;
@@ -463,7 +467,7 @@ where
         values
     }
 
-    /// Elements (indices) of a block.
+    /// Indices of the elements of a block.
     fn elements_of(&self, block: usize) -> &[usize] {
         let first = LANES * block;
         &self.elements[first..(first + LANES).min(self.elements.len())]
@@ -677,7 +681,7 @@ where
     }
 }
 
-/// Adds the internal forces of a block to sums over the nodes of a chunk, and gives whether det F is positive.
+/// Adds the internal forces of a block to sums over the nodes of a chunk, and returns whether det F is positive.
 #[inline(always)]
 fn add_force<const N: usize, const P: usize, R>(
     at: &MovedBlock<N, P, R>,
@@ -693,8 +697,9 @@ fn add_force<const N: usize, const P: usize, R>(
     *positive
 }
 
-/// Temperatures at the points, from those of the nodes of every element. Linear elements have the mean of theirs, quadratic
-/// ones the linear or bilinear field between their corners: strains of the displacements are of these degrees.
+/// Temperatures at the points, from the temperatures of the nodes of every element. For linear elements the temperature
+/// is the mean of the nodes, for quadratic ones the linear or bilinear field between the corners: strains of
+/// displacements have the same degrees.
 fn temperatures<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     of: impl Fn(usize, usize) -> f64,
 ) -> [Lanes; P] {
@@ -715,7 +720,7 @@ fn place(nodes: &[usize], node: usize) -> u16 {
     nodes.partition_point(|&other| other < node) as u16
 }
 
-/// Writes the symmetric matrix of one element of which the lanes have the entries [a][b] with a <= b.
+/// Writes the symmetric matrix of one element; the lanes contain the entries [a][b] with a <= b.
 fn write_matrix<const N: usize>(lane: usize, k: &MatrixLanes<N>, matrix: &mut [f64]) {
     for b in 0..N {
         for a in 0..b + 1 {

@@ -1,7 +1,7 @@
 //! Springs and dashpots: force, tangent, stored and dissipated energy. See docs/theory/elements.md, Springs and
 //! dashpots.
 //!
-//! Vectors of a connector have two entries for each of its nodes, as those of elements have.
+//! Vectors of a connector have two entries for each of its nodes, like those of an element.
 
 use nalgebra::{Matrix2, Vector2};
 use smallvec::SmallVec;
@@ -9,54 +9,55 @@ use smallvec::SmallVec;
 use super::motion::{Increment, Motion, TangentPart};
 use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Model};
 
-/// Two entries for each node.
+/// Two entries for each node of a connector.
 pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
-/// D x D entries column by column.
+/// Matrix with D x D entries, column by column.
 pub(super) type ConnectorMatrix = SmallVec<[f64; 16]>;
 
-/// Elongation of a connector and its derivative by the displacements at its first node; at the second it is the
-/// opposite along a line.
+/// Elongation of a connector, and its derivative with respect to the displacements of the nodes; along a line the two
+/// derivatives are opposite.
 struct Elongation {
-    /// l - L (length).
+    /// Elongation l - L (length).
     value: f64,
-    /// Its gradient at each node.
+    /// Gradient of the elongation at each node.
     gradient: [Vector2<f64>; 2],
-    /// r = x_2 - x_1 and its length, along a line.
+    /// Vector r = x_2 - x_1 and its length, for a connector along a line.
     line: Option<(Vector2<f64>, f64)>,
 }
 
-/// From start to end of a motion.
+/// Elongations from the start to the end of a motion.
 struct Between {
-    /// Elongations at both.
+    /// Elongations at the start and at the end of the motion.
     ends: [f64; 2],
-    /// l1 - l0, with the round-off of d.
+    /// Change l1 - l0, with only the round-off of d.
     change: f64,
     /// Vector g at each node with g.d = l1 - l0.
     gradient: [Vector2<f64>; 2],
-    /// Derivative of l1 by the increment d at each node.
+    /// Derivative of l1 with respect to the increment d at each node.
     derivative: [Vector2<f64>; 2],
-    /// Derivative of g by the increment at each node, between angles.
+    /// Derivative of g with respect to the increment at each node, for connectors between angles.
     bend: [f64; 2],
 }
 
-/// A connector at a time.
+/// State of a connector at one time.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ConnectorState {
-    /// Elongation (length); between angles their difference.
+    /// Elongation (length); between angles the difference of the angles.
     pub elongation: f64,
     /// Rate of the elongation (length/time or 1/time).
     pub rate: f64,
-    /// Force, positive where it pulls its nodes together (force), or moment (force length).
+    /// Force, positive if it pulls its nodes together (force), or moment (force length).
     pub force: f64,
 }
 
-/// A connector between nodes in their places.
+/// A connector between nodes at their reference positions.
 #[derive(Debug, Clone)]
 pub struct PlacedConnector {
     connector: Connector,
-    /// Its nodes; between angles the pairs of dofs that the angles belong to.
+    /// Nodes of the connector; between angles the pairs of dofs to which the angles belong.
     nodes: SmallVec<[usize; 2]>,
-    /// The lengths L of the bodies of both angles: the dof of an angle theta holds L theta.
+    /// The lengths L of the bodies of both angles: the displacement at the dof of an angle theta is
+    /// L theta.
     lengths: [f64; 2],
     /// X_2 - X_1 of the reference configuration (length).
     reference: Vector2<f64>,
@@ -87,12 +88,12 @@ impl PlacedConnector {
         }
     }
 
-    /// Its nodes; between angles the pairs of dofs that the angles belong to.
+    /// Nodes of the connector; between angles the pairs of dofs to which the angles belong.
     pub(super) fn nodes(&self) -> &[usize] {
         &self.nodes
     }
 
-    /// Takes in the length of the body whose angle is the first dof of a pair.
+    /// Sets the length of the body whose angle is the first dof of a pair.
     pub(super) fn measure_angle(&mut self, pair: usize, length: f64) {
         if self.connector.direction == ConnectorDirection::Angle {
             let all = self.nodes.iter().zip(&mut self.lengths);
@@ -101,12 +102,13 @@ impl PlacedConnector {
         }
     }
 
-    /// Whether it is a dashpot.
+    /// Whether the connector is a dashpot.
     pub(super) fn is_dashpot(&self) -> bool {
         self.connector.law == ConnectorLaw::Dashpot
     }
 
-    /// Its elongation, the rate of it and its force at displacements `u` and velocities `v`.
+    /// Elongation of the connector, its rate, and the force at displacements `u` and velocities
+    /// `v`.
     pub fn state(&self, u: &[f64], v: &[f64]) -> ConnectorState {
         let at = self.at(u);
         let along = self.nodes().iter().zip(&at.gradient);
@@ -219,8 +221,7 @@ impl PlacedConnector {
         nodes.flat_map(|g| [factor * g.x, factor * g.y]).collect()
     }
 
-    /// The matrix of a connector whose block at one node is `block` along a line; a factor times g_a g_b^T in fixed
-    /// directions.
+    /// The matrix of a connector from its 2 x 2 blocks: `block(a, b)` belongs to the nodes a and b.
     fn matrix(&self, block: impl Fn(usize, usize) -> Matrix2<f64>) -> ConnectorMatrix {
         let count = self.nodes().len();
         let mut matrix = SmallVec::new();
@@ -260,8 +261,8 @@ impl PlacedConnector {
         }
     }
 
-    /// Symmetric part of the tangent of [`Self::force`], twice it in the energy-momentum form as for elements, or
-    /// its positive part, eq. (2.21).
+    /// Symmetric part of the tangent of [`Self::force`], in the energy-momentum form of twice the tangent as for
+    /// elements, or its positive part, eq. (2.21).
     pub(super) fn tangent(&self, motion: Motion, part: TangentPart) -> ConnectorMatrix {
         let curve = &self.connector.curve;
         if self.is_dashpot() {
@@ -336,7 +337,7 @@ impl PlacedConnector {
         change * dt * self.connector.curve.at(change / dt)
     }
 
-    /// Damping matrix of a dashpot, dF/dv g g^T, the part of eq. (2.22) that is never indefinite
+    /// Damping matrix dF/dv g g^T of a dashpot: the part of eq. (2.22) that is never indefinite
     /// (force time/length).
     pub(super) fn damping(&self, [u0, u1]: Increment, dt: f64) -> ConnectorMatrix {
         let Between {
@@ -393,7 +394,7 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).sum()
     }
 
-    /// d from U0 to U1.
+    /// The displacement increment d from U0 to U1.
     fn d() -> Vec<f64> {
         U1.iter().zip(U0).map(|(a, b)| a - b).collect()
     }
@@ -412,8 +413,8 @@ mod tests {
         }
     }
 
-    /// Of small displacements, and of small changes of large ones, forces keep their digits: the round-off of coordinates is
-    /// not theirs.
+    /// For small displacements, and for small changes of large ones, forces keep their digits: forces do not contain
+    /// the round-off of coordinates.
     #[test]
     fn forces_along_a_line_keep_their_digits() {
         let [spring, dashpot] =
@@ -421,7 +422,8 @@ mod tests {
         for size in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15] {
             let small = U1.map(|u| size * u);
             let pull = spring.force(Motion::at(&small, &[]))[2];
-            // F/(size F') of the linear part and the next term, which is of first order in the size
+            // the force divided by the size is its linear part plus a term of first order in the
+            // size
             let r = [X[1][0] - X[0][0], X[1][1] - X[0][1]];
             let l = r[0].hypot(r[1]);
             let linear = 7.0 * (r[0] * (U1[2] - U1[0]) + r[1] * (U1[3] - U1[1])) / l * r[0] / l;
@@ -451,7 +453,7 @@ mod tests {
         }
     }
 
-    /// Symmetric part of the derivative of a vector by the displacements of the end.
+    /// Symmetric part of the derivative of a vector with respect to the displacements of the end.
     fn symmetric_derivative(of: impl Fn(&[f64]) -> ConnectorVector) -> Vec<f64> {
         let n = of(&U1).len();
         let h = 1e-6;
@@ -492,7 +494,7 @@ mod tests {
             };
             assert_near(&k, &symmetric_derivative(force), 2.0);
         }
-        // the matrix of dashpots leaves the turning of their line out
+        // the matrix of dashpots omits the rotation of their line
         for dashpot in connectors(ConnectorLaw::Dashpot).drain(2..) {
             let c = dashpot.damping([&U0, &U1], 0.1);
             let impulse = |u: &[f64]| dashpot.impulse([&U0, u], 0.1);

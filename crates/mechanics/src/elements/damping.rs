@@ -1,10 +1,10 @@
-//! Damping of an element that is proportional to its mass: impulse in an increment, damping matrix. That of the viscosity is a
-//! sweep of its chunk. See docs/theory/time.md, Damping.
+//! Mass-proportional damping of an element: impulse in an increment, damping matrix. Damping by viscosity is a sweep
+//! over the element's chunk. See docs/theory/time.md, Damping.
 
 use super::MAX_DOFS;
 use super::motion::{ElementMatrix, ElementVector, Increment, Motion, NO_MATRIX, dofs};
 
-/// Damping of an element whose material has it.
+/// Mass-proportional damping of an element.
 pub(super) struct MassDamping {
     /// Element (index).
     pub element: usize,
@@ -13,7 +13,7 @@ pub(super) struct MassDamping {
 }
 
 impl MassDamping {
-    /// alpha M d between some nodes, eq. (4.16).
+    /// Impulse alpha M d at the nodes of the element, eq. (4.16).
     pub fn impulse(&self, nodes: &[usize], d: &[f64]) -> ElementVector {
         let mut impulse = [0.0; MAX_DOFS];
         for (a, b, m) in self.entries(nodes.len()) {
@@ -24,14 +24,14 @@ impl MassDamping {
         impulse
     }
 
-    /// d.(alpha M d), eq. (4.18).
+    /// Work d.(alpha M d), eq. (4.18).
     pub fn work(&self, nodes: &[usize], d: &[f64]) -> f64 {
         let impulse = self.impulse(nodes, d);
         let terms = dofs(nodes).zip(impulse);
         terms.map(|(dof, p)| p * d[dof]).sum()
     }
 
-    /// alpha M between `n` nodes, eq. (4.19).
+    /// Matrix alpha M for `n` nodes, eq. (4.19).
     pub fn matrix(&self, n: usize) -> ElementMatrix {
         let mut matrix = NO_MATRIX;
         for (a, b, m) in self.entries(n) {
@@ -42,14 +42,14 @@ impl MassDamping {
         matrix
     }
 
-    /// Entries of alpha M of `n` nodes: row, column, value.
+    /// Entries of alpha M for `n` nodes: row, column, value.
     fn entries(&self, n: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let entries = self.mass.iter().enumerate();
         entries.map(move |(k, &m)| (k % n, k / n, m))
     }
 }
 
-/// The motion in which viscosity acts: that of the increment, in either scheme.
+/// The motion in which viscosity acts: that of the increment in every integration scheme.
 pub(super) fn between([u0, u1]: Increment) -> Motion {
     Motion {
         start: Some(u0),
@@ -103,7 +103,7 @@ mod tests {
         Elements::new(&model)
     }
 
-    /// All laws in all formulations that they have.
+    /// Elements of all laws in all formulations available for them.
     fn all(damping: Damping) -> Vec<Elements> {
         let mean = ElementType {
             formulation: Formulation::MeanDilatation,
@@ -136,7 +136,7 @@ mod tests {
         (0..DOFS).map(|i| scale * (k * i as f64).sin()).collect()
     }
 
-    /// Displacements of the nodes that `u` has moved, turned by an angle.
+    /// The displacements `u` of the nodes, followed by a rotation by an angle.
     fn turned(u: &[f64], angle: f64) -> Vec<f64> {
         let (sin, cos) = angle.sin_cos();
         let turn = |n: usize| {
@@ -199,7 +199,8 @@ mod tests {
     #[test]
     fn the_damping_matrix_is_the_derivative_of_the_impulse() {
         for elements in all(DAMPING) {
-            // exact where the strain does not change; else B_L of the end stands on its right
+            // the matrix is exact if the strain does not change; otherwise the exact derivative has
+            // B_L of the end on the right
             let u = wave(0.1, 1.3);
             let mut matrix = vec![0.0; DOFS * DOFS];
             elements.for_each_damping(([&u, &u], 1.0), TangentPart::Whole, |element, c| {

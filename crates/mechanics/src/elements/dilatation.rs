@@ -1,26 +1,28 @@
-//! Volume ratios of the element in place of those of its points (CPE4H, CAX4H, CPE8H, CPE8RH, CAX8H, CAX8RH; Simo, Taylor &
-//! Pister 1985), for nearly incompressible materials: the stored energy is that of the modified deformation gradient
+//! Formulations with volume ratios of the element in place of those of its points (CPE4H, CAX4H, CPE8H, CPE8RH, CAX8H,
+//! CAX8RH; Simo, Taylor & Pister 1985), for nearly incompressible materials. The stored energy is that of the modified
+//! deformation gradient, eq. (2.9):
 //!
 //! ```text
 //! Fbar = (theta/J)^(1/n) F,  det Fbar = theta
 //! ```
 //!
-//! eq. (2.9), with the mean theta of J, or with one that is linear in the element. See docs/theory/elements.md. n is 2 without
-//! strain across the plane, as F_zz stays 1 and the material keeps its plane strain law (de Souza Neto et al. 1996), and 3
-//! with all components.
+//! Here theta is the mean of J, or linear in the element. See docs/theory/elements.md. Without strain across the plane
+//! n is 2, since F_zz stays 1 and the material keeps its plane strain law (de Souza Neto et al. 1996); with all
+//! components n is 3.
 //!
 //! # Derivation
 //!
-//! With functions psi_k, orthogonal and of the square V in the volume V of the element, theta = sum psi_k int psi_k J dOmega/V. The material has
-//! the strain Ebar = r E + (r - 1)/2 I, r = rho^(2/n), rho = theta/J. The changes of these products between two
-//! configurations are exact with mean quantities,
+//! The functions psi_k are orthogonal, and the integral of psi_k² over the element is its volume V; theta = sum psi_k
+//! int psi_k J dOmega/V. The strain of the material is Ebar = r E + (r - 1)/2 I, with r = rho^(2/n) and rho = theta/J.
+//! The changes of the products in Ebar between two configurations are exact with mean quantities:
 //!
 //! ```text
 //! dEbar = r_m dE + C_m/2 dr,  dr = g drho,  drho = (J_m dtheta - theta_m dJ)/(J0 J1),  dJ = K : dE
 //! g = 1 with n = 2,  g = (c0 + c1)/(c0² + c0 c1 + c1²), c = rho^(1/3), with n = 3
 //! ```
 //!
-//! so that S : dEbar = W1 - W0 at every point makes the work of the internal force that of the stored energy of the element.
+//! With S : dEbar = W1 - W0 at every point, the work of the internal force is therefore the change of the stored energy
+//! of the element.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -37,48 +39,51 @@ use super::shapes::IntegratedShape;
 use crate::materials::number::Positive;
 use crate::materials::{AnyLaw, Lanes, Number, Strains, StressAtPoints};
 
-/// The volume ratio of the element at every integration point: the first K of 1, x and y, made orthogonal.
+/// Formulation with a volume ratio of the element at every integration point: a combination of the first K of 1, x and
+/// y, made orthogonal.
 pub struct Dilatation<const K: usize>;
 
-/// The functions of the volume ratio of the elements of a block.
+/// Functions of the volume ratio for the elements of a block.
 pub struct VolumeFunctions<const K: usize, const P: usize> {
     /// psi_k at every point; the first is 1.
     values: [[Lanes; K]; P],
-    /// psi_k times the weight of the point over the volume of the element.
+    /// psi_k times the weight of the point, divided by the volume of the element.
     weighted: [[Lanes; K]; P],
 }
 
-/// An integration point with mean quantities of the motion. Start and end are the same at one configuration.
+/// An integration point with mean quantities of a motion. If there is only one configuration, start and end are the
+/// same.
 #[derive(Clone, Copy, Default)]
 struct DilatedPoint {
     /// Displacement gradient of the mid configuration.
     gradient: Gradient,
-    /// Green-Lagrange strains of the displacements at start and end, and then those that the material has.
+    /// Green-Lagrange strains of the displacements at start and end; later those of the material.
     strains: [SymmetricLanes; 2],
     /// J - 1 at start and end.
     dilatation: [Lanes; 2],
-    /// theta at the end.
+    /// Volume ratio theta at the end.
     theta: Lanes,
     /// C_m/2: half the mean of the right Cauchy-Green tensors.
     half_c: SymmetricLanes,
-    /// K, so that J1 - J0 = K : (E1 - E0), eq. (2.46).
+    /// K, which satisfies J1 - J0 = K : (E1 - E0), eq. (2.46).
     k: SymmetricLanes,
-    /// Stress that does work on the strain that the material has.
+    /// Stress that does work on the strain of the material.
     s: SymmetricLanes,
     /// Mean of r.
     ratio: Lanes,
-    /// g, and the second derivative of r by rho.
+    /// g, and the second derivative of r with respect to rho.
     slopes: [Lanes; 2],
-    /// Mean of J, over J0 J1.
+    /// Mean of J divided by J0 J1.
     inverse_j: Lanes,
-    /// Mean of theta, over J0 J1.
+    /// Mean of theta divided by J0 J1.
     theta_over_jj: Lanes,
     /// A - a theta_m: factor of K in the stress that does work on the strain of the displacements.
     pressure: Lanes,
 }
 
 impl<const K: usize, const P: usize> VolumeFunctions<K, P> {
-    /// Those of elements with points at some places, by the method of Gram and Schmidt from 1, x and y about the centre.
+    /// Functions for elements with points at the given places, by Gram-Schmidt orthogonalisation of 1, x and y about
+    /// the centre.
     fn new(weights: &[Lanes; P], places: &[[Lanes; 2]; P]) -> Self {
         let volume = weights.iter().fold(Lanes::ZERO, |sum, v| sum + *v);
         let over_volume = volume.inverse();
@@ -109,7 +114,7 @@ impl<const K: usize, const P: usize> VolumeFunctions<K, P> {
         }
     }
 
-    /// sum psi_k f_k at a point.
+    /// The value sum psi_k f_k at a point.
     #[inline(always)]
     fn at(&self, p: usize, of_functions: &[Lanes; K]) -> Lanes {
         let mut sum = of_functions[0];
@@ -121,7 +126,7 @@ impl<const K: usize, const P: usize> VolumeFunctions<K, P> {
 }
 
 impl DilatedPoint {
-    /// Takes H of the mid configuration and half its change.
+    /// Sets the strains of the motion from H of the mid configuration and half its change.
     #[inline(always)]
     fn take_motion<const HOOP: bool>(&mut self, gradient: Gradient, half: &Gradient) {
         let back = Gradient {
@@ -162,7 +167,7 @@ impl DilatedPoint {
         }
     }
 
-    /// Takes the strain that the material has, eq. (2.10), and the means, with theta - 1 of start and end.
+    /// Sets the strain of the material, eq. (2.10), and the mean quantities; `theta` is theta - 1 at start and end.
     #[inline(always)]
     fn take_volume<const HOOP: bool>(&mut self, theta: [Lanes; 2]) {
         let [j0, j1] = [self.dilatation[0] + 1.0, self.dilatation[1] + 1.0];
@@ -218,7 +223,7 @@ impl DilatedPoint {
         }
     }
 
-    /// g S : C_m/2, the derivative of the stored energy by rho.
+    /// g S : C_m/2, the derivative of the stored energy with respect to rho.
     #[inline(always)]
     fn by_rho<const HOOP: bool>(&self) -> Lanes {
         let of_c = self.s.contract::<HOOP>(&self.half_c);
@@ -235,7 +240,7 @@ impl DilatedPoint {
     }
 }
 
-/// Motion and stresses of all points: the one evaluation of the material; `positive` takes in det F.
+/// Motion and stresses of all points, with one evaluation of the material at each; det F is entered in `positive`.
 #[inline(always)]
 fn stresses<S, const K: usize, const N: usize, const P: usize, const HOOP: bool>(
     at: &MovedBlock<N, P, VolumeFunctions<K, P>>,
@@ -318,9 +323,9 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
         positive
     }
 
-    /// Second derivative of the stored energy, eq. (2.12), sorted by B_L and Dtheta_k = int psi_k B_L^T K dOmega/V; in the
-    /// energy-momentum form with mean quantities. With alpha = J_m/(J0 J1), beta = theta_m/(J0 J1), h = C_m/2, y = C:h,
-    /// kappa = g² h:C:h + r'' S:h of a point,
+    /// Second derivative of the stored energy, eq. (2.12), in terms of B_L and Dtheta_k = int psi_k B_L^T K dOmega/V;
+    /// in the energy-momentum form with mean quantities. For each point, alpha = J_m/(J0 J1), beta = theta_m/(J0 J1),
+    /// h = C_m/2, y = C:h, kappa = g² h:C:h + r'' S:h,
     ///
     /// ```text
     /// z = g (r y + S) - g (S:h) alpha K - beta kappa K/2

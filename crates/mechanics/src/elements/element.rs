@@ -1,5 +1,5 @@
-//! The formulation of every element type, volume and mass of a single element. A shape has one file with its quadrature and
-//! mass. See docs/theory/elements.md.
+//! The formulation of every element type, and the volume and mass of a single element. Each shape has a file with its
+//! quadrature and mass. See docs/theory/elements.md.
 
 use nalgebra::SMatrix;
 
@@ -16,7 +16,7 @@ use super::shapes::{
 use crate::materials::{PlaneLaw, Viscosity};
 use crate::model::{self, ElementType, Model, Shape, Thickness};
 
-/// Number of points of an element at which the material has its stress.
+/// Number of points of an element at which the stress of the material is evaluated.
 pub(super) fn points(element_type: ElementType) -> usize {
     use model::Formulation::{Reduced, ReducedLinearPressure};
     match (element_type.shape, element_type.formulation) {
@@ -27,8 +27,8 @@ pub(super) fn points(element_type: ElementType) -> usize {
     }
 }
 
-/// Elements (indices) of one type and section of a model, and their law. Their internal variables begin at a place among
-/// those of all elements.
+/// Indices of elements of one type and section of a model, and their law. The internal variables of the chunk start at
+/// `first_variable` among those of all elements.
 pub(super) struct ChunkParts<'a> {
     pub model: &'a Model,
     pub elements: &'a [usize],
@@ -36,7 +36,7 @@ pub(super) struct ChunkParts<'a> {
     pub first_variable: usize,
 }
 
-/// A chunk of elements: their formulation is chosen here, once for all.
+/// A chunk of elements; their formulation is chosen here, once for all of them.
 pub(super) fn new_chunk(parts: ChunkParts) -> Box<dyn Chunk> {
     use model::Formulation as Type;
     let element_type = parts.model.mesh.elements[parts.elements[0]].element_type;
@@ -67,7 +67,7 @@ pub(super) fn new_chunk(parts: ChunkParts) -> Box<dyn Chunk> {
 }
 
 impl ChunkParts<'_> {
-    /// In a formulation of the plane, or in one of bodies of revolution.
+    /// A chunk with a formulation of the plane, or one of bodies of revolution.
     fn chunk<S, F, G, const N: usize, const P: usize>(self) -> Box<dyn Chunk>
     where
         S: IntegratedShape<N, P> + Send + Sync + 'static,
@@ -81,7 +81,7 @@ impl ChunkParts<'_> {
         }
     }
 
-    /// In a formulation.
+    /// A chunk with a given formulation.
     fn of<S, F, const N: usize, const P: usize, const HOOP: bool>(self) -> Box<dyn Chunk>
     where
         S: IntegratedShape<N, P> + Send + Sync + 'static,
@@ -116,7 +116,7 @@ impl ChunkParts<'_> {
     }
 }
 
-/// The nodes of an element as an array; a model's element has as many as its type.
+/// The nodes of an element as an array; an element of a model has as many as its type.
 fn first<const N: usize>(nodes: &[usize]) -> [usize; N] {
     std::array::from_fn(|a| nodes[a])
 }
@@ -126,7 +126,7 @@ fn positions<const N: usize>(nodes: &[usize], x: &[[f64; 2]]) -> SMatrix<f64, 2,
     SMatrix::from_fn(|i, a| x[nodes[a]][i])
 }
 
-/// Shape and nodes of an element in the reference configuration, from which its mass follows.
+/// Shape and nodes of an element in the reference configuration, from which its mass is computed.
 #[derive(Clone, Copy)]
 pub(super) struct Geometry<'a> {
     pub shape: Shape,
@@ -147,7 +147,7 @@ impl Geometry<'_> {
         }
     }
 
-    /// Share of each node in a uniform force per volume (length^3): entries beyond its nodes are 0. Those of the
+    /// Share of each node in a uniform force per volume (length^3); entries after its nodes are 0. The shares of the
     /// corners are negative in Q8 and 0 in T6.
     pub fn nodal_volumes(&self) -> [f64; MAX_NODES] {
         match self.shape {
@@ -186,7 +186,7 @@ pub struct ElementInertia {
 }
 
 impl ElementInertia {
-    /// That of an element (index) of a model.
+    /// Volume and mass of the element with the given index.
     pub fn new(model: &Model, index: usize) -> Self {
         let element = &model.mesh.elements[index];
         let section = &model.sections[element.section];

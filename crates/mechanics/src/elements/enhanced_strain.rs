@@ -1,21 +1,23 @@
-//! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990) and of the ring with its section (CAX4I),
-//! which bend without locking: four strains of the element, and a fifth around the axis, beside those of the displacements
-//! make its stored energy least. They are no state: they follow from the displacements by Newton's method in the element, eq.
-//! (2.28), which begins with those of the last increment. See docs/theory/elements.md.
+//! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990) and of the ring with its section
+//! (CAX4I), which bend without locking. The element adds four own strains to those of the displacements, and in a ring
+//! a fifth around the axis; they minimise its stored energy. Own strains are not part of the state: Newton's method in
+//! the element, eq. (2.28), computes them from the displacements, starting with those of the last increment. See
+//! docs/theory/elements.md.
 //!
 //! # Derivation
 //!
-//! A potential Phi(E) of the displacement strains of all points, in which everything local has been made least, has a
-//! discrete gradient as a stored energy has (eq. 4.8), with sums over the element in place of one point:
+//! Let Phi(E) be a potential of the displacement strains of all points, minimised over all local variables. Like a
+//! stored energy it has a discrete gradient (eq. 4.8), with sums over the element in place of one point:
 //!
 //! ```text
 //! S_g = S_g(E_m) + f/(sum v dE:dE) dE_g,   f = Phi(E1) - Phi(E0) - sum v S(E_m):dE
 //! ```
 //!
-//! S is what does work on the displacement strains E, beside the stress of the material on its own E_g (eq. 2.28).
+//! Here S does work on the displacement strains E, whereas the stress of the material does work on its own strain E_g
+//! (eq. 2.28).
 //!
-//! E is quadratic in the displacements, so that B(U_m) d = dE and d.F = Phi(E1) - Phi(E0) exactly. Because Phi is least
-//! in alpha, errors of the local solution enter f squared.
+//! E is quadratic in the displacements, so exactly B(U_m) d = dE and d.F = Phi(E1) - Phi(E0). Since Phi is a minimum in
+//! alpha, only the square of an error of the local solution enters f.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -34,10 +36,11 @@ use super::stretch::{AddedStrain, MeanStrain, Tensor, Variation};
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
-/// Strains of the displacements and A of the element: four, and in a body of revolution five.
+/// Formulation with the strains of the displacements and A own strains: four, in a body of
+/// revolution five.
 pub struct EnhancedStrain<const A: usize>;
 
-/// Nodes of the quadrilateral, and its points, each of which is next to a node.
+/// Number of nodes of the quadrilateral, and of its points; each point is next to a node.
 const N: usize = 4;
 
 /// The pattern (1, -1, 1, -1) of the nodes.
@@ -45,20 +48,20 @@ pub fn alternating(a: usize) -> f64 {
     [1.0, -1.0][a % 2]
 }
 
-/// Hourglass pattern and strains of elements, in the reference configuration.
+/// Hourglass pattern and own strains of elements, in the reference configuration.
 pub struct Modes<const A: usize> {
-    /// gamma of eq. (2.26), so that q = sum gamma_a u_a.
+    /// gamma of eq. (2.26), with q = sum gamma_a u_a.
     pub gamma: [Lanes; N],
     /// grad h of h = r s at every point (1/length).
     pub slope: [[Lanes; 2]; N],
-    /// The strains M at every point.
+    /// The own strains M at every point.
     strains: [[SymmetricLanes; A]; N],
-    /// Weights of the points over the volume of the element.
+    /// Weights of the points divided by the volume of the element.
     pub parts: [Lanes; N],
 }
 
 impl<const A: usize> Modes<A> {
-    /// Those of elements, from their gradients g at the points and the mean b of these over the area:
+    /// Modes of elements, from their gradients g at the points and the mean b of g over the area:
     ///
     /// ```text
     /// grad h = sum +-1 g,  g = b + gamma grad h,  dxi/dX = 4 n^T b,  n_a = (r_a, s_a)/4
@@ -116,7 +119,7 @@ impl<const A: usize> Modes<A> {
         }
     }
 
-    /// grad h x grad h at a point.
+    /// The product grad h x grad h at a point.
     #[inline(always)]
     fn square(&self, p: usize) -> SymmetricLanes {
         product(&self.slope[p], &self.slope[p])
@@ -132,7 +135,7 @@ impl<const A: usize> Modes<A> {
         mean
     }
 
-    /// M alpha at a point.
+    /// Own strain M alpha at a point.
     #[inline(always)]
     fn strain(&self, p: usize, alpha: &Alpha<A>) -> SymmetricLanes {
         let mut strain = SymmetricLanes::zeros();
@@ -142,8 +145,8 @@ impl<const A: usize> Modes<A> {
         strain
     }
 
-    /// Kh of M amplitudes of a tangent C, least in alpha: K_yy - K_ya K_aa^-1 K_ay, eq. (2.42), from the strain at a point of
-    /// each amplitude.
+    /// Stiffness Kh of the amplitudes y for a tangent C, minimised over alpha: K_yy - K_ya K_aa^-1 K_ay, eq. (2.42);
+    /// `columns` gives the strain at a point for each amplitude.
     pub fn condensed<const M: usize>(
         &self,
         c: &Tangent,
@@ -184,16 +187,16 @@ impl<const A: usize> Modes<A> {
 
 /// All elements.
 const ALL: Wanted = [true; LANES];
-/// Strains of the element in the plane.
+/// Number of own strains of the element in the plane.
 const PLANE_STRAINS: usize = 4;
 
-/// q = sum gamma_a u_a, eq. (2.26), of displacements of the nodes (length).
+/// q = sum gamma_a u_a, eq. (2.26), for displacements u of the nodes (length).
 #[inline(always)]
 pub fn hourglass(gamma: &[Lanes; N], u: &NodalLanes<N>) -> [Lanes; 2] {
     from_fn(|i| dot(&u[i], gamma))
 }
 
-/// The symmetric part of a x b, of vectors of the section.
+/// Symmetric part of the product a x b of two vectors in the plane of the section.
 #[inline(always)]
 fn product(a: &[Lanes; 2], b: &[Lanes; 2]) -> SymmetricLanes {
     let shear = (a[0] * b[1] + a[1] * b[0]) * 0.5;
@@ -206,21 +209,22 @@ struct Solution<'a, 'b, const A: usize, const HOOP: bool, L: ?Sized> {
     law: &'a L,
 }
 
-/// Strains of the displacements of all points, and their mean in the measure of a material.
+/// Strains of the displacements at all points, and their mean, in the strain measure of the
+/// material.
 struct Measured {
     compatible: [SymmetricLanes; N],
     mean: MeanStrain,
 }
 
-/// Strains of the displacements, eq. (2.27), at the start, halfway and at the end of a motion, and their change, whose digits are
-/// its own; those of one configuration are all the same.
+/// Strains of the displacements, eq. (2.27), at the start, in the mid configuration and at the end of a motion, and
+/// their change, which keeps its own digits. For a single configuration all three strains are the same.
 struct Compatible {
     start: [SymmetricLanes; N],
     halfway: [SymmetricLanes; N],
     end: [SymmetricLanes; N],
     change: [SymmetricLanes; N],
     gradients: [Gradient; N],
-    /// q halfway (length).
+    /// q in the mid configuration (length).
     q: [Lanes; 2],
     positive: Positive,
 }
@@ -277,7 +281,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         self.at.reference
     }
 
-    /// Strains of the displacements with their mean, in the measure of the material.
+    /// Strains of the displacements and their mean, in the strain measure of the material.
     fn measured(&self, compatible: &[SymmetricLanes; N]) -> Measured {
         Measured {
             mean: MeanStrain {
@@ -288,7 +292,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
     }
 
-    /// Strains of the material at all points, with the element's own.
+    /// Strains of the material at all points, including the element's own strains.
     fn enhanced(&self, measured: &Measured, alpha: &Alpha<A>) -> [AddedStrain; N] {
         from_fn(|p| {
             let linear = measured.compatible[p] + self.modes().strain(p, alpha);
@@ -296,7 +300,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         })
     }
 
-    /// Derivatives of the energy by alpha, sum v M:T and K_aa, this times a factor, at strains of the material.
+    /// Derivatives of the energy with respect to alpha, sum v M:T and `factor` times K_aa, at strains of the material.
     fn derivatives(
         &self,
         enhanced: &[AddedStrain; N],
@@ -325,7 +329,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         (slope, stiffness)
     }
 
-    /// The material at a point, with its weight; the tangent is taken times a factor.
+    /// The material at a point, multiplied by its weight; the tangent is also multiplied by
+    /// `factor`.
     #[inline(always)]
     fn point<'c>(
         &self,
@@ -345,8 +350,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
     }
 
-    /// alpha with which the energy is least at strains of the displacements, eq. (2.28), sought from a first one on. NaN
-    /// where the local solution does not converge.
+    /// The alpha that minimises the energy at strains of the displacements, eq. (2.28); the search starts at `first`.
+    /// The alpha is NaN if the local solution does not converge.
     fn least(&self, measured: &Measured, first: &Alpha<A>) -> Alpha<A> {
         let last = largest(&measured.compatible) * LAST_STEP + f64::EPSILON;
         let derivatives = |alpha: &Alpha<A>, wanted: Wanted| {
@@ -361,8 +366,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         least(*first, derivatives, change, last)
     }
 
-    /// alpha of the end of an increment with which the stresses of a viscosity do no work on the element's own strains,
-    /// from the strains of the displacements of start and end. NaN where Newton's method does not converge.
+    /// The alpha at the end of an increment for which viscous stresses do no work on the element's own strains, from
+    /// the strains of the displacements at start and end. The alpha is NaN if Newton's method does not converge.
     fn of_rates(&self, compatible: &Compatible, end: &Measured) -> Alpha<A> {
         let last = largest(&compatible.change) * LAST_STEP
             + largest(&compatible.end) * f64::EPSILON
@@ -376,15 +381,16 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         zero(derivatives, last)
     }
 
-    /// alpha of the last committed increment, from which the next is sought: the energy may have several minima, and the
-    /// element follows one.
+    /// alpha of the last committed increment, at which the search for the next one starts: the energy may have several
+    /// minima, and the element follows one of them.
     fn committed(&self) -> Alpha<A> {
         let of = |k: usize, lane: usize| self.at.own_variables[lane].get(k).copied();
         from_fn(|k| Lanes::of_lanes(|lane| of(k, lane).unwrap_or_default()))
     }
 
-    /// sum v (W(E1) - W(E0)) between strains with alpha, the displacement strains of which change by `changes`. Its round-off
-    /// is relative to the changes: the difference of the two strains has the round-off of the strains.
+    /// Change of energy sum v (W(E1) - W(E0)) between two strains with their alpha, whose displacement strains differ
+    /// by `changes`. The round-off of this change of energy is relative to `changes`, whereas the difference of the two
+    /// strains has the round-off of the strains.
     fn energy_change(
         &self,
         [(start, alpha0), (end, alpha1)]: [(&Measured, &Alpha<A>); 2],
@@ -408,13 +414,14 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         change
     }
 
-    /// int W dOmega with the element's own strains.
+    /// Stored energy int W dOmega with the element's own strains.
     fn stored(&self, measured: &Measured, alpha: &Alpha<A>) -> Lanes {
         let e = self.enhanced(measured, alpha);
         sum::<N>(|p| self.law.energy_at(p, &e[p].strain::<HOOP>()) * self.at.block.volume[p])
     }
 
-    /// Strains and stresses of all points, eq. (2.29) between two configurations.
+    /// Strains and stresses of all points; between two configurations the stresses are those of eq.
+    /// (2.29).
     fn states<S: IntegratedShape<N, N>>(&self) -> States<A> {
         let compatible = Compatible::new::<S, A, HOOP>(self.at);
         let first = self.committed();
@@ -465,7 +472,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
         let mut positive = compatible.positive;
         for s in &s {
-            // positive where there is a stress
+            // the value is positive unless the stress is NaN
             positive = positive.and(s.x * s.x + 1.0);
         }
         States {
@@ -480,7 +487,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
     }
 
-    /// S + f/(sum v dE:dE) dE, f = work - sum v S:dE, eq. (2.29): stresses that do a work in an increment.
+    /// Changes the stresses into S + f/(sum v dE:dE) dE, f = work - sum v S:dE, eq. (2.29), which do the given work in
+    /// an increment.
     fn do_work(&self, work: Lanes, changes: &[SymmetricLanes; N], s: &mut [SymmetricLanes; N]) {
         let weights = &self.at.block.volume;
         let of = |stress: &[SymmetricLanes; N]| {
@@ -501,25 +509,28 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 }
 
-/// Strains of the displacements with the alpha of the least energy: at the start, between two configurations, and at the end.
+/// Strains of the displacements, each with the alpha that minimises the energy: at the start (only between two
+/// configurations) and at the end.
 type Solutions<const A: usize> = (Option<(Measured, Alpha<A>)>, (Measured, Alpha<A>));
 
-/// What a motion gives at all points.
+/// Strains and stresses of a motion at all points.
 struct States<const A: usize> {
-    /// Strains at which the material has its tangent, with those of the element.
+    /// Strains, including the element's own strains, at which the tangent of the material is
+    /// evaluated.
     enhanced: [AddedStrain; N],
     /// Strains of the material.
     strains: [Strains<Lanes>; N],
-    /// Those at which it has its tangent.
+    /// Strains at which the tangent of the material is evaluated.
     tangent_at: [Strains<Lanes>; N],
-    /// Its stresses there (force/length^2).
+    /// Stresses of the material at `tangent_at` (force/length^2).
     of_material: [SymmetricLanes; N],
     /// Stresses that do work on the strains of the displacements (force/length^2).
     s: [SymmetricLanes; N],
-    /// Whether det F is positive, and the local solution found.
+    /// Whether det F is positive and the local solution has converged.
     positive: Positive,
     compatible: Compatible,
-    /// Strains at the start, between two configurations, and at the end of a motion of a material that stores energy.
+    /// Strains at the start (only between two configurations) and at the end of a motion, for a material that stores
+    /// energy.
     solutions: Option<Solutions<A>>,
 }
 
@@ -538,26 +549,26 @@ impl<const A: usize> States<A> {
     }
 }
 
-/// The material at a point.
+/// Stress and tangent of the material at a point.
 struct PointMaterial<'a, const HOOP: bool> {
     number: usize,
     enhanced: &'a AddedStrain,
     /// Stress times the weight of the point.
     s: SymmetricLanes,
-    /// Tangent times the weight of the point.
+    /// Tangent of the material times the weight of the point.
     c: TangentLanes,
 }
 
-/// Change of the strain of the material at a point by one displacement of the element or one alpha.
+/// Change of the material's strain at a point by one displacement of the element or by one alpha.
 struct Column {
     /// dE_g
     first: SymmetricLanes,
-    /// B of S : d²E_g.
+    /// Tensor B of the change in the second derivative S : d²E_g.
     second: Tensor,
 }
 
 impl Column {
-    /// dE_g C dE_g + S : d²E_g of this change beside another, whose stresses are given.
+    /// dE_g C dE_g + S : d²E_g for two changes of the strain, one of them given by its stresses.
     #[inline(always)]
     fn product<const HOOP: bool>(
         &self,
@@ -572,7 +583,8 @@ impl Column {
 }
 
 impl<const HOOP: bool> PointMaterial<'_, HOOP> {
-    /// The change of E + M alpha at the point and that of the mean.
+    /// Change of the material's strain for a change `at_point` of E + M alpha at the point and a
+    /// change `of_mean` of the mean.
     #[inline(always)]
     fn column(&self, at_point: SymmetricLanes, of_mean: SymmetricLanes) -> Column {
         let variation = Variation { at_point, of_mean };
@@ -580,14 +592,14 @@ impl<const HOOP: bool> PointMaterial<'_, HOOP> {
         Column { first, second }
     }
 
-    /// The changes by the alpha.
+    /// Changes of the material's strain by each alpha.
     #[inline(always)]
     fn own_columns<const A: usize>(&self, modes: &Modes<A>) -> [Column; A] {
         let of = |k: usize| modes.strains[self.number][k];
         from_fn(|k| self.column(of(k), SymmetricLanes::zeros()))
     }
 
-    /// C dE_g and the stress on B.
+    /// The stress C dE_g of a change, and the stress that acts on its tensor B.
     #[inline(always)]
     fn stress(&self, column: &Column) -> (SymmetricLanes, Option<Tensor>) {
         (
@@ -597,7 +609,7 @@ impl<const HOOP: bool> PointMaterial<'_, HOOP> {
     }
 }
 
-/// Largest absolute component of strains, of every element.
+/// Largest absolute component of the strains in every element.
 fn largest(e: &[SymmetricLanes; N]) -> Lanes {
     Lanes::of_lanes(|lane| e.iter().fold(0.0, |most, e| most.max(e.lane(lane).amax())))
 }
@@ -624,7 +636,8 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         states.positive
     }
 
-    /// sum v (F S grad h_a - (grad h . S grad h) gamma_a q): the strain of eq. (2.27) has no |q|^2.
+    /// sum v (F S grad h_a - (grad h . S grad h) gamma_a q): the strain of eq. (2.27) does not
+    /// contain |q|^2.
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -647,7 +660,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         (force, states.positive)
     }
 
-    /// K = K_uu - K_ua K_aa^-1 K_au, eq. (2.30), at E_m in the energy-momentum form.
+    /// K = K_uu - K_ua K_aa^-1 K_au, eq. (2.30); in the energy-momentum form at E_m.
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -727,13 +740,14 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
                 *entry = *entry - dot(&mixed[i], &along[j]);
             }
         }
-        // the blocks of one node are read as a whole
+        // the diagonal blocks of nodes are read completely
         for a in 0..N {
             k[a][a][1][0] = k[a][a][0][1];
         }
     }
 
-    /// The stresses are those of the material.
+    /// The reported stresses are those of the material, not those that do work on the strains of
+    /// the displacements.
     #[inline(always)]
     fn results<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -763,9 +777,9 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
             .work::<HOOP>(&at.block.volume)
     }
 
-    /// The element keeps alpha: that of the end with the new variables, or with the old ones where none is found. Where a point
-    /// has flown D is what Phi has more than the stored energy: that of the points alone would have an error of first order in
-    /// alpha.
+    /// The element stores alpha: the one at the end with the new variables, or the one with the old variables if the
+    /// former is not found. If a point has flowed, D is the change of Phi beyond the stored energy: the dissipation of
+    /// the points alone would have an error of first order in alpha.
     fn update<'z, S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
         law: &AnyLaw<HOOP>,

@@ -1,6 +1,6 @@
-//! What a formulation of an element is: how strains and stresses at the integration points follow from the displacements of
-//! its nodes. Force, tangent, results, work and internal variables of elements side by side follow from these.
-//! See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
+//! Formulations of elements: how strains and stresses at the integration points depend on the displacements of the
+//! nodes. Force, tangent, results, work and internal variables of several elements at a time are computed from the
+//! strains and stresses at the points. See docs/theory/elements.md and docs/theory/time.md (paper eq. 12).
 
 use super::block::{
     ElementBlock, Gradient, MatrixLanes, MovedBlock, NodalLanes, PointForces, SymmetricLanes,
@@ -12,22 +12,23 @@ use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoint
 
 /// Deformation and stress at an integration point.
 pub struct PointState<'a> {
-    /// Displacement gradient of the strain-displacement matrix: that of the mid configuration in the energy-momentum form.
+    /// Displacement gradient in the strain-displacement matrix; in the energy-momentum form that of the mid
+    /// configuration.
     pub gradient: &'a Gradient,
-    /// Strains that the material has.
+    /// Strains of the material.
     pub strains: &'a Strains<Lanes>,
     /// Second Piola-Kirchhoff stress that does work on the strains of the displacements (force/length^2).
     pub s: SymmetricLanes,
 }
 
 impl PointState<'_> {
-    /// The results of a point whose material has the strain of the displacements, with its weight (length^3).
+    /// Data for the results of a point whose material has the strain of the displacements, with its weight (length^3).
     #[inline(always)]
     pub fn result(&self, weight: Lanes) -> ResultPoint {
         ResultPoint::new(*self.gradient, self.strains.end(), self.s, weight)
     }
 
-    /// Writes the internal variables of a point at the end of its strains, and gives the energy dissipated on the way to them
+    /// Writes the internal variables of a point at the end of its strains, and returns the energy dissipated on the way
     /// (force/length^2).
     pub fn update<const HOOP: bool>(
         &self,
@@ -45,33 +46,34 @@ pub struct PlacedBlock<'a, const N: usize, const P: usize> {
     pub block: &'a ElementBlock<N, P>,
     /// 1/R at the points: zero in plane strain and in plane stress (1/length).
     pub over_radius: &'a [Lanes; P],
-    /// Places of the points (length).
+    /// Places of the integration points (length).
     pub places: &'a [[Lanes; 2]; P],
-    /// Tangent of the law at no strain (force/length^2).
+    /// Tangent of the law at zero strain (force/length^2).
     pub tangent: &'a Tangent,
-    /// That of the viscosity at no change of the strain, where there is one (force time/length^2).
+    /// Tangent of the viscosity at a zero change of the strain, if the material has viscosity
+    /// (force time/length^2).
     pub viscous_tangent: Option<&'a Tangent>,
 }
 
 /// Internal variables of the elements of a block.
 pub type BlockVariables = [Vec<f64>; LANES];
 
-/// A formulation of elements with N nodes and P integration points, in the plane or, with `HOOP`, with all components of the
-/// strain. Chosen at compile time: a sweep has no dispatch within an element.
+/// A formulation of elements with N nodes and P integration points, in the plane or, with `HOOP`, with all components
+/// of the strain. The formulation is chosen at compile time, so a sweep has no dispatch within an element.
 pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     Send + Sync + 'static
 {
-    /// What elements have beside their points in the reference configuration.
+    /// Reference data of elements other than their points.
     type Reference: Send + Sync;
 
-    /// Whether the force is compiled for each law that has formulas for elements side by side, as where a call of the law
-    /// takes a good part of its time.
+    /// Whether the force is compiled separately for each law with formulas for several elements at a time. A separate
+    /// compilation pays if a call of the law takes a large part of the time.
     const FOR_EACH_LAW: bool = false;
 
-    /// Points at which the material has its stress.
+    /// Number of points at which the stress of the material is evaluated.
     const POINTS: usize = P;
 
-    /// Number of variables of an element beside those of its points, of a metal or of another material.
+    /// Number of variables of an element other than those of its points, for a metal or another material.
     fn own_variables(_is_metal: bool) -> usize {
         0
     }
@@ -79,8 +81,8 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     /// Reference data of a block.
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference;
 
-    /// Visits every point p with its deformation and stress: the one evaluation of the material, from which all else
-    /// follows. Gives whether det F is positive at all points.
+    /// Visits every point p with its deformation and stress. The visit is the only evaluation of the material;
+    /// everything else is computed from it. Returns whether det F is positive at all points.
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
@@ -101,14 +103,15 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         (forces.sum::<S, N, HOOP>(), positive)
     }
 
-    /// Adds the symmetric tangent K = dF/du (force/length): entries [a][b] with a <= b.
+    /// Adds the symmetric tangent K = dF/du (force/length); only entries [a][b] with a <= b are
+    /// written.
     fn add_tangent<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &AnyLaw<HOOP>,
         k: &mut MatrixLanes<N>,
     );
 
-    /// What the results of the first [`Self::POINTS`] points at displacements follow from.
+    /// Data for the results of the first [`Self::POINTS`] points at displacements.
     #[inline(always)]
     fn results<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
@@ -146,8 +149,8 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         work
     }
 
-    /// Writes the internal variables at the end of a motion: those of the points, and those of the elements. Gives the energy
-    /// dissipated on the way to them, int D dOmega (force length). `of_variables` gives the law with variables of the points.
+    /// Writes the internal variables of the points and of the elements at the end of a motion. Returns the energy
+    /// dissipated on the way, int D dOmega (force length). `of_variables` gives the law with variables of the points.
     fn update<'z, S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &AnyLaw<HOOP>,

@@ -1,19 +1,20 @@
-//! Potential of the hourglass modes of an element with one strain, and that of a metal, whose strain and modes flow as one:
-//! with the elastic stiffness alone the element would carry moments of any size. See docs/theory/materials.md, Hourglass modes
-//! of metals.
+//! Potential of the hourglass modes of an element with one strain. For a metal, strain and modes flow together: with
+//! the elastic stiffness alone the element could carry moments of any size. See docs/theory/materials.md, Hourglass
+//! modes of metals.
 //!
 //! # Derivation
 //!
-//! The element flows when the root mean square of q over it reaches the yield stress. The energy of the modes is taken as
-//! an energy of shape, q²/(6 mu). Strain and modes are then one strain of more components, with one radial return:
+//! The element flows when the root mean square of q over the element reaches the yield stress. The energy of the modes
+//! counts as distortional energy, q²/(6 mu). Strain and modes then form one strain with more components, with one
+//! radial return:
 //!
 //! ```text
 //! q² = 3/2 xi:xi + m,   m = 3 mu/V x.Kh x,   x = y - (1 + k) y_p,   k = H_k/(3 mu)
 //! dE_p = r xi/(2 mu),   dy_p = r x,   r = 3 mu da/q,   q - (3 mu + H_k) da = sigma_y(a + da)
 //! ```
 //!
-//! The least energy over the flow is V W(E; m) + (y - y_p).Kh (y - y_p)/2 but for a constant. Of W an element knows the
-//! derivatives by E and by m, which is quadratic in y.
+//! Up to a constant, the minimum of the energy over the flow is V W(E; m) + (y - y_p).Kh (y - y_p)/2. The element knows
+//! the derivatives of W with respect to E and to m, and m is quadratic in y.
 
 use std::array::from_fn;
 
@@ -26,24 +27,24 @@ use crate::materials::{Lanes, Metal, Number, StrainChange, Symmetric};
 /// Amplitudes of the M modes in a motion.
 #[derive(Clone, Copy)]
 pub enum Amplitudes<const M: usize> {
-    /// At one configuration.
+    /// Amplitudes in one configuration.
     At([Lanes; M]),
-    /// At the start and at the end of an increment.
+    /// Amplitudes at the start and at the end of an increment.
     Between([Lanes; M], [Lanes; M]),
-    /// The same, of a viscosity.
+    /// Amplitudes at the start and at the end of an increment, for a viscosity.
     Change([Lanes; M], [Lanes; M]),
 }
 
-/// Stiffness Kh of the modes (energy over the square of the amplitudes).
+/// Stiffness Kh of the modes (energy divided by the square of the amplitudes).
 pub type ModeStiffness<const M: usize> = [[Lanes; M]; M];
 
 /// The elastic potential of the modes, (y - y_p).Kh (y - y_p)/2 + k y_p.Kh y_p/2.
 pub struct HourglassPotential<const M: usize> {
     /// Kh
     pub stiffness: ModeStiffness<M>,
-    /// y_p, the amplitudes that have flown.
+    /// y_p, the plastic part of the amplitudes.
     flown: [Lanes; M],
-    /// k = H_k/(3 mu).
+    /// Factor k = H_k/(3 mu) of kinematic hardening.
     kinematic: Lanes,
 }
 
@@ -57,7 +58,7 @@ impl<const M: usize> Amplitudes<M> {
 }
 
 impl<const M: usize> HourglassPotential<M> {
-    /// That of a stiffness Kh, of metals with their y_p.
+    /// Potential with a stiffness Kh, for metals with their y_p.
     pub fn new(
         stiffness: ModeStiffness<M>,
         metals: &[Option<Metal>; LANES],
@@ -85,7 +86,7 @@ impl<const M: usize> HourglassPotential<M> {
         }))
     }
 
-    /// The potential, or the work of a stress between two configurations.
+    /// The potential, or the work of `stress` between two configurations.
     pub fn energy(&self, amplitudes: &Amplitudes<M>, stress: &[Lanes; M]) -> Lanes {
         let half = |x: &[Lanes; M]| dot(x, &self.force(x)) * 0.5;
         match amplitudes {
@@ -99,23 +100,23 @@ impl<const M: usize> HourglassPotential<M> {
     }
 }
 
-/// k = H_k/(3 mu) of a metal.
+/// Factor k = H_k/(3 mu) of a metal.
 fn hardening(metal: &Metal) -> f64 {
     let [shear, kinematic] = metal.law.moduli();
     kinematic / shear
 }
 
-/// The tensor of strains (11, 22, 33, 2*12).
+/// The tensor with the strains (11, 22, 33, 2*12).
 fn tensor(e: &Vector4<f64>) -> Symmetric {
     Symmetric::new(e.x, e.y, e.z, e.w / 2.0)
 }
 
-/// Strain (11, 22, 33, 2*12) and amplitudes, or what does work on them.
+/// Strain (11, 22, 33, 2*12) and amplitudes of the modes, or the forces that do work on them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Joint<const M: usize> {
-    /// Of the point.
+    /// The strain, or the force that does work on it.
     pub e: Vector4<f64>,
-    /// Of the modes.
+    /// The amplitudes of the modes, or the forces that do work on them.
     pub y: SVector<f64, M>,
 }
 
@@ -132,14 +133,14 @@ impl<const M: usize> Joint<M> {
     }
 }
 
-/// Second derivatives by strain and amplitudes.
+/// Second derivatives with respect to strain and amplitudes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JointTangent<const M: usize> {
-    /// By the strain twice.
+    /// Derivative with respect to the strain twice.
     pub ee: Matrix4<f64>,
-    /// By the strain and the amplitudes.
+    /// Derivative with respect to the strain and the amplitudes.
     pub ey: SMatrix<f64, 4, M>,
-    /// By the amplitudes twice.
+    /// Derivative with respect to the amplitudes twice.
     pub yy: SMatrix<f64, M, M>,
 }
 
@@ -151,7 +152,7 @@ impl<const M: usize> JointTangent<M> {
         }
     }
 
-    /// Adds factor (a b + b a)/2.
+    /// Adds `factor` times (a b + b a)/2.
     fn add_product(&mut self, a: &Joint<M>, b: &Joint<M>, factor: f64) {
         let half = factor / 2.0;
         self.ee += (a.e * b.e.transpose() + b.e * a.e.transpose()) * half;
@@ -160,17 +161,17 @@ impl<const M: usize> JointTangent<M> {
     }
 }
 
-/// Strain and amplitudes at one configuration, or at the start and at the end of an increment.
+/// Strain and amplitudes in one configuration, or at the start and at the end of an increment.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum JointPath<const M: usize> {
-    /// At one configuration.
+    /// Strain and amplitudes in one configuration.
     At(Joint<M>),
-    /// At the start and at the end of an increment.
+    /// Strain and amplitudes at the start and at the end of an increment.
     Between(Joint<M>, Joint<M>),
 }
 
 impl<const M: usize> JointPath<M> {
-    /// The path from the strains and amplitudes of the modes at the start to those at the end, in the element of a lane.
+    /// The path of strain and amplitudes from the start to the end, in the element of a lane.
     fn new(strains: &[SymmetricLanes; 2], amplitudes: &Amplitudes<M>, lane: usize) -> Self {
         let ends = amplitudes.ends();
         let [start, end] = from_fn(|end| {
@@ -187,8 +188,8 @@ impl<const M: usize> JointPath<M> {
     }
 }
 
-/// A metal and the modes of its element: the potential V W(E; m) of strain and amplitudes, eq. (2.48), which stands beside the
-/// elastic one of the modes.
+/// A metal with the modes of its element: the potential V W(E; m) of strain and amplitudes, eq. (2.48), which is added
+/// to the elastic potential of the modes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BentMetal<'a, const M: usize> {
     /// Kh
@@ -202,7 +203,7 @@ pub(super) struct BentMetal<'a, const M: usize> {
 }
 
 impl<'a, const M: usize> BentMetal<'a, M> {
-    /// That of one element with a volume (length^3).
+    /// Metal and modes of one element, whose volume is given (length^3).
     fn new(potential: &HourglassPotential<M>, metal: Metal<'a>, volume: f64, lane: usize) -> Self {
         BentMetal {
             stiffness: SMatrix::from_fn(|i, j| potential.stiffness[i][j].0[lane]),
@@ -217,19 +218,19 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         self.metal.law.moduli()[0]
     }
 
-    /// x = y - (1 + k) y_p.
+    /// Amplitudes x = y - (1 + k) y_p.
     fn relative(&self, y: &SVector<f64, M>) -> SVector<f64, M> {
         y - self.flown * (1.0 + self.kinematic)
     }
 
-    /// m, half of its derivative by y, 3 mu/V Kh x.
+    /// m, and half of its derivative with respect to y, 3 mu/V Kh x.
     fn square(&self, y: &SVector<f64, M>) -> (f64, SVector<f64, M>) {
         let x = self.relative(y);
         let half = self.stiffness * x * (self.shear() / self.volume);
         (half.dot(&x).max(0.0), half)
     }
 
-    /// Change of the potential, with a round-off that is relative to the motion.
+    /// Change of the potential between two states, with a round-off that is relative to the change.
     fn change(&self, start: &Joint<M>, end: &Joint<M>) -> f64 {
         let ((m0, half0), (m1, half1)) = (self.square(&start.y), self.square(&end.y));
         let by = (half0 + half1).dot(&(end.y - start.y));
@@ -273,13 +274,14 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         }
     }
 
-    /// Whether a motion is too small for a correction, of a size relative to strains of 1.
+    /// Whether a motion is too small for a correction; `size` is the bound relative to strains
+    /// of 1.
     fn is_small(&self, squared: f64, size: f64) -> bool {
         squared <= size * size * self.volume * self.shear()
     }
 
-    /// V S and what is added to the stress of the modes, the derivative of the potential D or its discrete gradient: with n
-    /// between start and end and its metric m,
+    /// V S, and the part of D that is added to the stress of the modes. Both stresses are the derivative of the
+    /// potential D, or its discrete gradient: with n between start and end and its metric m,
     ///
     /// ```text
     /// D'(mean) + phi/(n.m) m,   phi = D(end) - D(start) - D'(mean).n
@@ -302,7 +304,8 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         stress.combined(1.0, &m, phi / squared)
     }
 
-    /// The tangent of [`Self::stress`], or the symmetric part of twice its derivative by the end: with g = D'(end) - D'(mean) - D''(mean) n/2,
+    /// The tangent of [`Self::stress`], or the symmetric part of twice its derivative with respect to the end: with g =
+    /// D'(end) - D'(mean) - D''(mean) n/2,
     ///
     /// ```text
     /// D''(mean) + 2 phi/(n.m) (metric - 2 m m/(n.m)) + (m g + g m)/(n.m)
@@ -340,7 +343,7 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         [start, end].map(|at| self.square(&at.y).0)
     }
 
-    /// Writes y_p at the end of an increment in which a part of the trial strain flows.
+    /// Writes y_p at the end of an increment in which the given part of the trial strain flows.
     pub fn update(&self, path: &JointPath<M>, part: f64, updated: &mut [f64]) {
         let (JointPath::At(end) | JointPath::Between(_, end)) = path;
         let flown = self.flown + self.relative(&end.y) * part;
@@ -348,17 +351,18 @@ impl<'a, const M: usize> BentMetal<'a, M> {
     }
 }
 
-/// Second derivatives by strain (11, 22, 33, 2*12) and amplitudes of the elements of a block.
+/// Second derivatives with respect to strain (11, 22, 33, 2*12) and amplitudes, for the elements of
+/// a block.
 pub struct BlockTangent<const M: usize> {
-    /// By the strain twice.
+    /// Derivative with respect to the strain twice.
     pub ee: TangentLanes,
-    /// By the strain and the amplitudes.
+    /// Derivative with respect to the strain and the amplitudes.
     pub ey: [[Lanes; M]; 4],
-    /// By the amplitudes twice.
+    /// Derivative with respect to the amplitudes twice.
     pub yy: ModeStiffness<M>,
 }
 
-/// The modes of elements in a motion, with the strain of their point where that is a metal.
+/// The modes of elements in a motion, for metals with the strain of their point.
 pub struct ModesInMotion<'a, const M: usize> {
     potential: HourglassPotential<M>,
     metals: [Option<(BentMetal<'a, M>, JointPath<M>)>; LANES],
@@ -371,7 +375,8 @@ pub struct ModesInMotion<'a, const M: usize> {
 }
 
 impl<'a, const M: usize> ModesInMotion<'a, M> {
-    /// Those of a potential, of elements with a volume (length^3) and with strains of their point at the start and at the end.
+    /// Modes with a potential, for elements with the given volume (length^3), and strains of their point at the start
+    /// and at the end.
     pub fn new(
         potential: HourglassPotential<M>,
         metals: [Option<Metal<'a>>; LANES],
@@ -411,7 +416,8 @@ impl<'a, const M: usize> ModesInMotion<'a, M> {
         &self.potential.stiffness
     }
 
-    /// The tangent of V S of metals and of what their flow adds to the stress of the modes.
+    /// The tangent of V S of metals, and of the part that their flow adds to the stress of the
+    /// modes.
     pub fn metal_tangent(&self) -> Option<BlockTangent<M>> {
         self.metal_stress?;
         let of = |metal: &Option<(BentMetal<M>, _)>| {
@@ -428,13 +434,13 @@ impl<'a, const M: usize> ModesInMotion<'a, M> {
         })
     }
 
-    /// The metal of an element with the squares of its modes at the start and at the end of the motion.
+    /// The metal of an element, and m of its modes at the start and at the end of the motion.
     pub fn metal(&self, lane: usize) -> Option<(Metal<'a>, [f64; 2])> {
         let metal = self.metals[lane].as_ref();
         metal.map(|(bent, path)| (bent.metal, bent.squares(path)))
     }
 
-    /// Writes the variables of the modes of an element, where a part of the trial strain of a metal flows.
+    /// Writes the variables of the modes of an element if a part of the trial strain of a metal flows.
     pub fn update(&self, lane: usize, part: f64, updated: &mut [f64]) {
         if let Some((bent, path)) = &self.metals[lane] {
             bent.update(path, part, updated);
@@ -454,8 +460,8 @@ mod tests {
     const PLANE: Vector4<f64> = Vector4::new(2.0, -1.2, 0.0, 0.9);
     const BENT: Vector2<f64> = Vector2::new(0.03, -0.02);
 
-    /// States in units of about what flows first: at rest, of the strain alone, with hardly a mode, of the modes alone, with
-    /// hardly a strain, of both, and far beyond.
+    /// States of strain and modes, approximately in units of the yield limit of each. The samples are: at rest; with
+    /// strain only, or almost; with modes only, or almost; with both; and far beyond the limit.
     const SHARES: [[f64; 2]; 10] = [
         [0.0, 0.0],
         [0.5, 0.3],
@@ -476,7 +482,8 @@ mod tests {
         }
     }
 
-    /// Metals with and without a back stress, with their variables after some flow, those of the modes, and a way of strains.
+    /// Metals with and without a back stress, with their variables after some flow, the variables of the modes, and a
+    /// direction of strain.
     fn metals(units: f64) -> Vec<(PlanePlastic, [f64; 2], Vector4<f64>)> {
         let law = |kinematic| Plastic {
             moduli: SmallStrainModuli {
@@ -527,17 +534,18 @@ mod tests {
         unit
     }
 
-    /// Steps of difference quotients by strains and by amplitudes.
+    /// Steps of difference quotients with respect to strains and amplitudes.
     fn step(j: usize) -> f64 {
         if j < 4 { 1e-8 } else { 1e-7 }
     }
 
-    /// Components of strain and amplitudes that are free: not the strain across the plane.
+    /// Indices of the components of strain and amplitudes that are free; the strain across the
+    /// plane is not.
     fn numbers(direction: &Vector4<f64>) -> Vec<usize> {
         (0..6).filter(|&j| j != 2 || direction.z != 0.0).collect()
     }
 
-    /// Derivatives of the whole potential, of strain and modes.
+    /// Derivatives of the complete potential of strain and modes.
     fn whole(bent: &BentMetal<2>, at: &Joint<2>) -> (Joint<2>, JointTangent<2>) {
         let (mut stress, mut tangent) = (bent.stress_at(at), bent.tangent_at(at));
         stress.y += bent.stiffness * (at.y - bent.flown);
@@ -652,8 +660,8 @@ mod tests {
 
     #[test]
     fn a_section_of_one_layer_carries_its_full_moment() {
-        // an incompressible square of the side 1: the moment M stores M²/(2 E' I) for each length, E' = 4 mu, I = 1/12, and
-        // that of a section which flows all through is 2/sqrt(3) sigma_y/4
+        // an incompressible square of the side 1: the moment M stores M²/(2 E' I) per length, with E' = 4 mu and I =
+        // 1/12; the moment of a fully plastic section is 2/sqrt(3) sigma_y/4
         let shear = 100.0;
         let law = Plastic {
             moduli: SmallStrainModuli {

@@ -1,5 +1,5 @@
-//! Strains of an element that make its energy least, found in the element by Newton's method.
-//! See docs/theory/elements.md, Enhanced strains.
+//! Strains of an element that minimise its energy, found in the element by Newton's method. See
+//! docs/theory/elements.md, Enhanced strains.
 
 // Loops over strains: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -10,24 +10,24 @@ use super::block::dot;
 use crate::materials::number::LANES;
 use crate::materials::{Lanes, Number};
 
-/// Steps of the local solution, and halvings of a step.
+/// Largest number of steps of the local solution, and of halvings of a step.
 const MOST_STEPS: usize = 60;
-/// Step at which the local solution ends as part of the strains: its own square is round-off.
+/// Step, relative to the strains, at which the local solution ends: its square is round-off.
 pub const LAST_STEP: f64 = 1e-8;
-/// Part of the slope by which a step has to lower the energy.
+/// Part of the slope by which a step must lower the energy.
 const DESCENT: f64 = 1e-4;
 
-/// Elements whose solution is not found yet: values of others are not read.
+/// For every element whether its solution is still sought; values of other elements are not read.
 pub type Wanted = [bool; LANES];
 /// The A strains of each element.
 pub type Alpha<const A: usize> = [Lanes; A];
-/// Second derivatives of the energy by them.
+/// Second derivatives of the energy with respect to the A strains.
 pub type Stiffness<const A: usize> = [[Lanes; A]; A];
 
-/// Values that make the energies of elements least, eq. (2.28), from some `alpha` on: Newton's method with a line search, the
-/// eigenvalues of the stiffness taken positive. `derivatives` gives slope and stiffness, `change` the energy of the second
-/// values less that of the first; the solution ends with a step of the size `last`. NaN of an element where it does not
-/// converge. An element has the same values beside any other.
+/// Values that minimise the energies of elements, eq. (2.28), starting at `alpha`: Newton's method with a line search
+/// and the absolute eigenvalues of the stiffness. `derivatives` gives slope and stiffness, and `change` the energy at
+/// the second values less that at the first; the solution ends with a step of the size `last`. Values of an element are
+/// NaN if its solution does not converge. The values of an element do not depend on the other elements.
 pub fn least<const A: usize>(
     mut alpha: Alpha<A>,
     derivatives: impl Fn(&Alpha<A>, Wanted) -> (Alpha<A>, Stiffness<A>),
@@ -81,7 +81,7 @@ pub fn least<const A: usize>(
     alpha
 }
 
-/// As [`least`] where there is no energy: the values at which the slope is zero.
+/// Like [`least`] if there is no energy: finds the values at which the slope is zero.
 pub fn zero<const A: usize>(
     derivatives: impl Fn(&Alpha<A>, Wanted) -> (Alpha<A>, Stiffness<A>),
     last: Lanes,
@@ -107,21 +107,21 @@ pub fn zero<const A: usize>(
     alpha
 }
 
-/// Adds a part of a step to the values of one element.
+/// Adds `part` times a step to the values of one element.
 fn move_lane<const A: usize>(alpha: &mut Alpha<A>, step: &Alpha<A>, lane: usize, part: f64) {
     for (alpha, step) in alpha.iter_mut().zip(step) {
         alpha.0[lane] += step.0[lane] * part;
     }
 }
 
-/// Gives up one element that is open.
+/// Sets the values of one unsolved element to NaN.
 fn fail<const A: usize>(alpha: &mut Alpha<A>, is_open: &mut [bool; LANES], lane: usize) {
     if std::mem::take(&mut is_open[lane]) {
         alpha.iter_mut().for_each(|alpha| alpha.0[lane] = f64::NAN);
     }
 }
 
-/// Largest absolute value of one element; NaN where one is.
+/// Largest absolute value in one element; NaN if one value is NaN.
 fn largest<const A: usize>(values: &Alpha<A>, lane: usize) -> f64 {
     values
         .iter()
@@ -132,10 +132,10 @@ fn largest<const A: usize>(values: &Alpha<A>, lane: usize) -> f64 {
         })
 }
 
-/// K^-1 g, NaN of elements whose K is not positive definite. The factors of K = L D L^T take no roots: units that differ by
-/// powers of two change no bit.
+/// K^-1 g; NaN for elements whose K is not positive definite. The factorisation K = L D L^T needs no roots, so units
+/// that differ by powers of two change no bit.
 fn positive<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
-    // D L^T is left above the diagonal of `rows`
+    // the elimination leaves D L^T above the diagonal of `rows`
     let (mut rows, mut x) = (*k, *g);
     for j in 0..A {
         let pivot = rows[j][j].each(|pivot| match pivot > 0.0 {
@@ -160,7 +160,7 @@ fn positive<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     x
 }
 
-/// K^-1 of each of some columns; zero of elements with a K that is singular.
+/// K^-1 times each of some columns; zero for elements whose K is singular.
 pub fn solved<const A: usize, const M: usize>(
     k: &Stiffness<A>,
     columns: &[Alpha<A>; M],
@@ -183,8 +183,8 @@ pub fn solved<const A: usize, const M: usize>(
     all
 }
 
-/// -|K|^-1 g, where |K| has the absolute eigenvalues of K. The lane of an element without such a step, because an eigenvalue
-/// is zero or not finite, holds NaN.
+/// -|K|^-1 g, where |K| has the absolute eigenvalues of K. The result is NaN in the lane of an element for which no
+/// step exists, because an eigenvalue is zero or not finite.
 fn descent<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     let mut step = positive(k, g).map(|x| x * -1.0);
     for lane in 0..LANES {

@@ -1,4 +1,4 @@
-//! Mean displacement gradient of an element and the logarithmic strain that it gives.
+//! Mean displacement gradient of an element, and its logarithmic strain.
 
 use nalgebra::Matrix2;
 use smallvec::SmallVec;
@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use crate::model::{Element, Mesh, Nodes};
 use crate::vectors::difference;
 
-/// Mean gradients of the shape functions of an element, in place.
+/// Mean gradients of the shape functions of an element, stored in place.
 type Weights = SmallVec<[[f64; 2]; 4]>;
 
 /// Weights of the nodes of an element in its mean displacement gradient.
@@ -19,7 +19,7 @@ pub struct MeanGradient {
 }
 
 impl MeanGradient {
-    /// That of an element, by the integrals over its sides, n being the outward normal:
+    /// Mean gradient of an element, from integrals over its sides, where n is the outward normal:
     ///
     /// ```text
     /// 1/A int dh_a/dX dA = 1/A int h_a n dl,  A = int X n_x dl
@@ -45,7 +45,7 @@ impl MeanGradient {
         }
     }
 
-    /// Logarithmic strain of the mean displacement gradient at displacements `u`, 2 N entries (length), as
+    /// Logarithmic strain of the mean displacement gradient at displacements `u`, 2 N entries (length), in the form of
     /// `logarithmic_strain`.
     pub fn logarithmic_strain(&self, u: &[f64]) -> [f64; 3] {
         let mut h = Matrix2::zeros();
@@ -57,7 +57,7 @@ impl MeanGradient {
     }
 }
 
-/// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration, ln V with V^2 = F F^T of the
+/// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration, ln V with V^2 = F F^T and the
 /// deformation gradient F = I + H:
 ///
 /// ```text
@@ -65,7 +65,7 @@ impl MeanGradient {
 /// ln V = 1/2 (ln det F I + artanh(d/m)/d D)
 /// ```
 ///
-/// NaN where F turns the element inside out.
+/// The strain is NaN if F turns the element inside out.
 pub(super) fn logarithmic_strain(h: &Matrix2<f64>) -> [f64; 3] {
     let g = h + h.transpose() + h * h.transpose();
     let m = 1.0 + g.trace() / 2.0;

@@ -1,7 +1,7 @@
 //! Total-Lagrangian elements of the plane and of bodies of revolution: mass, internal force and tangent as pure functions.
 //!
-//! Displacements and forces of an element with N nodes are 2 x N matrices, column a belonging to
-//! node a. Element matrices have D = 2 N rows, row 2 a + i belonging to direction i of node a.
+//! Displacements and forces of an element with N nodes are 2 x N matrices; column a belongs to node
+//! a. Element matrices have D = 2 N rows; row 2 a + i belongs to direction i of node a.
 
 mod all;
 mod block;

@@ -1,12 +1,13 @@
-//! Motions in which elements are evaluated, and what of their tangents is assembled. See docs/theory/elements.md and docs/theory/time.md.
+//! Motions in which elements are evaluated, and the part of their tangents that is assembled. See
+//! docs/theory/elements.md and docs/theory/time.md.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::MAX_DOFS;
 
-/// Values of one element in the order of its dofs; the first D are used.
+/// Values of one element in the order of its dofs; only the first D entries are used.
 pub(super) type ElementVector = [f64; MAX_DOFS];
-/// Square matrix of one element, column by column; the first D^2 entries are used.
+/// Square matrix of one element, column by column; only the first D^2 entries are used.
 pub(super) type ElementMatrix = [f64; MAX_DOFS * MAX_DOFS];
 
 /// 0
@@ -17,37 +18,38 @@ pub(super) fn dofs(nodes: &[usize]) -> impl Iterator<Item = usize> + '_ {
     nodes.iter().flat_map(|n| [2 * n, 2 * n + 1])
 }
 
-/// Displacements of start and end of an increment, 2 N entries each.
+/// Displacements at the start and at the end of an increment, 2 N entries each.
 pub type Increment<'a> = [&'a [f64]; 2];
 
 /// Displacements of all nodes between which the elements are evaluated (2 N entries each), and the
 /// internal variables of their materials.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion<'a> {
-    /// Displacements of the start in the energy-momentum form; without it forces are those of the end.
+    /// Displacements at the start, in the energy-momentum form; without them forces are those at the end.
     pub start: Option<&'a [f64]>,
-    /// Displacements of the end.
+    /// Displacements at the end.
     pub end: &'a [f64],
     /// Internal variables that the last accepted increment has committed, element by element.
     pub committed: &'a [f64],
-    /// The increment in which damping acts; without it there is none.
+    /// The increment in which damping acts; `None` without damping.
     pub increment: Option<Increment<'a>>,
-    /// Temperature of every node at which the materials are evaluated; without any it is that of the start of the analysis.
+    /// Temperature of every node at which the materials are evaluated; if the list is empty, it is the temperature at
+    /// the start of the analysis.
     pub temperature: &'a [f64],
 }
 
-/// What of the tangents of the elements a matrix is assembled from.
+/// Part of the tangents of the elements from which a matrix is assembled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TangentPart {
-    /// All of them.
+    /// The complete tangents.
     Whole,
-    /// Their positive part: the eigenvalues of every element that are negative are zero instead, so
-    /// that no sum is indefinite, whatever the stresses and the material.
+    /// The positive part of the tangents: negative eigenvalues of every element are replaced by
+    /// zero. No sum of positive parts is indefinite, whatever the stresses and the material.
     Positive,
 }
 
 impl<'a> Motion<'a> {
-    /// Displacements at which forces are those of the displacements.
+    /// A single configuration, with forces at its displacements.
     pub fn at(end: &'a [f64], committed: &'a [f64]) -> Self {
         Motion {
             start: None,
@@ -58,7 +60,7 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// The same at temperatures of the nodes.
+    /// The same motion at given temperatures of the nodes.
     pub fn heated(self, temperature: &'a [f64]) -> Self {
         Motion {
             temperature,
@@ -67,11 +69,11 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Round-off and iterations of the eigenvalues of an element, which converge in two or three each.
+/// Tolerance and largest number of iterations for the eigenvalues of an element, each of which
+/// converges in two or three iterations.
 const EIGENVALUES: (f64, usize) = (f64::EPSILON, 1000);
 
-/// K+ = sum max(lambda, 0) v v^T over the eigenpairs of a symmetric matrix of size `d`, eq. (4.14), in
-/// its place.
+/// Replaces a symmetric matrix of size `d` by K+ = sum max(lambda, 0) v v^T over its eigenpairs, eq. (4.14).
 pub(super) fn take_positive_part(k: &mut [f64], d: usize) {
     let whole = DMatrix::from_column_slice(d, d, k);
     let (eps, iterations) = EIGENVALUES;

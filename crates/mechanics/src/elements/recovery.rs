@@ -1,4 +1,4 @@
-//! Results at integration points, and between them at nodes. See docs/theory/elements.md.
+//! Results at integration points, and extrapolated to nodes. See docs/theory/elements.md.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +12,11 @@ use super::results::{ElementResult, PointResult};
 use super::shapes::{CORNERS, DEGREE_5, GAUSS};
 use crate::model::Shape;
 
-/// Results at a place: an integration point or a node.
+/// Results at one place: an integration point or a node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LocalResult {
-    /// Stress, strain and energy there; the energy is per volume (force/length^2), without that of hourglass modes.
+    /// Stress, strain and energy at the place; the energy is per volume (force/length^2), without that of hourglass
+    /// modes.
     pub result: ElementResult,
     /// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration.
     pub logarithmic_strain: [f64; 3],
@@ -24,7 +25,7 @@ pub struct LocalResult {
 }
 
 impl LocalResult {
-    /// Sum of results times factors, as of means and of values between points.
+    /// Sum of results times factors, for means and for values between points.
     pub fn weighted<'a>(terms: impl Iterator<Item = (f64, &'a LocalResult)> + Clone) -> Self {
         let own = terms.clone().map(|(factor, term)| (factor, &term.result));
         let mut sum = LocalResult {
@@ -49,8 +50,8 @@ impl LocalResult {
 pub type LocalResults = SmallVec<[LocalResult; 9]>;
 
 impl Elements {
-    /// Results at the integration points of an element at the end of a motion, with the internal variables there; zero in
-    /// elements of rigid bodies.
+    /// Results at the integration points of an element at the end of a motion, with the internal variables there; zero
+    /// for elements of rigid bodies.
     pub fn at_points(&self, element: usize, motion: Motion) -> LocalResults {
         let Some((chunk, place)) = self.chunk_of(element) else {
             return SmallVec::from_elem(LocalResult::default(), self.points(element));
@@ -64,7 +65,7 @@ impl Elements {
         points.into_iter().map(local).collect()
     }
 
-    /// Results at the nodes of an element: those of the points by the linear or bilinear field that is nearest to them.
+    /// Results at the nodes of an element, from the linear or bilinear field nearest to the results of its points.
     pub fn at_nodes(&self, element: usize, motion: Motion) -> LocalResults {
         let points = self.at_points(element, motion);
         let (shape, nodes) = (self.shape(element), self.nodes(element).len());
@@ -76,16 +77,16 @@ impl Elements {
     }
 }
 
-/// Nodes of elements, and the values there of all elements at a node.
+/// Nodes of elements, with the values of all elements at each node.
 pub struct ElementNodes {
     /// Elements (indices).
     elements: Vec<usize>,
-    /// Their nodes (indices), increasing, each with the places of its values among those of all elements.
+    /// Indices of the nodes, increasing, each with the places of its values among those of all elements.
     places: BTreeMap<usize, Vec<usize>>,
 }
 
 impl ElementNodes {
-    /// Nodes of the given elements (indices).
+    /// The nodes of the elements with the given indices.
     pub fn new(all: &Elements, elements: &[usize]) -> Self {
         let mut places: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let nodes = elements.iter().flat_map(|&e| all.nodes(e));
@@ -98,13 +99,13 @@ impl ElementNodes {
         }
     }
 
-    /// The nodes (indices), increasing.
+    /// Indices of the nodes, increasing.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = usize> {
         self.places.keys().copied()
     }
 
-    /// Results at the nodes, one after the other: plain means of the elements at a node, whose weights are positive
-    /// whatever the shape.
+    /// Results at the nodes, one after the other: plain means over the elements at a node, which have positive weights
+    /// whatever the shape of the elements.
     pub fn results(&self, all: &Elements, motion: Motion) -> Vec<LocalResult> {
         let of = |&element: &usize| all.at_nodes(element, motion);
         let own: Vec<LocalResult> = self.elements.iter().flat_map(of).collect();
@@ -116,13 +117,15 @@ impl ElementNodes {
     }
 }
 
-/// Share of a point in the value at a node. In quadrilaterals, sums over the points,
+/// Share of a point in the value at a node. In quadrilaterals this share is, with sums over the
+/// points:
 ///
 /// ```text
 /// f(r, s) = sum_p f_p (1/P + r r_p/sum r² + s s_p/sum s² + r s r_p s_p/sum r² s²)
 /// ```
 ///
-/// which interpolates four points and is nearest to nine; in triangles of three points 2 L - 1/3 with L of the point's corner.
+/// With four points the field interpolates their values; with nine it is the nearest field. In triangles with three
+/// points the share is 2 L - 1/3 with L of the point's corner.
 fn share(shape: Shape, points: usize, node: usize, point: usize) -> f64 {
     let corners = shape.topology().sides.len();
     if points == 1 {

@@ -1,21 +1,23 @@
-//! The four-node quadrilateral with one strain (CPE4R, CPS4R), that of its mean gradients, and the ring with its section
-//! (CAX4R): a potential of their hourglass modes and, in a ring, of the change of the strain around the axis, without which one
-//! layer of elements could tilt freely. See docs/theory/elements.md, One strain and hourglass stiffness.
+//! The four-node quadrilateral with the one strain of its mean gradients (CPE4R, CPS4R), and the ring with this section
+//! (CAX4R). The hourglass modes of CPE4R, CPS4R and CAX4R have a potential. In a ring the variation of the strain
+//! around the axis has a potential too, since one layer of elements could otherwise tilt freely. See
+//! docs/theory/elements.md, One strain and hourglass stiffness.
 //!
 //! # Derivation
 //!
-//! With u = sum u_a h_a, b the mean gradients and m the mean of grad h over the volume, F = F0 + q x (grad h - m) exactly:
-//! F0 = I + sum u_a x b_a, q = sum gamma_a u_a. At small strains the element with enhanced strains has, beside the mean strain,
-//! those of H = F0^T q and of E_33 less its mean, whose energy with the mean strain is zero. Its energy with C of the law at E
-//! = 0, least in alpha, is the potential:
+//! With u = sum u_a h_a, the mean gradients b, and the mean m of grad h over the volume, exactly F = F0 + q x (grad h -
+//! m), F0 = I + sum u_a x b_a, q = sum gamma_a u_a. At small strains the element with enhanced strains has, in addition
+//! to the mean strain, those of H = F0^T q and of E_33 less its mean. The energy products of these strains with the
+//! mean strain are zero. The potential is the energy of these strains with C of the law at E = 0, minimised over alpha:
 //!
 //! ```text
 //! y = (H, E_33 - mean E_33 at the four points),   e = sym(H x (grad h - m)) + y_33 e_33 e_33 + M alpha
 //! Phi = V W(E0) + y.Kh y/2,   Kh = K_yy - K_ya K_aa^-1 K_ay
 //! ```
 //!
-//! y does not change when the element turns, and is quadratic in the displacements, so that dy = (dy/du at halfway) du holds
-//! exactly between two configurations, and the force with Kh (y0 + y1)/2 at halfway does the work of the hourglass energy.
+//! The amplitudes y do not change when the element turns. The amplitudes are quadratic in the displacements, so exactly
+//! dy = (dy/du in the mid configuration) du between two configurations. The force with Kh (y0 + y1)/2 in the mid
+//! configuration therefore does the work of the hourglass energy.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -34,44 +36,45 @@ use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
-/// One strain and a potential of M modes: two, and in a ring four of E_33 more. Their stiffness comes from A enhanced strains.
+/// Formulation with one strain and a potential of M modes: two in the plane, and in a ring four of E_33 in addition.
+/// The stiffness of the modes comes from A enhanced strains.
 pub struct ReducedIntegration<const M: usize, const A: usize>;
 
-/// Nodes of the quadrilateral, and its points.
+/// Number of nodes of the quadrilateral, and of its points.
 const N: usize = 4;
-/// Hourglass modes in the plane.
+/// Number of hourglass modes in the plane.
 const PLANE_MODES: usize = 2;
 
-/// Elements as one point each, with their hourglass modes, in the reference configuration.
+/// Elements with one point each and their hourglass modes, in the reference configuration.
 pub struct OnePoint<const M: usize> {
     /// Mean gradients b (1/length).
     mean: [[Lanes; 2]; N],
     /// Means of h_a/R (1/length).
     around: [Lanes; N],
-    /// h_a/R at the four points less their means.
+    /// h_a/R at the four points, less the means.
     around_at: [[Lanes; N]; N],
-    /// gamma of eq. (2.26).
+    /// The hourglass vector gamma of eq. (2.26).
     gamma: [Lanes; N],
-    /// Weights of the four points over the volume.
+    /// Weights of the four points divided by the volume.
     parts: [Lanes; N],
     /// Volume (length^3).
     volume: Lanes,
-    /// Kh of the law.
+    /// Stiffness Kh of the modes from the law.
     stiffness: ModeStiffness<M>,
-    /// Kh of the viscosity.
+    /// Stiffness Kh of the modes from the viscosity.
     viscous_stiffness: ModeStiffness<M>,
 }
 
-/// Elements as one point each in a motion, with their modes.
+/// Elements with one point each and their modes, in a motion.
 struct Moved<'a, const M: usize> {
     deformation: Deformation,
-    /// Whether det F is positive, in the mean and at the four points.
+    /// Whether det F is positive, for the mean and at the four points.
     positive: Positive,
     modes: ModesInMotion<'a, M>,
     /// F0 and q at the displacements of the strain-displacement matrix.
     f: [[Lanes; 2]; 2],
     q: [Lanes; 2],
-    /// Stretches around the axis at the four points, halfway.
+    /// Stretches around the axis at the four points, in the mid configuration.
     stretches: [Lanes; N],
 }
 
@@ -111,7 +114,7 @@ impl<const M: usize> OnePoint<M> {
         }
     }
 
-    /// Mean displacement gradient of displacements of the nodes.
+    /// Mean displacement gradient for displacements of the nodes.
     #[inline(always)]
     fn gradient<const HOOP: bool>(&self, u: &NodalLanes<N>) -> Gradient {
         Gradient {
@@ -125,7 +128,7 @@ impl<const M: usize> OnePoint<M> {
 }
 
 impl<'a, const M: usize> Moved<'a, M> {
-    /// The motion of the point and of the modes of eq. (2.44).
+    /// The motion of the strain and of the amplitudes, eq. (2.44).
     #[inline(always)]
     fn new<S: IntegratedShape<N, N>, const HOOP: bool>(
         at: &MovedBlock<N, N, OnePoint<M>>,
@@ -180,7 +183,8 @@ impl<'a, const M: usize> Moved<'a, M> {
         let (amplitudes, strains) = match deformation.strains {
             Strains::At(e) => (Amplitudes::At(y1), [e, e]),
             Strains::Between(change) => {
-                // the tangent of a viscosity is that by the mean of the strains: twice that by their change
+                // a viscosity is differentiated with respect to the mean strain, which gives twice the derivative with
+                // respect to the change
                 let amplitudes = match law.is_viscous() {
                     true => Amplitudes::Change(y0, y1),
                     false => Amplitudes::Between(y0, y1),
@@ -207,7 +211,7 @@ impl<'a, const M: usize> Moved<'a, M> {
         }
     }
 
-    /// S of the point times the volume.
+    /// Stress S of the point times the volume.
     #[inline(always)]
     fn weighted_stress<const HOOP: bool>(
         &self,
@@ -222,7 +226,8 @@ impl<'a, const M: usize> Moved<'a, M> {
         }
     }
 
-    /// dy by displacement i of node a: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R less its mean.
+    /// Derivatives dy by displacement i of node a: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R
+    /// less its mean.
     #[inline(always)]
     fn row(&self, one: &OnePoint<M>, a: usize, i: usize) -> [Lanes; M] {
         let around = |p: usize| self.stretches[p] * (one.around_at[p][a] + one.around[a]);
@@ -275,7 +280,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
         moved.positive
     }
 
-    /// V F0 S b_a + dy.f, eq. (2.43), with det F at the points too.
+    /// V F0 S b_a + dy.f, eq. (2.43); det F at the points is checked too.
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
@@ -301,9 +306,9 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
         (force, moved.positive)
     }
 
-    /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D²y, G the rows of dy, D²H_k = b_ak gamma_b + gamma_a b_bk in both
-    /// directions and D²E_33 = h_a h_b/R² in that of the radius; in a metal C and Kh are those of one potential, with what
-    /// they have in common.
+    /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D²y, where G has the rows dy. D²H_k = b_ak gamma_b + gamma_a
+    /// b_bk acts in both directions, and D²E_33 = h_a h_b/R² along the radius. In a metal C and Kh come from one
+    /// potential, with its mixed derivatives.
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
@@ -350,7 +355,8 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
             }
         }
         if let Some(of_both) = &of_both {
-            // ey y of every displacement, and its work on the strain (11, 22, 33, 2*12) of another
+            // ey y for every displacement, and its work on the strain (11, 22, 33, 2*12) of another
+            // displacement
             let of_strain: [[[Lanes; 4]; 2]; N] =
                 from_fn(|a| from_fn(|i| from_fn(|e| dot(&of_both.ey[e], &rows[a][i]))));
             let (f, mean) = (&moved.f, &one.mean);

@@ -1,5 +1,5 @@
-//! Results of elements: strain energy, Cauchy stress and Green-Lagrange strain averaged over an element, the von Mises stress
-//! of these averages, the largest principal strain. See docs/theory/elements.md.
+//! Results of elements: strain energy, Cauchy stress and Green-Lagrange strain as means over an element, the von Mises
+//! stress of these means, and the largest principal strain. See docs/theory/elements.md.
 
 use super::block::{
     Gradient, SymmetricLanes, deformation_gradient, determinant, smaller, times_symmetric,
@@ -8,7 +8,7 @@ use super::block::{
 use crate::materials::number::LANES;
 use crate::materials::{Across, AnyLaw, Lanes, Number};
 
-/// Strain energy of one element, and its stress and strain averaged over the volume.
+/// Strain energy of one element, and means of its stress and strain over the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ElementResult {
     /// Strain energy (force length).
@@ -19,14 +19,14 @@ pub struct ElementResult {
     pub across: f64,
     /// Green-Lagrange strain xx, yy, xy (tensor shear).
     pub strain: [f64; 3],
-    /// Largest absolute principal value of the Green-Lagrange strain in the plane at the integration
-    /// points; NaN when there is one.
+    /// Largest absolute principal value of the Green-Lagrange strain in the plane at the integration points; NaN if one
+    /// of them is NaN.
     pub principal_strain: f64,
-    /// Accumulated plastic strain, mean over the element.
+    /// Accumulated plastic strain, as a mean over the element.
     pub plastic_strain: f64,
     /// Green-Lagrange strain zz across the thickness, or around the axis of a body of revolution.
     pub strain_across: f64,
-    /// The part of the strain energy in hourglass modes (force length).
+    /// Part of the strain energy in hourglass modes (force length).
     pub hourglass_energy: f64,
 }
 
@@ -35,7 +35,7 @@ pub struct ElementResult {
 pub struct Strained {
     /// Element (index).
     pub element: usize,
-    /// Largest absolute principal value of its Green-Lagrange strain in the plane.
+    /// Largest absolute principal value of the Green-Lagrange strain of this element in the plane.
     pub strain: f64,
 }
 
@@ -59,25 +59,25 @@ pub struct PointResult {
     pub gradient: [[f64; 2]; 2],
 }
 
-/// What the results of an integration point follow from.
+/// Data from which the results of an integration point are computed.
 #[derive(Clone, Copy, Default)]
 pub struct ResultPoint {
     /// Displacement gradient.
     pub gradient: Gradient,
-    /// Strain that the material has.
+    /// Strain of the material.
     pub strain: SymmetricLanes,
-    /// Determinant of the deformation gradient in the plane that the material has.
+    /// Determinant, in the plane, of the material's deformation gradient.
     pub determinant: Lanes,
-    /// Stress that stands for that of the point: it does work on the strain of the displacements, or on that of the material
-    /// in elements with strains of their own (force/length^2).
+    /// Stress that is reported for the point. The reported stress does work on the strain of the displacements, or in
+    /// elements with own strains on that of the material (force/length^2).
     pub s: SymmetricLanes,
     /// Weight of the point (length^3).
     pub weight: Lanes,
 }
 
 impl ResultPoint {
-    /// That of a point whose material has the strain of the displacements, with its stress (force/length^2) and its weight
-    /// (length^3).
+    /// Data of a point whose material has the strain of the displacements, with its stress (force/length^2) and its
+    /// weight (length^3).
     #[inline(always)]
     pub fn new(
         gradient: Gradient,
@@ -95,14 +95,14 @@ impl ResultPoint {
     }
 }
 
-/// Sums over the integration points, each times its weight: the energy int W dOmega, eq. (2.4), and what means follow from.
+/// Sums over the integration points, each times its weight: the energy int W dOmega, eq. (2.4), and the sums for means.
 #[derive(Clone, Copy)]
 pub struct Sums {
     energy: Lanes,
-    /// Components 11, 22 and 12.
+    /// Stress components 11, 22 and 12.
     stress: [Lanes; 3],
     across: Lanes,
-    /// Components 11, 22 and 12.
+    /// Strain components 11, 22 and 12.
     strain: [Lanes; 3],
     volume: Lanes,
     strain_across: Lanes,
@@ -127,8 +127,8 @@ impl Sums {
         }
     }
 
-    /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, sigma_zz = F_zz S_zz F_zz/J and E_zz = (F_zz² - 1)/2. With
-    /// all components F_zz is 1 + h of the displacements; in the plane F_zz and S_zz are those of the material.
+    /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, sigma_zz = F_zz S_zz F_zz/J and E_zz = (F_zz² -
+    /// 1)/2. With all components F_zz is 1 + h of the displacements; in the plane F_zz and S_zz come from the material.
     #[inline(always)]
     pub fn add<const HOOP: bool>(
         &mut self,
@@ -166,7 +166,7 @@ impl Sums {
         self.take_principal(&e);
     }
 
-    /// Takes in the largest absolute principal strain of a point.
+    /// Enters the largest absolute principal strain of a point.
     ///
     /// ```text
     /// E_1,2 = (E_xx + E_yy)/2 +- sqrt((E_xx - E_yy)²/4 + E_xy²)
@@ -182,7 +182,7 @@ impl Sums {
         }
     }
 
-    /// The means of one element.
+    /// The mean results of one element.
     #[inline(always)]
     pub fn result(&self, lane: usize) -> ElementResult {
         let volume = self.volume.0[lane];
@@ -207,7 +207,7 @@ impl Sums {
 }
 
 impl ElementResult {
-    /// Sum of results times factors, as of means and of values between points.
+    /// Sum of results times factors, for means and for values between points.
     pub fn weighted<'a>(terms: impl Iterator<Item = (f64, &'a ElementResult)>) -> Self {
         let mut sum = ElementResult::default();
         for (factor, term) in terms {
@@ -231,7 +231,7 @@ impl ElementResult {
         -(xx + yy + self.across) / 3.0
     }
 
-    /// Principal values of the mean stresses, the smallest first (force/length^2): szz and
+    /// Principal values of the mean stresses, the smallest first (force/length^2): szz, and
     ///
     /// ```text
     /// (sxx + syy)/2 -+ sqrt((sxx - syy)²/4 + sxy²)
@@ -244,7 +244,7 @@ impl ElementResult {
         values
     }
 
-    /// Von Mises stress of the mean stresses, zz included (force/length^2):
+    /// Von Mises stress of the mean stresses, including zz (force/length^2):
     ///
     /// ```text
     /// sqrt(((sxx - syy)^2 + (syy - szz)^2 + (szz - sxx)^2)/2 + 3 sxy^2)
@@ -263,7 +263,7 @@ mod tests {
     use crate::materials::Law;
     use crate::model::{Damping, Element, ElementType, Material, Mesh, Model, Section};
 
-    /// A unit square of E = 100, nu = 0.25.
+    /// Model of a unit square with E = 100 and nu = 0.25.
     fn square(element_type: ElementType) -> Model {
         let coordinates = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let elements = vec![Element {
@@ -319,7 +319,8 @@ mod tests {
         let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
         assert!(near(means.stress[0], 31.68) && near(means.stress[1], 8.8 / 1.2));
         assert!(near(means.across, 8.8 / 1.2));
-        // the other two are alike: von Mises is their difference to the first
+        // the other two principal stresses are equal, so the von Mises stress is their difference
+        // from the first
         assert!(near(means.von_mises(), 31.68 - 8.8 / 1.2));
         let means = evaluate(&square(ElementType::CPS4), &u)[0];
         assert_eq!(means.across, 0.0);

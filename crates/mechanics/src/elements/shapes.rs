@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, SMatrix, SVector};
 use crate::materials::Lanes;
 use crate::model::Thickness;
 
-/// One integration point in the reference configuration.
+/// One integration point of an element in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntegrationPoint<const N: usize> {
     /// Shape functions h_a.
@@ -21,8 +21,8 @@ pub struct IntegrationPoint<const N: usize> {
     pub volume: f64,
 }
 
-/// The map to one integration point from its natural coordinates r: all that differs between two
-/// elements of a shape.
+/// The map from natural coordinates r to one integration point; two elements of a shape differ only
+/// by it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobian {
     /// (dX/dr)^-1 (1/length).
@@ -44,7 +44,8 @@ pub struct ShapeFunctions<const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
-    /// dX/dr at every point of an element between nodes at `x`, column a for node a (length).
+    /// Maps dX/dr at every point of an element between nodes at `x`, where column a belongs to node
+    /// a (length).
     pub fn jacobians(&self, x: &SMatrix<f64, 2, N>, thickness: Thickness) -> [Jacobian; P] {
         std::array::from_fn(|p| {
             let (inverse, det) = inverse_jacobian(x, &self.natural[p]);
@@ -56,7 +57,7 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
         })
     }
 
-    /// int h_a h_b dOmega (length^3).
+    /// Integrals int h_a h_b dOmega (length^3).
     fn mass(&self, x: &SMatrix<f64, 2, N>, thickness: Thickness) -> SMatrix<f64, N, N> {
         let points = self.points(&self.jacobians(x, thickness));
         let terms = points.iter();
@@ -65,13 +66,13 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
             .sum()
     }
 
-    /// int h_a dOmega (length^3).
+    /// Integrals int h_a dOmega (length^3).
     fn nodal_volumes(&self, x: &SMatrix<f64, 2, N>, thickness: Thickness) -> SVector<f64, N> {
         let points = self.points(&self.jacobians(x, thickness));
         points.iter().map(|p| p.shape * p.volume).sum()
     }
 
-    /// The integration points with these jacobians, dh/dX = dh/dr (dX/dr)^-1.
+    /// The integration points with these jacobians, where dh/dX = dh/dr (dX/dr)^-1.
     pub fn points(&self, jacobians: &[Jacobian; P]) -> [IntegrationPoint<N>; P] {
         let point = |p: usize| IntegrationPoint {
             shape: SVector::from(self.values[p]),
@@ -82,7 +83,7 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
     }
 }
 
-/// (dX/dr)^-1 and det(dX/dr) at a place with the natural derivatives dh_a/dr_i.
+/// (dX/dr)^-1 and det(dX/dr) at a place, from its natural derivatives dh_a/dr_i.
 fn inverse_jacobian<const N: usize>(
     x: &SMatrix<f64, 2, N>,
     natural: &[[f64; 2]; N],
@@ -101,9 +102,9 @@ fn gradients<const N: usize>(
 }
 
 /// Shape functions of N nodes at P integration points, and the two sums over the nodes that a sweep
-/// needs, each with as few operations as the shape allows.
+/// needs, each with the fewest operations for the shape.
 pub trait IntegratedShape<const N: usize, const P: usize> {
-    /// The shape functions.
+    /// The values of the shape functions at the points.
     const FUNCTIONS: ShapeFunctions<N, P>;
 
     /// Natural derivatives dv/dr_i = sum_a v_a dh_a/dr_i of a field at a point.
@@ -118,7 +119,7 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
         sum
     }
 
-    /// A field at a point.
+    /// Value of a field at a point.
     #[inline(always)]
     fn value(p: usize, v: &[Lanes; N]) -> Lanes {
         let mut value = Lanes::ZERO;
@@ -141,15 +142,15 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
         sums
     }
 
-    /// Consistent mass per density of an element between nodes at `x`, m_ab = int h_a h_b dOmega (length^3). With the radius of
-    /// a ring as a factor the quadrature is exact to one degree more than in the plane.
+    /// Consistent mass per density of an element between nodes at `x`, m_ab = int h_a h_b dOmega (length^3). The radius
+    /// of a ring is a further factor, so the quadrature for rings is exact to one degree more than in the plane.
     fn mass(x: &SMatrix<f64, 2, N>, thickness: Thickness) -> SMatrix<f64, N, N>;
 
     /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
     fn nodal_volumes(x: &SMatrix<f64, 2, N>, thickness: Thickness) -> SVector<f64, N>;
 }
 
-/// The triangle: linear shape functions h = (1 - r - s, r, s) at its centroid.
+/// The triangle: linear shape functions h = (1 - r - s, r, s), evaluated at its centroid.
 pub struct Triangle;
 
 impl IntegratedShape<3, 1> for Triangle {
@@ -169,7 +170,7 @@ impl IntegratedShape<3, 1> for Triangle {
         [Lanes::ZERO - *r - *s, *r, *s]
     }
 
-    /// m_ab = V (1 + delta_ab) / 12 in the plane.
+    /// m_ab = V (1 + delta_ab) / 12, in the plane.
     fn mass(x: &SMatrix<f64, 2, 3>, thickness: Thickness) -> SMatrix<f64, 3, 3> {
         if thickness == Thickness::Around {
             return Self::RING_MASS.mass(x, thickness);
@@ -196,10 +197,10 @@ impl IntegratedShape<3, 1> for Triangle {
 /// ```
 pub(super) const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
-/// Natural coordinates of the integration points: those of the nodes times 1/sqrt(3).
+/// Natural coordinate of the integration points relative to that of the nodes, 1/sqrt(3).
 pub(super) const GAUSS: f64 = 0.577_350_269_189_625_8;
-/// Linear shape functions (1 + GAUSS)/2 and (1 - GAUSS)/2 of an edge at its integration points, with
-/// the 1/2 of the natural derivative across.
+/// Half of the linear shape function (1 + GAUSS)/2 of an edge at its nearer integration point; the half is the natural
+/// derivative across. `FAR` is half of the linear shape function (1 - GAUSS)/2 at the farther integration point.
 const NEAR: f64 = (1.0 + GAUSS) / 4.0;
 const FAR: f64 = (1.0 - GAUSS) / 4.0;
 
@@ -209,7 +210,7 @@ pub struct Quadrilateral;
 impl IntegratedShape<4, 4> for Quadrilateral {
     const FUNCTIONS: ShapeFunctions<4, 4> = bilinear(BY_FOUR, [1.0; 4]);
 
-    /// dv/dr depends on s alone and dv/ds on r alone: both follow from the differences along the edges.
+    /// dv/dr depends only on s and dv/ds only on r; both come from the differences along the edges.
     #[inline(always)]
     fn derivative(p: usize, v: &[Lanes; 4]) -> [Lanes; 2] {
         let (bottom, top) = (v[1] - v[0], v[2] - v[3]);
@@ -233,7 +234,7 @@ impl IntegratedShape<4, 4> for Quadrilateral {
         ]
     }
 
-    /// Exact at 2 x 2 points in the plane, det(dX/dr) being linear.
+    /// The quadrature with 2 x 2 points is exact in the plane, since det(dX/dr) is linear.
     fn mass(x: &SMatrix<f64, 2, 4>, thickness: Thickness) -> SMatrix<f64, 4, 4> {
         match thickness {
             Thickness::Of(_) => Self::FUNCTIONS.mass(x, thickness),
@@ -249,7 +250,7 @@ impl IntegratedShape<4, 4> for Quadrilateral {
     }
 }
 
-/// The 2 x 2 Gauss points.
+/// Natural coordinates of the 2 x 2 Gauss points.
 const BY_FOUR: [[f64; 2]; 4] = {
     let mut points = CORNERS;
     let mut p = 0;
@@ -260,7 +261,7 @@ const BY_FOUR: [[f64; 2]; 4] = {
     points
 };
 
-/// Shape functions of Q4 at some points.
+/// Shape functions of Q4 at the given points.
 const fn bilinear<const P: usize>(
     points: [[f64; 2]; P],
     weights: [f64; P],
@@ -282,7 +283,8 @@ const fn bilinear<const P: usize>(
     }
 }
 
-/// The quadratic triangle at three points, which are exact for the strains of straight sides.
+/// The quadratic triangle with three points, which are exact for the strains of elements with
+/// straight sides.
 ///
 /// ```text
 ///   2
@@ -292,7 +294,8 @@ const fn bilinear<const P: usize>(
 /// ```
 pub struct QuadraticTriangle;
 
-/// The six points of degree 4 (Dunavant 1985): distance of three from a corner, their weight, and those of the others.
+/// The six points of degree 4 (Dunavant 1985): for three of them the natural coordinate that two of their area
+/// coordinates have, and their weight; then the same data of the other three.
 const DUNAVANT: [f64; 4] = [
     0.445_948_490_915_964_9,
     0.223_381_589_678_011_47,
@@ -300,7 +303,7 @@ const DUNAVANT: [f64; 4] = [
     0.109_951_743_655_321_87,
 ];
 
-/// These points and their weights.
+/// The six points of degree 4 and their weights.
 const DEGREE_4: ([[f64; 2]; 6], [f64; 6]) = {
     let [a, wa, b, wb] = DUNAVANT;
     let (c, d) = (1.0 - 2.0 * a, 1.0 - 2.0 * b);
@@ -315,7 +318,7 @@ impl QuadraticTriangle {
 }
 
 impl Triangle {
-    /// Quadrature of mass and body force of a ring, whose radius adds a degree.
+    /// Quadrature of mass and body force of a ring, one degree higher because of the radius.
     pub(super) const RING_MASS: ShapeFunctions<3, 6> = {
         let (points, weights) = DEGREE_4;
         let mut values = [[0.0; 3]; 6];
@@ -334,7 +337,7 @@ impl Triangle {
 }
 
 impl Quadrilateral {
-    /// Quadrature of mass and body force of a ring, whose radius adds a degree.
+    /// Quadrature of mass and body force of a ring, one degree higher because of the radius.
     pub(super) const RING_MASS: ShapeFunctions<4, 9> = bilinear(DEGREE_5.0, DEGREE_5.1);
 }
 
@@ -353,7 +356,7 @@ impl IntegratedShape<6, 3> for QuadraticTriangle {
     }
 }
 
-/// Shape functions of T6 at some points.
+/// Shape functions of T6 at the given points.
 const fn quadratic_triangle<const P: usize>(
     points: [[f64; 2]; P],
     weights: [f64; P],
@@ -440,7 +443,7 @@ impl IntegratedShape<8, 4> for ReducedSerendipity {
     }
 }
 
-/// Shape functions of Q8 at some points.
+/// Shape functions of Q8 at the given points.
 const fn serendipity<const P: usize>(
     points: [[f64; 2]; P],
     weights: [f64; P],
@@ -478,7 +481,8 @@ pub(super) mod tests {
     use super::*;
     use nalgebra::Matrix2;
 
-    /// Gradients, volume and mass of an element of thickness 0.25 between nodes at `x`, whose corners come first.
+    /// Checks gradients, volume and mass of an element of thickness 0.25 between nodes at `x`, whose corners come
+    /// first.
     fn check<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
         x: SMatrix<f64, 2, N>,
         corners: usize,

@@ -1,20 +1,21 @@
-//! Strains that differ from the mean of an element, in the measure in which the energy of its material is convex.
-//! See docs/theory/elements.md, Enhanced strains.
+//! Strains that differ from the mean of an element, in the strain measure in which the energy of its material is
+//! convex. See docs/theory/elements.md, Enhanced strains.
 //!
 //! # Derivation
 //!
-//! With the mean Ebar of the displacement strains and Cbar = I + 2 Ebar, what an element has beside its mean is
-//! A = E + M alpha - Ebar. Its strain is Ebar + A in the measure of Green and Lagrange. Cbar exp(2 Cbar^-1 A) is additive
-//! in logarithmic strains instead. Cayley's approximation of the exponential agrees with it up to the second order:
+//! With the mean Ebar of the displacement strains and Cbar = I + 2 Ebar, the strain beyond the mean is A = E + M
+//! alpha - Ebar. In the Green-Lagrange measure the strain of the element is Ebar + A. In the logarithmic measure the
+//! strain of the element is that of Cbar exp(2 Cbar^-1 A), which is additive in logarithmic strains. Cayley's
+//! approximation of the exponential agrees with it up to the second order:
 //!
 //! ```text
 //! I + 2 E_g = Cbar (1 - Q)^-1 (1 + Q),   Q = Cbar^-1 A
 //! E_g = Ebar + A + A H A,   H = (Cbar - A)^-1, or 0 in the measure of Green and Lagrange
 //! ```
 //!
-//! It is singular where Cbar + A is. The displacements, whose strain is linear in q (eq. 2.27), turn a point of a
-//! parallelogram inside out there, so that the material feels it. With N = H A, W = 1 + N and dH = -H (2 dEbar - dA) H
-//! the derivatives are
+//! The approximation is singular where Cbar + A is. Where Cbar + A is singular, the displacements, whose strain is
+//! linear in q (eq. 2.27), turn a point of a parallelogram inside out, so the energy of the material grows before. With
+//! N = H A, W = 1 + N and dH = -H (2 dEbar - dA) H, the derivatives are
 //!
 //! ```text
 //! dE_g  = dEbar + W^T dA W - 2 N^T dEbar N = dEbar + dA + dA N + N^T B,   B = dA W - 2 dEbar N
@@ -32,7 +33,7 @@ use crate::materials::{Lanes, Number, StrainMeasure};
 pub struct Tensor {
     /// Components of the section, row by row.
     section: TensorLanes,
-    /// Component 33; without `HOOP` none is read.
+    /// Component 33; it is not read without `HOOP`.
     z: Lanes,
 }
 
@@ -75,7 +76,8 @@ impl Tensor {
         }
     }
 
-    /// (A + A^T)/2. The difference between two symmetric tensors has the round-off of their product; this has not.
+    /// Symmetric part (A + A^T)/2. The difference between two symmetric tensors would have the round-off of their
+    /// product; this form has not.
     #[inline(always)]
     fn symmetric(&self) -> SymmetricLanes {
         let [[xx, xy], [yx, yy]] = self.section;
@@ -94,30 +96,30 @@ impl Tensor {
     }
 }
 
-/// Mean strain of an element, and the measure in which strains are added to it.
+/// Mean strain of an element, and the measure in which other strains are added to it.
 #[derive(Clone, Copy)]
 pub struct MeanStrain {
     /// Ebar
     pub strain: SymmetricLanes,
-    /// Measure of the law.
+    /// Strain measure of the law.
     pub measure: StrainMeasure,
 }
 
-/// The first variation of a strain of the displacements or of the element: at a point, and of the mean.
+/// The first variation of a strain of the displacements or of the element, at a point and of its mean.
 #[derive(Clone, Copy)]
 pub struct Variation {
-    /// dE + M dalpha
+    /// Variation dE + M dalpha at the point.
     pub at_point: SymmetricLanes,
     /// dEbar
     pub of_mean: SymmetricLanes,
 }
 
-/// A strain of an element at a point beside its mean.
+/// Strain of an element at a point, in terms of the mean and the strain beyond it.
 #[derive(Clone, Copy, Default)]
 pub struct AddedStrain {
-    /// E + M alpha
+    /// The linear part E + M alpha.
     linear: SymmetricLanes,
-    /// What else there is in the measure of logarithms.
+    /// Further tensors of the logarithmic measure; `None` in the Green-Lagrange measure.
     stretched: Option<Stretched>,
 }
 
@@ -125,14 +127,14 @@ pub struct AddedStrain {
 struct Stretched {
     /// A
     beside: Tensor,
-    /// H, NaN where the point or the mean has turned inside out.
+    /// H; NaN if the point or the mean has turned inside out.
     h: Tensor,
     /// N
     n: Tensor,
 }
 
 impl MeanStrain {
-    /// Adds what E + M alpha has beside the mean.
+    /// Adds the part of E + M alpha beyond the mean to the mean.
     #[inline(always)]
     pub fn add<const HOOP: bool>(&self, linear: &SymmetricLanes) -> AddedStrain {
         let stretched = match self.measure {
@@ -182,7 +184,7 @@ impl AddedStrain {
         }
     }
 
-    /// E_g less that at the start of a variation, with a round-off that is relative to the variation:
+    /// E_g less the E_g at the start of a variation, with a round-off that is relative to the variation:
     ///
     /// ```text
     /// A1 H1 A1 - A0 H0 A0 = dA H1 A1 + A0 dH A1 + A0 H0 dA,   dH = -H1 (2 dEbar - dA) H0
@@ -209,7 +211,7 @@ impl AddedStrain {
                 .symmetric()
     }
 
-    /// What a stress S on E_g does work on:
+    /// Stresses T and R by which a stress S on E_g does work:
     ///
     /// ```text
     /// S:dE_g = T:(dE + M dalpha) - R:dEbar,   T = W S W^T,   R = T - S + 2 N S N^T
@@ -225,7 +227,7 @@ impl AddedStrain {
         [*s + more, more + square.map(|s| s * 2.0)]
     }
 
-    /// dE_g of a variation, and its B.
+    /// dE_g of a variation, and its tensor B.
     #[inline(always)]
     pub fn variation<const HOOP: bool>(
         &self,
@@ -242,7 +244,7 @@ impl AddedStrain {
         (*at_point + more.symmetric(), b)
     }
 
-    /// 2 H B S, whose product with another B is S : d²E_g; none in the measure of Green and Lagrange.
+    /// 2 H B S, whose product with another B is S : d²E_g; `None` in the Green-Lagrange measure.
     #[inline(always)]
     pub fn second_stress<const HOOP: bool>(
         &self,
@@ -260,7 +262,7 @@ mod tests {
     use super::*;
     use crate::materials::Symmetric;
 
-    /// Components 11, 22, 33, 12.
+    /// The components 11, 22, 33, 12 of a tensor.
     type Components = [f64; 4];
     const MEAN: Components = [0.3, -0.1, 0.05, 0.1];
     const LINEAR: Components = [0.35, -0.2, 0.1, 0.14];
@@ -278,7 +280,7 @@ mod tests {
         MeanStrain { strain, measure }
     }
 
-    /// A + t B
+    /// The tensor A + t B.
     fn moved(a: Components, t: f64, b: Components) -> SymmetricLanes {
         lanes(a) + lanes(b.map(|b| t * b))
     }
@@ -343,7 +345,8 @@ mod tests {
 
     #[test]
     fn the_material_feels_that_displacements_turn_a_point_inside_out() {
-        // bent in its plane, a bar of the stretch F has F + q s at s, and the strain that is linear in q
+        // a bar of the stretch F that is bent in its plane has the stretch F + q s at s, and a strain that is linear in
+        // q
         let stretch: f64 = 1.3;
         let strain = [(stretch * stretch - 1.0) / 2.0, 0.1, 0.2, 0.0];
         let of = |qs: f64| {

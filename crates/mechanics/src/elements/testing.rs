@@ -1,4 +1,4 @@
-//! What elements of every type and law have to fulfil. See docs/theory/elements.md.
+//! Properties that elements of every type and law must have. See docs/theory/elements.md.
 
 use nalgebra::{DMatrix, DVector, Matrix2};
 
@@ -20,15 +20,15 @@ const TRI: [[f64; 2]; 3] = [[0.1, 0.0], [2.0, 0.3], [0.7, 1.9]];
 /// A single element of thickness 0.5.
 pub(super) struct Sample {
     pub element_type: ElementType,
-    /// Positions of its nodes.
+    /// Positions of the nodes.
     pub x: Vec<[f64; 2]>,
     pub model: Model,
     elements: Elements,
-    /// Temperatures of its nodes; none where it does not expand.
+    /// Temperatures of the nodes; empty if the element does not expand.
     temperature: Vec<f64>,
 }
 
-/// Steel and rubber.
+/// Laws of steel and of rubber.
 pub(super) fn laws() -> [Law; 4] {
     let ogden = Ogden {
         terms: [[150.0, 1.7], [40.0, -1.2], [0.0, 0.0]],
@@ -58,7 +58,7 @@ pub(super) fn rubber() -> Law {
     })
 }
 
-/// A metal that hardens little.
+/// A metal with little hardening.
 fn metal(kinematic: f64) -> Law {
     Law::Plastic(Plastic {
         moduli: SmallStrainModuli {
@@ -70,25 +70,26 @@ fn metal(kinematic: f64) -> Law {
     })
 }
 
-/// Some displacements of moderate size, the same for every run.
+/// Some displacements of moderate size, the same in every run.
 fn displacements(n: usize, seed: usize) -> DVector<f64> {
     let value = |k: usize| (((seed + 7 * (k / 2) + 3 * (k % 2)) * 37) % 23) as f64 / 100.0 - 0.11;
     DVector::from_fn(2 * n, |k, _| value(k))
 }
 
-/// Samples of all named types with all laws, at temperatures that differ from node to node.
+/// Runs a check on samples of all named types with all laws, at temperatures that differ from node
+/// to node.
 fn for_each_heated_sample(mut check: impl FnMut(&Sample)) {
     for_each_kind(|element_type, law| {
         check(&Sample::new(element_type, law).heated(|node| 80.0 - 35.0 * node as f64));
     });
 }
 
-/// Samples of all named types with all laws.
+/// Runs a check on samples of all named types with all laws.
 fn for_each_sample(mut check: impl FnMut(&Sample)) {
     for_each_kind(|element_type, law| check(&Sample::new(element_type, law)));
 }
 
-/// All named types with all laws.
+/// Runs a check on all named types with all laws.
 fn for_each_kind(mut check: impl FnMut(ElementType, Law)) {
     for element_type in ElementType::NAMED {
         laws().into_iter().for_each(|law| check(element_type, law));
@@ -96,7 +97,7 @@ fn for_each_kind(mut check: impl FnMut(ElementType, Law)) {
 }
 
 impl Sample {
-    /// A distorted element; rings are off the axis.
+    /// A distorted element; rings lie off the axis.
     pub fn new(element_type: ElementType, law: Law) -> Self {
         let mut x = match element_type.shape {
             Shape::Tri3 => TRI.to_vec(),
@@ -110,7 +111,7 @@ impl Sample {
         Self::between(element_type, law, x, Damping::default())
     }
 
-    /// An element between nodes.
+    /// An element between given nodes.
     pub fn between(
         element_type: ElementType,
         law: Law,
@@ -148,7 +149,8 @@ impl Sample {
         }
     }
 
-    /// The same element of a material that expands by 1e-3 a degree, at temperatures of its nodes.
+    /// The same element with a material that expands by 1e-3 a degree, at temperatures of its
+    /// nodes.
     fn heated(mut self, temperature: impl Fn(usize) -> f64) -> Self {
         self.model.materials[0].expansion = Some(Expansion {
             zero: 0.0,
@@ -159,13 +161,13 @@ impl Sample {
         self
     }
 
-    /// The element at displacements.
+    /// The motion of the element at given displacements.
     fn at<'a>(&'a self, u: &'a DVector<f64>, committed: &'a [f64]) -> Motion<'a> {
         Motion::at(u.as_slice(), committed).heated(&self.temperature)
     }
 
     fn displacements(&self, seed: usize) -> DVector<f64> {
-        // a ring does not reach the axis, nor a curved side itself
+        // a ring does not reach the axis, and a curved side does not meet itself
         let size = match self.element_type.is_ring() || self.element_type.is_quadratic() {
             true => 0.4,
             false => 1.0,
@@ -173,7 +175,7 @@ impl Sample {
         displacements(self.x.len(), seed) * size
     }
 
-    /// Displacements (F - I) X.
+    /// Homogeneous displacements (F - I) X.
     fn homogeneous(&self, f: Matrix2<f64>) -> DVector<f64> {
         let moved = self.x.iter().flat_map(|&[x, y]| {
             let moved = f * nalgebra::Vector2::new(x, y);
@@ -208,7 +210,7 @@ impl Sample {
     }
 }
 
-/// A motion from some displacements to others.
+/// A motion between two given displacements.
 fn between<'a>([u0, u1]: [&'a DVector<f64>; 2], committed: &'a [f64]) -> Motion<'a> {
     Motion {
         start: Some(u0.as_slice()),
@@ -216,7 +218,7 @@ fn between<'a>([u0, u1]: [&'a DVector<f64>; 2], committed: &'a [f64]) -> Motion<
     }
 }
 
-/// `u` with one entry moved.
+/// The displacements `u` with one entry changed.
 fn moved(u: &DVector<f64>, j: usize, by: f64) -> DVector<f64> {
     let mut u = u.clone();
     u[j] += by;
@@ -366,7 +368,7 @@ fn only_rigid_motions_have_no_stiffness_and_one_more_with_reduced_integration() 
         let values = k.clone().symmetric_eigenvalues();
         let zero = values.iter().filter(|v| v.abs() < 1e-10 * k.amax()).count();
         let is_reduced = t.is_quadratic() && sample.elements.points(0) == 4;
-        // the one strain of the triangle's ring leaves a mode without strain at its point
+        // the ring of the triangle has only one strain, so one mode has no strain at the point
         let zero_modes = match (t.is_ring(), t.shape) {
             (true, Shape::Tri3) => 2,
             (true, _) => 1,
@@ -435,8 +437,8 @@ fn nearly_incompressible_elements_keep_their_energy() {
     }
 }
 
-/// A motion of a metal in many increments. Every increment keeps the energy, and the force at its end changes by no more than
-/// a part when it is committed. Gives what is dissipated.
+/// A motion of a metal in many increments, which is checked. Every increment conserves the energy, and committing it
+/// changes the force at its end by no more than a small part. Returns the dissipated energy of the whole motion.
 fn check_metal(
     sample: &Sample,
     at: impl Fn(f64) -> DVector<f64>,
@@ -475,7 +477,7 @@ fn check_metal(
 #[test]
 fn metals_keep_their_force_and_their_energy_when_an_increment_is_committed() {
     for element_type in ElementType::NAMED {
-        // the back stress turns with the plastic strain that is committed, its work on the next strains does not
+        // committing an increment turns the back stress with the plastic strain, but not its work on the next strains
         for (kinematic, most) in [(0.0, 1e-9), (0.5, 1e-6)] {
             let sample = Sample::new(element_type, metal(kinematic));
             for [draw, bend] in [[0.2, 0.05], [0.02, 0.05], [0.0, 0.05], [0.3, 0.005]] {
@@ -547,8 +549,8 @@ fn plane_strain_holds_the_thermal_expansion_across() {
     }
 }
 
-/// A metal that is drawn, bent and heated at once: in every increment the work of the force halfway and that of the
-/// temperature are what is stored and dissipated.
+/// A metal is drawn, bent and heated at once. In every increment the work of the force at mid-increment plus that of
+/// the temperature is the stored plus the dissipated energy.
 #[test]
 fn heated_metals_keep_their_energy() {
     for element_type in ElementType::NAMED {
@@ -599,8 +601,8 @@ fn heated_metals_keep_their_energy() {
 
 #[test]
 fn strains_of_a_metal_ring_stay_in_the_minimum_that_they_have_flown_into() {
-    // The energy of a ring that has flown far has several minima. From no enhanced strain on, the solution may come into
-    // another minimum than that of the increment before, and the stresses jump.
+    // The energy of a ring that has flown far has several minima. If the search began without enhanced strains, the
+    // solution could reach another minimum than in the increment before, and the stresses would jump.
     for element_type in [ElementType::CAX4I, ElementType::CAX4R] {
         let sample = Sample::new(element_type, metal(0.0));
         // squeezed along the axis at a constant volume, and bent in its section
@@ -698,7 +700,7 @@ fn volume_and_mass_are_those_of_the_body() {
 fn elements_have_among_others_what_they_have_alone() {
     for element_type in ElementType::NAMED {
         for law in [rubber(), metal(0.5)] {
-            // three of one type, apart from each other, so that the last is alone in its block
+            // three separate elements of one type, so that the last is alone in its block
             let mut model = Sample::new(element_type, law).model;
             let n = model.mesh.coordinates.len();
             let first = model.mesh.elements[0].clone();
@@ -761,7 +763,7 @@ fn elements_have_among_others_what_they_have_alone() {
     }
 }
 
-/// Displacements of one of three elements among those of all, the others of which are at rest.
+/// Displacements of three elements: `u` in one of them, and zero in the other two.
 fn among_others(u: &DVector<f64>, element: usize) -> DVector<f64> {
     let mut all = DVector::zeros(3 * u.len());
     all.rows_mut(u.len() * element, u.len()).copy_from(u);

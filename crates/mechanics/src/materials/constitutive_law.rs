@@ -1,4 +1,5 @@
-//! What an element asks of a material at an integration point. See docs/theory/materials.md and docs/theory/time.md.
+//! Functions of a material at an integration point that elements call. See docs/theory/materials.md and
+//! docs/theory/time.md.
 
 use std::array::from_fn;
 
@@ -7,11 +8,11 @@ use super::number::{LANES, Lanes, Number};
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
-/// A law with internal variables. From the strains of an iterate and the internal variables z0 that the last accepted
-/// increment has committed follow the stress, its tangent and the internal variables z1 of the iterate, by a local
-/// solution (return mapping).
+/// A law with internal variables. From the strains of an iterate and the internal variables z0, which the last accepted
+/// increment has committed, it computes the stress, its tangent, and the internal variables z1 of the iterate. The law
+/// computes them by a local solution (return mapping).
 ///
-/// Energies are per reference volume (force/length^2), the stored one apart from the dissipated one.
+/// Energies are per reference volume (force/length^2); the stored energy is kept apart from the dissipated one.
 pub trait Flow {
     /// Number of internal variables at a point.
     fn variables(&self) -> usize;
@@ -19,17 +20,17 @@ pub trait Flow {
     /// Second Piola-Kirchhoff stress S, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2).
     fn stress(&self, strains: &Strains, z0: &[f64]) -> Symmetric;
 
-    /// Writes z1 at the end of the strains.
+    /// Writes the internal variables z1 at the end of the strains.
     fn update(&self, strains: &Strains, z0: &[f64], z1: &mut [f64]);
 
-    /// Tangent dS/dE of [`Self::stress`], or the symmetric part of 2 dS/dE1 in the energy-momentum form, z1 following
-    /// the strain, on strains (11, 22, 33, 2*12) (force/length^2).
+    /// Tangent dS/dE of [`Self::stress`], or in the energy-momentum form the symmetric part of 2 dS/dE1. The tangent
+    /// acts on strains (11, 22, 33, 2*12) and includes the dependence of z1 on the strain (force/length^2).
     fn tangent(&self, strains: &Strains, z0: &[f64]) -> Tangent;
 
     /// Stored energy W(E, z).
     fn stored_energy(&self, e: &Symmetric, z: &[f64]) -> f64;
 
-    /// Energy D >= 0 dissipated on the way from z0 to the z1 of the strains.
+    /// Energy D >= 0 dissipated on the way from z0 to the z1 that belong to the strains.
     fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64;
 
     /// Stretch and stress across the plane.
@@ -43,39 +44,39 @@ pub trait Flow {
         StrainMeasure::Logarithmic
     }
 
-    /// The law of a metal as one.
+    /// The law with the functions of a metal, if it is a metal.
     fn as_metal(&self) -> Option<&dyn MetalLaw> {
         None
     }
 }
 
-/// What the elements with hourglass modes ask of a metal: a potential W(E; m) less the elastic energy of these. m is what they
-/// add to q² (force^2/length^4), eq. (2.48).
+/// Functions of a metal that elements with hourglass modes call: a potential W(E; m), without the elastic energy of the
+/// modes. The argument m is the part that the modes add to q² (force^2/length^4), eq. (2.48).
 pub trait MetalLaw: std::fmt::Debug {
-    /// 3 mu and H_k (force/length^2).
+    /// The moduli 3 mu and H_k (force/length^2).
     fn moduli(&self) -> [f64; 2];
 
-    /// Internal variables at the end of the strains of an increment with m at its start and at its end, what is dissipated
-    /// (force/length^2), and the part r of the trial strain that flows.
+    /// Writes the internal variables at the end of the strains of an increment, with m at its start and at its end.
+    /// Returns the dissipated energy (force/length^2) and the part r of the trial strain that flows.
     fn update(&self, strains: &Strains, z0: &[f64], modes: [f64; 2], z1: &mut [f64]) -> [f64; 2];
 
-    /// W at a second strain and m less that at the first ones, with `by` the difference of m and with a round-off that is
-    /// relative to the changes (force/length^2).
+    /// Change of W between two strains and their m, with a round-off that is relative to the changes (force/length^2);
+    /// `by` is the difference of m.
     fn change(&self, z0: &[f64], strains: &StrainChange, modes: [f64; 2], by: f64) -> f64;
 
-    /// S (force/length^2) and dW/dm.
+    /// The stress S (force/length^2) and the derivative dW/dm.
     fn bent_stress(&self, z0: &[f64], e: &Symmetric, modes: f64) -> (Symmetric, f64);
 
     /// Second derivatives of the potential.
     fn bent_tangent(&self, z0: &[f64], e: &Symmetric, modes: f64) -> BentTangent;
 }
 
-/// Second derivatives of a potential W(E; m), and the first by m.
+/// Second derivatives of a potential W(E; m), and its first derivative with respect to m.
 #[derive(Debug, Clone, Copy)]
 pub struct BentTangent {
     /// C (force/length^2).
     pub tangent: Tangent,
-    /// dW/dm and d²W/dm².
+    /// Derivatives dW/dm and d²W/dm².
     pub by_modes: [f64; 2],
     /// dS/dm.
     pub stress_by_modes: Symmetric,
@@ -86,20 +87,21 @@ pub struct BentTangent {
 pub struct Metal<'a> {
     /// The law.
     pub law: &'a dyn MetalLaw,
-    /// Variables of the point.
+    /// Internal variables of the point.
     pub of_point: &'a [f64],
 }
 
-/// A stress that follows from the strains at the integration points of elements: that of their material, or that of its
+/// A stress that depends on the strains at the integration points of elements: the one of their material, or of its
 /// viscosity.
 pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
     /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2).
     fn stress_at(&self, point: usize, strains: &Strains<T>) -> Symmetric<T>;
 
-    /// Tangent of [`Self::stress_at`] at a point, or the symmetric part of twice its derivative by E1 (force/length^2).
+    /// Tangent of [`Self::stress_at`] at a point, or the symmetric part of twice its derivative with respect to E1
+    /// (force/length^2).
     fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T>;
 
-    /// [`Self::stress_at`] of the elements that are wanted; others may have any.
+    /// [`Self::stress_at`] for the elements that are wanted; the values of others are arbitrary.
     fn stress_where(
         &self,
         _wanted: [bool; LANES],
@@ -109,7 +111,7 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         self.stress_at(point, strains)
     }
 
-    /// [`Self::tangent_at`] of the elements that are wanted; others may have any.
+    /// [`Self::tangent_at`] for the elements that are wanted; the values of others are arbitrary.
     fn tangent_where(
         &self,
         _wanted: [bool; LANES],
@@ -125,18 +127,18 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
     /// Stretch and stress across the plane at a point.
     fn across_at(&self, point: usize, e: &Symmetric<T>) -> Across<T>;
 
-    /// Whether the stress is that of a change of the strains, without a stored energy.
+    /// Whether the stress depends on a change of the strains and has no stored energy.
     fn is_viscous(&self) -> bool {
         false
     }
 
-    /// The measure of strain in which the potential of the stress is convex: that of logarithms where the law fulfils Hill's
-    /// inequality. That of a viscosity is quadratic in the strains of Green and Lagrange.
+    /// The measure of strain in which the potential of the stress is convex; it is logarithmic if the law fulfils
+    /// Hill's inequality. The potential of a viscosity is quadratic in the Green-Lagrange strains.
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Green
     }
 
-    /// Factor of the tangent at no strain, which the hourglass stiffness is made of; none where it is 1.
+    /// Factor on the tangent at zero strain, from which the hourglass stiffness is made; `None` if it is 1.
     fn stiffness_factor(&self) -> Option<T> {
         None
     }
@@ -151,14 +153,14 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         0.0
     }
 
-    /// Writes the internal variables of an element at the end of the strains of a point into those of all its points, and
-    /// gives the energy dissipated on the way (force/length^2).
+    /// Writes the internal variables of an element at the end of the strains of a point into those of all its points,
+    /// and returns the energy dissipated on the way (force/length^2).
     fn update_at(&self, _lane: usize, _point: usize, _strains: &Strains, _z1: &mut [f64]) -> f64 {
         0.0
     }
 }
 
-/// The stress of elements side by side by any law.
+/// The stress of several elements at a time, by any law.
 pub type AnyLaw<'a, const HOOP: bool> = dyn StressAtPoints<Lanes, HOOP> + 'a;
 
 /// The stresses of an elastic law.
@@ -192,7 +194,7 @@ impl<T: Number, const HOOP: bool, L: Hyperelastic<T, HOOP>> StressAtPoints<T, HO
     }
 }
 
-/// Elements side by side whose stresses are evaluated one after the other.
+/// Several elements whose stresses are evaluated one after the other.
 pub struct OneByOne<S>(pub [S; LANES]);
 
 impl<T: Number, const HOOP: bool, S: StressAtPoints> StressAtPoints<T, HOOP> for OneByOne<S> {

@@ -1,18 +1,18 @@
-//! Thermal expansion: the stretch that a temperature gives a material, the same in all directions, and any law behind it.
-//! See docs/theory/materials.md, Temperature.
+//! Thermal expansion: a temperature stretches a material equally in all directions; any law describes the additional
+//! deformation. See docs/theory/materials.md, Temperature.
 //!
 //! # Derivation
 //!
-//! The deformation gradient is a product F = theta F_m of a stretch theta, free of stress, and of the part F_m that the law
-//! knows (Stojanovic, Djuric & Vujosevic 1964; Lu & Pister 1975). With C_m = C/theta² and a stored energy W_m per
-//! volume of the body that is heated and free of stress, which is theta³ times its reference volume:
+//! The deformation gradient is the product F = theta F_m of a stress-free stretch theta and the part F_m that the law
+//! sees (Stojanovic, Djuric & Vujosevic 1964; Lu & Pister 1975). With C_m = C/theta² and a stored energy W_m per volume
+//! of the heated, stress-free body, which is theta³ times its reference volume:
 //!
 //! ```text
 //! E_m = (E - E_theta I)/theta²,   E_theta = (theta² - 1)/2
 //! W = theta³ W_m(E_m),   S = dW/dE = theta S_m(E_m),   dS/dE = C_m(E_m)/theta
 //! ```
 //!
-//! F S F^T/J is then F_m S_m F_m^T/J_m: the law gives the true stress of the heated body.
+//! The law thus gives the true stress of the heated body, since F S F^T/J = F_m S_m F_m^T/J_m.
 
 use super::constitutive_law::{AnyLaw, BentTangent, Metal, MetalLaw};
 use super::number::{LANES, Lanes, Number};
@@ -20,21 +20,21 @@ use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 use super::{Plane, StressAtPoints};
 
-/// Points of an element at most.
+/// Largest number of points of an element.
 const MAX_POINTS: usize = 9;
 
-/// Thermal expansion of a material, `*EXPANSION`: a coefficient alpha of the mean expansion since a temperature T0
+/// Thermal expansion of a material, `*EXPANSION`, by a coefficient alpha of the mean expansion from a temperature T0
 /// (the secant rule of Abaqus and CalculiX).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
-    /// T0, at which alpha begins to count (temperature).
+    /// Temperature T0 from which alpha counts.
     pub zero: f64,
-    /// Temperatures, increasing, with alpha (1/temperature): linear between them and constant outside.
+    /// Increasing temperatures, each with alpha (1/temperature); alpha is linear between them and constant outside.
     pub table: Vec<[f64; 2]>,
 }
 
 impl Expansion {
-    /// alpha at a temperature (1/temperature).
+    /// Coefficient alpha at a temperature (1/temperature).
     fn coefficient(&self, temperature: f64) -> f64 {
         let above = self.table.partition_point(|row| row[0] < temperature);
         match (
@@ -47,7 +47,7 @@ impl Expansion {
         }
     }
 
-    /// Strain of a free body whose temperature was another one at the start, eq. (2.52):
+    /// Strain of a free body since the start, at which the temperature was T_I, eq. (2.52):
     ///
     /// ```text
     /// alpha(T) (T - T0) - alpha(T_I) (T_I - T0)
@@ -64,7 +64,7 @@ impl Expansion {
     }
 }
 
-/// theta with the numbers that follow from it.
+/// The stretch theta, with numbers computed from it.
 #[derive(Debug, Clone, Copy)]
 struct Stretch<T> {
     /// theta
@@ -76,7 +76,7 @@ struct Stretch<T> {
 }
 
 impl Stretch<Lanes> {
-    /// That of one element.
+    /// The stretch of one element.
     fn lane(&self, lane: usize) -> Stretch<f64> {
         Stretch {
             theta: self.theta.lane(lane),
@@ -87,7 +87,7 @@ impl Stretch<Lanes> {
 }
 
 impl<T: Number> Stretch<T> {
-    /// That of a thermal strain theta - 1: E_theta = e + e²/2.
+    /// The stretch of a thermal strain e = theta - 1: E_theta = e + e²/2.
     fn of(strain: T) -> Self {
         let theta = strain + 1.0;
         Stretch {
@@ -102,7 +102,8 @@ impl<T: Number> Stretch<T> {
         self.theta * self.theta * self.theta
     }
 
-    /// E_m of a strain, eq. (2.53). In plane stress the law gives the strain across.
+    /// E_m of a strain E, eq. (2.53). In plane stress the law determines the strain across the
+    /// plane.
     fn relative(&self, e: &Symmetric<T>, plane: Plane) -> Symmetric<T> {
         let normal = |e: T| (e - self.strain) * self.over_square;
         Symmetric {
@@ -135,7 +136,7 @@ impl<T: Number> Stretch<T> {
     }
 }
 
-/// The law of elements side by side, each with a thermal stretch at every point.
+/// The law of several elements at a time, each with a thermal stretch at every point.
 pub struct Expanded<'a> {
     law: Box<AnyLaw<'a, true>>,
     plane: Plane,
@@ -144,7 +145,8 @@ pub struct Expanded<'a> {
 }
 
 impl<'a> Expanded<'a> {
-    /// A law in a plane, with the thermal strain theta - 1 at every point; metals with the variables of their first points.
+    /// A law in a plane, with the thermal strain theta - 1 at every point; for metals also the variables of their first
+    /// points.
     pub fn new(
         law: Box<AnyLaw<'a, true>>,
         metals: [Option<(&'a dyn MetalLaw, &'a [f64])>; LANES],
@@ -174,7 +176,8 @@ impl<'a> Expanded<'a> {
     }
 }
 
-/// In plane strain the temperature causes a strain of the law across the plane, so the law is evaluated with all components.
+/// In plane strain the temperature causes a strain of the law across the plane, so the law is evaluated with all
+/// components.
 impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     fn stress_at(&self, point: usize, strains: &Strains<Lanes>) -> Symmetric<Lanes> {
         StressAtPoints::<Lanes, HOOP>::stress_where(self, [true; LANES], point, strains)
@@ -184,7 +187,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
         StressAtPoints::<Lanes, HOOP>::tangent_where(self, [true; LANES], point, strains)
     }
 
-    /// S = theta S_m, eq. (2.54)
+    /// The stress S = theta S_m, eq. (2.54).
     fn stress_where(
         &self,
         wanted: [bool; LANES],
@@ -197,7 +200,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
         s.times(stretch.theta)
     }
 
-    /// C = C_m/theta
+    /// The tangent C = C_m/theta.
     fn tangent_where(
         &self,
         wanted: [bool; LANES],
@@ -211,7 +214,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
         Tangent::of(|i, j| c.0[i][j] * over)
     }
 
-    /// W = theta³ W_m
+    /// The stored energy W = theta³ W_m.
     fn energy_at(&self, point: usize, e: &Symmetric<Lanes>) -> Lanes {
         let stretch = &self.stretches[point];
         let e = stretch.relative(e, self.plane);
@@ -252,8 +255,8 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
     }
 }
 
-/// A metal behind a thermal stretch. The modes of its element have the stiffness Kh/theta, of amplitudes y/theta²: what they
-/// add to q² of the law is m/theta³.
+/// A metal with a thermal stretch. The modes of its element have the stiffness Kh/theta and the amplitudes y/theta², so
+/// the part that they add to q² of the law is m/theta³.
 #[derive(Debug, Clone, Copy)]
 struct ExpandedMetal<'a> {
     law: &'a dyn MetalLaw,
@@ -262,7 +265,7 @@ struct ExpandedMetal<'a> {
 }
 
 impl ExpandedMetal<'_> {
-    /// What the law has of squares m.
+    /// The squares m in the form in which the law of the metal uses them.
     fn relative_modes(&self, modes: [f64; 2]) -> [f64; 2] {
         modes.map(|m| m / self.stretch.volume())
     }
@@ -363,7 +366,7 @@ mod tests {
                 "{found} {exact}"
             );
         }
-        // and stores theta^3 of its energy per reference volume
+        // the energy per reference volume is theta^3 times W_m
         let energies = [
             heated.any::<true>().energy_at(0, &strain(theta)),
             cold.any::<true>().energy_at(0, &strain(1.0)),

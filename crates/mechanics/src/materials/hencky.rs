@@ -7,9 +7,9 @@ use super::strains::StrainChange;
 use super::symmetric::{Symmetric, Tangent, contract};
 use super::{LawCard, SmallStrainModuli};
 
-/// Hencky's material, `*ELASTIC, TYPE=HENCKY`: the elasticity of metals without their flow.
+/// Hencky's material, `*ELASTIC, TYPE=HENCKY`: the elasticity of metals without plastic flow.
 ///
-/// With the principal stretches l_i, the logarithmic strain E_h of the values ln l_i, and ln J = tr E_h:
+/// The logarithmic strain E_h has the values ln l_i for the principal stretches l_i, and ln J = tr E_h:
 ///
 /// ```text
 /// energy   W = mu sum_i (ln l_i)² + lambda/2 (ln J)²
@@ -20,7 +20,7 @@ use super::{LawCard, SmallStrainModuli};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hencky {
-    /// E and nu.
+    /// Young's modulus E and Poisson's ratio nu.
     pub moduli: SmallStrainModuli,
 }
 
@@ -42,7 +42,7 @@ impl Hyperelastic for Hencky {
         contract(&self.moduli.stress(&strain), &strain) / 2.0
     }
 
-    /// W(E1) - W(E0) = T(E_h0 + dE_h/2) : dE_h
+    /// W(E1) - W(E0) = T(E_h0 + dE_h/2) : dE_h.
     fn energy_change(&self, change: &StrainChange) -> f64 {
         let StrainChange {
             start, end, half, ..
@@ -80,7 +80,7 @@ mod tests {
         },
     };
 
-    /// E_ii of a principal stretch.
+    /// Green-Lagrange strain E_ii of a principal stretch.
     fn green(l: f64) -> f64 {
         (l * l - 1.0) / 2.0
     }
@@ -105,7 +105,7 @@ mod tests {
                 "{s:?}"
             );
             assert!((LAW.energy(&e) - YOUNG * log * log / 2.0).abs() < 1e-13 * YOUNG);
-            // the strain across follows in plane stress
+            // in plane stress the strain across the plane follows from the others
             let Across { stretch, stress } = plane.across(&Symmetric { z: 0.0, ..e });
             assert!(
                 (stretch / side - 1.0).abs() < 1e-14 && stress == 0.0,
@@ -114,7 +114,7 @@ mod tests {
             let own = plane.stress(&Symmetric { z: 0.0, ..e });
             assert!((own - Symmetric::new(s.x, 0.0, 0.0, 0.0)).norm() < 1e-11 * YOUNG);
         }
-        // without lateral contraction a half has twice the stress of the logarithmic strain, as J is 1/2 there
+        // without lateral contraction the stretch 1/2 gives twice the stress of the logarithmic strain, since J is 1/2
         let free = Hencky {
             moduli: SmallStrainModuli {
                 young: YOUNG,

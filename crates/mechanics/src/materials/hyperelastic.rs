@@ -1,50 +1,51 @@
-//! Elastic materials: their stored energy is all there is. Its energy-momentum stress is the discrete gradient of
-//! Gonzalez (Comput. Methods Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain.
-//! See docs/theory/materials.md and docs/theory/time.md.
+//! Elastic materials, whose stress is the derivative of a stored energy. The energy-momentum stress is the discrete
+//! gradient of Gonzalez (Comput. Methods Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain. See
+//! docs/theory/materials.md and docs/theory/time.md.
 //!
 //! # Derivation
 //!
-//! The force int B_L(U_m)^T S dOmega at the mid configuration U_m does the work d.F = int S:dE dOmega
-//! with any S, because B_L(U_m) d = E1 - E0 = dE exactly (E is quadratic in U); S symmetric keeps the
-//! angular momentum. The energy is kept if S:dE = W1 - W0. Of all stresses that satisfy this, the
-//! nearest to S(E_m), E_m = (E0 + E1)/2, is S(E_m) + lambda dE:
+//! The force int B_L(U_m)^T S dOmega at the mid configuration U_m does the work d.F = int S:dE dOmega with any S,
+//! because exactly B_L(U_m) d = E1 - E0 = dE (E is quadratic in U). A symmetric S conserves the angular momentum. The
+//! energy is conserved if S:dE = W1 - W0. Of all stresses with this property, the nearest to S(E_m), with E_m = (E0 +
+//! E1)/2, is S(E_m) + lambda dE:
 //!
 //! ```text
 //! S = S(E_m) + f/(dE:dE) dE,     f = W1 - W0 - S(E_m):dE
 //! ```
 //!
-//! f is of third order in dE, so that the scheme stays of second order. Where W is quadratic f is
-//! zero and S the mean (S0 + S1)/2 of Simo & Tarnow (1992). C_m = I + 2 E_m is positive definite with
-//! C0 and C1.
+//! The scalar f is of third order in dE, so the scheme keeps its second order. If W is quadratic, f is zero and S is
+//! the mean (S0 + S1)/2 of Simo & Tarnow (1992). C_m = I + 2 E_m is positive definite because C0 and C1 are.
 
 use super::number::Number;
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
-/// Norm of dE up to which f is dropped. It changes the energy by a part of about |dE| of itself or
-/// less, which is round-off here.
+/// Norm of dE up to which the correction f is neglected. The correction f changes the energy by a
+/// relative amount of about |dE| or less, which is round-off below this bound.
 pub const NO_CHANGE: f64 = f64::EPSILON;
 
-/// Norm of dE up to which the tangent is that of S(E_m): the rest is a part of about |dE| of it, and
-/// would carry a round-off of about eps/|dE|.
+/// Norm of dE up to which the tangent is that of S(E_m): the omitted part is a relative amount of about |dE| and would
+/// have a round-off of about eps/|dE|.
 pub const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
 
-/// A stored energy W(E) of the strain, in numbers T. Without `HOOP` the strain 33 is zero, or follows from the others.
+/// A stored energy W(E) of the strain, for numbers T. Without `HOOP` the strain 33 is zero, or depends on the strains
+/// in the plane.
 pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     /// W(E) (force/length^2).
     fn energy(&self, e: &Symmetric<T>) -> T;
 
-    /// W(E1) - W(E0), with a round-off that is relative to E1 - E0: it may not be formed as the
-    /// difference of two energies, which keeps no digits where E1 is near E0 (force/length^2).
+    /// W(E1) - W(E0), with a round-off that is relative to E1 - E0 (force/length^2). The difference
+    /// of energies must not be computed from two energies: it would have no correct digits if E1 is
+    /// near E0.
     fn energy_change(&self, change: &StrainChange<T>) -> T;
 
     /// Second Piola-Kirchhoff stress S = dW/dE, eq. (2.3) (force/length^2).
     fn stress(&self, e: &Symmetric<T>) -> Symmetric<T>;
 
-    /// Tangent C = dS/dE, eq. (2.3), on strains (11, 22, 33, 2*12) (force/length^2).
+    /// Tangent C = dS/dE, eq. (2.3), which acts on strains (11, 22, 33, 2*12) (force/length^2).
     fn tangent(&self, e: &Symmetric<T>) -> Tangent<T>;
 
-    /// The strain 33.
+    /// The strain component 33.
     #[inline(always)]
     fn strain_across(&self, e: &Symmetric<T>) -> T
     where
@@ -53,7 +54,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         e.z
     }
 
-    /// Stretch and stress across, F_33² = 1 + 2 E_33.
+    /// Stretch and stress across the plane, with F_33² = 1 + 2 E_33.
     #[inline(always)]
     fn across(&self, e: &Symmetric<T>) -> Across<T>
     where
@@ -65,7 +66,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         }
     }
 
-    /// The measure of strain in which the energy is convex: that of logarithms where the law fulfils Hill's inequality.
+    /// The measure of strain in which the energy is convex; it is logarithmic if the law fulfils Hill's inequality.
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Logarithmic
     }
@@ -120,7 +121,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     }
 }
 
-/// S + f/(n:n) n, n = E1 - E0, of eq. (4.8) (force/length^2).
+/// S + f/(n:n) n of eq. (4.8), with n = E1 - E0 (force/length^2).
 #[inline(always)]
 pub fn corrected_stress<T: Number, const HOOP: bool>(
     s: &Symmetric<T>,
@@ -131,7 +132,7 @@ pub fn corrected_stress<T: Number, const HOOP: bool>(
     *s + n.times(factor)
 }
 
-/// Symmetric part of the derivative of twice [`corrected_stress`] by E1, with C = 2 dS/dE1 and g = df/dE1
+/// Symmetric part of the derivative of twice [`corrected_stress`] with respect to E1, with C = 2 dS/dE1 and g = df/dE1
 /// (force/length^2):
 ///
 /// ```text
@@ -159,7 +160,7 @@ pub fn corrected_tangent<T: Number, const HOOP: bool>(
     })
 }
 
-/// f/(n:n), or 0 where |n| is not above a bound.
+/// f/(n:n), or 0 if |n| is not above a bound.
 #[inline(always)]
 fn over<T: Number>(f: T, squared: T, bound: f64) -> T {
     (f / squared).where_kept(|lane| {
@@ -232,7 +233,7 @@ mod tests {
         w: 0.15,
     };
 
-    /// A strain and a way, without components 33 in plane stress.
+    /// A strain and a direction of its change, in plane stress without components 33.
     fn start_and_direction(name: &str) -> (Symmetric, Symmetric) {
         let direction = Symmetric::new(-0.4, 0.3, 0.5, 0.2);
         match name.contains("stress") {
@@ -261,7 +262,8 @@ mod tests {
                     error <= 16.0 * f64::EPSILON * s.norm() * de.norm(),
                     "{name} {size}"
                 );
-                // all digits of the change, beside the stress at the mean strain
+                // the change of energy keeps all digits, compared with the work of the stress at
+                // the mean strain
                 let mean = law.stress(&change.mean).contract::<true>(&de);
                 let bound = size * size * 10.0 + 1e-13;
                 assert!((energy / mean - 1.0).abs() < bound, "{name} {size}");
@@ -381,7 +383,8 @@ mod tests {
         }
     }
 
-    /// Stress and tangent in lanes of the plane and one after the other in all components.
+    /// Stress and tangent of several elements in the plane are the same as those of single elements
+    /// with all components.
     #[test]
     fn in_lanes_and_without_hoop_laws_are_the_same() {
         use crate::materials::{Elastic, Lanes, OneByOne, StressAtPoints};
@@ -410,7 +413,8 @@ mod tests {
                         StressAtPoints::<Lanes, false>::stress_at(&one, 0, &strains);
                     let c = StressAtPoints::<Lanes, false>::tangent_at(&own, 0, &strains);
                     let expected = StressAtPoints::<Lanes, false>::tangent_at(&one, 0, &strains);
-                    // what the energy lacks is known to a part of about eps/|dE|
+                    // the energy error that is corrected is known to a relative accuracy of about
+                    // eps/|dE|
                     let lost = if step > 0.0 && step < 1e-6 { 1e6 } else { 10.0 };
                     for lane in 0..2 {
                         let (s, t) = (found.lane(lane), exact.lane(lane));

@@ -1,4 +1,4 @@
-//! Compressible hyperelastic materials whose energy is a function of the invariants of the shape, and of the volume
+//! Compressible hyperelastic materials whose energy depends on the invariants of the distortion and on the volume
 //! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6). See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
@@ -6,31 +6,33 @@ use super::number::Number;
 use super::strains::StrainChange;
 use super::symmetric::{Symmetric, Tangent, cofactor, dyad, minor, product, with_identity};
 
-/// The energy of the volume:
+/// The energy of the change of volume:
 ///
 /// ```text
 /// U(J) = (J - 1)²/D1 + (J - 1)^4/D2 + (J - 1)^6/D3,   K = 2/D1
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VolumeEnergy {
-    /// D1, D2, D3 (length^2/force); the first is positive, zeros are no terms.
+    /// D1, D2, D3 (length^2/force); the first is positive, and a zero means that there is no such
+    /// term.
     pub d: [f64; 3],
 }
 
 impl VolumeEnergy {
-    /// 1/D1, 1/D2, 1/D3, zero without the term.
+    /// 1/D1, 1/D2, 1/D3; zero for a missing term.
     #[inline(always)]
     fn stiffnesses(&self) -> [f64; 3] {
         self.d.map(|d| if d > 0.0 { 1.0 / d } else { 0.0 })
     }
 
-    /// Whether there is no term but the first: formulas with constants that are known so then fold.
+    /// Whether only the first term exists: the compiler then simplifies the formulas, since it
+    /// knows which constants are zero.
     #[inline(always)]
     fn is_quadratic(&self) -> bool {
         self.d[1] == 0.0 && self.d[2] == 0.0
     }
 
-    /// U at J - 1 (force/length^2).
+    /// U as a function of J - 1 (force/length^2).
     #[inline(always)]
     pub fn energy<T: Number>(&self, grown: T) -> T {
         let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
@@ -40,7 +42,7 @@ impl VolumeEnergy {
         }
     }
 
-    /// U' and U'' (force/length^2).
+    /// Derivatives U' and U'' (force/length^2).
     #[inline(always)]
     pub fn slopes<T: Number>(&self, grown: T) -> [T; 2] {
         let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
@@ -53,7 +55,7 @@ impl VolumeEnergy {
         ]
     }
 
-    /// (U(J1) - U(J0))/(J1 - J0) (force/length^2).
+    /// Difference quotient (U(J1) - U(J0))/(J1 - J0) (force/length^2).
     #[inline(always)]
     pub fn quotient<T: Number>(&self, grown0: T, grown1: T) -> T {
         let [k1, k2, k3] = self.stiffnesses();
@@ -67,14 +69,14 @@ impl VolumeEnergy {
 
 /// An energy W = w(x) + C01 y + U(J) of invariants.
 ///
-/// With C = I + 2 E, I1, I2 and I3 = J² its invariants, a = J^(2/3), x = I1/a - 3, y = I2/a² - 3 and P = C^-1:
+/// C = I + 2 E has the invariants I1, I2 and I3 = J²; a = J^(2/3), x = I1/a - 3, y = I2/a² - 3 and P = C^-1:
 ///
 /// ```text
 /// stress   S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P
 /// ```
 ///
-/// Terms are arranged so that small strains keep their digits: with G = 2 E, i = tr G, m and n the sum of its principal
-/// minors and its determinant, s = i + m + n, a = (1 + s)^(1/3) and b = a - 1,
+/// Terms are arranged so that small strains keep their digits. For G = 2 E let i = tr G, m the sum of its principal
+/// minors and n its determinant; then s = i + m + n, a = (1 + s)^(1/3) and b = a - 1,
 ///
 /// ```text
 /// x = (b² (b + 3) - m - n)/a,     y = (b² (2 b + 3) - m - 2 n)/a²
@@ -82,21 +84,21 @@ impl VolumeEnergy {
 /// (I1 I - C - 2 I2/3 P) I3 = G - i I - 2 cof G + s (2 I + i I - G) - 2/3 (2 i + m) cof C
 /// ```
 pub trait InvariantEnergy {
-    /// Whether w is linear.
+    /// Whether w is linear in x.
     const LINEAR: bool;
-    /// Whether C01 counts.
+    /// Whether the term with C01 exists.
     const SECOND: bool;
 
     /// C01 (force/length^2).
     fn c01(&self) -> f64;
 
-    /// w at x (force/length^2).
+    /// Value of w at x (force/length^2).
     fn shape<T: Number>(&self, x: T) -> T;
 
-    /// w' and w'' (force/length^2).
+    /// Derivatives w' and w'' (force/length^2).
     fn shape_slopes<T: Number>(&self, x: T) -> [T; 2];
 
-    /// (w(x1) - w(x0))/(x1 - x0) (force/length^2).
+    /// Difference quotient (w(x1) - w(x0))/(x1 - x0) (force/length^2).
     fn shape_quotient<T: Number>(&self, x0: T, x1: T) -> T;
 
     /// U(J).
@@ -107,11 +109,11 @@ pub trait InvariantEnergy {
 struct Invariants<T> {
     /// G = 2 E.
     g: Symmetric<T>,
-    /// tr G, the sum of its principal minors and its determinant.
+    /// i, m and n: trace of G, the sum of its principal minors, and its determinant.
     i: T,
     m: T,
     n: T,
-    /// s = i + m + n, so that J² = 1 + s.
+    /// s = i + m + n, with J² = 1 + s.
     s: T,
     j: T,
     /// J - 1 = s/(J + 1).
@@ -120,7 +122,7 @@ struct Invariants<T> {
     a: T,
     /// b = a - 1 = s/(a² + a + 1).
     b: T,
-    /// 1/a and 1/J².
+    /// The inverses 1/a and 1/J².
     over_a: T,
     over_square: T,
 }
@@ -139,7 +141,8 @@ impl<T: Number> Invariants<T> {
             false => i + q,
         };
         let square = s + 1.0;
-        // J^(-2/3) once, and no division but one: divisions take as long as all else
+        // J^(-2/3) is computed once, with a single division: divisions take as long as everything
+        // else
         let (j, over_a) = (square.sqrt(), square.inverse_cbrt());
         let a = square * over_a * over_a;
         let (of_j, of_a) = (j + 1.0, a * a + a + 1.0);
@@ -159,26 +162,26 @@ impl<T: Number> Invariants<T> {
         }
     }
 
-    /// a x = a (I1/a - 3)
+    /// a x = a (I1/a - 3).
     #[inline(always)]
     fn distortion(&self) -> T {
         self.b * self.b * (self.b + 3.0) - self.m - self.n
     }
 
-    /// x = I1/a - 3
+    /// x = I1/a - 3.
     #[inline(always)]
     fn x(&self) -> T {
         self.distortion() * self.over_a
     }
 
-    /// y = I2/a² - 3
+    /// y = I2/a² - 3.
     #[inline(always)]
     fn y(&self) -> T {
         let b = self.b;
         (b * b * (b * 2.0 + 3.0) - self.m - self.n * 2.0) * (self.over_a * self.over_a)
     }
 
-    /// cof C - I = tr(G) I - G + cof G, C_33 = 1 without `HOOP`.
+    /// cof C - I = tr(G) I - G + cof G; without `HOOP` C_33 = 1.
     #[inline(always)]
     fn change_of_cofactor<const HOOP: bool>(&self) -> Symmetric<T> {
         let Symmetric { x, y, z, w } = self.g;
@@ -221,7 +224,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         }
     }
 
-    /// W(E1) - W(E0), from dE, m being quadratic and n cubic:
+    /// W(E1) - W(E0), from dE; m is quadratic and n cubic in G:
     ///
     /// ```text
     /// dm = (tr(G_m) I - G_m):dG                 dq = (cof of G_m in the plane):dG,  n = G_33 q
@@ -267,8 +270,8 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         energy + dy * self.c01()
     }
 
-    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.15) and eq. (2.24). With K = cof C - I the first and the last
-    /// term are
+    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.15) and eq. (2.24). With K = cof C - I
+    /// the first and the last term are
     ///
     /// ```text
     /// (shape (2 i/3 + m + n) + p J/J²) I + (p J/J² - shape (1 + i/3)) K,   shape = 2 w'/(a J²)
@@ -300,7 +303,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         stress + second.times(factor)
     }
 
-    /// C = 4 d²W/dC²:
+    /// Tangent C = 4 d²W/dC²:
     ///
     /// ```text
     /// x' = (I - I1/3 P)/a,  B = I1 I - C

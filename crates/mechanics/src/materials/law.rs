@@ -1,6 +1,6 @@
-//! The materials a deck may name, each in a file of its own, and their reduction to the plane: a new one is a variant of
-//! [`Law`] and of [`PlaneLaw`]. A law with the internal variables that the last accepted increment has committed.
-//! See docs/theory/materials.md.
+//! The materials that a deck may name, each in a file of its own, and their reduction to the plane. A new material is a
+//! variant of [`Law`] and of [`PlaneLaw`]. A law with the internal variables that the last accepted increment has
+//! committed. See docs/theory/materials.md.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ use super::{
     SaintVenantKirchhoff, SmallStrainModuli, StrainMeasure, StressAtPoints,
 };
 
-/// Law of a material with the constants of the deck.
+/// Law of a material with the constants from the deck.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// `*ELASTIC`
@@ -26,7 +26,7 @@ pub enum Law {
     Hencky(Hencky),
     /// `*HYPERELASTIC, NEO HOOKE`
     NeoHooke(NeoHooke),
-    /// `*HYPERELASTIC` of other forms.
+    /// Forms of `*HYPERELASTIC` other than `NEO HOOKE`.
     Polynomial(Polynomial),
     /// `*HYPERELASTIC, OGDEN`
     Ogden(Ogden),
@@ -38,12 +38,12 @@ pub enum Law {
 }
 
 impl Law {
-    /// St. Venant-Kirchhoff material of Young's modulus (force/length^2) and Poisson's ratio.
+    /// St. Venant-Kirchhoff material with Young's modulus (force/length^2) and Poisson's ratio.
     pub fn elastic(young: f64, poisson: f64) -> Self {
         Law::SaintVenantKirchhoff(SaintVenantKirchhoff { young, poisson })
     }
 
-    /// Moduli at small strains.
+    /// Moduli of the law at small strains.
     pub fn small_strain(&self) -> SmallStrainModuli {
         match self {
             Law::SaintVenantKirchhoff(law) => law.small_strain(),
@@ -57,7 +57,7 @@ impl Law {
         }
     }
 
-    /// Cards from which a deck has the law.
+    /// Cards of a deck that define the law.
     pub fn cards(&self) -> Vec<LawCard> {
         match self {
             Law::SaintVenantKirchhoff(law) => law.cards(),
@@ -85,7 +85,7 @@ impl Law {
         }
     }
 
-    /// Constants of a hyperelastic law, zero of others.
+    /// Constants of a hyperelastic law; zero for other laws.
     pub fn constants(&self) -> Constants {
         let of_invariants = |Polynomial { shape, c01, d }: Polynomial| {
             let [c10, c20, c30] = shape;
@@ -109,7 +109,7 @@ impl Law {
         }
     }
 
-    /// Whether the law is no guide at strains that are not small against 1.
+    /// Whether the law is not meant for strains that are not small against 1.
     pub fn is_for_small_strains(&self) -> bool {
         matches!(self, Law::SaintVenantKirchhoff(_))
     }
@@ -147,32 +147,32 @@ impl Law {
 /// Constants of a hyperelastic law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Constants {
-    /// C10, C20, C30, C01 (force/length^2).
+    /// The constants C10, C20, C30, C01 (force/length^2).
     pub invariants: [f64; 4],
-    /// D1, D2, D3 (length^2/force).
+    /// The constants D1, D2, D3 (length^2/force).
     pub compressibility: [f64; 3],
-    /// mu_k (force/length^2) and alpha_k.
+    /// The constants mu_k (force/length^2) and alpha_k.
     pub powers: [[f64; 2]; 3],
 }
 
 /// Law of a material in the plane of the elements.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlaneLaw {
-    /// In any plane.
+    /// St. Venant-Kirchhoff material in any plane.
     SaintVenantKirchhoff(PlaneSaintVenantKirchhoff),
-    /// In plane strain and in bodies of revolution.
+    /// Hencky's material in plane strain and in bodies of revolution.
     Hencky(Hencky),
-    /// In plane stress.
+    /// Hencky's material in plane stress.
     HenckyInPlaneStress(PlaneStress<Hencky>),
-    /// In plane strain and in bodies of revolution.
+    /// Neo-Hookean material in plane strain and in bodies of revolution.
     NeoHooke(NeoHooke),
-    /// In plane strain and in bodies of revolution.
+    /// Polynomial material in plane strain and in bodies of revolution.
     Polynomial(Polynomial),
-    /// Neo-Hookean materials too.
+    /// Polynomial or neo-Hookean material in plane stress.
     PolynomialInPlaneStress(PlaneStress<Polynomial>),
-    /// In plane strain and in bodies of revolution.
+    /// Ogden's material in plane strain and in bodies of revolution.
     Ogden(Ogden),
-    /// In plane stress.
+    /// Ogden's material in plane stress.
     OgdenInPlaneStress(PlaneStress<Ogden>),
     /// A metal in any plane.
     Plastic(PlanePlastic),
@@ -181,9 +181,9 @@ pub enum PlaneLaw {
     Yielding(Yielding),
 }
 
-/// A law by what it needs.
+/// A law by the data that it needs.
 enum Kind<'a> {
-    /// The strain alone.
+    /// A law that needs only the strain.
     Elastic(&'a dyn Hyperelastic),
     /// Internal variables.
     Flow(&'a dyn Flow),
@@ -214,7 +214,7 @@ impl PlaneLaw {
         }
     }
 
-    /// Tangent at no strain without internal variables (force/length^2).
+    /// Tangent at zero strain and zero internal variables (force/length^2).
     pub fn initial_tangent(&self) -> Tangent {
         match self.kind() {
             Kind::Elastic(law) => law.tangent(&Symmetric::zeros()),
@@ -225,7 +225,7 @@ impl PlaneLaw {
         }
     }
 
-    /// The law of a metal as one.
+    /// The law with the functions of a metal, if it is a metal.
     pub fn as_metal(&self) -> Option<&dyn MetalLaw> {
         match self.kind() {
             Kind::Elastic(_) => None,
@@ -234,7 +234,7 @@ impl PlaneLaw {
     }
 }
 
-/// A law of elements side by side, with the internal variables of their points.
+/// A law for several elements at a time, with the internal variables of their points.
 pub enum LawInLanes<'a> {
     /// St. Venant-Kirchhoff material.
     SaintVenantKirchhoff(Elastic<'a, PlaneSaintVenantKirchhoff>),
@@ -242,12 +242,12 @@ pub enum LawInLanes<'a> {
     NeoHooke(Elastic<'a, NeoHooke>),
     /// A law that is evaluated for one element after the other.
     OneByOne(OneByOne<Committed<'a>>),
-    /// Any of these at temperatures.
+    /// Any plane law at the temperatures of the points.
     Expanded(Box<Expanded<'a>>),
 }
 
 impl PlaneLaw {
-    /// The law of elements side by side with the variables of all their points.
+    /// The law for several elements at a time, with the variables of all their points.
     #[inline(always)]
     pub fn in_lanes<'a>(&'a self, variables: [&'a [f64]; LANES]) -> LawInLanes<'a> {
         match self {
@@ -275,7 +275,7 @@ impl PlaneLaw {
 }
 
 impl LawInLanes<'_> {
-    /// What is asked of it.
+    /// The functions of the law.
     #[inline(always)]
     pub fn any<const HOOP: bool>(&self) -> &AnyLaw<'_, HOOP> {
         match self {
@@ -288,7 +288,7 @@ impl LawInLanes<'_> {
 }
 
 /// A law with the internal variables that the last accepted increment has committed at the integration points of an
-/// element, point after point.
+/// element, one point after the other.
 #[derive(Debug, Clone, Copy)]
 pub struct Committed<'a> {
     law: &'a PlaneLaw,
@@ -301,7 +301,7 @@ impl<'a> Committed<'a> {
         Committed { law, variables }
     }
 
-    /// A law with the variables of all points of elements side by side.
+    /// A law with the variables of all points of several elements.
     pub fn side_by_side(law: &'a PlaneLaw, variables: [&'a [f64]; LANES]) -> OneByOne<Self> {
         OneByOne(variables.map(|z| Committed::new(law, z)))
     }
@@ -394,15 +394,15 @@ mod tests {
     /// Internal variables of two points.
     type Variables = [f64; 8];
 
-    /// What a body of two points has at one time, as the state of a run.
+    /// State of a body of two points at one time, like the state of a run.
     #[derive(Clone, Debug, PartialEq)]
     struct State {
         strains: [Symmetric; 2],
         committed: Variables,
     }
 
-    /// An increment to new strains: the state at its end, the work of the stresses and the energy
-    /// dissipated; `None` if the strain has gone too far at once.
+    /// An increment to new strains: the state at its end, the work of the stresses, and the energy
+    /// dissipated; `None` if the strain has changed too much at once.
     fn attempt(start: &State, strains: [Symmetric; 2]) -> Option<(State, f64, f64)> {
         let material = Committed::new(&PLANE_LAW, &start.committed);
         let (mut work, mut dissipated, mut committed) = (0.0, 0.0, [0.0; 8]);
@@ -422,7 +422,7 @@ mod tests {
         at(0) + at(1)
     }
 
-    /// Strains of the two points at a time, the second with a quarter of the first and other signs.
+    /// Strains of the two points at a time; the second has a quarter of the first with other signs.
     fn path(time: f64) -> [Symmetric; 2] {
         let e = Symmetric::new(0.06, -0.03, 0.0, 0.01) * (2.0 * time).sin();
         [e, e * -0.25]
@@ -436,7 +436,8 @@ mod tests {
         };
         let (mut time, mut failed, mut total) = (0.0, 0, 0.0);
         while time < 3.0 {
-            // too long at first, then in halves: a failed attempt leaves nothing behind
+            // the increment is too long at first and is then halved; a failed attempt changes
+            // nothing
             let mut dt = 0.5;
             let (end, work, dissipated) = loop {
                 let before = state.clone();

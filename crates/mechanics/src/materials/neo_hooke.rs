@@ -1,4 +1,4 @@
-//! Compressible neo-Hookean material with the energy split into isochoric and volumetric part
+//! Compressible neo-Hookean material whose energy is split into an isochoric and a volumetric part
 //! (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 and 6.5; Bonet & Wood, Nonlinear Continuum
 //! Mechanics for Finite Element Analysis, section 6.5). See docs/theory/materials.md.
 
@@ -29,8 +29,8 @@ pub struct NeoHooke {
 }
 
 impl NeoHooke {
-    /// The material with Young's modulus (force/length^2) and Poisson's ratio at small strains: C10 = mu/2, D1 = 2/K,
-    /// mu = E/(2 (1 + nu)), K = E/(3 (1 - 2 nu)).
+    /// The material whose Young's modulus (force/length^2) and Poisson's ratio at small strains are given: C10 = mu/2,
+    /// D1 = 2/K, mu = E/(2 (1 + nu)), K = E/(3 (1 - 2 nu)).
     pub fn of_small_strain(SmallStrainModuli { young, poisson }: SmallStrainModuli) -> Self {
         NeoHooke {
             c10: young / (4.0 * (1.0 + poisson)),
@@ -47,7 +47,7 @@ impl NeoHooke {
         }]
     }
 
-    /// mu = 2 C10 and K = 2/D1.
+    /// Moduli from mu = 2 C10 and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
         SmallStrainModuli::of_shear_and_bulk(2.0 * self.c10, 2.0 / self.d1)
     }

@@ -1,15 +1,15 @@
-//! Numbers in which a law is written: one number, or those of several elements side by side, on which one instruction of
-//! the processor acts. docs/numerics.md, Sweeps over elements.
+//! Numbers for which a law is written: one number, or those of several elements, on which one instruction of the
+//! processor acts. See docs/numerics.md, Sweeps over elements.
 
 use std::array::from_fn;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Elements side by side: as many numbers as an instruction of any x86-64 processor takes. More would
-/// not fit its registers.
+/// Number of elements that are evaluated together: as many numbers as an instruction of any x86-64 processor handles.
+/// With more elements the numbers would not fit into the registers of the processor.
 pub const LANES: usize = 2;
 
-/// What formulas of laws and elements are written in.
+/// Numbers for which formulas of laws and elements are written.
 pub trait Number:
     Copy
     + Debug
@@ -30,7 +30,7 @@ pub trait Number:
     /// The same number for every element.
     fn all(value: f64) -> Self;
 
-    /// The number of every element.
+    /// Number whose value in each element is given.
     fn of_lanes(of: impl FnMut(usize) -> f64) -> Self;
 
     /// The number of one element.
@@ -39,8 +39,8 @@ pub trait Number:
     /// Square root.
     fn sqrt(self) -> Self;
 
-    /// 1/x^(1/3) of positive numbers that are not subnormal; NaN of others. A third of the exponent gives a start r within 4 %,
-    /// and each step the next digits to the fourth power, with h = 1 - x r³:
+    /// 1/x^(1/3) for positive numbers that are not subnormal; NaN for others. A start value r that is within 4 % comes
+    /// from a third of the exponent. Each step raises the relative error of r to the fourth power, with h = 1 - x r³:
     ///
     /// ```text
     /// r <- r (1 + h/3 + 2 h²/9 + 14 h³/81)
@@ -59,13 +59,13 @@ pub trait Number:
         r
     }
 
-    /// A function of the number of every element.
+    /// Applies a function to the number of every element.
     #[inline(always)]
     fn each(self, of: impl Fn(f64) -> f64) -> Self {
         Self::of_lanes(|lane| of(self.lane(lane)))
     }
 
-    /// The numbers for which `keep` holds, and zero in place of others.
+    /// The numbers for which `keep` is true, and zero in place of the others.
     #[inline(always)]
     fn where_kept(self, keep: impl Fn(usize) -> bool) -> Self {
         Self::of_lanes(|lane| match keep(lane) {
@@ -75,7 +75,7 @@ pub trait Number:
     }
 }
 
-/// Four thirds of the bits of 1, less what makes the largest error of the start least.
+/// Four thirds of the bits of 1, reduced so that the largest error of the start is least.
 const INVERSE_CUBE_ROOT: u64 = 0x553e_f0ff_289d_d796;
 
 impl Number for f64 {
@@ -102,12 +102,13 @@ impl Number for f64 {
     }
 }
 
-/// A number of every element of a block; the default is zero.
+/// One number for every element of a block; the default is zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(16))]
 pub struct Lanes(pub [f64; LANES]);
 
-/// Which elements have had positive numbers only: all bits of their entry are set.
+/// For every element whether all its numbers so far were positive; then all bits of its entry are
+/// set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Positive([u64; LANES]);
 
@@ -147,7 +148,7 @@ impl Number for Lanes {
     }
 }
 
-/// An operation between numbers of the same elements, and with one number for all.
+/// Defines an operation between numbers of the same elements, and with one number for all elements.
 macro_rules! operation {
     ($operation:ident, $function:ident, $symbol:tt) => {
         impl $operation for Lanes {
@@ -185,7 +186,7 @@ impl AddAssign for Lanes {
 }
 
 impl Default for Positive {
-    /// No number seen yet.
+    /// The state before any number is added.
     #[inline(always)]
     fn default() -> Self {
         Positive([u64::MAX; LANES])
@@ -193,7 +194,7 @@ impl Default for Positive {
 }
 
 impl Positive {
-    /// The numbers seen so far and another of every element; NaN is not positive.
+    /// Adds one more number of every element; NaN is not positive.
     #[inline(always)]
     #[must_use]
     pub fn and(self, value: Lanes) -> Positive {
@@ -201,19 +202,19 @@ impl Positive {
         Positive([at(0), at(1)])
     }
 
-    /// Numbers that two sets of elements have had.
+    /// Combines two states: in both all numbers must be positive.
     #[inline(always)]
     #[must_use]
     pub fn both(self, other: Positive) -> Positive {
         Positive([self.0[0] & other.0[0], self.0[1] & other.0[1]])
     }
 
-    /// Whether an element has had positive numbers only.
+    /// Whether all numbers of an element were positive.
     pub fn at(self, lane: usize) -> bool {
         self.0[lane] == u64::MAX
     }
 
-    /// Numbers of the elements that have had positive numbers only, and NaN of others.
+    /// The values of the elements whose numbers were all positive, and NaN for other elements.
     #[inline(always)]
     pub fn or_nan(self, value: Lanes) -> Lanes {
         Lanes::of_lanes(|lane| match self.at(lane) {
@@ -222,7 +223,7 @@ impl Positive {
         })
     }
 
-    /// Whether all elements have had positive numbers only.
+    /// Whether all numbers of all elements were positive.
     pub fn everywhere(self) -> bool {
         self == Positive::default()
     }

@@ -1,5 +1,6 @@
-//! Compressible hyperelastic material of Ogden: powers of the principal stretches of the shape, and the volume
-//! (Ogden, Proc. R. Soc. Lond. A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See docs/theory/materials.md.
+//! Compressible hyperelastic material of Ogden: powers of the principal stretches of the distortion, and the volume
+//! (Ogden, Proc. R. Soc. Lond. A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See
+//! docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::invariants::VolumeEnergy;
@@ -10,7 +11,8 @@ use super::{LawCard, SmallStrainModuli};
 
 /// Hyperelastic material, `*HYPERELASTIC, OGDEN`.
 ///
-/// With the principal stretches l_i, the logarithms e_i = ln l_i, ln J their sum, and d_i = e_i - ln J/3 those of the shape:
+/// For the principal stretches l_i let e_i = ln l_i; then ln J is the sum of the e_i, and d_i = e_i - ln J/3 are the
+/// logarithmic strains of the distortion:
 ///
 /// ```text
 /// energy   W = sum_k 2 mu_k/alpha_k² (sum_i exp(alpha_k d_i) - 3) + U(J)
@@ -21,21 +23,21 @@ use super::{LawCard, SmallStrainModuli};
 /// moduli   mu = sum_k mu_k,  K = 2/D1
 /// ```
 ///
-/// Small strains keep their digits: the sum of the d_i is zero, so that exp(x) - 1 - x stands for exp(x).
+/// Small strains keep their digits: the sum of the d_i is zero, so exp(x) - 1 - x is used in place of exp(x).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ogden {
-    /// mu_k (force/length^2) and alpha_k of up to three terms; others are zero.
+    /// mu_k (force/length^2) and alpha_k of up to three terms; missing terms are zero.
     pub terms: [[f64; 2]; 3],
     /// The energy of the volume.
     pub volume: VolumeEnergy,
 }
 
-/// A strain by its principal values.
+/// A strain in terms of its principal values.
 struct Principal {
     spectrum: Spectrum,
     /// ln J.
     volume: f64,
-    /// Logarithmic strains d_i of the shape.
+    /// Logarithmic strains d_i of the distortion.
     shape: [f64; 3],
 }
 
@@ -52,7 +54,7 @@ impl Principal {
     }
 }
 
-/// exp(x) - 1 - x.
+/// The value exp(x) - 1 - x.
 fn rest(x: f64) -> f64 {
     if x.abs() > 0.3 {
         return x.exp_m1() - x;
@@ -83,7 +85,7 @@ impl Ogden {
         self.terms.iter().rposition(is_term).map_or(0, |k| k + 1)
     }
 
-    /// mu = sum mu_k and K = 2/D1.
+    /// Moduli from mu = sum mu_k and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
         let mu = self.terms.iter().map(|[mu, _]| mu).sum();
         SmallStrainModuli::of_shear_and_bulk(mu, 2.0 / self.volume.d[0])
@@ -93,7 +95,7 @@ impl Ogden {
         self.terms.iter().copied().filter(|[mu, _]| *mu != 0.0)
     }
 
-    /// beta_i, and J U' + J² U''.
+    /// The derivatives beta_i, and J U' + J² U''.
     fn slopes(&self, at: &Principal) -> ([f64; 3], f64) {
         let grown = at.volume.exp_m1();
         let ([p, stiff], j) = (self.volume.slopes(grown), 1.0 + grown);
@@ -108,8 +110,8 @@ impl Ogden {
         (beta, j * (p + j * stiff))
     }
 
-    /// Change of T with a change of the logarithmic strain, both in the principal frame. Off the diagonal it is
-    /// (beta_1 - beta_2)/(e_1 - e_2).
+    /// Change of T for a change of the logarithmic strain, both in the principal frame. The off-diagonal factor of this
+    /// change is (beta_1 - beta_2)/(e_1 - e_2).
     fn stress_change(&self, at: &Principal, of_volume: f64, a: &Symmetric) -> Symmetric {
         let change = [a.x, a.y, a.z];
         let trace = a.x + a.y + a.z;

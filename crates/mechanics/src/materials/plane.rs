@@ -1,5 +1,5 @@
-//! The plane: what elements assume across the thickness, and the moduli of a law near its reference state.
-//! See docs/theory/materials.md.
+//! The plane: assumption of elements across the thickness, and moduli of a law near its reference state. See
+//! docs/theory/materials.md.
 
 use super::symmetric::{IDENTITY, Symmetric};
 
@@ -14,7 +14,7 @@ pub enum Plane {
     Revolution,
 }
 
-/// Moduli of the linear elastic material that a law is near its reference state.
+/// Moduli of the linear elastic material with which a law agrees near its reference state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SmallStrainModuli {
     /// Young's modulus E (force/length^2).
@@ -41,7 +41,7 @@ impl SmallStrainModuli {
         IDENTITY * (lambda * trace) + *strain * (2.0 * self.shear())
     }
 
-    /// Those of a shear modulus mu and a bulk modulus K (force/length^2):
+    /// Moduli from a shear modulus mu and a bulk modulus K (force/length^2):
     ///
     /// ```text
     /// E = 9 K mu/(3 K + mu),   nu = (3 K - 2 mu)/(2 (3 K + mu))

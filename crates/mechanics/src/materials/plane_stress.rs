@@ -1,4 +1,4 @@
-//! Plane stress of any law: the stretch across the plane makes the energy least. See docs/theory/materials.md.
+//! Plane stress for any law: the stretch across the plane minimises the energy. See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::number::Number;
@@ -7,20 +7,20 @@ use super::symmetric::{Symmetric, Tangent};
 
 /// A stored energy without stress across the plane.
 ///
-/// The stretch across, F_33 = exp(l), makes W least, S_33 C_33 = 0, so that W is that of the strains in
-/// the plane alone, eq. (2.25), and its tangent the one without the row across: C_ab - C_a3 C_3b/C_33. An error of the strain
-/// across enters W squared. The strain 33 that a caller gives is zero.
+/// The stretch across the plane, F_33 = exp(l), minimises W, so S_33 C_33 = 0. W then depends only on the strains in
+/// the plane, eq. (2.25), and its tangent has no row across the plane: C_ab - C_a3 C_3b/C_33. An error of the strain
+/// across the plane enters W squared. In the strains given by a caller the component 33 is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneStress<L> {
-    /// The law in all components.
+    /// The law with all components.
     pub law: L,
     /// Poisson's ratio at small strains.
     pub poisson: f64,
 }
 
-/// Most steps of Newton's method for the stretch across.
+/// Largest number of steps of Newton's method for the stretch across the plane.
 const MOST_STEPS: usize = 60;
-/// Change of l, beside itself and the strains, that is round-off.
+/// Change of l, relative to l and the strains, up to which it is round-off.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl<L: Hyperelastic> PlaneStress<L> {
@@ -30,7 +30,7 @@ impl<L: Hyperelastic> PlaneStress<L> {
     /// W' = S_33 C_33,   W'' = C_3333 C_33² + 2 S_33 C_33
     /// ```
     ///
-    /// A step that does not lower |W'| is halved. It starts at the stretch of linear elasticity in ln det F.
+    /// A step that does not lower |W'| is halved. The iteration starts at the stretch of linear elasticity in ln det F.
     fn across(&self, e: &Symmetric) -> f64 {
         let slopes = |l: f64| {
             let strain = with_across(e, (2.0 * l).exp_m1() / 2.0);
@@ -54,7 +54,7 @@ impl<L: Hyperelastic> PlaneStress<L> {
             }
             l += step;
             [w1, w2] = next;
-            // what is no number is not far either
+            // NaN does not count as far, so it ends the iteration
             let is_far = step.abs() > ROUND_OFF * (l.abs() + size);
             if !is_far {
                 break;
@@ -63,7 +63,7 @@ impl<L: Hyperelastic> PlaneStress<L> {
         (2.0 * l).exp_m1() / 2.0
     }
 
-    /// The strain with its component across.
+    /// The strain with its component across the plane.
     fn complete<T: Number>(&self, e: &Symmetric<T>) -> Symmetric<T> {
         Symmetric {
             z: T::of_lanes(|lane| self.across(&e.lane(lane))),
@@ -76,7 +76,7 @@ fn with_across(e: &Symmetric, z: f64) -> Symmetric {
     Symmetric { z, ..*e }
 }
 
-/// A change of strains with the strains 33 of start and end.
+/// A change of strains, with the given strains 33 at start and end.
 pub(super) fn completed<T: Number>(
     change: &StrainChange<T>,
     [start, end]: [T; 2],
@@ -90,15 +90,15 @@ pub(super) fn completed<T: Number>(
     }
 }
 
-/// S_ab - C_ab33/C_3333 S_33, in which the round-off of a large pressure drops out, of a stress and a tangent at the strain
-/// across.
+/// S_ab - C_ab33/C_3333 S_33 from a stress and a tangent at the strain across the plane; in it the round-off of a large
+/// pressure cancels.
 pub(super) fn condensed_stress<T: Number>(s: &Symmetric<T>, c: &Tangent<T>) -> Symmetric<T> {
     let part = s.z / c.0[2][2];
     let along = |i: usize| c.0[i][2] * part;
     Symmetric::new(s.x - along(0), s.y - along(1), T::default(), s.w - along(3))
 }
 
-/// C_ab - C_a3 C_3b/C_33, without the row across.
+/// C_ab - C_a3 C_3b/C_33, without the row across the plane.
 pub(super) fn condensed_tangent<T: Number>(c: &Tangent<T>) -> Tangent<T> {
     let over = T::all(1.0) / c.0[2][2];
     Tangent::of(|i, j| match i == 2 || j == 2 {

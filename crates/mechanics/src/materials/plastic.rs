@@ -1,7 +1,7 @@
-//! J2 plasticity at finite strain: multiplicative, with Hencky's elasticity, isotropic hardening by a table and linear
-//! kinematic hardening. The flow of an increment is found inside of a potential of the strain, whose discrete gradient is
-//! the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999).
-//! See docs/theory/materials.md, Plasticity.
+//! J2 plasticity at finite strain: multiplicative, with Hencky's elasticity, isotropic hardening from a table and
+//! linear kinematic hardening. The flow of an increment is computed within a potential of the strain, whose discrete
+//! gradient is the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999). See
+//! docs/theory/materials.md, Plasticity.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -28,12 +28,13 @@ use super::{
 /// flow     dE_p = da 3/2 xi/q,  xi = 2 mu dev E_h - 2/3 H_k A
 /// ```
 ///
-/// sigma_y bounds the Kirchhoff stress.
+/// The yield stress sigma_y limits the Kirchhoff stress.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plastic {
     /// Moduli of the elastic strains.
     pub moduli: SmallStrainModuli,
-    /// Accumulated plastic strain and yield stress (force/length^2), increasing from a strain of 0; constant beyond.
+    /// Accumulated plastic strain and yield stress (force/length^2), with strains increasing from 0; the last stress is
+    /// constant beyond.
     pub hardening: Arc<[[f64; 2]]>,
     /// Modulus H_k of the kinematic hardening (force/length^2).
     pub kinematic: f64,
@@ -86,7 +87,7 @@ impl Plastic {
         self.kinematic > 0.0
     }
 
-    /// G - I, A and a.
+    /// Number of internal variables: G - I, A and a.
     fn variables(&self) -> usize {
         COMPONENTS * (1 + usize::from(self.has_back_strain())) + 1
     }
@@ -103,7 +104,7 @@ impl Plastic {
         }
     }
 
-    /// Segment of the table at an accumulated strain: its start, the yield stress there, its slope and its end.
+    /// Segment of the table with this index: start, yield stress there, slope, and end.
     fn segment(&self, index: usize) -> (f64, f64, f64, f64) {
         let [start, stress] = self.hardening[index];
         match self.hardening.get(index + 1) {
@@ -124,7 +125,8 @@ impl Plastic {
         stress + slope * (slip - start)
     }
 
-    /// int sigma_y da from an accumulated strain on, or back (force/length^2).
+    /// int sigma_y da from an accumulated strain `from`, over `by`, which may be negative
+    /// (force/length^2).
     fn hardening_work(&self, from: f64, by: f64) -> f64 {
         if by < 0.0 {
             return -self.hardening_work(from + by, -by);
@@ -142,7 +144,8 @@ impl Plastic {
         work
     }
 
-    /// da and the slope of sigma_y with q - (3 mu + H_k) da - n² sigma_y(a + da) = 0, linear on each segment.
+    /// da, and the slope of sigma_y, from q - (3 mu + H_k) da - n² sigma_y(a + da) = 0, which is linear on each
+    /// segment; `square` is n².
     fn slip(&self, q: f64, from: f64, square: f64) -> (f64, f64) {
         let stiffness = 3.0 * self.shear() + self.kinematic;
         let mut found = (0.0, 0.0);
@@ -158,7 +161,7 @@ impl Plastic {
         found
     }
 
-    /// Trial state of a strain, eq. (2.37).
+    /// Trial state of the metal at a strain, eq. (2.37).
     fn trial(&self, e: &Symmetric, state: &PlasticState) -> Trial {
         let v = IDENTITY + root(&state.g);
         let y = state.g + between(&v, e) * 2.0;
@@ -177,8 +180,8 @@ impl Plastic {
         deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
     }
 
-    /// Flow from a trial strain beside hourglass modes of a square m, which makes the potentials of eq. (2.38) and eq. (2.48)
-    /// least: (Q, H) of the trial goes to the nearest point sigma_y (w, z) of the yield curve.
+    /// Flow from a trial strain with hourglass modes of a square m. The flow minimises the potentials of eq. (2.38) and
+    /// eq. (2.48): (Q, H) of the trial returns to the nearest point sigma_y (w, z) of the yield curve.
     fn flow(&self, strain: &Symmetric, state: &PlasticState, modes: f64) -> PlasticFlow {
         let xi = self.relative_stress(strain, state);
         let size = contract(&xi, &xi).sqrt();
@@ -198,7 +201,7 @@ impl Plastic {
         let at = Return::new(self, trial, state.slip, angle);
         let (shear, stiffness) = (3.0 * self.shear(), 3.0 * self.shear() + self.kinematic);
         let [by_strain, mixed, by_modes] = at.derivatives(stiffness);
-        // where there is next to nothing of the strain or of the modes, what is left of it is its derivative
+        // if the strain or the modes are negligible, the ratio is replaced by its derivative
         let [has_strain, has_modes] = trial.map(|size| size > SMALL_SHARE * (trial[0] + trial[1]));
         let own = match (has_strain, angle > 0.0) {
             (false, _) => 0.0,
@@ -242,7 +245,7 @@ impl Plastic {
         }
     }
 
-    /// Angle of the point of the yield curve to which a trial returns, by Newton's method between bounds.
+    /// Angle of the point on the yield curve to which a trial returns, by Newton's method between bounds.
     fn yield_angle(&self, trial: [f64; 2], from: f64) -> f64 {
         let (mut low, mut high) = (0.0, FRAC_PI_2);
         let stiffness = 3.0 * self.shear() + self.kinematic;
@@ -268,8 +271,8 @@ impl Plastic {
         angle
     }
 
-    /// Changes of dE_p and of da between two flows from one state, from that of the trial strain, whose digits they keep where
-    /// both flow: with p = r Q/(3 mu),
+    /// Changes of dE_p and of da between two flows from one state, for a change of the trial strain. The changes keep
+    /// their digits if both flow: with p = r Q/(3 mu),
     ///
     /// ```text
     /// dQ = 3/2 (xi0 + xi1):dxi/(Q0 + Q1),   dr = 3 mu (dp (Q0 + Q1)/2 - (p0 + p1)/2 dQ)/(Q0 Q1)
@@ -289,7 +292,7 @@ impl Plastic {
         (flown / (4.0 * self.shear()), slip)
     }
 
-    /// Change of the stress T after the flow with the trial strain (force/length^2):
+    /// Change of the stress T after the flow for a change of the trial strain (force/length^2):
     ///
     /// ```text
     /// dT = K tr dE I + 2 mu dev dE - r dxi - dr/dQ/Q (3/2 xi:dxi) xi,   dxi = 2 mu dev dE
@@ -311,7 +314,7 @@ impl Plastic {
             + self.kinematic / 3.0 * contract(&state.back, &state.back)
     }
 
-    /// psi(E) - Phi(E), which is zero unless the strain flows at once beside modes of a square m (force/length^2):
+    /// psi(E) - Phi(E), which is zero unless the strain would flow at once with modes of a square m (force/length^2):
     ///
     /// ```text
     /// (T_h + T)/2 : dE_p - H_k/3 (2 A + dE_p):dE_p + (r_h - (1 + k) r_h²/2) m/(3 mu) - int sigma_y da,
@@ -329,8 +332,8 @@ impl Plastic {
             - self.hardening_work(state.slip, flow.slip)
     }
 
-    /// The state after the flow of a strain, eq. (2.41), in the frame V of the new G, so that the trial strain there is E_e
-    /// turned:
+    /// The state after the flow at a strain, eq. (2.41), in the frame V of the new G; the trial strain there is E_e
+    /// rotated:
     ///
     /// ```text
     /// K = V X^(-1/2) exp(E_e),  G = K K^T,  R = G^(-1/2) K,  A <- R (A + dE_p) R^T
@@ -381,7 +384,7 @@ struct PlasticState {
 /// Trial strain of a point.
 struct Trial {
     v: Symmetric,
-    /// Y = X - I, so that small strains keep their digits.
+    /// Y = X - I, with which small strains keep their digits.
     y: Symmetric,
     spectrum: Spectrum,
     /// E_h.
@@ -391,40 +394,42 @@ struct Trial {
 /// Flow of an increment.
 #[derive(Default)]
 struct PlasticFlow {
-    /// da = w p + z p_h of eq. (2.49), p_h = r_h H/(3 mu): with this sum of the parts that flow, their round-off does no work.
+    /// da = w p + z p_h of eq. (2.49), with p_h = r_h H/(3 mu). As the sum of the parts that flow, da has a round-off
+    /// that does no work.
     slip: f64,
-    /// p = r Q/(3 mu): da of an element without modes, zero without a strain.
+    /// p = r Q/(3 mu): da for an element without modes; zero without a strain.
     own: f64,
-    /// dE_p = r xi/(2 mu).
+    /// Increment of the plastic strain, dE_p = r xi/(2 mu).
     strain: Symmetric,
-    /// xi of the trial strain (force/length^2).
+    /// Stress xi of the trial strain (force/length^2).
     xi: Symmetric,
-    /// Q of the trial strain (force/length^2).
+    /// Equivalent stress Q of the trial strain (force/length^2).
     q: f64,
-    /// r and r_h, the parts of the trial strain and of the amplitudes of the modes that flow.
+    /// r and r_h: the parts that flow of the trial strain and of the amplitudes of the modes.
     parts: [f64; 2],
-    /// dr/dQ/Q, dr/dH/H = dr_h/dQ/Q and dr_h/dH/H (length^4/force^2).
+    /// Derivatives dr/dQ/Q, dr/dH/H = dr_h/dQ/Q and dr_h/dH/H (length^4/force^2).
     slopes: [f64; 3],
 }
 
-/// Share of Q and H below which one of them is taken as zero: the error of a ratio is the square of it.
+/// Share of Q or H in their sum below which it counts as zero; the error of a ratio is the square of the share.
 const SMALL_SHARE: f64 = 1e-8;
 
-/// A point of the yield curve and the flow that leads to it, eq. (2.49): with its place c = (w, z), derivatives by the angle and
-/// (Q, H) of the trial
+/// A point of the yield curve and the flow that leads to it, eq. (2.49), with its place c = (w, z), derivatives with
+/// respect to the angle, and (Q, H) of the trial:
 ///
 /// ```text
 /// (Q, H).c - (3 mu + H_k) da - c.c sigma_y(a + da) = 0,   nearest: c'.((Q, H) - sigma_y c) = 0
 /// ```
 ///
-/// the first of which is the work of the flow, sigma_y da.
+/// The first equation is the work of the flow, sigma_y da.
 struct Return {
     trial: [f64; 2],
-    /// c, c' and c''.
+    /// Place c = (w, z) on the yield curve and its derivatives c' and c'' with respect to the
+    /// angle.
     point: [f64; 2],
     first: [f64; 2],
     second: [f64; 2],
-    /// da, and sigma_y (force/length^2) with its slope at the end.
+    /// da, and at the end sigma_y (force/length^2) with its slope.
     slip: f64,
     stress: f64,
     slope: f64,
@@ -445,18 +450,20 @@ impl Return {
         }
     }
 
-    /// (Q, H) - sigma_y c.
+    /// The excess (Q, H) - sigma_y c of the trial.
     fn beyond(&self) -> [f64; 2] {
         [0, 1].map(|k| self.trial[k] - self.stress * self.point[k])
     }
 
-    /// Derivatives of the second equation by the angle alone and of c.c/2.
+    /// Derivatives with respect to the angle: of the second equation at constant sigma_y, and of
+    /// c.c/2.
     fn curvature(&self) -> [f64; 2] {
         let turn = dot(self.second, self.beyond()) - self.stress * dot(self.first, self.first);
         [turn, dot(self.point, self.first)]
     }
 
-    /// The left side of the second equation, and its derivative by the angle while the first holds.
+    /// Left side of the second equation, and its derivative with respect to the angle under the
+    /// first equation.
     fn rest(&self, stiffness: f64) -> [f64; 2] {
         let [turn, half] = self.curvature();
         let hardened = stiffness + self.slope * dot(self.point, self.point);
@@ -467,12 +474,13 @@ impl Return {
         ]
     }
 
-    /// Derivatives of q = sigma_y w by Q and H, and of h = sigma_y z by H.
+    /// Derivatives of q = sigma_y w with respect to Q and H, and of h = sigma_y z with respect to
+    /// H.
     fn derivatives(&self, stiffness: f64) -> [f64; 3] {
         let [turn, half] = self.curvature();
         let hardened = stiffness + self.slope * dot(self.point, self.point);
         let determinant = turn + self.slope * self.stress * half * half / hardened;
-        // of the angle and of da, by Q and by H
+        // derivatives of the angle and of da with respect to Q and H
         let changes = [0, 1].map(|k| {
             let angle =
                 (-self.first[k] + self.slope * half * self.point[k] / hardened) / determinant;
@@ -496,13 +504,13 @@ fn deviator(a: &Symmetric) -> Symmetric {
     *a - IDENTITY * ((a.x + a.y + a.z) / 3.0)
 }
 
-/// The potential Phi(E; z0) of an increment: stored energy and work of hardening after the flow; beside hourglass modes that
-/// of eq. (2.48) less their own.
+/// The potential Phi(E; z0) of an increment: stored energy plus work of hardening after the flow. With hourglass modes
+/// the potential is that of eq. (2.48) without the elastic energy of the modes.
 #[derive(Clone, Copy)]
 struct Potential<'a> {
     law: &'a Plastic,
     state: PlasticState,
-    /// m, the square of q of the modes (force^2/length^4).
+    /// m, the part of the modes in q² (force^2/length^4).
     modes: f64,
 }
 
@@ -519,8 +527,8 @@ impl<'a> Potential<'a> {
         self.law.flow(&trial.strain, &self.state, self.modes)
     }
 
-    /// Change from a strain and a square of the modes to another strain and m, which is more by `by`. dp is the change of
-    /// dE_p, and k = H_k/(3 mu):
+    /// Change of the potential between two strains with their squares m of the modes; `by` is the difference of m. Here
+    /// dp is the change of dE_p, and k = H_k/(3 mu):
     ///
     /// ```text
     /// (T0 + T1)/2 : (dE_h - dp) + H_k/3 (2 A + dE_p0 + dE_p1):dp + int sigma_y da from a + da0 to a + da1
@@ -553,7 +561,8 @@ impl<'a> Potential<'a> {
             - of_modes / shear
     }
 
-    /// Derivatives by m: of the potential, twice, and of S, at a strain in all components.
+    /// First and second derivative of the potential with respect to m, and the derivative of S, at
+    /// a strain with all components.
     ///
     /// ```text
     /// dW/dm = -r_h/(6 mu),   d²W/dm² = -dr_h/dH/H/(12 mu),   dT/dm = -dr/dH/H xi/2
@@ -591,7 +600,7 @@ impl Hyperelastic for Potential<'_> {
         between(&trial.v, &trial.spectrum.log_derivative(&stress))
     }
 
-    /// V (D ln : (dT/dE_h) : D ln + 2 D² ln : T) V, column by column (force/length^2).
+    /// Tangent V (D ln : (dT/dE_h) : D ln + 2 D² ln : T) V, column by column (force/length^2).
     fn tangent(&self, e: &Symmetric) -> Tangent {
         let trial = self.law.trial(e, &self.state);
         let flow = self.flow(&trial);
@@ -615,13 +624,13 @@ pub struct PlanePlastic {
     plane: Plane,
 }
 
-/// Most steps of Newton's method for the angle of a return.
+/// Largest number of steps of Newton's method for the angle of a return.
 const MOST_STEPS: usize = 60;
-/// Change of the angle, as a part of it, that is round-off.
+/// Relative change of the angle up to which it is round-off.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl PlanePlastic {
-    /// The potential beside hourglass modes of a square m.
+    /// The potential with hourglass modes of a square m.
     fn potential(&self, z0: &[f64], modes: f64) -> Potential<'_> {
         Potential {
             modes,
@@ -629,7 +638,7 @@ impl PlanePlastic {
         }
     }
 
-    /// What a potential gives in the plane.
+    /// Evaluates a function of a potential in the plane of the law.
     fn in_plane<V>(&self, potential: Potential, of: impl Fn(&dyn Hyperelastic) -> V) -> V {
         match self.plane {
             Plane::Stress => of(&PlaneStress {
@@ -640,20 +649,21 @@ impl PlanePlastic {
         }
     }
 
-    /// A strain with its component across.
+    /// A strain with its component across the plane.
     fn complete(&self, potential: Potential, e: &Symmetric) -> Symmetric {
         let z = self.in_plane(potential, |law| law.strain_across(e));
         Symmetric { z, ..*e }
     }
 
-    /// Strains with their components across, beside modes of these squares.
+    /// Strains with their components across the plane, with modes of the given squares m.
     fn complete_change(&self, change: &StrainChange, z0: &[f64], modes: [f64; 2]) -> StrainChange {
         let ends = [(modes[0], change.start), (modes[1], change.end)];
         let across = ends.map(|(modes, e)| self.complete(self.potential(z0, modes), &e).z);
         completed(change, across)
     }
 
-    /// D of an increment that ends at a strain, from another in the energy-momentum form, beside modes of these squares.
+    /// Energy D dissipated in an increment that ends at a strain, or in the energy-momentum form goes from one strain
+    /// to another, with modes of the given squares m.
     fn dissipated(&self, strains: &Strains, z0: &[f64], modes: [f64; 2]) -> f64 {
         let state = self.law.state(z0);
         let released = match strains {
@@ -669,7 +679,8 @@ impl PlanePlastic {
         released + self.law.hardening_work(state.slip, slip)
     }
 
-    /// Writes the state at the end of the strains beside modes of a square m, and returns its strain.
+    /// Writes the state at the end of the strains, with modes of a square m, and returns the strain there with all
+    /// components.
     fn write_updated(
         &self,
         strains: &Strains,
@@ -731,8 +742,9 @@ impl Flow for PlanePlastic {
     }
 }
 
-/// In plane stress S_33 = 0 determines the strain across the plane, which therefore changes with m. With S_m = dS/dm at fixed
-/// strain across, this adds -S_m33²/C_33 to d²W/dm² and -C_i3 S_m33/C_33 to dS/dm.
+/// In plane stress S_33 = 0 determines the strain across the plane, which therefore depends on m. With S_m = dS/dm at
+/// constant strain across the plane, the strain across the plane adds -S_m33²/C_33 to d²W/dm² and -C_i3 S_m33/C_33 to
+/// dS/dm.
 impl MetalLaw for PlanePlastic {
     fn moduli(&self) -> [f64; 2] {
         [3.0 * self.law.shear(), self.law.kinematic]
@@ -803,7 +815,7 @@ mod tests {
     };
 
     fn states(law: &Plastic) -> Vec<PlasticState> {
-        // some flow along one way and another
+        // states after flow along two different paths
         let first = law.updated(&(DIRECTION * 3.0), &PlasticState::default(), 0.0);
         let turned = Symmetric::new(-0.02, 0.04, 0.01, -0.05);
         vec![
@@ -815,7 +827,8 @@ mod tests {
 
     #[test]
     fn the_change_of_the_potential_is_that_of_its_values_wherever_the_flow_starts() {
-        // from within the yield surface and from beyond it, as the strains of an element are found, and back
+        // changes from within the yield surface and from beyond it, as they occur while the strains of an element are
+        // found, and back
         let across = Symmetric::new(-0.3, 0.2, 0.1, 0.25);
         for law in &[0.0, 50.0].map(metal) {
             for state in states(law) {
@@ -834,7 +847,7 @@ mod tests {
                         "{found:?} {exact:?}"
                     );
                 }
-                // digits of a small change, both ends of which flow: S(E_m):dE
+                // a small change between two states that flow keeps its digits: it is S(E_m):dE
                 for size in [1e-4, 1e-7, 1e-10] {
                     let (e0, e1) = (DIRECTION * 2.0, DIRECTION * 2.0 + across * size);
                     let change = StrainChange::between(&e0, &e1);
@@ -867,7 +880,8 @@ mod tests {
                         let slope = potential
                             .energy_change(&StrainChange::between(&behind, &ahead))
                             / (2.0 * h);
-                        // from a strain that flows the change is not that of the potential
+                        // if the start of a change flows, the change of energy is not that of the
+                        // potential
                         if potential.flow(&law.trial(&e, &state)).slip == 0.0 {
                             let work = contract(&s, &unit);
                             assert!((slope - work).abs() < 1e-7 * c.norm(), "{slope} {work}");

@@ -1,6 +1,6 @@
-//! Compressible hyperelastic materials of Mooney-Rivlin and Yeoh: polynomials of the invariants of the shape, and of the
-//! volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh, Rubber Chem. Technol. 63, 1990).
-//! See docs/theory/materials.md.
+//! Compressible hyperelastic materials of Mooney-Rivlin and Yeoh: polynomials of the invariants of the distortion, and
+//! of the volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh, Rubber Chem. Technol. 63, 1990). See
+//! docs/theory/materials.md.
 
 use super::invariants::{InvariantEnergy, VolumeEnergy};
 use super::number::Number;
@@ -8,7 +8,7 @@ use super::{LawCard, NeoHooke, SmallStrainModuli};
 
 /// Hyperelastic material, `*HYPERELASTIC` with `MOONEY-RIVLIN` or `YEOH`.
 ///
-/// With x and y of [`InvariantEnergy`]:
+/// In terms of x and y of [`InvariantEnergy`]:
 ///
 /// ```text
 /// energy   W = w(x) + C01 y + U(J),   w = C10 x + C20 x² + C30 x³,   U = sum_i (J - 1)^2i/D_i
@@ -17,11 +17,12 @@ use super::{LawCard, NeoHooke, SmallStrainModuli};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Polynomial {
-    /// C10, C20, C30 of x, x², x³ (force/length^2).
+    /// Factors C10, C20, C30 of x, x², x³ (force/length^2).
     pub shape: [f64; 3],
-    /// C01 of y (force/length^2).
+    /// Factor C01 of y (force/length^2).
     pub c01: f64,
-    /// D1, D2, D3 of (J - 1)², (J - 1)^4, (J - 1)^6 (length^2/force); the first is positive, zeros are no terms.
+    /// D1, D2, D3 of (J - 1)², (J - 1)^4, (J - 1)^6 (length^2/force); the first is positive, and a zero means that
+    /// there is no such term.
     pub d: [f64; 3],
 }
 
@@ -36,7 +37,7 @@ impl From<NeoHooke> for Polynomial {
 }
 
 impl Polynomial {
-    /// `*HYPERELASTIC, MOONEY-RIVLIN`, or YEOH where C01 is zero.
+    /// `*HYPERELASTIC, MOONEY-RIVLIN`, or `YEOH` if C01 is zero.
     pub fn cards(&self) -> Vec<LawCard> {
         let ([c10, c20, c30], [d1, d2, d3]) = (self.shape, self.d);
         let (form, row) = match self.c01 != 0.0 {
@@ -50,7 +51,7 @@ impl Polynomial {
         }]
     }
 
-    /// mu = 2 (C10 + C01) and K = 2/D1.
+    /// Moduli from mu = 2 (C10 + C01) and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
         SmallStrainModuli::of_shear_and_bulk(2.0 * (self.shape[0] + self.c01), 2.0 / self.d[0])
     }
@@ -98,7 +99,7 @@ mod tests {
     use crate::materials::{Hyperelastic, PlaneStress, Symmetric};
     use nalgebra::Matrix2;
 
-    /// mu = 400, K = 1000.
+    /// A material with mu = 400 and K = 1000.
     const MOONEY_RIVLIN: Polynomial = Polynomial {
         shape: [150.0, 0.0, 0.0],
         c01: 50.0,
@@ -189,7 +190,7 @@ mod tests {
                 );
             }
             for l in [0.5_f64, 1.5] {
-                // the side of a bar that is free
+                // the lateral stretch of a bar without lateral stress, by Newton's method
                 let mut side = 1.0 / l.sqrt();
                 for _ in 0..50 {
                     let e = bar(l, side);

@@ -26,7 +26,7 @@ pub struct SaintVenantKirchhoff {
 }
 
 impl SaintVenantKirchhoff {
-    /// Moduli at small strains: those of all strains.
+    /// Moduli at small strains, which are those at all strains.
     pub fn small_strain(&self) -> SmallStrainModuli {
         SmallStrainModuli {
             young: self.young,
@@ -34,7 +34,7 @@ impl SaintVenantKirchhoff {
         }
     }
 
-    /// `*ELASTIC`; none of a material without constants.
+    /// `*ELASTIC`; empty for a material without constants.
     pub fn cards(&self) -> Vec<LawCard> {
         let card = LawCard {
             keyword: "ELASTIC",
@@ -48,7 +48,7 @@ impl SaintVenantKirchhoff {
         }
     }
 
-    /// The law in the plane. Plane stress changes the constants of the formulas alone: without S_33
+    /// The law in the plane. Plane stress only changes the constants of the formulas: without S_33
     ///
     /// ```text
     /// E_33 = -nu/(1 - nu) (E_11 + E_22),   lambda' = 2 lambda mu/(lambda + 2 mu) = E nu/(1 - nu²)
@@ -85,28 +85,28 @@ impl SaintVenantKirchhoff {
 /// St. Venant-Kirchhoff material in plane stress, in plane strain or in a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneSaintVenantKirchhoff {
-    /// lambda + 2 mu, C_1111 (force/length^2).
+    /// lambda + 2 mu = C_1111 (force/length^2).
     diagonal: f64,
-    /// lambda, C_1122 (force/length^2).
+    /// lambda = C_1122 (force/length^2).
     mixed: f64,
-    /// mu, C_1212 (force/length^2).
+    /// mu = C_1212 (force/length^2).
     shear: f64,
-    /// E_33 = -contraction (E_11 + E_22) of plane stress.
+    /// Factor in E_33 = -contraction (E_11 + E_22), for plane stress.
     contraction: f64,
-    /// S_33 = across (S_11 + S_22) without E_33.
+    /// Factor in S_33 = across (S_11 + S_22), without E_33.
     across: f64,
     is_plane_stress: bool,
 }
 
 impl PlaneSaintVenantKirchhoff {
-    /// lambda and mu at small strains (force/length^2).
+    /// Moduli lambda and mu at small strains (force/length^2).
     pub(super) fn lame(&self) -> (f64, f64) {
         (self.mixed, self.shear)
     }
 }
 
 impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirchhoff {
-    /// W = E:C:E/2 = S:E/2, eq. (2.13)
+    /// W = E:C:E/2 = S:E/2, eq. (2.13).
     #[inline(always)]
     fn energy(&self, e: &Symmetric<T>) -> T {
         let s = Hyperelastic::<T, HOOP>::stress(self, e);
@@ -117,14 +117,14 @@ impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirc
         }
     }
 
-    /// W1 - W0 = S(E_m):(E1 - E0)
+    /// W1 - W0 = S(E_m):(E1 - E0).
     #[inline(always)]
     fn energy_change(&self, change: &StrainChange<T>) -> T {
         let s = Hyperelastic::<T, HOOP>::stress(self, &change.mean);
         s.contract::<HOOP>(&change.change())
     }
 
-    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13)
+    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13).
     #[inline(always)]
     fn stress(&self, e: &Symmetric<T>) -> Symmetric<T> {
         let (x, y) = (

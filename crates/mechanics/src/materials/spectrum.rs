@@ -1,9 +1,9 @@
-//! Functions of symmetric tensors by their principal values, with derivatives and differences that keep their digits.
-//! See docs/theory/materials.md: Plasticity, Ogden's materials and Hencky's material.
+//! Functions of symmetric tensors through their principal values, with derivatives and differences that keep their
+//! digits. See docs/theory/materials.md: Plasticity, Ogden's materials and Hencky's material.
 
 use super::symmetric::{Symmetric, Tangent};
 
-/// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first.
+/// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Spectrum {
     pub values: [f64; 3],
@@ -11,12 +11,12 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// That of C - I of a Green-Lagrange strain.
+    /// Spectrum of C - I for a Green-Lagrange strain.
     pub fn of_strain(e: &Symmetric) -> Self {
         Spectrum::new(&(e * 2.0))
     }
 
-    /// Principal values ln(1 + y)/2: the logarithms of the principal stretches.
+    /// Logarithms of the principal stretches, ln(1 + y)/2 for the principal values y.
     pub fn logarithms(&self) -> [f64; 3] {
         self.values.map(|y| y.ln_1p() / 2.0)
     }
@@ -26,7 +26,8 @@ impl Spectrum {
         self.map(|y| y.ln_1p() / 2.0)
     }
 
-    /// C = dS/dE (force/length^2) of S = (D ln C) : T, with T(E_h) of the logarithmic strain and its change with that of E_h:
+    /// C = dS/dE (force/length^2) of S = (D ln C) : T; T(E_h) depends on the logarithmic strain, and `change` gives its
+    /// change for a change of E_h:
     ///
     /// ```text
     /// D ln : (dT/dE_h) : D ln + 2 D² ln : T,   column by column
@@ -48,13 +49,13 @@ impl Spectrum {
         }
     }
 
-    /// The tensor with a function of the principal values.
+    /// The tensor whose principal values are a function of those of this tensor.
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Symmetric {
         let [a, b, c] = self.values.map(f);
         self.back(&Symmetric::new(a, b, c, 0.0))
     }
 
-    /// Components in the principal frame.
+    /// Components of a tensor in the principal frame.
     pub fn to(&self, a: &Symmetric) -> Symmetric {
         let [c, s] = self.direction;
         Symmetric::new(
@@ -65,7 +66,7 @@ impl Spectrum {
         )
     }
 
-    /// A tensor whose components in the principal frame these are.
+    /// The tensor with the given components in the principal frame.
     pub fn back(&self, a: &Symmetric) -> Symmetric {
         let [c, s] = self.direction;
         Symmetric::new(
@@ -102,7 +103,7 @@ impl Spectrum {
     }
 }
 
-/// (ln x_1 - ln x_2)/(x_1 - x_2), x = 1 + y.
+/// Divided difference (ln x_1 - ln x_2)/(x_1 - x_2), with x = 1 + y.
 pub(super) fn first_difference(y1: f64, y2: f64) -> f64 {
     let x2 = 1.0 + y2;
     let d = (y1 - y2) / x2;
@@ -113,12 +114,13 @@ pub(super) fn first_difference(y1: f64, y2: f64) -> f64 {
     }
 }
 
-/// Where the second difference is a series.
+/// Absolute d below which the second difference is computed as a series.
 const NEAR: f64 = 0.1;
-/// Terms of the series, the last of which is round-off.
+/// Number of terms of the series; the last one is round-off.
 const TERMS: i32 = 17;
 
-/// ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²), d = (x_2 - x_1)/x_1; near d = 0 the series -sum (-d)^k/(k + 2).
+/// Divided difference ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²) with d = (x_2 - x_1)/x_1; near d = 0 it is the
+/// series -sum (-d)^k/(k + 2).
 fn second_difference(y1: f64, y2: f64) -> f64 {
     let x1 = 1.0 + y1;
     let d = (y2 - y1) / x1;
@@ -132,12 +134,12 @@ fn second_difference(y1: f64, y2: f64) -> f64 {
     -value / (x1 * x1)
 }
 
-/// (I + g)^(1/2) - I.
+/// The tensor (I + g)^(1/2) - I.
 pub(super) fn root(g: &Symmetric) -> Symmetric {
     Spectrum::new(g).map(|g| g / (1.0 + (1.0 + g).sqrt()))
 }
 
-/// V E V.
+/// The product V E V.
 pub(super) fn between(v: &Symmetric, e: &Symmetric) -> Symmetric {
     let (v2, e2) = (v.in_plane(), e.in_plane());
     let product = v2 * e2 * v2;
@@ -149,19 +151,19 @@ pub(super) fn between(v: &Symmetric, e: &Symmetric) -> Symmetric {
     )
 }
 
-/// Largest w = (d/m)² of a series in [`log_change`].
+/// Largest w = (d/m)² for which [`log_change`] uses a series.
 const SERIES: f64 = 0.25;
-/// Terms of that series.
+/// Number of terms of the series in [`log_change`].
 const SERIES_TERMS: usize = 30;
 
-/// (ln(I + Y1) - ln(I + Y0))/2 from dY = Y1 - Y0, with digits that are relative to dY. In the plane, with m and D the half
-/// trace and the deviator of X = I + Y, and d² = D:D/2:
+/// (ln(I + Y1) - ln(I + Y0))/2 from dY = Y1 - Y0, with round-off relative to dY. In the plane, m is the half trace and
+/// D the deviator of X = I + Y, and d² = D:D/2:
 ///
 /// ```text
 /// ln X = ln(det X)/2 I + c D,   c = g(w)/m,   g = artanh(sqrt w)/sqrt w = sum w^k/(2 k + 1),   w = d²/m²
 /// ```
 ///
-/// and differences of products are (a1 b1 - a0 b0) = da (b0 + b1)/2 + (a0 + a1)/2 db.
+/// Differences of products are computed as a1 b1 - a0 b0 = da (b0 + b1)/2 + (a0 + a1)/2 db.
 pub(super) fn log_change(y0: &Symmetric, y1: &Symmetric, dy: &Symmetric) -> Symmetric {
     let half_trace = |y: &Symmetric| 1.0 + (y.x + y.y) / 2.0;
     let dev = |y: &Symmetric| [(y.x - y.y) / 2.0, y.w];
@@ -196,7 +198,7 @@ pub(super) fn log_change(y0: &Symmetric, y1: &Symmetric, dy: &Symmetric) -> Symm
     Symmetric::new(growth + along, growth - along, around, shear) / 2.0
 }
 
-/// artanh(sqrt w)/sqrt w.
+/// The value artanh(sqrt w)/sqrt w.
 fn artanh_ratio(w: f64) -> f64 {
     if w < SERIES {
         let terms = (0..SERIES_TERMS).rev();
@@ -222,7 +224,7 @@ mod tests {
                 let exact = log(&y1) - log(&y0);
                 assert!((found - exact).norm() < 1e-14, "{found:?} {exact:?}");
             } else {
-                // the derivative halfway
+                // the derivative at the mean strain
                 let mid = Spectrum::new(&((y0 + y1) / 2.0));
                 let exact = mid.log_derivative(&(y1 - y0)) / 2.0;
                 let bound = (1e-14 + size * size) * exact.norm();

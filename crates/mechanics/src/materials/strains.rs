@@ -1,5 +1,6 @@
-//! Strains at which a law is evaluated: one, or those of the start and of the end of an increment. The measure in which they
-//! are added, and what happens across the plane. See docs/theory/materials.md and docs/theory/time.md.
+//! Strains at which a law is evaluated: one strain, or those at the start and at the end of an increment. Also the
+//! measure in which strains of an element are added, and the state across the plane. See docs/theory/materials.md and
+//! docs/theory/time.md.
 
 use super::number::Number;
 use super::symmetric::Symmetric;
@@ -7,13 +8,13 @@ use super::symmetric::Symmetric;
 /// Measures of strain in which energies are convex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StrainMeasure {
-    /// E of Green and Lagrange.
+    /// Green-Lagrange strain E.
     Green,
-    /// Logarithms of stretches.
+    /// Logarithmic strain.
     Logarithmic,
 }
 
-/// What happens across the plane.
+/// Stretch and stress across the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Across<T = f64> {
     /// Stretch F_33.
@@ -27,25 +28,26 @@ pub struct Across<T = f64> {
 pub enum Strains<T = f64> {
     /// One strain.
     At(Symmetric<T>),
-    /// Those of start and end of an increment, in the energy-momentum form.
+    /// Strains at the start and at the end of an increment, in the energy-momentum form.
     Between(StrainChange<T>),
 }
 
-/// The strains of start and end of an increment, their mean, and half their change, whose digits are its own.
+/// The strains at the start and at the end of an increment, their mean, and half their change, which keeps its own
+/// digits.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StrainChange<T = f64> {
     /// E0
     pub start: Symmetric<T>,
     /// E1
     pub end: Symmetric<T>,
-    /// (E0 + E1)/2
+    /// Mean strain (E0 + E1)/2.
     pub mean: Symmetric<T>,
-    /// (E1 - E0)/2
+    /// Half of the change, (E1 - E0)/2.
     pub half: Symmetric<T>,
 }
 
 impl<T: Number> StrainChange<T> {
-    /// That from a strain to another.
+    /// Change from one strain to another.
     #[inline(always)]
     pub fn between(e0: &Symmetric<T>, e1: &Symmetric<T>) -> Self {
         StrainChange {
@@ -56,7 +58,7 @@ impl<T: Number> StrainChange<T> {
         }
     }
 
-    /// That of a mean and half of the change.
+    /// Change with the given mean and half difference.
     #[inline(always)]
     pub fn about(mean: Symmetric<T>, half: Symmetric<T>) -> Self {
         StrainChange {
@@ -67,13 +69,13 @@ impl<T: Number> StrainChange<T> {
         }
     }
 
-    /// E1 - E0
+    /// Change E1 - E0.
     #[inline(always)]
     pub fn change(&self) -> Symmetric<T> {
         self.half.map(|half| half * 2.0)
     }
 
-    /// That of one element.
+    /// The change of the strains in one element.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> StrainChange {
         StrainChange {
@@ -86,13 +88,13 @@ impl<T: Number> StrainChange<T> {
 }
 
 impl<T: Number> Strains<T> {
-    /// From the strain of the start of an increment to that of its end.
+    /// Strains from the start of an increment to its end.
     #[inline(always)]
     pub fn between(e0: &Symmetric<T>, e1: &Symmetric<T>) -> Self {
         Strains::Between(StrainChange::between(e0, e1))
     }
 
-    /// Those of all elements, which are of the kind of the first.
+    /// Strains of all elements, all of the kind of the first element's.
     #[inline(always)]
     pub fn of_lanes(of: impl Fn(usize) -> Strains) -> Self {
         let end = Symmetric::of_lanes(|lane| of(lane).end());
@@ -115,7 +117,7 @@ impl<T: Number> Strains<T> {
         }
     }
 
-    /// Those of one element.
+    /// The strains of one element.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> Strains {
         match self {

@@ -1,7 +1,8 @@
-//! Symmetric tensors whose components 13 and 23 are zero, as those of the plane and of bodies of revolution, and their
+//! Symmetric tensors whose components 13 and 23 are zero, as in the plane and in bodies of revolution, and their
 //! products as matrices that act on strains (11, 22, 33, 2*12). See docs/theory/materials.md.
 //!
-//! With `HOOP` the component 33 counts. Without it the strain 33 is zero, as in plane strain: formulas leave its products out.
+//! With `HOOP` the component 33 is used. Without `HOOP` the strain 33 is zero, as in plane strain, and formulas omit
+//! its products.
 
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
@@ -24,7 +25,7 @@ pub struct Symmetric<T = f64> {
 }
 
 impl<T: Number> Symmetric<T> {
-    /// A tensor of the components 11, 22, 33 and 12.
+    /// A tensor with the components 11, 22, 33 and 12.
     #[inline(always)]
     pub fn new(x: T, y: T, z: T, w: T) -> Self {
         Symmetric { x, y, z, w }
@@ -43,13 +44,13 @@ impl<T: Number> Symmetric<T> {
         Symmetric::new(one, one, one, T::default())
     }
 
-    /// The tensor with a function of every component.
+    /// The tensor of a function of every component.
     #[inline(always)]
     pub fn map<U: Number>(&self, of: impl Fn(T) -> U) -> Symmetric<U> {
         Symmetric::new(of(self.x), of(self.y), of(self.z), of(self.w))
     }
 
-    /// A tensor whose components follow from those of this one and of another.
+    /// A tensor each of whose components is a function of the components of two tensors.
     #[inline(always)]
     pub fn with(&self, b: &Self, of: impl Fn(T, T) -> T) -> Self {
         let (x, y) = (of(self.x, b.x), of(self.y, b.y));
@@ -62,7 +63,7 @@ impl<T: Number> Symmetric<T> {
         self.map(|a| a * factor)
     }
 
-    /// A + a I
+    /// The sum A + a I.
     #[inline(always)]
     pub fn plus_isotropic(&self, a: T) -> Self {
         Symmetric::new(self.x + a, self.y + a, self.z + a, self.w)
@@ -80,7 +81,7 @@ impl<T: Number> Symmetric<T> {
         self.map(|a| a.lane(lane))
     }
 
-    /// The tensors of all elements.
+    /// Tensors for all elements, each given by a function.
     #[inline(always)]
     pub fn of_lanes(of: impl Fn(usize) -> Symmetric) -> Self {
         let all = each_element::<T, Symmetric>(of);
@@ -208,7 +209,7 @@ impl Div<f64> for Symmetric {
     }
 }
 
-/// I in the components of a symmetric tensor.
+/// The identity I as a symmetric tensor.
 pub const IDENTITY: Symmetric = Symmetric {
     x: 1.0,
     y: 1.0,
@@ -233,12 +234,12 @@ pub fn cofactor<T: Number>(a: &Symmetric<T>) -> Symmetric<T> {
     Symmetric::new(a.y * a.z, a.x * a.z, minor(a), a.w * a.z * -1.0)
 }
 
-/// A matrix that acts on strains (11, 22, 33, 2*12), as the tangent dS/dE of a law.
+/// A matrix that acts on strains (11, 22, 33, 2*12), for example the tangent dS/dE of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Tangent<T = f64>(pub [[T; 4]; 4]);
 
 impl<T: Number> Tangent<T> {
-    /// The matrix of its entries.
+    /// The matrix with the given entries.
     #[inline(always)]
     pub fn of(entry: impl Fn(usize, usize) -> T) -> Self {
         Tangent(square(entry))
@@ -265,7 +266,7 @@ impl<T: Number> Tangent<T> {
         Tangent::of(|i, j| self.0[i][j].lane(lane))
     }
 
-    /// The matrices of all elements.
+    /// Matrices for all elements, each given by a function.
     pub fn of_lanes(of: impl Fn(usize) -> Tangent) -> Self {
         let all = each_element::<T, Tangent>(of);
         Tangent::of(|i, j| T::of_lanes(|lane| all[lane].0[i][j]))
@@ -273,7 +274,7 @@ impl<T: Number> Tangent<T> {
 }
 
 impl Tangent {
-    /// The matrix whose columns are the changes of a stress with unit strains 11, 22, 33 and 2*12.
+    /// The matrix whose columns are the changes of a stress for unit strains 11, 22, 33 and 2*12.
     pub fn of_columns(of: impl Fn(&Symmetric) -> Symmetric) -> Self {
         let columns: [[f64; 4]; 4] = from_fn(|k| {
             let mut unit = [0.0; 4];
@@ -290,7 +291,7 @@ impl Tangent {
     }
 }
 
-/// A value of every element.
+/// One value for every element.
 fn each_element<T: Number, V: Default>(of: impl Fn(usize) -> V) -> [V; LANES] {
     from_fn(|lane| match lane < T::ELEMENTS {
         true => of(lane),
@@ -298,7 +299,7 @@ fn each_element<T: Number, V: Default>(of: impl Fn(usize) -> V) -> [V; LANES] {
     })
 }
 
-/// A matrix of its entries, written out: what is not used of it then costs nothing, unlike that of a loop.
+/// A matrix from its entries, without a loop: entries that are not used then cost nothing.
 #[inline(always)]
 fn square<T>(at: impl Fn(usize, usize) -> T) -> [[T; 4]; 4] {
     [
@@ -309,7 +310,7 @@ fn square<T>(at: impl Fn(usize, usize) -> T) -> [[T; 4]; 4] {
     ]
 }
 
-/// A x B, row by row: E -> (B:E) A.
+/// A x B, row by row: it maps E to (B:E) A.
 #[inline(always)]
 pub fn dyad<T: Number>(a: &Symmetric<T>, b: &Symmetric<T>) -> [[T; 4]; 4] {
     let (a, b) = (a.components(), b.components());
@@ -328,7 +329,7 @@ pub fn with_identity<T: Number>(a: &Symmetric<T>) -> [[T; 4]; 4] {
     })
 }
 
-/// A o A, row by row: E -> A E A.
+/// A o A, row by row: it maps E to A E A.
 #[inline(always)]
 pub fn product<T: Number>(a: &Symmetric<T>) -> [[T; 4]; 4] {
     let Symmetric { x, y, z, w } = *a;

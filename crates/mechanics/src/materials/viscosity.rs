@@ -1,5 +1,5 @@
-//! Viscosity of a material (`*DAMPING, BETA=`): a stress beside that of the law that follows the rates
-//! of its shape and of its volume. See docs/theory/time.md, Damping.
+//! Viscosity of a material (`*DAMPING, BETA=`): a stress, added to that of the law, that depends on the rates of
+//! distortion and volume. See docs/theory/time.md, Damping.
 
 use super::number::Number;
 use super::strains::{StrainChange, Strains};
@@ -16,14 +16,14 @@ use super::{Across, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoin
 /// S_d : dE >= 0                                                what it dissipates
 /// ```
 ///
-/// D is the mean of the cofactors of C on the straight way from C0 to C1, and so positive definite. mu and lambda are the moduli
-/// at small strains. With the part dJ/2 G (in the plane) of the first term the stress is one of the shape and one of the
-/// volume, each without the modulus of the other.
+/// D is the mean of the cofactors of C on the straight path from C0 to C1, and so is positive definite. mu and lambda
+/// are the moduli at small strains. With the part dJ/2 G (in the plane) of the first term, the stress splits into one
+/// of distortion and one of volume; each depends on only one of the two moduli.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
-    /// 2 beta mu (force time/length^2).
+    /// Viscosity of distortion, 2 beta mu (force time/length^2).
     shape: f64,
-    /// beta lambda (force time/length^2).
+    /// Viscosity of volume, beta lambda (force time/length^2).
     volume: f64,
 }
 
@@ -48,12 +48,12 @@ fn halfway<T: Number, const HOOP: bool>(change: &StrainChange<T>) -> (Symmetric<
 }
 
 impl Viscosity {
-    /// Viscosity as of [`Self::new`] where `beta` is positive.
+    /// Viscosity as from [`Self::new`] if `beta` is positive, else `None`.
     pub fn of(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Option<Self> {
         (beta > 0.0).then(|| Self::new(beta, moduli, plane))
     }
 
-    /// Viscosity of `beta` (time) of a material with these moduli at small strains.
+    /// Viscosity with the factor `beta` (time) for a material with these moduli at small strains.
     pub fn new(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Self {
         let SmallStrainModuli { young, poisson } = moduli;
         let (lambda, mu) = SaintVenantKirchhoff { young, poisson }
@@ -67,17 +67,17 @@ impl Viscosity {
 }
 
 impl Viscosity {
-    /// Tangent of no change of the strains (force time/length^2).
+    /// Tangent for a zero change of the strains (force time/length^2).
     pub fn initial_tangent(&self) -> Tangent {
         let none = Strains::Between(StrainChange::default());
         StressAtPoints::<f64, true>::tangent_at(self, 0, &none)
     }
 }
 
-/// Stresses are taken over the length of the increment (force time/length^2). There are none at a strain that does not
-/// change, nothing is stored, and there is no stress across the plane.
+/// Stresses are multiplied by the length of the increment (force time/length^2). The viscous stresses are zero if the
+/// strain does not change; nothing is stored, and there is no stress across the plane.
 impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
-    /// S_d dt, eq. (4.17)
+    /// S_d dt, eq. (4.17).
     #[inline(always)]
     fn stress_at(&self, _point: usize, strains: &Strains<T>) -> Symmetric<T> {
         let Strains::Between(change) = strains else {
@@ -101,7 +101,8 @@ impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
         gdeg.with(&g, |gdeg, g| (gdeg * self.shape + dj * g) * inverse)
     }
 
-    /// 2 V of eq. (4.19), positive definite: without the change of G and J_m, which is of first order in dE.
+    /// 2 V of eq. (4.19), which is positive definite. The tangent omits the change of G and J_m, which is of first
+    /// order in dE.
     #[inline(always)]
     fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {
         let Strains::Between(change) = strains else {
@@ -137,7 +138,7 @@ mod tests {
 
     const BETA: f64 = 0.3;
 
-    /// Viscosity with these moduli of shear and volume in plane strain.
+    /// Viscosity in plane strain with these moduli of shear and volume.
     fn viscosity(mu: f64, bulk: f64) -> Viscosity {
         let moduli = SmallStrainModuli {
             young: 9.0 * bulk * mu / (3.0 * bulk + mu),
@@ -165,12 +166,12 @@ mod tests {
     #[test]
     fn the_bulk_modulus_is_not_felt_at_constant_volume_nor_the_shear_modulus_at_constant_shape() {
         let f = some();
-        // of one volume ratio, however large the change
+        // start and end have the same volume ratio, however large the change
         let stretched = f * Matrix2::new(1.5, 0.0, 0.4, 1.0 / 1.5);
         let ends = [strain(&f), strain(&stretched)];
         let [soft, hard] = [2.0, 2e6].map(|bulk| in_plane(viscosity(1.0, bulk), &ends));
         assert!((soft - hard).norm() < 1e-8 * soft.norm(), "{soft} {hard}");
-        // of one shape, turned; kappa = K + mu/3 is the same
+        // start and end have the same shape, turned; kappa = K + mu/3 is the same in both cases
         let turned = Matrix2::new(0.6, 0.8, -0.8, 0.6) * f * 1.7;
         let ends = [strain(&f), strain(&turned)];
         let [one, other] = [(1.0, 3.0), (3.0, 3.0 - 2.0 / 3.0)]
@@ -259,7 +260,7 @@ mod tests {
         let found = stress(v, &[de * -0.5, de * 0.5]);
         let exact = linear.stress(&de) * BETA;
         assert!((found - exact).norm() < 1e-12 * exact.norm());
-        // a change of volume alone has no part of the shear modulus: C1 = s^2 C0
+        // with a change of volume alone, C1 = s^2 C0, the stress does not contain the shear modulus
         let grown = (e0 * 1.44).plus_isotropic(0.22);
         let bulk = 1000.0 / (3.0 * 0.4);
         let with_shear = |mu: f64| {
@@ -271,7 +272,8 @@ mod tests {
         };
         let [one, other] = [400.0, 1800.0].map(|mu| stress(with_shear(mu), &[e0, grown]));
         assert!((one - other).norm() < 1e-12 * one.norm());
-        // nor has a change of shape alone, of any size, one of the bulk modulus: det C1 = det C0
+        // with a change of shape alone, of any size, det C1 = det C0, the stress does not contain
+        // the bulk modulus
         let stretched = |by: f64| {
             let c = (e0 * 2.0).plus_isotropic(1.0);
             let c = Symmetric::new(c.x * by, c.y * by, c.z / (by * by), c.w * by);

@@ -1,23 +1,24 @@
-//! The yield curve of a metal whose element has hourglass modes, eq. (2.47), of the parts w and z of sigma_y
-//! that strain and modes use:
+//! The yield curve of a metal whose element has hourglass modes, eq. (2.47). The curve limits the parts w and z of
+//! sigma_y that strain and modes use:
 //!
 //! ```text
 //! z <= sqrt(3)/2 ((1 - e) (1 - w²) + e sqrt(1 - w²)),   w = cos t
 //! ```
 
-/// sqrt(3)/2, the mean size of a stress that is linear over a section beside its mean square.
+/// sqrt(3)/2: mean absolute value, relative to the root mean square, of a stress that is linear
+/// over a section.
 const FULL_SECTION: f64 = 0.866_025_403_784_438_6;
 /// e.
 const ROUNDED: f64 = 0.5;
 
-/// Whether sizes Q and H of stresses are within the curve of a yield stress.
+/// Whether the stress sizes Q and H are within the curve for a yield stress.
 pub(super) fn contains([q, h]: [f64; 2], stress: f64) -> bool {
     let rest = (stress - q) * (stress + q);
     q <= stress
         && h * stress <= FULL_SECTION * ((1.0 - ROUNDED) * rest + ROUNDED * stress * rest.sqrt())
 }
 
-/// The point at an angle, and its first and second derivative.
+/// The point of the curve at an angle, and its first and second derivative.
 pub(super) fn at(angle: f64) -> [[f64; 2]; 3] {
     let (sin, cos) = angle.sin_cos();
     let (square, line) = (FULL_SECTION * (1.0 - ROUNDED), FULL_SECTION * ROUNDED);

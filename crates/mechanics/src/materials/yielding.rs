@@ -6,14 +6,14 @@ use super::strains::Strains;
 use super::symmetric::{Symmetric, Tangent, dyad};
 use super::{Across, Flow, SmallStrainModuli, StrainMeasure};
 
-/// Elastic up to a yield stress that grows with the accumulated plastic strain a:
+/// The law is elastic up to a yield stress that grows with the accumulated plastic strain a:
 ///
 /// ```text
 /// S = G (E - Z),  W = G/2 (E - Z):(E - Z) + U(a),  |S| <= G Y + R(a)
 /// R = U' = r (1 - exp(-a/c)),  U = r (a - c (1 - exp(-a/c)))
 /// ```
 ///
-/// The internal variables are Z_xx, Z_yy, Z_xy and a: the strain 33 of a ring stays elastic.
+/// The internal variables are Z_xx, Z_yy, Z_xy and a; the strain 33 of a ring stays elastic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Yielding {
     /// Modulus G (force/length^2).
@@ -22,7 +22,7 @@ pub struct Yielding {
     pub y: f64,
     /// Largest growth r of the yield stress (force/length^2).
     pub r: f64,
-    /// Plastic strain c in which most of it is reached.
+    /// Plastic strain c within which most of the growth is reached.
     pub c: f64,
 }
 
@@ -31,17 +31,17 @@ pub fn plastic(z: &[f64]) -> Symmetric {
     Symmetric::new(z[0], z[1], 0.0, z[2])
 }
 
-/// A:B of the components that flow.
+/// A:B over the components that flow.
 fn in_plane(a: &Symmetric, b: &Symmetric) -> f64 {
     a.contract::<false>(b)
 }
 
-/// End of a return mapping.
+/// Result of a return mapping.
 struct Returned {
     stress: Symmetric,
     /// Algorithmic tangent dS/dE.
     tangent: Tangent,
-    /// dZ and da of the way.
+    /// Increments dZ and da of the plastic variables.
     flow: Symmetric,
     slip: f64,
 }
@@ -55,7 +55,7 @@ impl Yielding {
         }
     }
 
-    /// R(a) and R'(a).
+    /// Hardening R(a) and its derivative R'(a).
     fn hardening(&self, a: f64) -> [f64; 2] {
         let left = (-a / self.c).exp();
         [self.r * (1.0 - left), self.r * left / self.c]
@@ -66,8 +66,8 @@ impl Yielding {
         self.r * (a + self.c * (-a / self.c).exp_m1())
     }
 
-    /// The return from the trial stress S* = G (E - Z0) along n = S*/|S*| to the yield surface, by Newton's method on
-    /// phi = |S*| - G da - G Y - R(a0 + da) = 0, which is concave in -da: every step stays on one side.
+    /// Return from the trial stress S* = G (E - Z0) along n = S*/|S*| to the yield surface. Newton's method solves
+    /// phi = |S*| - G da - G Y - R(a0 + da) = 0; phi is concave in -da, so every step stays on one side.
     ///
     /// ```text
     /// dZ = da n,   dS/dE = G n n/(1 + G/R') + (1 - G da/|S*|) G (I - n n)
@@ -135,7 +135,8 @@ impl Flow for Yielding {
         z1.copy_from_slice(&[z.x, z.y, z.w, z0[3] + end.slip]);
     }
 
-    /// Between two strains (S0 + S1)/2 and what it lacks, W1 - W0 + D - S:dE = (S1 - S0):dZ/2, eq. (4.8).
+    /// Between two strains the stress is (S0 + S1)/2 plus the correction for W1 - W0 + D - S:dE = (S1 - S0):dZ/2, eq.
+    /// (4.8).
     fn stress(&self, strains: &Strains, z0: &[f64]) -> Symmetric {
         let end = self.returned(&strains.end(), z0);
         let Strains::Between(change) = strains else {
@@ -147,7 +148,7 @@ impl Flow for Yielding {
         corrected_stress::<f64, true>(&mean, &change.change(), f)
     }
 
-    /// With dZ/dE = I - (dS/dE)/G.
+    /// The derivative of the stress uses dZ/dE = I - (dS/dE)/G.
     fn tangent(&self, strains: &Strains, z0: &[f64]) -> Tangent {
         let end = self.returned(&strains.end(), z0);
         let Strains::Between(change) = strains else {
@@ -169,7 +170,7 @@ impl Flow for Yielding {
         elastic * elastic * self.g / 2.0 + self.hardening_energy(z[3])
     }
 
-    /// D = S1:dZ - (U1 - U0)
+    /// D = S1:dZ - (U1 - U0).
     fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64 {
         let end = self.returned(&strains.end(), z0);
         let stored = self.hardening_energy(z0[3] + end.slip) - self.hardening_energy(z0[3]);
@@ -220,7 +221,7 @@ mod tests {
         let (s, z1) = stress(&Strains::At(strain(0.08, 0.0, 0.04)), &z0);
         let yield_stress = LAW.g * LAW.y + LAW.r * (1.0 - (-z1[3] / LAW.c).exp());
         assert!(z1[3] > z0[3] + 0.03 && (s.norm() - yield_stress).abs() < 1e-13 * yield_stress);
-        // at the strain that it has come to the law is elastic, and what yields against it yields as far as at once
+        // at the strain that it has reached the law is elastic
         let (again, z2) = stress(&Strains::At(strain(0.08, 0.0, 0.04)), &z1);
         assert!((again - s).norm() < 1e-13 * s.norm());
         assert!(z1.iter().zip(z2).all(|(a, b)| (a - b).abs() < 1e-15));

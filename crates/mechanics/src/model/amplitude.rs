@@ -1,10 +1,10 @@
-//! Amplitudes: functions of time with their value and exact rate. The rate is the velocity of a
-//! prescribed displacement (docs/theory/time.md, Supports).
+//! Amplitudes: functions of time with their value and exact rate. The rate of an amplitude is the
+//! velocity of a prescribed displacement (docs/theory/time.md, Supports).
 
-/// Relative difference up to which two times are the same: the round-off of products k dt.
+/// Relative difference up to which two times are equal: the round-off of products k dt.
 const SAME_TIME: f64 = 16.0 * f64::EPSILON;
 
-/// Time that an amplitude is a function of.
+/// Time on which an amplitude depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeBase {
     /// Time since the start of the step.
@@ -27,26 +27,27 @@ pub struct Amplitude {
 /// Values of an amplitude.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Curve {
-    /// Linear between points (time, value), constant outside; times strictly increasing, at least
-    /// one point.
+    /// Linear between points (time, value), constant outside; times strictly increase, and there is
+    /// at least one point.
     Linear(Vec<(f64, f64)>),
-    /// The same points, with rate and second derivative zero at each.
+    /// Smooth steps between points (time, value), with zero rate and zero second derivative at each
+    /// point.
     SmoothStep(Vec<(f64, f64)>),
     /// `base` up to the time `start`, and `base + signal(t - start)` from there on.
     Signal {
         /// Time at which the signal begins.
         start: f64,
-        /// Value without the signal.
+        /// Value of the amplitude without the signal.
         base: f64,
         /// The signal.
         signal: Signal,
     },
 }
 
-/// A function of the time since its start.
+/// A function of the time since the start of the signal.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Signal {
-    /// `sum over n = 1.. of A_n cos(n w t) + B_n sin(n w t)`
+    /// `sum over n >= 1 of A_n cos(n w t) + B_n sin(n w t)`
     Periodic {
         /// Angular frequency w (1/time).
         frequency: f64,
@@ -55,9 +56,9 @@ pub enum Signal {
     },
     /// `size exp(-t / time)`
     Decay {
-        /// Value at the start.
+        /// Value at the start of the signal.
         size: f64,
-        /// Time in which it falls to 1/e of its value, positive.
+        /// Time in which the value falls to 1/e, positive.
         time: f64,
     },
     /// `size sin(w1 t) sin(w2 t)`
@@ -70,18 +71,20 @@ pub enum Signal {
 }
 
 impl Amplitude {
-    /// Value at time `t` (step or total time, as `self.time` says).
+    /// Value at time `t`, which is step or total time according to `self.time`.
     pub fn at(&self, t: f64) -> f64 {
         self.value_and_rate(t)[0]
     }
 
-    /// Derivative at `t`; where it jumps, at a point of a table, that of the interval before it, at
-    /// the first point and at the start of a signal that after it.
+    /// Derivative of the amplitude at `t`. Where the derivative jumps at a point of a table, the
+    /// result is that of the interval before; at the first point and at the start of a signal it is
+    /// that after.
     pub fn rate(&self, t: f64) -> f64 {
         self.value_and_rate(t)[1]
     }
 
-    /// Derivative at `t`; where it jumps, that of the interval after it.
+    /// Derivative of the amplitude at `t`; where it jumps, the result is that of the interval
+    /// after.
     pub fn rate_after(&self, t: f64) -> f64 {
         match &self.curve {
             Curve::Linear(points) => rate_after_point(points, t, |x| [x, 1.0]),
@@ -112,7 +115,7 @@ impl Amplitude {
         }
     }
 
-    /// Two values that all its values lie between.
+    /// A lower and an upper bound of all values.
     pub fn bounds(&self) -> [f64; 2] {
         match &self.curve {
             Curve::Linear(points) | Curve::SmoothStep(points) => {
@@ -156,7 +159,7 @@ impl Amplitude {
 }
 
 impl Signal {
-    /// All its numbers.
+    /// All numbers that define the curve.
     pub fn numbers(&self) -> Vec<f64> {
         match self {
             Signal::Periodic {
@@ -263,23 +266,24 @@ fn smooth_step_integrals(x: f64) -> [f64; 2] {
     ]
 }
 
-/// First and second integral at `t`, from the first point, of a table whose values between two points
-/// are those of a step with the integrals `step` from 0 to `0 <= x <= 1`; constant outside the table.
+/// First and second integral at `t`, from the first point, of a table that is constant outside. Between two points the
+/// values of the table follow a step, whose integrals from 0 to `0 <= x <= 1` are `step`.
 fn integrals_of_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let constant = |value: f64, s: f64| [value * s, value * s * s / 2.0];
     let (first, last) = (points[0], points[points.len() - 1]);
     if t < first.0 {
         return constant(first.1, t - first.0);
     }
-    // to the end of an interval, or to t in it: with J1 and J2 at its start, s from there on,
-    // I1 = J1 + a s + (b - a) h step1, I2 = J2 + J1 s + a s^2/2 + (b - a) h^2 step2
+    // integrals up to the end of an interval, or to t in it, with J1 and J2 at its start and s
+    // counted from there: I1 = J1 + a s + (b - a) h step1, I2 = J2 + J1 s + a s^2/2 + (b - a) h^2
+    // step2
     let on = |[j1, j2]: [f64; 2], s: f64, value: f64| added([j1, j2 + j1 * s], constant(value, s));
     let mut integrals = [0.0; 2];
     for pair in points.windows(2).take_while(|pair| pair[0].0 < t) {
         let (p, q) = (pair[0], pair[1]);
         let (s, h) = (t.min(q.0) - p.0, q.0 - p.0);
         let [first, second] = step(s / h);
-        // each product with h at once: h² may overflow where the step is zero
+        // the factors h are applied one at a time: h² may overflow although the step is zero
         let rise = [h * first, h * (h * second)].map(|share| (q.1 - p.1) * share);
         integrals = added(on(integrals, s, p.1), rise);
     }
@@ -289,7 +293,8 @@ fn integrals_of_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64;
     }
 }
 
-/// `[x^3 (10 - 15 x + 6 x^2), 30 x^2 (1 - x)^2]`: from 0 to 1 as `x` does, and its derivative.
+/// `[x^3 (10 - 15 x + 6 x^2), 30 x^2 (1 - x)^2]`: a function that goes from 0 to 1 as `x` does, and
+/// its derivative.
 fn smooth_step(x: f64) -> [f64; 2] {
     [
         x.powi(3) * (10.0 - 15.0 * x + 6.0 * x * x),
@@ -297,8 +302,8 @@ fn smooth_step(x: f64) -> [f64; 2] {
     ]
 }
 
-/// Value and rate at `t` of a table whose values between two points are those of `step`, which
-/// gives the share of the way and its derivative at `0 <= x <= 1`; constant outside the table.
+/// Value and rate at `t` of a table that is constant outside. Between two points the values of the
+/// table follow `step`, which gives the part of the difference and its derivative at `0 <= x <= 1`.
 fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (first, last) = (points[0], points[points.len() - 1]);
     let t = at_point(points, t);
@@ -315,7 +320,8 @@ fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f
     [value, (q.1 - p.1) / (q.0 - p.0) * slope]
 }
 
-/// Slope of a table in the interval that `t` lies in or begins; none before the first and from the last point on.
+/// Slope of a table in the interval that contains `t` or begins at it; zero before the first point, and from the last
+/// one on.
 fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> f64 {
     let t = at_point(points, t);
     let next = points.partition_point(|p| p.0 <= t);
@@ -327,8 +333,8 @@ fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2
     (q.1 - p.1) / (q.0 - p.0) * slope
 }
 
-/// The time of the point of a table that `t` is but for round-off, else `t`: on which side of a kink an
-/// increment ends does not depend on the unit of time.
+/// The time of the table point that equals `t` up to round-off; without such a point `t` itself. On which side of a
+/// kink an increment ends therefore does not depend on the unit of time.
 fn at_point(points: &[(f64, f64)], t: f64) -> f64 {
     let next = points.partition_point(|p| p.0 < t);
     let around = &points[next.saturating_sub(1)..points.len().min(next + 1)];
@@ -340,7 +346,7 @@ fn is_same_time(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME_TIME * a.abs().max(b.abs())
 }
 
-/// The interval (p, q] of a table with p.0 < t <= q.0, or the first one.
+/// The interval (p, q] of a table with p.0 < t <= q.0, else the first interval.
 fn interval(points: &[(f64, f64)], t: f64) -> ((f64, f64), (f64, f64)) {
     let end = points
         .partition_point(|p| p.0 < t)

@@ -1,25 +1,25 @@
-//! Springs and dashpots: forces between two nodes, or a node and the ground, that follow from their distance
-//! or from its rate. See docs/theory/elements.md.
+//! Springs and dashpots: forces between two nodes, or between a node and the ground, that depend on their distance or
+//! on its rate. See docs/theory/elements.md.
 
 use smallvec::SmallVec;
 
 /// A spring or dashpot (`*SPRING`, `*DASHPOT`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Connector {
-    /// Element number of the deck.
+    /// Element number in the deck.
     pub label: u64,
-    /// Its node, whose other end is the ground, or its two nodes.
+    /// The one node of the connector, whose other end is the ground, or its two nodes.
     pub nodes: SmallVec<[usize; 2]>,
-    /// What its elongation is.
+    /// Direction in which the elongation is measured.
     pub direction: ConnectorDirection,
-    /// What its force follows.
+    /// Quantity on which the force depends.
     pub law: ConnectorLaw,
     /// Its force.
     pub curve: ForceCurve,
 }
 
 impl Connector {
-    /// Whether its forces on its nodes have no resultant.
+    /// Whether the forces of the connector on its nodes have no resultant.
     pub fn has_no_resultant(&self) -> bool {
         let alike = match self.direction {
             ConnectorDirection::Line | ConnectorDirection::Angle => true,
@@ -28,7 +28,7 @@ impl Connector {
         alike && self.nodes.len() == 2
     }
 
-    /// The name of its type: `SPRINGA`, `DASHPOT1` ...
+    /// Name of the connector's type: `SPRINGA`, `DASHPOT1` ...
     pub fn type_name(&self) -> String {
         let family = match self.law {
             ConnectorLaw::Spring => "SPRING",
@@ -43,34 +43,37 @@ impl Connector {
     }
 }
 
-/// What the elongation of a connector is.
+/// Direction in which the elongation of a connector is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ConnectorDirection {
-    /// The distance of its nodes less that of the reference configuration; the line turns with them.
+    /// Along the line between the nodes: their distance less that in the reference configuration; the line turns with
+    /// the nodes.
     Line,
     /// The displacement of the first node in the first direction, a unit vector, less that of the second node
     /// in the second.
     Fixed([[f64; 2]; 2]),
-    /// The angle of the rigid body whose reference node the first node is, less that of the body of the second; its force
-    /// is a moment.
+    /// The rotation of the rigid body whose reference node is the first node, less that of the body of the second node;
+    /// the force is a moment.
     Angle,
 }
 
-/// What the force of a connector follows.
+/// Quantity on which the force of a connector depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConnectorLaw {
-    /// The elongation; it is stored.
+    /// A spring: the force depends on the elongation and its work is stored.
     Spring,
-    /// The rate of the elongation; it is dissipated.
+    /// A dashpot: the force depends on the rate of the elongation and its work is dissipated.
     Dashpot,
 }
 
-/// Force over an elongation (length) or its rate (length/time); between angles moment over an angle or its rate (1/time).
+/// Force as a function of the elongation (length) or its rate (length/time); between angles moment as a function of the
+/// angle or its rate (1/time).
 #[derive(Debug, Clone, PartialEq)]
 pub enum ForceCurve {
-    /// In proportion, with this factor: k (force/length) or c (force time/length).
+    /// Proportional, with the factor k (force/length) or c (force time/length).
     Linear(f64),
-    /// Piecewise linear between points (elongation or rate, force) that increase; constant beyond.
+    /// Piecewise linear between points (elongation or rate, force) in increasing order; constant
+    /// beyond them.
     Table(Vec<[f64; 2]>),
 }
 
@@ -94,7 +97,7 @@ impl ForceCurve {
         }
     }
 
-    /// dF/dx, to the right of a point of the table.
+    /// Slope dF/dx; at a point of the table that to its right.
     pub fn slope(&self, x: f64) -> f64 {
         match self {
             ForceCurve::Linear(k) => *k,
@@ -144,13 +147,13 @@ impl ForceCurve {
             }
         };
         match within {
-            // exact on one piece, also where a and b are near each other
+            // exact within one linear piece, also if a and b are near each other
             true => (self.at(a) + self.at(b)) / 2.0,
             false => self.integral(a, b) / (b - a),
         }
     }
 
-    /// d mean(a, b)/db = (F(b) - mean)/(b - a); half the slope where the two are one.
+    /// d mean(a, b)/db = (F(b) - mean)/(b - a); half the slope if a = b.
     pub fn mean_slope(&self, a: f64, b: f64) -> f64 {
         let slope = (self.at(b) - self.mean(a, b)) / (b - a);
         match slope.is_finite() {
@@ -175,7 +178,7 @@ mod tests {
         ] {
             assert_eq!((curve.at(x), curve.slope(x)), (f, slope));
         }
-        // 1/2 4 1 below, 1/2 2 2 + 2 1 above
+        // areas: 1/2 * 4 * 1 below the axis, 1/2 * 2 * 2 + 2 * 1 above it
         assert_eq!(curve.integral(-1.0, 0.0), -2.0);
         assert_eq!(curve.integral(0.0, 3.0), 4.0);
         assert_eq!(curve.integral(3.0, -1.0), -2.0);

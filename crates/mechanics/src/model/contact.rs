@@ -1,4 +1,4 @@
-//! Contact surfaces, contacts and their interactions, hard contact with Coulomb friction; equations between
+//! Contact surfaces, contacts and their interactions, with hard contact and Coulomb friction; also equations between
 //! displacements, and rigid surfaces that move with a reference node. See docs/theory/contact.md, and
 //! docs/theory/impacts.md, Rigid bodies.
 //!
@@ -15,7 +15,7 @@ use crate::vectors::distance;
 /// Contact law between two surfaces: hard normal contact and Coulomb friction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interaction {
-    /// Its name as compared, empty without one.
+    /// Name in the form in which names are compared; empty without a name.
     pub name: String,
     /// Coulomb friction.
     pub friction: Friction,
@@ -25,7 +25,7 @@ pub struct Interaction {
     pub heat: Option<Heat>,
 }
 
-/// What of the work of friction becomes heat, and where it goes.
+/// Part of the work of friction that becomes heat, and the surfaces that it heats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Heat {
     /// Part of the work that becomes heat.
@@ -34,27 +34,28 @@ pub struct Heat {
     pub to_slave: f64,
 }
 
-/// Archard's law of wear; the geometry stays as it is.
+/// Archard's law of wear; the geometry does not change by wear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wear {
-    /// Depth over the product of pressure and way, k/H (length^2/force).
+    /// Depth divided by the product of pressure and sliding path, k/H (length^2/force).
     pub rate: f64,
-    /// Whether it is that over the work of friction, mu times the product.
+    /// Whether the depth is instead divided by the work of friction, which is mu times this
+    /// product.
     pub by_friction: bool,
 }
 
-/// What of the slave surface is kept out of the master.
+/// Part of the slave surface that is kept out of the master.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactFormulation {
-    /// Every slave node.
+    /// Every slave node is kept out.
     #[default]
     NodeToSegment,
-    /// Means over points of the slave faces, one for each slave node.
+    /// For each slave node a mean over points of the slave faces is kept out.
     SurfaceToSurface,
 }
 
 impl ContactFormulation {
-    /// Its name in decks and logs.
+    /// Name of the formulation in decks and logs.
     pub fn name(self) -> &'static str {
         match self {
             ContactFormulation::NodeToSegment => "NODE TO SURFACE",
@@ -73,18 +74,18 @@ pub struct Contact {
     pub master: usize,
     /// The contact law.
     pub interaction: Interaction,
-    /// What is kept out.
+    /// Part of the slave surface that is kept out of the master.
     pub formulation: ContactFormulation,
-    /// Faces that lie on other bodies at the start, by whose number general contact has chosen what is kept out; none
-    /// where the deck says it.
+    /// Number of faces that lie on other bodies at the start, by which general contact has chosen the formulation;
+    /// `None` if the deck gives the formulation.
     pub lying_faces: Option<usize>,
-    /// The shape of its faces.
+    /// Shape of the faces of the contact.
     pub smoothing: Smoothing,
     /// Slave nodes that are moved onto the master surface before the start.
     pub adjust: Option<Adjust>,
-    /// Slave nodes that take no part (indices, increasing).
+    /// Slave nodes that do not take part in the contact (indices, increasing).
     pub left_out: Vec<usize>,
-    /// Whether it is general contact that presses the overlap of bodies out in the first step.
+    /// Whether this is general contact that presses out the overlap of bodies in the first step.
     pub is_interference_fit: bool,
     /// Place in the deck, for messages.
     pub span: Span,
@@ -93,9 +94,10 @@ pub struct Contact {
 /// The shape of the faces of a contact between their nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Smoothing {
-    /// Straight, as meshed.
+    /// Straight faces, as meshed.
     Straight,
-    /// Curved as the reference configuration turns, parts of it as circles about given centres.
+    /// Curved faces, from the turns of the reference configuration; some of them are circles about
+    /// given centres.
     Curved(Vec<Circle>),
 }
 
@@ -108,24 +110,25 @@ impl Default for Smoothing {
 /// Faces that lie on a circle in the reference configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Circle {
-    /// Index of their surface.
+    /// Index of the surface of these faces.
     pub surface: usize,
     /// Centre of the circle (length).
     pub centre: [f64; 2],
 }
 
-/// Which slave nodes are moved onto the master surface before the start, free of strain.
+/// Choice of the slave nodes that are moved onto the master surface before the start, without
+/// strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Adjust {
-    /// Those inside the master body or above it that are near its surface.
+    /// Nodes near the surface of the master body, inside or above it.
     Within(Reach),
-    /// Those of the node set with this index.
+    /// Nodes of the node set with this index.
     Nodes(usize),
-    /// Those that are near the surface, to this clearance above it (length).
+    /// Nodes near the surface, which are moved to a clearance above it (length).
     Clearance(f64),
 }
 
-/// Which nodes are near a surface, and where they are moved to.
+/// Choice of the nodes near a surface, and the clearance to which they are moved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
     /// Largest clearance of a node that is moved (length).
@@ -148,7 +151,7 @@ impl Adjust {
 }
 
 impl Contact {
-    /// A contact of two surfaces in which all slave nodes take part, where they are.
+    /// A contact of two surfaces in which all slave nodes take part and none is moved.
     pub fn new([slave, master]: [usize; 2], interaction: Interaction) -> Self {
         Contact {
             slave,
@@ -178,37 +181,37 @@ pub const ALL_EXTERIOR: &str = "ALL_EXTERIOR";
 pub struct Surface {
     /// Name as typed in the deck.
     pub name: String,
-    /// Its faces, nodes or rigid segments.
+    /// Faces, nodes or rigid segments of the surface.
     pub kind: SurfaceKind,
 }
 
 /// Element faces, nodes or rigid segments.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SurfaceKind {
-    /// Faces of elements: can be slave or master.
+    /// Faces of elements; they can be slave or master.
     Faces(Vec<Face>),
-    /// Nodes: can be slave only.
+    /// Nodes; they can only be slave.
     Nodes(Vec<usize>),
-    /// A rigid profile: can be master, and slave where it is a circle.
+    /// A rigid profile; it can be master, and also slave if it is a circle.
     Rigid(RigidProfile),
 }
 
-/// Segments of a rigid surface between nodes without element.
+/// Segments of a rigid surface, between nodes without elements.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidProfile {
-    /// Segments [a, b], the rigid body on the left of the direction from a to b.
+    /// Segments [a, b] with the rigid body on the left of the direction from a to b.
     pub segments: Vec<Segment>,
-    /// The arcs that some of them are chords of, in the order of the segments.
+    /// The arcs of which some segments are chords, in the order of the segments.
     pub arcs: Vec<CircleArc>,
-    /// Node at the centre, of the outline of a round body: all segments are chords of arcs about it, end to end all the
-    /// way round, the body inside.
+    /// Node at the centre of a round body's outline: all segments are chords of arcs about it, joined all the way
+    /// round, with the body inside.
     pub centre: Option<usize>,
 }
 
 /// An arc of a rigid profile, as the deck gives it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CircleArc {
-    /// Its chords among the segments.
+    /// Range of the chords of the arc among the segments.
     pub segments: Range<usize>,
     /// Centre in the reference configuration (length).
     pub centre: [f64; 2],
@@ -216,30 +219,31 @@ pub struct CircleArc {
     pub radius: f64,
 }
 
-/// Largest difference of the centres and radii of the arcs of one circle, relative to the radius.
+/// Largest difference of centres and of radii between arcs of the same circle, relative to the
+/// radius.
 const CIRCLE_ROUND_OFF: f64 = 1e-6;
 
 impl CircleArc {
-    /// Whether another arc is of the same circle.
+    /// Whether another arc lies on the same circle.
     pub fn is_of_circle(&self, other: &CircleArc) -> bool {
         let apart = distance(self.centre, other.centre);
         apart.max((self.radius - other.radius).abs()) <= CIRCLE_ROUND_OFF * other.radius
     }
 }
 
-/// A rigid disc that is slave: its centre is a node.
+/// A rigid disc as slave; its centre is a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
-    /// Node at its centre.
+    /// Node at the centre of the disc.
     pub centre: usize,
-    /// A node of its circle, which turns with it.
+    /// A node on the circle of the disc, which turns with it.
     pub arm: usize,
     /// Radius (length).
     pub radius: f64,
 }
 
 impl Surface {
-    /// Segments [a, b] in order, the body on the left; empty for a node surface.
+    /// Segments [a, b] in order, with the body on the left; empty for a surface made of nodes.
     pub fn segments(&self, mesh: &Mesh) -> Vec<Segment> {
         match &self.kind {
             SurfaceKind::Faces(faces) => {
@@ -250,7 +254,7 @@ impl Surface {
         }
     }
 
-    /// Nodes between the corners of the sides that it is made of, each with these corners.
+    /// Mid-side nodes of the sides of the surface, each with the corners of its side.
     pub fn middles(&self, mesh: &Mesh) -> Vec<(usize, [usize; 2])> {
         let SurfaceKind::Faces(faces) = &self.kind else {
             return Vec::new();
@@ -262,7 +266,7 @@ impl Surface {
         faces.iter().filter_map(middle).collect()
     }
 
-    /// Nodes of the surface in order of first appearance, without duplicates.
+    /// Nodes of the surface in the order of their first appearance, without duplicates.
     pub fn nodes(&self, mesh: &Mesh) -> Vec<usize> {
         let all: Vec<usize> = match &self.kind {
             SurfaceKind::Faces(faces) => faces.iter().flat_map(|f| f.nodes(mesh)).collect(),
@@ -279,8 +283,8 @@ impl Surface {
     }
 }
 
-/// Two nodes at one place that move together and let their bodies turn (`*MPC`, PIN), where at least one of them belongs to
-/// a rigid body.
+/// Two nodes at one place that move together while their bodies may rotate (`*MPC`, PIN); at least one of them belongs
+/// to a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hinge {
     /// The nodes.
@@ -289,7 +293,7 @@ pub struct Hinge {
 
 /// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
-/// The u_k are free or prescribed: none follows others itself.
+/// The u_k are free or prescribed; none of them follows other dofs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equation {
     /// The dof that is eliminated, `2 node + direction`.
@@ -299,7 +303,7 @@ pub struct Equation {
 }
 
 impl Equation {
-    /// Sum of terms of an equation, relative to their sizes, that counts as zero.
+    /// Sum of terms of an equation, relative to their sizes, up to which it counts as zero.
     pub const ROUND_OFF: f64 = 1e-12;
 
     /// The eliminated dof and the dofs that it follows.
@@ -308,40 +312,40 @@ impl Equation {
     }
 }
 
-/// A rigid body and the node that it moves with. It has a centre of mass and an angle of its own in all steps, whether one
-/// frees them or not, so that a run does not depend on steps behind it.
+/// A rigid body and its reference node. In all steps a rigid body has its own centre of mass and angle, whether a step
+/// frees them or not, so a run does not depend on later steps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidBody {
-    /// Number among the rigid bodies.
+    /// Number of the body among the rigid bodies.
     pub number: usize,
-    /// Name of its first surface or set in the deck, or of the coupling.
+    /// Name of the first surface or set of the body in the deck, or of the coupling.
     pub name: String,
-    /// The surfaces and sets that it is made of, in the order of the deck.
+    /// The surfaces and sets of the body, in the order of the deck.
     pub parts: Vec<RigidPart>,
     /// Reference node (index).
     pub reference: usize,
-    /// Nodes that move with it, increasing, without the reference node.
+    /// Nodes that move with the body, increasing, without the reference node.
     pub nodes: Vec<usize>,
-    /// Its elements (indices, increasing), which have mass and no strain.
+    /// Elements of the body (indices, increasing), which have mass and no strain.
     pub elements: Vec<usize>,
-    /// Whether it is made of coupled nodes (`*COUPLING`, `*KINEMATIC COUPLING`, `*MPC`), whose mass it has.
+    /// Whether the body consists of coupled nodes (`*COUPLING`, `*KINEMATIC COUPLING`, `*MPC`), whose mass it has.
     pub is_coupling: bool,
-    /// Nodes with the masses that they carry beside the elements (mass).
+    /// Nodes with the masses that they carry in addition to the elements (mass).
     pub masses: Vec<(usize, f64)>,
-    /// Moment of inertia beside that of elements and masses (mass length^2).
+    /// Moment of inertia in addition to that of elements and masses (mass length^2).
     pub rotary_inertia: f64,
-    /// Whether some step leaves it free in some direction, or turns it.
+    /// Whether any step leaves the body free in some direction, or turns it.
     pub turns: bool,
 }
 
 impl RigidBody {
-    /// Whether a surface (index) is a part of it.
+    /// Whether a surface (index) is a part of the body.
     pub fn has_surface(&self, surface: usize) -> bool {
         self.parts.contains(&RigidPart::Surface(surface))
     }
 }
 
-/// What a rigid body is made of.
+/// A part of a rigid body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RigidPart {
     /// A rigid surface (index).

@@ -11,7 +11,7 @@ use super::Plane;
 pub struct ElementType {
     /// Shape and interpolation.
     pub shape: Shape,
-    /// How strains follow from the displacements.
+    /// How strains are computed from the displacements.
     pub formulation: Formulation,
     /// Plane stress, plane strain or body of revolution.
     pub plane: Plane,
@@ -30,20 +30,21 @@ pub enum Shape {
     Quad8,
 }
 
-/// How the strains of an element follow from its displacements.
+/// How the strains of an element are computed from its displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Formulation {
     /// Strains of the displacements at every integration point.
     Displacement,
-    /// Volume strain of the whole element at every integration point.
+    /// One volume strain for all integration points of the element.
     MeanDilatation,
-    /// Strains of the displacements and strains of the element that make its stored energy least.
+    /// Strains of the displacements plus own strains of the element, which minimise its stored
+    /// energy.
     Enhanced,
     /// Strains of the displacements at fewer integration points.
     Reduced,
-    /// Volume strains that are linear in the element.
+    /// Volume strain that is linear in the element.
     LinearPressure,
-    /// The same at fewer integration points.
+    /// Volume strain that is linear in the element, at fewer integration points.
     ReducedLinearPressure,
 }
 
@@ -52,8 +53,8 @@ pub enum Formulation {
 pub struct Topology {
     /// Number of nodes.
     pub nodes: usize,
-    /// Local nodes of every side from corner to corner, the element on the left: side 0 is S1/P1. Corners come first
-    /// among the nodes, and side i begins at corner i.
+    /// Local nodes of every side from corner to corner, with the element on the left; side 0 is S1/P1. Corners come
+    /// first among the nodes, and side i begins at corner i.
     pub sides: &'static [&'static [usize]],
     /// Cell type of VTK.
     pub vtk_cell: u8,
@@ -121,7 +122,7 @@ impl Shape {
     }
 }
 
-/// Makes the constants, names and numbers of the types from one row for each.
+/// Defines the constants, names and numbers of the types from one row for each type.
 macro_rules! element_types {
     ($($(#[$about:meta])* $name:ident = $number:literal: $shape:ident $plane:ident $formulation:ident;)*) => {
         impl ElementType {
@@ -135,7 +136,7 @@ macro_rules! element_types {
             /// All types that a deck may name.
             pub const NAMED: [Self; NAMES.len()] = [$(Self::$name),*];
 
-            /// Numbers and names, as result files tell them.
+            /// Numbers and names in the form in which result files list them.
             pub const NUMBERS: &str =
                 concat!($(", ", stringify!($number), " ", stringify!($name)),*).split_at(2).1;
         }
@@ -203,7 +204,7 @@ element_types! {
 }
 
 impl ElementType {
-    /// Most nodes of any of them.
+    /// Largest number of nodes of any type.
     pub const MOST_NODES: usize = {
         let (mut most, mut k) = (0, 0);
         while k < Self::NAMED.len() {
@@ -235,17 +236,18 @@ impl ElementType {
         self.entry().1
     }
 
-    /// Whether it has one strain and a potential of its hourglass modes.
+    /// Whether the type has one strain and a potential of its hourglass modes.
     pub fn has_hourglass_modes(&self) -> bool {
         self.formulation == Formulation::Reduced && self.shape == Shape::Quad4
     }
 
-    /// Whether it is an element of a body of revolution.
+    /// Whether the type is an element of a body of revolution.
     pub fn is_ring(self) -> bool {
         self.plane == Plane::Revolution
     }
 
-    /// Whether its strains have a component across the section too: in rings, and with a linear pressure.
+    /// Whether the strains of the type also have a component across the section, as in rings and with a linear
+    /// pressure.
     pub fn has_all_strains(self) -> bool {
         let pressures = [
             Formulation::LinearPressure,
@@ -254,7 +256,7 @@ impl ElementType {
         self.is_ring() || pressures.contains(&self.formulation)
     }
 
-    /// Whether displacements within an element are quadratic: sides have a node between their corners.
+    /// Whether displacements within an element are quadratic, so sides have mid-side nodes.
     pub fn is_quadratic(self) -> bool {
         matches!(self.shape, Shape::Tri6 | Shape::Quad8)
     }

@@ -13,16 +13,17 @@ pub struct Friction {
 /// Coefficient of friction mu >= 0.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FrictionLaw {
-    /// Constant, or different in fast slip, eq. (3.10).
+    /// Constant, or lower in fast slip, eq. (3.10).
     Decay {
         /// Coefficient mu_s at rest.
         at_rest: f64,
-        /// Coefficient mu_k of fast slip.
+        /// Coefficient mu_k in fast slip.
         sliding: f64,
-        /// Decay d_c >= 0 from the one to the other (time/length).
+        /// Decay d_c >= 0 from mu_s to mu_k (time/length).
         decay: f64,
     },
-    /// Curves with increasing pressures: linear between their points and between them, constant beyond.
+    /// Curves with increasing pressures; values are linear between the points of a curve and between curves, constant
+    /// beyond.
     Table(Vec<FrictionCurve>),
     /// Closed pairs never slip.
     Rough,
@@ -31,14 +32,14 @@ pub enum FrictionLaw {
 /// Coefficients of friction at one contact pressure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionCurve {
-    /// The pressure (force/length^2).
+    /// Contact pressure (force/length^2).
     pub pressure: f64,
-    /// Slip rates (length/time), increasing, and coefficients.
+    /// Slip rates (length/time), increasing, each with its coefficient.
     pub points: Vec<[f64; 2]>,
 }
 
-/// Coefficient of surfaces that never slip: normal forces that are smaller beside the tangential ones are as good as none.
-/// A larger one costs complementarity problems their digits: with 1e6 some end on a ray.
+/// Coefficient of surfaces that never slip: normal forces that are smaller, relative to the tangential ones, than its
+/// inverse are negligible. With a larger coefficient complementarity problems lose digits: with 1e6 some end on a ray.
 const ROUGH: f64 = 1e4;
 
 impl Default for Friction {
@@ -111,8 +112,8 @@ impl Friction {
         self.limited(self.law.at(Some(rate), pressure), pressure)
     }
 
-    /// Coefficient at a slip rate, none at rest, and a pressure where it has gone a part of the way from that of another
-    /// friction.
+    /// Coefficient at a slip rate (`None` at rest) and a pressure, if the friction has changed by a given part of the
+    /// difference from that of another friction.
     pub fn on_the_way(
         &self,
         (from, part): (&Friction, f64),
@@ -132,8 +133,8 @@ impl Friction {
         }
     }
 
-    /// The first coefficient of its law and another one, which are the same where it is constant: at rest and of fast
-    /// slip, or the largest and the smallest one of a table or below a limit of the shear stress.
+    /// Two coefficients of the law, equal if it is constant. The two coefficients are those at rest and in fast slip,
+    /// or the largest and the smallest one of a table or with a limit of the shear stress.
     pub fn range(&self) -> [f64; 2] {
         let [first, other] = match &self.law {
             FrictionLaw::Decay {
@@ -161,7 +162,7 @@ impl Friction {
 }
 
 impl FrictionLaw {
-    /// Coefficient at a slip rate v (length/time), none at rest, and a contact pressure (force/length^2).
+    /// Coefficient at a slip rate v (length/time), `None` at rest, and a contact pressure (force/length^2).
     fn at(&self, rate: Option<f64>, pressure: f64) -> f64 {
         let rate = rate.map(f64::abs);
         match self {
@@ -194,7 +195,7 @@ impl FrictionLaw {
     }
 }
 
-/// Value at `x` between entries with increasing places: linear between two of them, constant beyond, eq. (3.12).
+/// Value at `x` between entries with increasing places: linear between two entries, constant beyond, eq. (3.12).
 fn between<T>(entries: &[T], x: f64, place: impl Fn(&T) -> f64, value: impl Fn(&T) -> f64) -> f64 {
     let (before, after) = entries.split_at(entries.partition_point(|entry| place(entry) <= x));
     match (before.last(), after.first()) {

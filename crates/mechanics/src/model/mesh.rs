@@ -6,13 +6,13 @@ use super::ElementType;
 use super::side::{Segment, Side, SideNodes};
 use crate::vectors::{cross, difference, distance, dot, polygon_area};
 
-/// Smallest ratio of an element's area to that before its nodes are moved.
+/// Smallest ratio of an element's area to its area before its nodes are moved.
 const SMALLEST_AREA: f64 = 0.5;
 
 /// Nodes and elements of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
-    /// Node numbers of the deck, `N` entries.
+    /// Node numbers in the deck, `N` entries.
     pub node_labels: Vec<u64>,
     /// Reference coordinates, `N` entries (length).
     pub coordinates: Vec<[f64; 2]>,
@@ -31,7 +31,8 @@ impl Mesh {
         2 * self.coordinates.len()
     }
 
-    /// Body of every node, numbered by the smallest index of the nodes that elements connect.
+    /// Body of every node; a body is numbered by the smallest index of the nodes that elements
+    /// connect.
     pub fn bodies(&self) -> Vec<usize> {
         let mut parent: Vec<usize> = (0..self.node_count()).collect();
         for element in &self.elements {
@@ -45,27 +46,28 @@ impl Mesh {
                 p = p.min(q);
             }
         }
-        // no parent comes behind its child
+        // no parent has a larger index than its child
         for node in 0..parent.len() {
             parent[node] = parent[parent[node]];
         }
         parent
     }
 
-    /// Whether its bodies are bodies of revolution around the axis x = 0; all elements are of this kind, or none.
+    /// Whether the bodies are bodies of revolution around the axis x = 0; either all elements are of this kind, or
+    /// none.
     pub fn is_axisymmetric(&self) -> bool {
         let first = self.elements.first();
         first.is_some_and(|element| element.element_type.is_ring())
     }
 
-    /// Faces that belong to one element only, in the order of the elements.
+    /// Faces that belong to only one element, in the order of the elements.
     pub fn outline(&self) -> Vec<Face> {
         let at_nodes = ElementsAtNodes::new(self);
         let faces = self.faces();
         faces.filter(|&face| !at_nodes.share(face, self)).collect()
     }
 
-    /// Faces of the outline that something can touch: those of a body of revolution that are not on its axis.
+    /// Faces of the outline that something can touch: in bodies of revolution those that are not on the axis.
     pub fn exterior_faces(&self) -> Vec<Face> {
         let faces = self.outline().into_iter();
         faces.filter(|&face| !self.is_on_axis(face)).collect()
@@ -82,7 +84,7 @@ impl Mesh {
     }
 
     /// Length of the shortest side in each of `count` groups of elements, to which `group` assigns
-    /// them; infinite where there is none.
+    /// them; infinite for an empty group.
     pub(super) fn shortest_sides(
         &self,
         count: usize,
@@ -141,8 +143,8 @@ impl Mesh {
         has_element
     }
 
-    /// Area of an undeformed element (length^2); on sides with a node between their corners the parabola takes two
-    /// thirds of the parallelogram over the chord, of which the outline through the nodes takes half.
+    /// Area of an undeformed element (length^2). On a side with a mid-side node the outline through the nodes contains
+    /// half of the parallelogram over the chord, whereas the parabola contains two thirds.
     pub fn area(&self, element: &Element) -> f64 {
         let of_corners = polygon_area(self.corners(element));
         if !element.element_type.is_quadratic() {
@@ -152,8 +154,8 @@ impl Mesh {
         of_corners + 4.0 / 3.0 * (polygon_area(outline) - of_corners)
     }
 
-    /// Volume of an undeformed element (length^3): t A, or around the axis 2 pi int R dA by the integral over its sides,
-    /// n being the outward normal:
+    /// Volume of an undeformed element (length^3): t A, or around the axis 2 pi int R dA from the integral over its
+    /// sides, where n is the outward normal:
     ///
     /// ```text
     /// 2 pi int R dA = int pi R² n_x dl
@@ -187,7 +189,7 @@ fn shortest_square(corners: &[[f64; 2]]) -> f64 {
     squares.fold(f64::INFINITY, f64::min)
 }
 
-/// Sides [a, b] of a polygon; the one to the first corner comes first.
+/// Sides [a, b] of a polygon; the side that ends at the first corner comes first.
 pub fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
     let mut last = corners.last().copied().unwrap_or_default();
     corners
@@ -198,7 +200,7 @@ pub fn sides(corners: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
 /// The elements at every node of a mesh, in the order of the deck.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ElementsAtNodes {
-    /// Index in `elements` at which those of each node start; `N + 1` entries.
+    /// Index in `elements` at which the elements of each node start; `N + 1` entries.
     starts: Vec<u32>,
     elements: Vec<u32>,
 }
@@ -225,7 +227,7 @@ impl ElementsAtNodes {
             end += *start;
             *start = end;
         }
-        // from the ends back to the starts
+        // filling backwards moves each end to its start
         let mut at_nodes = vec![0; end as usize];
         for (index, nodes) in elements.enumerate().rev() {
             for node in nodes {
@@ -239,7 +241,7 @@ impl ElementsAtNodes {
         }
     }
 
-    /// The elements at a node, none at one that the mesh does not have.
+    /// The elements at a node; empty for a node that the mesh does not have.
     pub fn of(&self, node: usize) -> impl DoubleEndedIterator<Item = usize> + '_ {
         let ends = [node, node + 1].map(|i| self.starts.get(i).map(|&start| start as usize));
         let elements = match ends {
@@ -275,11 +277,11 @@ pub type Corners = SmallVec<[[f64; 2]; 4]>;
 /// One element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element {
-    /// Element number of the deck.
+    /// Element number in the deck.
     pub label: u64,
     /// Shape, formulation, and plane stress or plane strain.
     pub element_type: ElementType,
-    /// Node indices, as many as the type has: the corners counter-clockwise, then those between them.
+    /// Node indices, as many as the type has: the corners counter-clockwise, then the mid-side nodes.
     pub nodes: Nodes,
     /// Index into `Model::sections`; [`NO_SECTION`] until it is known.
     pub section: usize,
@@ -299,7 +301,7 @@ impl Element {
         &self.nodes[..self.side_count()]
     }
 
-    /// Whether moving the nodes has taken its convexity or half its area.
+    /// Whether moving the nodes has made the element concave or has removed half its area.
     pub fn is_spoiled(&self, before: &[[f64; 2]], after: &[[f64; 2]]) -> bool {
         if self.nodes.iter().all(|&n| before[n] == after[n]) {
             return false;
@@ -309,9 +311,9 @@ impl Element {
         small || (0..self.side_count()).any(|i| self.corner_area(i, |n| after[n]) <= 0.0)
     }
 
-    /// Product of the directions a, b in which the sides leave corner `i`, the nodes being at `x` (length^2): with
-    /// nodes at the middle of straight sides, twice the area of the triangle of the corner and its neighbours.
-    /// det(dX/dr) at the corner is a multiple of it.
+    /// Cross product of the directions a, b in which the sides leave corner `i`, with the nodes at `x` (length^2). If
+    /// mid-side nodes are at the middle of straight sides, the product is twice the area of the triangle of the corner
+    /// and its neighbours. The product is proportional to det(dX/dr) at the corner.
     ///
     /// ```text
     /// a x b;  a = x_next - x_i,  or 4 x_between - 3 x_i - x_next where there is a node between them
@@ -336,7 +338,7 @@ impl Element {
         )
     }
 
-    /// Side `side`, 0-based: 0 is S1/P1.
+    /// The side number `side`, from 0: 0 is S1/P1.
     pub fn side(&self, side: usize) -> Side {
         let local = self.element_type.topology().sides[side].iter();
         Side::new(local.map(|&local| self.nodes[local]).collect())
@@ -348,8 +350,8 @@ impl Element {
         sides.map(|side| [side[0], side[side.len() - 1]].map(|local| self.nodes[local]))
     }
 
-    /// Nodes of the convex polygons that its outline is cut into, which need not be convex itself: with nodes between
-    /// the corners, a triangle at each corner and what is between these.
+    /// Nodes of the convex polygons into which the outline is divided, which need not be convex itself. With mid-side
+    /// nodes these polygons are a triangle at each corner and the polygon between the triangles.
     pub fn convex_parts(&self) -> SmallVec<[Nodes; 1]> {
         if !self.element_type.is_quadratic() {
             return [self.nodes.clone()].into_iter().collect();
@@ -364,7 +366,7 @@ impl Element {
         parts.chain([Nodes::from_slice(between)]).collect()
     }
 
-    /// The straight lines that its outline is made of, counter-clockwise.
+    /// The straight lines of the outline, counter-clockwise.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
         let sides = self.element_type.topology().sides.iter();
         let pairs = sides.flat_map(|side| side.windows(2));
@@ -377,7 +379,7 @@ impl Element {
 pub struct Face {
     /// Element index.
     pub element: usize,
-    /// Side, 0-based: 0 is S1.
+    /// Number of the side, from 0: 0 is S1.
     pub side: usize,
 }
 
@@ -387,17 +389,17 @@ impl Face {
         mesh.elements[self.element].side(self.side)
     }
 
-    /// The corners [a, b] where it begins and ends; the body lies on the left of the direction from a to b.
+    /// The corners [a, b] at the start and end of the face; the body lies on the left of the direction from a to b.
     pub fn ends(&self, mesh: &Mesh) -> [usize; 2] {
         self.of(mesh).ends()
     }
 
-    /// Its nodes from corner to corner.
+    /// Nodes of the face from corner to corner.
     pub fn nodes(&self, mesh: &Mesh) -> SideNodes {
         self.of(mesh).into_nodes()
     }
 
-    /// The contact segments made from it, in order.
+    /// The contact segments made from the face, in order.
     pub fn segments(&self, mesh: &Mesh) -> SmallVec<[Segment; 2]> {
         self.of(mesh).segments().collect()
     }
@@ -417,7 +419,7 @@ pub struct Set {
 pub struct Bodies {
     /// Number of bodies B.
     pub count: usize,
-    /// Body of every node, `N` entries; `None` for nodes without element.
+    /// Body of every node, `N` entries; `None` for nodes without elements.
     pub of_node: Vec<Option<usize>>,
     /// Body of every element.
     pub of_element: Vec<usize>,

@@ -1,9 +1,9 @@
-//! The problem as plain data, all names resolved to indices: mesh, materials and sections, sets, surfaces,
-//! contacts, constraints, steps with loads and settings. See docs/theory/README.md.
+//! The problem as plain data, with all names resolved to indices: mesh, materials and sections, sets, surfaces,
+//! contacts, constraints, and steps with loads and settings. See docs/theory/README.md.
 //!
-//! Everything is indexed from 0 in the order of the deck. Vectors over degrees of freedom hold
-//! `2 N` entries, dof `2 n + i` being direction i (0 = x, 1 = y) of node n. A rigid body that turns has
-//! two more nodes, which only these vectors know: its centre of mass, and one whose direction 0 is its angle.
+//! Everything in the model is indexed from 0 in the order of the deck. Vectors over degrees of freedom have `2 N`
+//! entries; dof `2 n + i` is direction i (0 = x, 1 = y) of node n. A rigid body that turns has two more nodes, which
+//! exist only in these vectors: its centre of mass, and one whose direction 0 is its angle.
 
 mod amplitude;
 mod connector;
@@ -54,7 +54,7 @@ pub struct Model {
     pub title: String,
     /// Nodes and elements.
     pub mesh: Mesh,
-    /// Named sets of nodes and elements, those of the history, and instances of parts.
+    /// Named sets of nodes and elements, the sets of the history, and instances of parts.
     pub sets: NamedSets,
     /// Named surfaces.
     pub surfaces: Vec<Surface>,
@@ -64,33 +64,34 @@ pub struct Model {
     pub sections: Vec<Section>,
     /// Springs and dashpots.
     pub connectors: Vec<Connector>,
-    /// Contacts: one per data line of `*CONTACT PAIR`, then general contact.
+    /// Contacts: one for each data line of `*CONTACT PAIR`, then general contact.
     pub contacts: Vec<Contact>,
     /// Amplitude curves.
     pub amplitudes: Vec<Amplitude>,
-    /// Ties, whose equations are among the others.
+    /// Ties; their equations are among `equations`.
     pub ties: Vec<Tie>,
     /// Equations between displacements, sorted by the dof that they eliminate, each at most once.
     pub equations: Vec<Equation>,
     /// Hinges between bodies.
     pub hinges: Vec<Hinge>,
-    /// Initial velocity, `2 N` entries (length/time), then those of the bodies that turn, with their
-    /// angular velocity (1/time).
+    /// Initial velocity, `2 N` entries (length/time), followed by those of the bodies that turn, with their angular
+    /// velocity (1/time).
     pub initial_velocity: Vec<f64>,
-    /// Temperature of every node at the start of the analysis (temperature); none where the deck gives none, which is zero.
+    /// Temperature of every node at the start of the analysis (temperature); empty if the deck gives none, which means
+    /// zero.
     pub initial_temperature: Vec<f64>,
     /// Steps in order.
     pub steps: Vec<Step>,
     /// Rigid surfaces with their reference nodes, and bodies that turn.
     pub rigid_bodies: Vec<RigidBody>,
-    /// Masses at nodes that belong to no rigid body (index, mass).
+    /// Masses at nodes that do not belong to a rigid body (index, mass).
     pub point_masses: Vec<(usize, f64)>,
     /// Requests of checkpoints, in the order of their steps.
     pub restarts: Vec<RestartOutput>,
 }
 
 impl Model {
-    /// Adds a section of this thickness of another material, without damping.
+    /// Adds a section of the given thickness with a new material without damping.
     pub fn add_section(&mut self, law: Law, density: f64, thickness: f64) {
         let material = self.materials.len();
         self.materials.push(Material {
@@ -106,20 +107,21 @@ impl Model {
         });
     }
 
-    /// What the deck calls a node: its number, or `Instance.number`; of the nodes that a rigid body has beside those of the
-    /// mesh, its reference node.
+    /// Name of a node in the deck: its number, or `Instance.number`. The name of a node that only a rigid body has is
+    /// that of the reference node.
     pub fn node_name(&self, node: usize) -> String {
         node_name(self.node_of(node), &self.mesh, &self.sets.instances)
     }
 
-    /// The node of the mesh that a pair of dofs belongs to: beyond those of the nodes the reference node of the rigid body.
+    /// The mesh node to which a pair of dofs belongs; for dofs beyond those of the nodes, the reference node of the
+    /// rigid body.
     pub fn node_of(&self, node: usize) -> usize {
         let beyond = node.checked_sub(self.mesh.node_count());
         let body = beyond.and_then(|k| self.rigid_bodies.get(k / 2));
         body.map_or(node, |body| body.reference)
     }
 
-    /// What the deck calls an element: its number, or `Instance.number`.
+    /// Name of an element in the deck: its number, or `Instance.number`.
     pub fn element_name(&self, element: usize) -> String {
         element_name(element, &self.mesh, &self.sets.instances)
     }
@@ -138,7 +140,7 @@ impl Model {
             .unwrap_or_default()
     }
 
-    /// Number of degrees of freedom: 2 of every node, and 4 of every rigid body.
+    /// Number of degrees of freedom: 2 for every node, and 4 for every rigid body.
     pub fn dof_count(&self) -> usize {
         self.mesh.dof_count() + 4 * self.rigid_bodies.len()
     }
@@ -153,8 +155,8 @@ impl Model {
         2 * (self.centre_of(body) + 1)
     }
 
-    /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither it nor a step
-    /// before it turns: a hinge between them has nothing to hold there.
+    /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither this
+    /// step nor an earlier one turns. A hinge has no effect along the axis between two nodes for which this is true.
     pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
         let has_not_turned = |body: &&RigidBody| {
             let angle = self.angle_of(body);
@@ -176,8 +178,8 @@ impl Model {
         a.is_some() && a == b
     }
 
-    /// Pairs of nodes at one place that equations of their own join in both directions, the smaller index first: such an
-    /// equation has a third node at most, as the one of a pre-tension section.
+    /// Pairs of nodes at one place that equations between them join in both directions, the smaller index first. An
+    /// equation that joins a pair has at most one more node, for example that of a pre-tension section.
     pub fn joined_nodes(&self) -> BTreeSet<[usize; 2]> {
         let mesh = &self.mesh;
         let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();
@@ -196,14 +198,14 @@ impl Model {
         both.map(|(pair, _)| pair).collect()
     }
 
-    /// Mass of an element: density x volume.
+    /// Mass of an element: density times volume.
     pub fn element_mass(&self, element: &Element) -> f64 {
         let section = &self.sections[element.section];
         let density = self.materials[section.material].density;
         density * self.mesh.volume(element, section.thickness)
     }
 
-    /// How thick an element is.
+    /// Thickness of an element.
     pub fn thickness(&self, element: &Element) -> Thickness {
         Thickness::new(
             element.element_type,
@@ -217,44 +219,44 @@ impl Model {
         material.wave_speed(element.element_type.plane)
     }
 
-    /// Whether accumulated plastic strains are written: where a material may flow, and where the deck names them.
+    /// Whether accumulated plastic strains are written, because a material may flow or the deck asks for them.
     pub fn writes_plastic_strain(&self) -> bool {
         self.sets.fields.plastic_strain || self.has_plasticity()
     }
 
-    /// Whether elements have hourglass modes.
+    /// Whether any elements have hourglass modes.
     pub fn has_hourglass_modes(&self) -> bool {
         let mut elements = self.mesh.elements.iter();
         elements.any(|element| element.element_type.has_hourglass_modes())
     }
 
-    /// Whether a material may flow.
+    /// Whether any material may flow.
     fn has_plasticity(&self) -> bool {
         let mut materials = self.materials.iter();
         materials.any(|material| matches!(material.law, Law::Plastic(_)))
     }
 
-    /// Whether the law of an element (index) is meant for small strains.
+    /// Whether the law of an element (index) is meant only for small strains.
     pub fn is_for_small_strains(&self, element: usize) -> bool {
         let section = &self.sections[self.mesh.elements[element].section];
         self.materials[section.material].law.is_for_small_strains()
     }
 
-    /// Whether the mass of contact surfaces is redistributed in a step.
+    /// Whether the mass of contact surfaces is redistributed in any step.
     pub fn redistributes_mass(&self) -> bool {
         let redistributes = |step: &Step| step.settings.contact_mass == ContactMass::Redistributed;
         self.steps.iter().any(redistributes)
     }
 
-    /// Whether the coefficient of friction of a contact is not always the same.
+    /// Whether the coefficient of friction of any contact varies.
     pub fn has_varying_friction(&self) -> bool {
         let mut all = (0..self.contacts.len()).map(|contact| self.friction_range(contact));
         let is_varying = |contact: &Contact| !contact.interaction.friction.is_constant();
         self.contacts.iter().any(is_varying) || all.any(|[first, other]| first != other)
     }
 
-    /// Two coefficients of friction of a contact, which are the same where it is constant in all steps: those of
-    /// [`Friction::range`], or the largest and the smallest one where steps change it.
+    /// Two coefficients of friction of a contact, equal if it is constant in all steps. The two coefficients are those
+    /// of [`Friction::range`], or the largest and the smallest one if steps change the friction.
     pub fn friction_range(&self, contact: usize) -> [f64; 2] {
         let own = self.contacts[contact].interaction.friction.range();
         let changes = self.steps.iter().flat_map(|step| &step.contacts.friction);
@@ -274,7 +276,7 @@ impl Model {
         }
     }
 
-    /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
+    /// Whether the deck is only to be read and checked (`*NO ANALYSIS`).
     pub fn is_check_only(&self) -> bool {
         self.steps.iter().any(|step| step.settings.is_check_only)
     }
@@ -285,7 +287,7 @@ impl Model {
         first.into_iter().flat_map(|step| &step.interferences)
     }
 
-    /// Whether a contact (index) presses the overlap of the start out in the first step.
+    /// Whether a contact (index) presses the initial overlap out in the first step.
     pub fn shrinks(&self, contact: usize) -> bool {
         let mut all = self.first_interferences();
         all.any(|load| load.at.contact == contact && load.at.is_shrink)
@@ -309,7 +311,7 @@ impl Model {
         own.map(at_start).sum()
     }
 
-    /// The disc that the slave surface of a contact is, if it is rigid.
+    /// The disc that forms the slave surface of a contact, if that surface is rigid.
     pub fn disc(&self, contact: &Contact) -> Option<Disc> {
         let SurfaceKind::Rigid(profile) = &self.surfaces[contact.slave].kind else {
             return None;
@@ -322,7 +324,7 @@ impl Model {
         })
     }
 
-    /// Slave nodes of a contact, of a disc its centre.
+    /// Slave nodes of a contact; for a disc its centre.
     pub fn slave_nodes(&self, contact: &Contact) -> Vec<usize> {
         if let Some(disc) = self.disc(contact) {
             return vec![disc.centre];
@@ -357,12 +359,12 @@ pub struct Material {
     pub expansion: Option<Expansion>,
 }
 
-/// Damping of a material: none by default.
+/// Damping of a material; zero by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Damping {
-    /// Damping in proportion to the mass (1/time).
+    /// Factor of mass-proportional damping (1/time).
     pub alpha: f64,
-    /// Damping in proportion to the elasticity at small strains (time).
+    /// Factor of damping proportional to the elasticity at small strains (time).
     pub beta: f64,
 }
 
@@ -379,7 +381,7 @@ impl Material {
     }
 }
 
-/// Edges of the elements and the waves along them.
+/// Edge lengths of the elements, and times of waves along them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeScales {
     /// The shortest edge (length); infinite without elements.
@@ -391,7 +393,7 @@ pub struct EdgeScales {
 }
 
 impl EdgeScales {
-    /// Measures the elements of a mesh, not all of which need have a section.
+    /// Measures the elements of a mesh; some of them may have no section.
     pub fn new(mesh: &Mesh, sections: &[Section], materials: &[Material]) -> Self {
         // elements of a section in each plane; at last those without section
         let planes = [Plane::Stress, Plane::Strain, Plane::Revolution];
@@ -427,6 +429,6 @@ impl EdgeScales {
 pub struct Section {
     /// Index into `Model::materials`.
     pub material: usize,
-    /// Thickness t (length); without a meaning for bodies of revolution.
+    /// Thickness t (length); it has no meaning for bodies of revolution.
     pub thickness: f64,
 }

@@ -1,7 +1,7 @@
-//! Named sets of nodes and elements, those of the history output (groups `/history/nodes` and
-//! `/history/elements` of the result file), fields on request, dofs in the status file, and instances of parts: which nodes
-//! and elements are theirs, and the numbers these have in the part. The numbers of the mesh are then the
-//! program's own, each once.
+//! Named sets of nodes and elements, the sets of the history output (groups `/history/nodes` and `/history/elements` of
+//! the result file), fields on request, and dofs in the status file. Also instances of parts, with their nodes and
+//! elements and the numbers of these nodes and elements in the part. With instances the numbers of the mesh are the
+//! program's own, each used once.
 
 use std::collections::BTreeSet;
 
@@ -10,9 +10,9 @@ use super::mesh::{Mesh, Set};
 /// The sets of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NamedSets {
-    /// Node sets; members sorted, without duplicates.
+    /// Node sets; their members are sorted, without duplicates.
     pub nodes: Vec<Set>,
-    /// Element sets; members sorted, without duplicates.
+    /// Element sets; their members are sorted, without duplicates.
     pub elements: Vec<Set>,
     /// Node sets whose motion and reactions go to the history, each at most once.
     pub history: Vec<HistorySet>,
@@ -20,13 +20,13 @@ pub struct NamedSets {
     pub element_history: Vec<HistorySet>,
     /// Fields of the frames that are written on request only.
     pub fields: RequestedFields,
-    /// Dofs whose displacements stand in the status file, each at most once.
+    /// Dofs whose displacements are in the status file, each at most once.
     pub monitored: Vec<usize>,
-    /// Instances of parts, in the order of their nodes; none in a flat deck.
+    /// Instances of parts, in the order of their nodes; empty for a flat deck.
     pub instances: Vec<Instance>,
 }
 
-/// Fields of the frames that a deck has to ask for.
+/// Fields of the frames that are written only if the deck asks for them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RequestedFields {
     /// Concentrated loads (`CF`).
@@ -39,13 +39,13 @@ pub struct RequestedFields {
     pub principal_stress: bool,
     /// Pressure (`PRESS`).
     pub pressure: bool,
-    /// Accumulated plastic strain (`PEEQ`), which models with metals always write.
+    /// Accumulated plastic strain (`PEEQ`), which is always written for models with metals.
     pub plastic_strain: bool,
-    /// What is written at nodes beside the means over elements (`POSITION=NODES`).
+    /// Variables written at nodes in addition to the means over elements (`POSITION=NODES`).
     pub at_nodes: BTreeSet<NodalVariable>,
 }
 
-/// Variables of elements that frames can have at nodes.
+/// Element variables that frames can contain at nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NodalVariable {
     /// Cauchy stress and its von Mises value.
@@ -65,7 +65,7 @@ pub enum NodalVariable {
 }
 
 impl NodalVariable {
-    /// All of them, with their names in decks.
+    /// All these variables, with their names in decks.
     pub const ALL: [(NodalVariable, &'static str); 7] = [
         (NodalVariable::Stress, "S"),
         (NodalVariable::Strain, "E"),
@@ -76,7 +76,7 @@ impl NodalVariable {
         (NodalVariable::PlasticStrain, "PEEQ"),
     ];
 
-    /// That of a name in a deck, of a component as `S11` too.
+    /// The variable with a name in a deck; components such as `S11` are names too.
     pub fn named(name: &str) -> Option<Self> {
         let whole = match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
             "MISES" => "S",
@@ -87,7 +87,7 @@ impl NodalVariable {
     }
 }
 
-/// A set in the history: sums over the set, and means over nodes, are always written.
+/// A set in the history; sums over the set, and means over nodes, are always written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HistorySet {
     /// Index into `NamedSets::nodes` or `NamedSets::elements`.
@@ -100,18 +100,19 @@ pub struct HistorySet {
     pub at_nodes: bool,
 }
 
-/// An instance of a part. Its nodes and elements follow one another in the mesh.
+/// An instance of a part. The nodes of an instance are consecutive in the mesh, and so are its
+/// elements.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Instance {
     /// Its name.
     pub name: String,
-    /// Index of its first node.
+    /// Index of the first node of the instance.
     pub first_node: usize,
-    /// Numbers of its nodes in the part.
+    /// Numbers of the instance's nodes in the part.
     pub node_numbers: Vec<u64>,
-    /// Index of its first element.
+    /// Index of the first element of the instance.
     pub first_element: usize,
-    /// Numbers of its elements in the part.
+    /// Numbers of the instance's elements in the part.
     pub element_numbers: Vec<u64>,
 }
 
@@ -128,14 +129,14 @@ impl Instance {
     }
 }
 
-/// What the deck calls a node: its number, or `Instance.number`.
+/// Name of a node in the deck: its number, or `Instance.number`.
 pub fn node_name(node: usize, mesh: &Mesh, instances: &[Instance]) -> String {
     let mut names = instances.iter().filter_map(|i| i.node_name(node));
     let label = || mesh.node_labels.get(node).copied().unwrap_or(0);
     names.next().unwrap_or_else(|| label().to_string())
 }
 
-/// What the deck calls an element: its number, or `Instance.number`.
+/// Name of an element in the deck: its number, or `Instance.number`.
 pub fn element_name(element: usize, mesh: &Mesh, instances: &[Instance]) -> String {
     let mut names = instances.iter().filter_map(|i| i.element_name(element));
     let label = || mesh.elements.get(element).map_or(0, |e| e.label);

@@ -1,7 +1,7 @@
-//! Sides of elements: their nodes, their shape functions, and what acts on them. See docs/theory/elements.md.
+//! Sides of elements: their nodes, their shape functions, and the forces on them. See docs/theory/elements.md.
 //!
-//! A side is not a contact segment: a segment is a straight line between two neighbouring nodes, of which a side has one
-//! or more.
+//! A side is not a contact segment: a segment is a straight line between two neighbouring nodes, and a side has one or
+//! two of them.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 use super::Thickness;
 
-/// A straight line from a node to the next, with the body on the left: what contact knows of a side.
+/// A straight line from a node to the next, with the body on the left; contact uses sides in this form.
 pub type Segment = [usize; 2];
 
 /// Nodes of a side from corner to corner, with the element on the left.
@@ -21,7 +21,7 @@ pub struct Side {
     nodes: SideNodes,
 }
 
-/// Shape functions h_a and dh_a/dr of a side at a place -1 <= r <= 1, those of Lagrange with evenly spaced nodes:
+/// Shape functions h_a and dh_a/dr of a side at a place -1 <= r <= 1: those of Lagrange with evenly spaced nodes:
 ///
 /// ```text
 /// h_a = prod (r - r_b)/(r_a - r_b) over b != a,   r_a = 2 a/(n - 1) - 1
@@ -54,33 +54,33 @@ const GAUSS: [&[[f64; 2]]; 3] = [
 ];
 
 impl Side {
-    /// The side with these nodes.
+    /// The side between the given nodes.
     pub fn new(nodes: SideNodes) -> Self {
         Side { nodes }
     }
 
-    /// Its nodes from corner to corner.
+    /// Nodes of the side from corner to corner.
     pub fn nodes(&self) -> &[usize] {
         &self.nodes
     }
 
-    /// Its nodes, without itself.
+    /// Nodes of the side, which is consumed.
     pub fn into_nodes(self) -> SideNodes {
         self.nodes
     }
 
-    /// The corners where it begins and ends.
+    /// The corners at the start and at the end of the side.
     pub fn ends(&self) -> [usize; 2] {
         [self.nodes[0], self.nodes[self.nodes.len() - 1]]
     }
 
-    /// The contact segments made from it, in order.
+    /// The contact segments made from the side, in order.
     pub fn segments(&self) -> impl DoubleEndedIterator<Item = Segment> + '_ {
         self.nodes.windows(2).map(|pair| [pair[0], pair[1]])
     }
 
-    /// int h_a n dl at every node a (length), n being the outward normal: the forces of a unit suction per thickness.
-    /// `from_first` has the positions of the nodes relative to the first.
+    /// int h_a n dl at every node a (length), where n is the outward normal: the forces of a unit suction per
+    /// thickness. `from_first` are the positions of the nodes relative to the first node.
     pub fn normals(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -89,8 +89,8 @@ impl Side {
         self.integrals(from_first, None, |e| [e[1], -e[0]])
     }
 
-    /// int h_a n t dl at every node a (length^2), as [`Self::normals`], t being the thickness; `radius` is the distance of
-    /// the first node from the axis.
+    /// int h_a n t dl at every node a (length^2), like [`Self::normals`] with the thickness t; `radius` is the distance
+    /// of the first node from the axis.
     pub fn thrusts(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -101,7 +101,7 @@ impl Side {
         integrals.map(move |(node, normal)| (node, normal.map(|n| n * factor)))
     }
 
-    /// int h_a t dl at every node a (length^2), as [`Self::thrusts`].
+    /// int h_a t dl at every node a (length^2), with the arguments of [`Self::thrusts`].
     pub fn areas(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -112,7 +112,7 @@ impl Side {
         lengths.map(move |(node, [length, _])| (node, length * factor))
     }
 
-    /// int pi R² n_x dl of a side with nodes at `x` (length^3).
+    /// Integral int pi R² n_x dl over a side with nodes at `x` (length^3).
     pub(super) fn swept_volume(&self, x: &[[f64; 2]]) -> f64 {
         let points = GAUSS[self.nodes.len() - 1].iter();
         let terms = points.map(|&[r, weight]| {
@@ -126,8 +126,7 @@ impl Side {
         PI * terms.sum::<f64>()
     }
 
-    /// int h_a v(dx/dr) dr at every node a, or int 2 pi R h_a v(dx/dr) dr where the first node has a distance from the
-    /// axis.
+    /// int h_a v(dx/dr) dr at every node a; with a distance of the first node from the axis int 2 pi R h_a v(dx/dr) dr.
     fn integrals(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -137,7 +136,8 @@ impl Side {
         let n = self.nodes.len();
         let mut sums: SmallVec<[(usize, [f64; 2]); 3]> =
             self.nodes.iter().map(|&node| (node, [0.0; 2])).collect();
-        // products of a shape function and a derivative of one, and of another shape function in R
+        // the integrands are products of a shape function and a derivative, in a ring also with the
+        // radius
         let points = GAUSS[if around.is_some() { n - 1 } else { n - 2 }];
         for &[r, weight] in points {
             let functions = shape_functions(n, r);

@@ -5,7 +5,7 @@ use super::{Amplitude, Face, Friction, TimeBase};
 use crate::lcp::LcpMethod;
 use crate::linear::SolverChoice;
 
-/// One step with everything that acts in it, whether given in it or in an earlier step.
+/// One step with everything that acts in it, whether it is given in this step or in an earlier one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// Name of the step, if it has one.
@@ -30,16 +30,17 @@ pub struct Step {
     pub tractions: Vec<Load<Traction>>,
     /// Overlaps that contacts allow, by contact.
     pub interferences: Vec<Load<Interference>>,
-    /// Temperatures, by increasing nodes, each at most once; others are those of the start of the analysis.
+    /// Temperatures of nodes, with increasing nodes, each at most once; nodes that are not listed keep the temperature
+    /// at the start of the analysis.
     pub temperatures: Vec<Load<NodeTemperature>>,
-    /// What it changes of the contacts.
+    /// Changes of the contacts in the step.
     pub contacts: ContactChanges,
-    /// When field frames are written.
+    /// Times at which field frames are written.
     pub frames: Frames,
 }
 
 impl Step {
-    /// A dynamic step in which nothing acts, with what a deck has by default.
+    /// A dynamic step in which nothing acts, with the default settings of a deck.
     pub fn new(increments: Increments) -> Self {
         Step {
             name: None,
@@ -66,33 +67,33 @@ impl Step {
     }
 }
 
-/// What is different of the contacts in a step, whether it or an earlier one has changed it.
+/// Changes of the contacts in a step, made by this step or an earlier one.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactChanges {
     /// Contacts that do not act (indices, increasing).
     pub removed: Vec<usize>,
-    /// Contacts with another friction than that of their interaction, by increasing contacts.
+    /// Contacts whose friction differs from that of their interaction, by increasing contacts.
     pub friction: Vec<FrictionChange>,
 }
 
 /// Friction of a contact in a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionChange {
-    /// The contact (index).
+    /// Index of the contact.
     pub contact: usize,
-    /// Its friction, in the end where another one gives way to it.
+    /// Friction of the contact; if a former friction is replaced gradually, it is the final one.
     pub friction: Friction,
-    /// Friction that gives way to it.
+    /// Former friction, which is replaced gradually.
     pub from: Option<FormerFriction>,
 }
 
-/// Friction that gives way to another one.
+/// A friction that another one replaces gradually.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormerFriction {
     /// The friction.
     pub friction: Friction,
-    /// Amplitude (index) whose value, from 0 to 1, is the part that has given way; without, it grows linearly over the
-    /// step from 0 to 1.
+    /// Index of the amplitude whose value, from 0 to 1, is the part that has been replaced; without it the part grows
+    /// linearly over the step from 0 to 1.
     pub amplitude: Option<usize>,
 }
 
@@ -107,12 +108,13 @@ impl ContactChanges {
     }
 }
 
-/// When checkpoints are written, from a step on.
+/// Request of checkpoints, from a step on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RestartOutput {
-    /// Number of the step, from 1.
+    /// Number, from 1, of the first step with the requested checkpoints.
     pub from_step: usize,
-    /// Increments of a step between two checkpoints; its last increment has one too. 0: none.
+    /// Number of increments between two checkpoints of a step; its last increment always has one.
+    /// 0: none.
     pub every: usize,
     /// Whether earlier checkpoints of the step are kept.
     pub keeps_all: bool,
@@ -123,7 +125,7 @@ pub struct RestartOutput {
 pub enum Procedure {
     /// The equation of motion, integrated implicitly in time (`*DYNAMIC`).
     Dynamic,
-    /// The equation of motion by the backward Euler rule, which takes the energy of vibrations (`*DYNAMIC,
+    /// The equation of motion by the backward Euler rule, which removes the energy of vibrations (`*DYNAMIC,
     /// APPLICATION=QUASI-STATIC`).
     QuasiStatic,
     /// Equilibrium without inertia, damping and impacts (`*STATIC`).
@@ -137,17 +139,17 @@ pub struct Increments {
     pub dt: f64,
     /// Duration T of the step (time).
     pub period: f64,
-    /// Smallest increment a cutback may reach (time); by default 0, in a static step without DIRECT 1e-5 of the
-    /// duration, or the increment if that is smaller.
+    /// Smallest increment that a cutback may reach (time). By default this least increment is 0; in a static step
+    /// without DIRECT it is 1e-5 of the duration, or the increment if that is smaller.
     pub dt_min: f64,
     /// Largest increment (time).
     pub dt_max: f64,
-    /// What decides their length.
+    /// Criterion for the length of the increments.
     pub incrementation: Incrementation,
 }
 
 impl Increments {
-    /// Increments of one length over a step, which cutbacks may make as short as they like (DIRECT).
+    /// Increments of one length over a step (DIRECT); cutbacks may shorten them without limit.
     pub fn fixed(dt: f64, period: f64) -> Self {
         Increments {
             dt,
@@ -159,37 +161,37 @@ impl Increments {
     }
 }
 
-/// What decides how long the increments of a step are.
+/// Criterion for the length of the increments of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Incrementation {
-    /// The deck: they have one length but for cutbacks (DIRECT).
+    /// The deck fixes the length: all increments have one length except after cutbacks (DIRECT).
     Fixed,
-    /// The passes that they take.
+    /// The number of passes determines the length of the increments.
     Passes,
-    /// Their truncation error.
+    /// The truncation error determines the length of the increments.
     Error {
-        /// The largest, beside the displacements of the step so far.
+        /// Largest truncation error, relative to the displacements of the step so far.
         tolerance: f64,
     },
 }
 
-/// When field frames are written. The start and the end of a step are always written.
+/// Times at which field frames are written. The start and the end of a step are always written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Frames {
     /// The program's default number of frames.
     #[default]
     Default,
-    /// This many, evenly spaced over the step.
+    /// The given number of frames, evenly spaced over the step.
     Count(usize),
-    /// At multiples of this time since the start of the step.
+    /// At multiples of the given time since the start of the step.
     Every(f64),
-    /// Each time this number of increments is done.
+    /// After each multiple of this number of increments.
     Increments(usize),
-    /// At these step times, increasing.
+    /// At the given step times, increasing.
     Times(Vec<f64>),
 }
 
-/// How a load's magnitude follows time within its step.
+/// Variation of a load's magnitude in time within its step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Variation {
     /// The full magnitude from the start of the step.
@@ -210,7 +212,7 @@ pub struct Load<T> {
     pub at: T,
     /// Full magnitude.
     pub magnitude: f64,
-    /// How the magnitude follows time.
+    /// Variation of the magnitude in time.
     pub variation: Variation,
 }
 
@@ -220,7 +222,7 @@ impl<T> Load<T> {
         matches!(self.variation, Variation::Ramp { .. })
     }
 
-    /// Magnitudes at start and end of the step; none where an amplitude gives them.
+    /// Magnitudes at the start and at the end of the step; `None` if an amplitude gives them.
     pub fn ends(&self) -> Option<[f64; 2]> {
         match self.variation {
             Variation::Constant => Some([self.magnitude; 2]),
@@ -267,22 +269,22 @@ pub struct BodyForce {
 pub struct CentrifugalForce {
     /// Loaded element.
     pub element: usize,
-    /// Place of the axis in the plane, which is perpendicular to it; in bodies of revolution the axis is x = 0 (length).
+    /// Place of the axis, which is perpendicular to the plane (length); in bodies of revolution the axis is x = 0.
     pub axis: [f64; 2],
 }
 
-/// Pressure or shear (magnitude: force/length^2) on the current face, which it follows: a pressure is positive into the body, a
-/// shear acts along the face, from its first corner to its last.
+/// Pressure or shear (magnitude: force/length^2) on the current face. A pressure is positive into the body; a shear
+/// acts along the face, from its first corner to its last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pressure {
     /// Loaded face.
     pub face: Face,
-    /// Whether it is a shear.
+    /// Whether the load is a shear and not a pressure.
     pub is_shear: bool,
 }
 
 impl Pressure {
-    /// The force of a unit magnitude where `int N^T n dl`, n being the outward normal, is `thrust`.
+    /// The force of a unit magnitude if `int N^T n dl` is `thrust`, where n is the outward normal.
     pub fn force(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         match self.is_shear {
             true => [-y, x],
@@ -307,13 +309,14 @@ pub struct NodeTemperature {
     pub node: usize,
 }
 
-/// Overlap that a contact allows (magnitude: length, the same for all its slave nodes; of a shrink fit the part of what
-/// each node overlaps at the start of the analysis).
+/// Overlap that a contact allows. The magnitude is a length, the same for all slave nodes; for a shrink fit it is a
+/// factor on the overlap of each node at the start of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interference {
     /// Index of the contact.
     pub contact: usize,
-    /// Whether every node may overlap by what it does at the start of the analysis.
+    /// Whether the allowed overlap of every node is proportional to its overlap at the start of the
+    /// analysis.
     pub is_shrink: bool,
 }
 
@@ -322,7 +325,7 @@ pub struct Interference {
 pub struct Support {
     /// Prescribed dof, `2 node + direction`.
     pub dof: usize,
-    /// Its displacement in time.
+    /// Displacement of the dof as a function of time.
     pub motion: SupportMotion,
 }
 
@@ -334,27 +337,27 @@ pub enum SupportMotion {
         /// Displacement at the end of the step.
         to: f64,
     },
-    /// `value` (length) times the amplitude with index `amplitude`.
+    /// `value` (length) times the amplitude with the index `amplitude`.
     Amplitude {
         /// Factor of the amplitude.
         value: f64,
         /// Index into `Model::amplitudes`.
         amplitude: usize,
     },
-    /// A velocity or an acceleration, which displacement and velocity of the start of the step go on
-    /// with.
+    /// A velocity or an acceleration, by which the motion continues from displacement and velocity at the start of the
+    /// step.
     Rate {
-        /// What is prescribed.
+        /// The prescribed derivative.
         rate: Rate,
-        /// Its value, or the factor of the amplitude (length/time, length/time^2).
+        /// Value of the rate, or factor of the amplitude (length/time, length/time^2).
         value: f64,
-        /// Index into `Model::amplitudes`; without, the rate is constant.
+        /// Index into `Model::amplitudes`; without an amplitude the rate is constant.
         amplitude: Option<usize>,
     },
 }
 
 impl SupportMotion {
-    /// Whether the support stays where it is at the start of the analysis.
+    /// Whether the support stays at its place of the start of the analysis.
     pub fn is_still(self) -> bool {
         match self {
             SupportMotion::Ramp { to } => to == 0.0,
@@ -364,8 +367,8 @@ impl SupportMotion {
         }
     }
 
-    /// How a support that no card changes goes on after a step of this duration: what follows an
-    /// amplitude in step time keeps its last value.
+    /// Motion of a support after a step of the given duration, if no card changes it: a motion that
+    /// follows an amplitude in step time keeps its last value.
     pub fn after_step(self, period: f64, amplitudes: &[Amplitude]) -> SupportMotion {
         let last = |index: usize| {
             let curve = amplitudes.get(index);
@@ -394,7 +397,7 @@ impl SupportMotion {
     }
 }
 
-/// The derivative of the displacement that is prescribed.
+/// The derivative of the displacement that a card prescribes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rate {
     /// The first.
@@ -408,17 +411,17 @@ pub enum Rate {
 pub struct Settings {
     /// Time integration.
     pub scheme: Scheme,
-    /// Impact impulses on or off.
+    /// Whether there are impact impulses.
     pub impact: Impact,
-    /// When nodes land.
+    /// Time at which nodes land.
     pub impact_time: ImpactTime,
-    /// What becomes of the energy that landings take.
+    /// Treatment of the energy that landings remove.
     pub landing: LandingRule,
     /// Mass of the nodes of contact surfaces, the same in all steps.
     pub contact_mass: ContactMass,
     /// Solver of the complementarity problem.
     pub lcp: LcpMethod,
-    /// When the effective matrix is factorised again.
+    /// Rule for factorising the effective matrix again.
     pub factorization: Factorization,
     /// Sparse factorisation.
     pub solver: SolverChoice,
@@ -426,7 +429,7 @@ pub struct Settings {
     pub tolerance: f64,
     /// Largest number of passes of an increment.
     pub max_passes: usize,
-    /// Whether the deck shall be read and checked only (`*NO ANALYSIS`).
+    /// Whether the deck is only to be read and checked (`*NO ANALYSIS`).
     pub is_check_only: bool,
 }
 
@@ -471,38 +474,38 @@ pub enum Impact {
     None,
 }
 
-/// When nodes land.
+/// Time at which nodes land.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImpactTime {
-    /// Within the increment.
+    /// Nodes land within the increment.
     Increment,
-    /// At the time of the impact, which ends a subincrement.
+    /// Nodes land at the time of the impact, which ends a subincrement.
     Event,
 }
 
-/// What becomes of the energy that the normal contact forces take at landings.
+/// Treatment of the energy that the normal contact forces remove at landings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LandingRule {
-    /// It is lost.
+    /// The energy is lost.
     Plastic,
-    /// It is given back as kinetic energy.
+    /// The energy is given back as kinetic energy.
     Return,
 }
 
 /// Mass of the nodes of contact surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactMass {
-    /// That of the elements.
+    /// Consistent mass of the elements.
     Consistent,
-    /// Carried by the nodes behind the surface.
+    /// The nodes behind the surface carry the mass.
     Redistributed,
 }
 
-/// When the effective matrix is factorised again.
+/// Rule for factorising the effective matrix again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Factorization {
-    /// Kept as long as the passes converge quickly.
+    /// Factors are kept as long as the passes converge quickly.
     Keep,
-    /// At every pass.
+    /// The matrix is factorised in every pass.
     EveryPass,
 }

@@ -1,20 +1,20 @@
-//! How far an element extends across the plane. See docs/theory/elements.md, Bodies of revolution.
+//! Extent of an element across the plane. See docs/theory/elements.md, Bodies of revolution.
 
 use std::f64::consts::TAU;
 
 use super::ElementType;
 
-/// Extent of an element across the plane, by which areas of the plane become volumes and lengths become areas.
+/// Extent of an element across the plane, by which an area in the plane becomes a volume and a length becomes an area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Thickness {
-    /// The same everywhere (length).
+    /// The same thickness everywhere (length).
     Of(f64),
-    /// Once around the axis x = 0.
+    /// The full circle around the axis x = 0.
     Around,
 }
 
 impl Thickness {
-    /// That of elements of a type in a section of a thickness (length), which counts in the plane alone.
+    /// Extent of elements of a type in a section whose thickness (length) applies only in the plane.
     pub fn new(element_type: ElementType, thickness: f64) -> Self {
         match element_type.is_ring() {
             true => Thickness::Around,
@@ -22,7 +22,8 @@ impl Thickness {
         }
     }
 
-    /// The part that is the same everywhere, and the distance of a place from the axis where there is another.
+    /// Factors of the extent: the constant thickness or 1, and in a ring the distance of a place
+    /// from the axis.
     pub(super) fn parts(self, radius: f64) -> (f64, Option<f64>) {
         match self {
             Thickness::Of(thickness) => (thickness, None),

@@ -1,4 +1,4 @@
-//! Ties: nodes of a slave surface that follow the segments of a master surface at all times, each by itself or in the
+//! Ties: nodes of a slave surface that follow the segments of a master surface at all times, each by itself or as a
 //! mean over its faces. See docs/theory/contact.md, Ties.
 
 use super::contact::{ContactFormulation, Equation};
@@ -10,62 +10,65 @@ use std::collections::BTreeMap;
 /// A slave surface that is tied to a master surface (a row of `*TIE`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tie {
-    /// Its name: that of the card, with the number of the row where there are several.
+    /// Name of the tie: that of the card, with the number of the row if there are several.
     pub name: String,
     /// Index of the slave surface.
     pub slave: usize,
     /// Index of the master surface.
     pub master: usize,
-    /// Which slave nodes are tied.
+    /// Choice of the slave nodes that are tied.
     pub reach: TieReach,
-    /// What of the slave surface follows: nodes, or the points of its faces in the mean.
+    /// Part of the slave surface that follows: nodes, or means over the points of its faces.
     pub formulation: ContactFormulation,
     /// The tied nodes, in the order of the slave surface.
     pub nodes: Vec<TiedNode>,
-    /// Sides of the slave surface that follow in the mean; none from node to surface.
+    /// Sides of the slave surface that follow as means; empty with node to surface.
     pub sides: Vec<TiedSide>,
 }
 
-/// What a vertex follows by u = sum (alpha_l I + beta_l J) u_l: alpha_l and beta_l of the nodes l, J turning by a right
-/// angle to the left.
+/// Dependence of a vertex, u = sum (alpha_l I + beta_l J) u_l: alpha_l and beta_l for the nodes l, where J is a
+/// rotation by a right angle to the left.
 pub type Follows = BTreeMap<usize, [f64; 2]>;
 
-/// A side of a slave surface that follows the master in the mean.
+/// A side of a slave surface that follows the master as a mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TiedSide {
-    /// Its nodes from corner to corner. One between the corners stands for the vertex x_v of eq. (3.21).
+    /// Nodes of the side from corner to corner. A mid-side node stands for the vertex x_v of eq. (3.21).
     pub nodes: SideNodes,
-    /// The straight lines from each to the next.
+    /// The straight lines from each vertex to the next.
     pub lines: SmallVec<[TiedLine; 2]>,
 }
 
-/// A straight line of the slave surface. The integrals are those of its ends j, with the dual functions psi_j.
+/// A straight line of the slave surface, with integrals over it. The line has one integral for each of its ends j, with
+/// the dual functions psi_j.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TiedLine {
-    /// D_j = sum w_q N_j, lengths, or areas over 2 pi in bodies of revolution.
+    /// D_j = sum w_q N_j: lengths, or in bodies of revolution areas divided by 2 pi.
     pub weights: [f64; 2],
-    /// sum w_q psi_j (alpha_l I + beta_l J) of what the points q follow.
+    /// sum w_q psi_j (alpha_l I + beta_l J) over the points q, with their alpha_l and beta_l.
     pub follows: [Follows; 2],
 }
 
-/// Which nodes of a slave surface are tied.
+/// Choice of the nodes of a slave surface that are tied.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TieReach {
-    /// Those no farther from the master than a part of the segment that they face (`NEAR`).
+    /// Nodes whose distance from the master is at most a part (`NEAR`) of the segment that they
+    /// face.
     Near,
-    /// Those no farther from the master (length).
+    /// Nodes whose distance from the master is at most a given length.
     Within(f64),
-    /// Those of the node set with this index.
+    /// Nodes of the node set with this index.
     Nodes(usize),
 }
 
-/// Largest distance of a tied node from the segment that it faces, in lengths of it, where the deck gives none.
+/// Largest distance of a tied node from the segment that it faces, in lengths of the segment, if the deck gives none.
 pub const NEAR: f64 = 0.05;
 
-/// Coordinates of a tied node beside its segment, in lengths of it, that count as 0 or 1.
+/// Difference from 0 or 1 up to which a coordinate of a tied node, in segment lengths, is set to
+/// that value.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Coefficient of a mean that counts as zero.
+/// Coefficient of a mean below which it counts as zero.
 const NO_PART: f64 = 1e-14;
 
 /// A node that follows a segment.
@@ -73,16 +76,16 @@ const NO_PART: f64 = 1e-14;
 pub struct TiedNode {
     /// The node.
     pub node: usize,
-    /// The segment from a to b.
+    /// The segment that the node follows, from a to b.
     pub segment: Segment,
     /// Coordinate along the segment, 0 at a and 1 at b.
     pub xi: f64,
-    /// Coordinate across it, positive to the left, in lengths of the segment.
+    /// Coordinate across the segment, positive to the left, in lengths of the segment.
     pub eta: f64,
 }
 
 impl TiedNode {
-    /// A node as it lies beside a segment at these places.
+    /// A tied node with its place at a segment, from the node positions `x`.
     pub fn new(node: usize, segment: Segment, x: &[[f64; 2]]) -> Self {
         let [xi, eta] = beside(x[node], segment.map(|node| x[node]));
         let snapped = |value: f64, to: f64| match (value - to).abs() < ROUND_OFF {
@@ -97,7 +100,7 @@ impl TiedNode {
         }
     }
 
-    /// What its displacement in a direction follows:
+    /// Equation for the displacement of the node in a direction:
     ///
     /// ```text
     /// u_s = ((1 - xi) I - eta J) u_a + (xi I + eta J) u_b,  J = [0 -1; 1 0]      eq. (3.11)
@@ -140,7 +143,7 @@ impl Mean {
         *self.terms.entry(dof).or_insert(0.0) += c;
     }
 
-    /// Adds what an end of a line follows.
+    /// Adds the dependence of an end of a line.
     fn follow(&mut self, follows: &Follows, direction: usize) {
         let (other, sign) = row_of_j(direction);
         for (node, [alpha, beta]) in follows {
@@ -151,21 +154,21 @@ impl Mean {
 }
 
 impl Tie {
-    /// What the displacements of the tied nodes in a direction follow, in the order of the nodes. A node that is part of
-    /// a tied side follows in the mean,
+    /// Equations for the displacements of the tied nodes in a direction, in the order of the nodes. A node of a tied
+    /// side follows as a mean,
     ///
     /// ```text
     /// u_j = (1/D_j) sum_q w_q psi_j(q) u_q,   D_j = sum_q w_q N_j      eq. (3.34)
     /// ```
     ///
-    /// over the points of its sides; all others as [`TiedNode::equation`] says. Nodes that are kept have a displacement of
-    /// their own. In the lines of a kept node i the function of the other end is 1, in place of psi_j,
+    /// with sums over the points q of its sides; all other nodes follow by [`TiedNode::equation`]. Kept nodes have their
+    /// own displacement. In the lines of a kept node i the function of the other end is 1 instead of psi_j:
     ///
     /// ```text
     /// D_j u_j + D_i u_i = sum_q w_q u_q
     /// ```
     ///
-    /// so that the functions still sum up to 1 and a uniform traction goes through the tie.
+    /// With this 1 the functions still add up to 1, and a uniform traction passes through the tie.
     pub fn equations(&self, direction: usize, is_kept: impl Fn(usize) -> bool) -> Vec<Equation> {
         let mut means: BTreeMap<usize, Mean> = BTreeMap::new();
         let mut corners: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
@@ -213,8 +216,8 @@ impl Tie {
     }
 }
 
-/// Coordinates of a point along and across a segment from a to b, positive to the left, in lengths of it; zero beside a
-/// segment without length, a node.
+/// Coordinates of a point along and across a segment from a to b, positive to the left, in lengths of the segment; zero
+/// if the segment has no length.
 pub fn beside(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     let (e, r) = (difference(a, b), difference(a, point));
     let square = dot(e, e);
@@ -224,7 +227,8 @@ pub fn beside(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     [dot(r, e) / square, cross(e, r) / square]
 }
 
-/// The part of a segment nearest to a point: its place and distance. A segment may have no length.
+/// The point of a segment nearest to a given point: its position, and its distance. The segment may
+/// have no length.
 pub fn nearest_of(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> ([f64; 2], f64) {
     let e = difference(a, b);
     let square = dot(e, e);

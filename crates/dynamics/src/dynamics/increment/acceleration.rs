@@ -1,25 +1,25 @@
-//! Acceleration of passes that converge slowly, by what the last ones have changed (Anderson 1965).
+//! Acceleration of slowly converging passes from the changes of the last passes (Anderson 1965).
 //! See docs/theory/time.md, Acceleration.
 
 use super::equal_forces::ROUND_OFF;
 use crate::dynamics::step::Parts;
 use crate::lcp::{Acceleration, IterationStep};
 
-/// Rate of the corrections above which passes are slow.
+/// Ratio of successive corrections above which passes are slow.
 const SLOW: f64 = 0.1;
-/// Rate above which the last passes say nothing about the next.
+/// Ratio of successive corrections above which the last passes say nothing about the next.
 const JUMP: f64 = 2.0;
-/// Changes from pass to pass that are remembered.
+/// Number of changes from pass to pass that are remembered.
 const MEMORY: usize = 5;
-/// Part of a change of the correction, beside what is along those before, below which it is round-off.
+/// Part of a change of the correction below which it is round-off, compared with its part along the earlier changes.
 const DEPENDENT: f64 = 1e-6;
 
-/// How the corrections of the passes fall.
+/// Decrease of the corrections of the passes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CorrectionProgress {
-    /// Largest correction beside the increment.
+    /// Largest correction relative to the increment.
     pub correction: f64,
-    /// That beside the one of the pass before.
+    /// Largest correction relative to that of the last pass.
     pub rate: f64,
     /// Correction at which the passes end.
     pub tolerance: f64,
@@ -27,7 +27,7 @@ pub(super) struct CorrectionProgress {
     pub same_pairs: bool,
 }
 
-/// What the last passes with the same closed pairs say about the solution.
+/// Acceleration from the last passes with the same closed pairs.
 #[derive(Debug)]
 pub(super) struct PassAcceleration(Acceleration<1>);
 
@@ -37,8 +37,8 @@ impl PassAcceleration {
         PassAcceleration(Acceleration::new(MEMORY, DEPENDENT))
     }
 
-    /// Writes the correction dU of a pass from the iterate d anew where passes are slow, eq. (4.15): the pass leads to
-    /// f(d) = d + dU, and every body's part of dU counts beside its increment.
+    /// Replaces the correction dU of a pass from the iterate d if passes are slow, eq. (4.15). The pass leads to f(d) =
+    /// d + dU, and the part of dU in every body is measured relative to the increment of the body.
     pub fn improve(
         &mut self,
         parts: &Parts,

@@ -21,14 +21,14 @@ use crate::dynamics::step::{
     ClosedConstraints, FactoredState, HeldMotions, Interval, StepProblem, Workspace,
 };
 
-/// Passes of an attempt that are made in any case; further ones only while they will end within MAX PASSES.
+/// Number of passes that an attempt makes in any case; further passes are made only if they will end within MAX PASSES.
 const PATIENCE: usize = 25;
 
-/// Relative difference of lengths between which subincrements between impacts share the factors of K*.
+/// Relative difference of lengths up to which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
 
-/// Relative difference of lengths within which factors of K* are kept: the trials for the time of an impact differ
-/// by little.
+/// Relative difference of lengths within which factors of K* are kept; trials for the time of an impact differ by
+/// little.
 fn length_tolerance(set: ConstraintSet) -> f64 {
     match set {
         ConstraintSet::All => 0.0,
@@ -43,7 +43,7 @@ pub(crate) struct Attempt<'a, 'm> {
     pub start: &'a State,
     pub interval: Interval,
     pub set: ConstraintSet<'a>,
-    /// What the passes start from, in place of the rigid motion of the bodies.
+    /// The path from which the passes start, in place of the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
@@ -80,7 +80,7 @@ struct DynamicAttempt<'a, 'm> {
 }
 
 impl DynamicAttempt<'_, '_> {
-    /// Solves the increment: with the factors of K* at hand as long as they pay, then with new ones in every pass.
+    /// Solves the increment with the available factors of K* as long as this pays, then with new factors in every pass.
     fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
@@ -109,8 +109,8 @@ impl DynamicAttempt<'_, '_> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Slave nodes whose constraints the passes begin with. They are the near ones where velocities tell how far nodes go, and
-    /// all of them with the last rule.
+    /// The slave nodes whose constraints the passes find at first. The passes find the near nodes at first if all pairs
+    /// count, factors are kept and velocities tell how far nodes go; otherwise all nodes.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.passes.set, rule) {
             (ConstraintSet::All, FactorRule::Kept)
@@ -122,8 +122,8 @@ impl DynamicAttempt<'_, '_> {
         }
     }
 
-    /// Predictor and correctors, which share one form (paper eqs 27, 29 and 36 to 49), with the constraints of the chosen
-    /// slave nodes; all of them take part before they end.
+    /// Predictor and correctors, which have the same form (paper eqs 27, 29 and 36 to 49), with the constraints of the
+    /// chosen slave nodes. Before the passes end, all slave nodes take part.
     fn solve_with(
         &mut self,
         choice: SlaveChoice,
@@ -139,7 +139,8 @@ impl DynamicAttempt<'_, '_> {
         let mut equal_forces = EqualForces::new(settings.tolerance);
         let mut acceleration = PassAcceleration::new();
         v.equilibrium.hinges.clear();
-        // the passes start from the rigid motion of the bodies, or from a motion that is known
+        // the passes start from the rigid motion of the bodies, or from the motion of an earlier
+        // solution
         let mut d = match self.guess {
             Some(path) => path.displacement(interval.dt),
             None => rigid_predictor(problem, start, interval),
@@ -155,7 +156,7 @@ impl DynamicAttempt<'_, '_> {
             let map = self.passes.workspace.stiffness.k.map();
             trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
 
-            // the forces at hand may balance r and close the gaps of the iterate
+            // the available contact forces may already balance r and close the gaps of the iterate
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let corrections = factors.corrections();
@@ -172,7 +173,7 @@ impl DynamicAttempt<'_, '_> {
                 return self.finish(&d, contact, v, true);
             }
 
-            // K* of eq. (4.6), and d_p at the supports, which takes the force theta2 K d_p
+            // K* of eq. (4.6), and d_p at the supports, with the force theta2 K d_p
             self.refresh(factors, v, &contact.forces)?;
             self.passes.supports(number, v);
 
@@ -182,7 +183,7 @@ impl DynamicAttempt<'_, '_> {
             let hinge_forces = self.balance(&mut contact.forces, weight, v)?;
             self.passes.take_hinge_forces(hinge_forces, v);
 
-            // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
+            // residual r + Bn^T Pn + Bt^T Pt and correction dU, relative to their scales
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let pass = iterate.pass(&v.support_force, &v.du);
             let has_converged = self.passes.measure(&pass, &mut v.residual, trace)?;
@@ -192,7 +193,8 @@ impl DynamicAttempt<'_, '_> {
             if !ends {
                 let correction = trace.correction();
                 equal_forces.take_in(correction, settled);
-                // friction that falls with the slip rate moves away from that at rest
+                // a coefficient of friction that falls with the slip rate moves away from the
+                // coefficient at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 factors.take_in(correction, may_grow)?;
                 if number >= SLOW_PASSES {
@@ -214,7 +216,8 @@ impl DynamicAttempt<'_, '_> {
         Err(Cause::NotConverged)
     }
 
-    /// Contact forces and correction of a pass; gives the forces by which hinges close their gaps.
+    /// Contact forces and correction of a pass; returns the forces by which hinges close their
+    /// gaps.
     fn balance(
         &mut self,
         contact: &mut ContactForces,
@@ -227,7 +230,7 @@ impl DynamicAttempt<'_, '_> {
         Ok(closing)
     }
 
-    /// Factorises K* anew when the rules say so, else turns its factors with the bodies.
+    /// Factorises K* anew if the rules demand it, else turns its factors with the bodies.
     fn refresh(
         &mut self,
         factors: &mut Refactorization,
@@ -273,7 +276,7 @@ impl DynamicAttempt<'_, '_> {
         factorized.map_err(|error| problem.unsolvable(error))
     }
 
-    /// The end of the increment, with the velocities of the nodes of rigid bodies.
+    /// State at the end of the increment, with the velocities of the nodes of rigid bodies.
     fn finish(
         &mut self,
         d: &[f64],

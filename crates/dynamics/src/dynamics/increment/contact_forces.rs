@@ -11,43 +11,45 @@ use crate::dynamics::step::System;
 use crate::lcp::Stability;
 use crate::linear::larger;
 
-/// Constraints by which a problem grows at least where a body is not held.
+/// Number of constraints by which the problem of a pass grows at least if the constraints in it
+/// leave a body free.
 const FEWEST: usize = 3;
-/// How often it grows where the body is unstable on those in it.
+/// Number of times that the problem grows because a body is unstable on the constraints in it.
 const TIPS: usize = 3;
 
-/// Constraints with the forces (or impulses) of those that are closed.
+/// Constraints, and the forces (or impulses) of the closed constraints.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
-    /// Their keys increase. At the end of an increment those of far nodes follow, which are open.
+    /// The constraints of the iterate, with increasing keys. At the end of an increment the
+    /// constraints of far nodes, which are open, follow the others.
     pub constraints: Vec<Constraint>,
-    /// The closed ones among them.
+    /// The closed constraints, as pairs.
     pub closed: ClosedPairs,
     /// Number of constraints that entered the complementarity problem.
     pub problem_size: usize,
-    /// Pivots of its solution.
+    /// Number of pivots of the solution.
     pub pivots: usize,
     choice: Choice,
 }
 
-/// Which constraints are in the complementarity problem of a pass, in memory that the next one uses again.
+/// Choice of the constraints in the complementarity problem of a pass, in memory that the next pass uses again.
 #[derive(Debug, Clone, Default)]
 struct Choice {
-    /// Whether each of them is.
+    /// For every constraint whether it is in the problem.
     inside: Vec<bool>,
-    /// Gaps and slips without forces.
+    /// Gaps and slips without contact forces.
     free: Vec<[f64; 2]>,
-    /// Gaps and slips with them.
+    /// Gaps and slips with the contact forces.
     after: Vec<[f64; 2]>,
-    /// Gaps and slips without forces of those in the problem.
+    /// Gaps and slips without contact forces of the constraints in the problem.
     terms: Vec<[f64; 2]>,
     guess: Guess,
-    /// The pairs closed before.
+    /// The pairs that the last pass closed.
     before: ClosedPairs,
 }
 
 impl ContactForces {
-    /// The forces of the last increment, whose constraints are not linearised any more.
+    /// The forces of the last increment; their constraints are not linearised any more.
     pub fn without_constraints(closed: &ClosedPairs) -> Self {
         ContactForces {
             closed: closed.clone(),
@@ -55,23 +57,23 @@ impl ContactForces {
         }
     }
 
-    /// Takes over the constraints of the next iterate, with the forces at hand, in exchange for those of the
-    /// last.
+    /// Replaces the constraints by those of the next iterate, with the available forces, and returns the old
+    /// constraints in `constraints`.
     pub fn relinearize(&mut self, constraints: &mut Vec<Constraint>) {
         std::mem::swap(&mut self.constraints, constraints);
     }
 
-    /// Whether every force at hand belongs to a constraint of the iterate.
+    /// Whether every available force belongs to a constraint of the iterate.
     pub fn all_have_constraints(&self) -> bool {
         self.acting().count() == self.closed.len()
     }
 
-    /// Whether the last pass has closed the same pairs as the one before.
+    /// Whether the last pass closed the same pairs as the one before it.
     pub fn are_of_same_pairs(&self) -> bool {
         self.closed.keys().eq(self.choice.before.keys())
     }
 
-    /// All constraints with the closed pair that belongs to each, if any.
+    /// All constraints, each with its closed pair, if any.
     pub fn iter(&self) -> impl Iterator<Item = (&Constraint, Option<&ClosedPair>)> + Clone {
         let mut closed = self.closed.iter().peekable();
         let constraints = self.constraints.iter();
@@ -104,15 +106,15 @@ impl ContactForces {
         }
     }
 
-    /// Contact forces of a pass, in place of those of the pass before; writes the correction
-    /// dU = d_p + W (r + Bn^T Pn + Bt^T Pt), d_p being the motion of the supports and r the other forces
-    /// (all dofs).
+    /// Solves for the contact forces of a pass, which replace those of the last pass, and writes the correction dU =
+    /// d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
+    /// contact forces (all dofs).
     ///
-    /// Constraints that were open in the pass before stay out of the problem at first; in a first pass those
-    /// that y = d_p + W r leaves open do. Those that the forces of the others make overlap enter
-    /// afterwards, so the answer is that of all constraints. With a `weight` of the equal-force rule, which there is
-    /// when the passes have settled, they enter only if they would overlap by more than round-off: two
-    /// nodes that face each other may carry the same force, and it must not go to and fro between them.
+    /// Constraints that the last pass left open stay out of the problem at first; in a first pass, those stay out that
+    /// y = d_p + W r leaves open. Constraints that overlap under the forces in the problem enter afterwards, so the
+    /// answer is that of all constraints. Once the passes have settled, the equal-force rule has a `weight`, and
+    /// constraints enter only if they would overlap by more than round-off. Two nodes that face each other may carry
+    /// the same force, which must not go to and fro between them.
     pub fn solve(
         &mut self,
         [d_p, r]: [&[f64]; 2],
@@ -177,7 +179,7 @@ impl ContactForces {
         Ok(response.end(system, du)?)
     }
 
-    /// Says which of the closed pairs slip in the solution, Dt_f and g_f being slip and gap without contact forces,
+    /// Marks the closed pairs that slip in the solution; Dt_f and g_f are slip and gap without contact forces,
     ///
     /// ```text
     /// |Dt| > 1e-10 max(|g_f|, |Dt_f|, |Dt - Dt_f|) + 1e-12 l    eq. (3.25)
@@ -196,8 +198,9 @@ impl ContactForces {
         });
     }
 
-    /// Lets as many constraints into the problem as are in it, those with the smallest gaps of the iterate; whether there were
-    /// any outside: bodies that those inside do not hold move on to the next ones.
+    /// Adds to the problem as many constraints as it has, namely those with the smallest gaps of the iterate: a body
+    /// that the present constraints leave free moves on to the next ones. Returns whether there were any constraints
+    /// outside the problem.
     fn enter_nearest(&self, inside: &mut [bool]) -> bool {
         let count = inside.iter().filter(|inside| **inside).count().max(FEWEST);
         let gap = |k: usize| self.constraints[k].gap / self.constraints[k].scale;
@@ -208,8 +211,8 @@ impl ContactForces {
         !outside.is_empty()
     }
 
-    /// Lets constraints into the problem that would overlap, with the given gaps after the correction, by
-    /// more than the part `overlap` of their scales; whether there are any.
+    /// Adds those constraints to the problem whose gaps `after` the correction would be overlaps of more than `overlap`
+    /// times their scale. Returns whether any constraint has entered the problem.
     fn enter(&self, inside: &mut [bool], after: &[[f64; 2]], overlap: f64) -> bool {
         let mut entered = false;
         let constraints = self.constraints.iter().zip(after);
@@ -222,7 +225,7 @@ impl ContactForces {
     }
 }
 
-/// The entries of those constraints that are in the problem.
+/// Out of entries for all constraints, the entries of those that are in the problem.
 fn chosen<'c, 'i, T>(
     all: &'c [T],
     inside: &'i [bool],
@@ -256,10 +259,10 @@ mod tests {
         wide
     }
 
-    /// Forces and correction of the constraint with W = 1/2 and y = 1/2 at every dof, by both methods.
+    /// Force and correction of the constraint with W = 1/2 and y = 1/2 at every dof.
     ///
-    /// By hand: Q = G W B^T = [7/2, 0; 7/8, 7/4], constant terms g + Gn y = -7/2 and
-    /// Dt + Gt y = 11/8.
+    /// By hand: Q = G W B^T = [7/2, 0; 7/8, 7/4]; the constant terms are g + Gn y = -7/2 and Dt +
+    /// Gt y = 11/8.
     fn solved(mu: f64, method: LcpMethod) -> (ClosedPair, Vec<f64>) {
         let map = Transformation::identity(DOFS);
         let elements: Vec<Vec<usize>> = (0..DOFS).map(|dof| vec![dof, (dof + 1) % DOFS]).collect();

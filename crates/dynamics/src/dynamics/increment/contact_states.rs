@@ -1,5 +1,5 @@
-//! What an increment knows of its pairs, by their keys: constraint, contact force and state, impulse, and what
-//! touches at its start. The pairs closed at the start are those of its state.
+//! Data of the pairs of an increment by their keys: constraint, contact force and state, impulse, and whether the pair
+//! touches at the start. The pairs closed at the start are part of the state of the start.
 
 use super::contact_forces::ContactForces;
 use super::impulses::Impulses;
@@ -10,26 +10,27 @@ use crate::dynamics::step::{BeforeIterate, Interval, StepProblem, Workspace};
 /// The pairs of an increment.
 #[derive(Default)]
 pub(crate) struct ContactStates {
-    /// Contact forces of the last pass: Pn, Pt.
+    /// Contact forces Pn and Pt of the last pass.
     pub forces: ContactForces,
-    /// Impact impulses at the start: Phi, Psi.
+    /// Impact impulses Phi and Psi at the start.
     pub impulses: Impulses,
-    /// Constraints of the iterate until they are taken over, then those of the pass before.
+    /// Constraints of the iterate until they are handed over to `forces`, then those of the last
+    /// pass.
     pub found: Vec<Constraint>,
-    /// Its constraints that do not count.
+    /// Constraints of the iterate that do not count (inactive pairs).
     pub left_out: Vec<Constraint>,
-    /// Whether the coefficient of a pair differs from that of the pass before.
+    /// Whether the coefficient of friction of a pair differs from that of the last pass.
     pub friction_moves: bool,
     /// The slave nodes whose constraints the passes find.
     choice: SlaveChoice,
 }
 
-/// Part of a coefficient of friction by which it moves.
+/// Relative change of a coefficient of friction from which on it counts as changed.
 const MOVES: f64 = 1e-9;
 
 impl ContactStates {
-    /// The pairs before the passes, some of them closed and some that touch. The passes begin with the constraints of the
-    /// chosen slave nodes.
+    /// The pairs before the first pass: the closed ones, and those that touch at the start. The passes begin with the
+    /// constraints of the slave nodes in `choice`.
     pub fn new(closed: &ClosedPairs, set: ConstraintSet, choice: SlaveChoice) -> Self {
         ContactStates {
             choice,
@@ -39,9 +40,9 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U in an increment, which its passes begin with or not: those that count, and
-    /// the others. Pairs that have not slipped have the friction at rest, others that of their slip. With `kept`, slave nodes
-    /// keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U, both those that count and the inactive ones; `begins` is true in the
+    /// first pass. Pairs that have not slipped get the coefficient of friction at rest, others the one of their slip
+    /// rate. With `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
@@ -73,9 +74,10 @@ impl ContactStates {
         );
     }
 
-    /// Takes in the constraints of the iterate U whose slave nodes were far, before an increment ends; whether they stay
-    /// open, with the correction dU if there is one. Else the passes go on with all of them. A far node that is behind the line
-    /// of a segment beyond its ends has gone past its corner, and has no constraint there.
+    /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether the
+    /// constraints of far nodes stay open, after the correction dU if there is one. If a constraint of a far node
+    /// closes, the passes go on with the constraints of all nodes. A far node behind the line of a segment and beyond
+    /// its ends has gone past the corner, so it has no constraint there.
     pub fn complete(
         &mut self,
         problem: &StepProblem,
@@ -111,8 +113,8 @@ impl ContactStates {
         stay_open
     }
 
-    /// Gives the constraints the coefficients of the law at the slips and forces that their last solution has, at the end of
-    /// an increment.
+    /// Sets the coefficients of friction to those of the law at the slips and forces of the last solution, at the end
+    /// of an increment.
     pub fn take_own_friction(&mut self, problem: &StepProblem, start: &State, interval: Interval) {
         let ContactForces {
             constraints,
@@ -128,18 +130,19 @@ impl ContactStates {
         (problem.frictions).give(problem.coordinates, before, constraints);
     }
 
-    /// Takes over the constraints of the iterate, with the forces at hand.
+    /// Replaces the constraints by those of the iterate, with the available forces.
     pub fn relinearize(&mut self) {
         self.forces.relinearize(&mut self.found);
     }
 
-    /// Whether the pairs closed by the last pass are those that have impulses, and these are exact.
+    /// Whether the pairs that the last pass closed are those with impulses, and these impulses are
+    /// exact.
     pub fn rest(&mut self, problem: &StepProblem) -> bool {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Takes the constraints that did not count among the others at the end of an increment, without those that a free
-    /// node past a corner, or at it, is behind: the line of the segment that it came from.
+    /// Adds the inactive constraints to the active ones at the end of an increment. Constraints of a free node past or
+    /// at a corner that lies behind the line of the segment from which it came are left out.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
         let left_out = self.left_out.drain(..);

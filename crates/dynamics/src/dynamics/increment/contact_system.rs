@@ -1,11 +1,11 @@
 //! Complementarity problem of some constraints with one of the two system matrices: K* for the
 //! contact forces of a pass, M for the impulses. See docs/theory/complementarity.md and docs/theory/impacts.md.
 //!
-//! Complementarity problems of many constraints by blocks, one for each set of bodies that constraints are
-//! between; what the forces of all do to all is computed by the solve that is under way. docs/numerics.md, Blocks.
+//! Problems of many constraints are solved by blocks, one for each set of bodies. The solve under way gives the effect
+//! of all forces on all constraints, also between blocks. docs/numerics.md, Blocks.
 //!
-//! The correction of a pass while its solve goes on: gaps and slips at the contacts are known before its
-//! end, and contact forces join its right-hand side. docs/numerics.md, Solves of a pass.
+//! The correction of a pass during its solve: gaps and slips at the contacts are known before the solve ends, and
+//! contact forces are added to its right-hand side. See docs/numerics.md, Solves of a pass.
 
 use std::collections::BTreeMap;
 
@@ -20,19 +20,20 @@ use crate::lcp::{
 };
 use crate::linear::LinearError;
 
-/// What a complementarity problem starts from.
+/// Starting point of a complementarity problem.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Guess {
     /// State of every constraint.
     pub states: Vec<ContactState>,
-    /// Forces of every constraint near which, of several solutions, the answer may lie, if there are any.
+    /// Forces of every constraint, if known: of several solutions, the answer near them is sought.
     pub forces: Option<Vec<[f64; 2]>>,
-    /// Weight with which it lies there; without, only where there is no answer otherwise.
+    /// Weight of the nearness of the answer to the known forces; without a weight the nearness
+    /// counts only if there is no answer otherwise.
     pub weight: Option<f64>,
 }
 
 impl Guess {
-    /// Takes over states and forces of the pairs closed `before`, near which the answer lies with a weight.
+    /// Sets states and forces to those of the pairs closed `before`; the answer is sought near them with a weight.
     pub fn take_over(
         &mut self,
         constraints: &[&Constraint],
@@ -48,12 +49,13 @@ impl Guess {
         self.weight = weight;
     }
 
-    /// Whether an answer near the forces before is another one.
+    /// Whether the guess has forces but no weight, so an answer near the forces would be another
+    /// one.
     fn has_forces_only(&self) -> bool {
         self.forces.is_some() && self.weight.is_none()
     }
 
-    /// The same, with an answer near the forces before.
+    /// The same guess with a weight, so that the answer is sought near the forces.
     fn near(&self) -> Self {
         Guess {
             weight: Some(FIRST_WEIGHT),
@@ -63,13 +65,14 @@ impl Guess {
 }
 
 impl System<'_> {
-    /// Forces of the given constraints from the constant terms of their gaps and slips: the pairs that carry one are
-    /// `closed`; returns the pivots that it took. With their response, many are solved by blocks where that gains.
+    /// Solves for the forces of the given constraints from the constant terms of their gaps and slips. The pairs that
+    /// carry a force are written to `closed`; returns the number of pivots. With a `response`, problems of many
+    /// constraints are solved by blocks where that is faster.
     ///
-    /// Where a problem with derivative rows has no solution, that with the force rows in their place is
-    /// solved: Q is then symmetric and the theorem of docs/theory/complementarity.md holds, so that a ray says that pairs
-    /// contradict each other. Where pairs are so nearly one that round-off spoils both problems, the answer
-    /// near the forces before is taken.
+    /// If the problem with derivative rows has no solution, the problem with the force rows in their place is solved. Q
+    /// is then symmetric and the theorem of docs/theory/complementarity.md holds, so a ray means that pairs contradict
+    /// each other. If pairs are so nearly the same that round-off spoils both problems, the answer near the last forces
+    /// is used.
     pub(super) fn solve_contact(
         &mut self,
         constraints: &[&Constraint],
@@ -95,7 +98,7 @@ impl System<'_> {
         }
     }
 
-    /// With the derivative rows, else with the force rows.
+    /// Solves with the derivative rows, else with the force rows.
     fn solve_with_rows(
         &mut self,
         constraints: &[&Constraint],
@@ -151,7 +154,7 @@ impl System<'_> {
     }
 }
 
-/// The constraints that carry a force.
+/// The constraints that carry a force, as closed pairs.
 pub(super) fn closed_of<'a>(
     constraints: &'a [&Constraint],
     forces: impl Iterator<Item = [f64; 2]> + 'a,
@@ -162,9 +165,9 @@ pub(super) fn closed_of<'a>(
     closed.map(|((constraint, force), state)| ClosedPair::new(constraint, force, *state))
 }
 
-/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, P^0 being the forces of
-/// the pass before. Where several pairs can carry the same force, the solution near that of the pass
-/// before is taken; the term vanishes as the passes converge.
+/// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, where P^0 are the forces of the last
+/// pass. If several pairs can carry the same force, the rule selects the solution near that of the last pass; its term
+/// vanishes as the passes converge.
 fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f64) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {
@@ -176,41 +179,42 @@ fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f
     }
 }
 
-/// Constraints from which on their problem is solved by blocks.
+/// Number of constraints from which on a problem is solved by blocks.
 const LEAST: usize = 100;
 
-/// Constraints whose list takes no memory from the system.
+/// Number of constraints up to which their list needs no allocation.
 pub(super) const FEW: usize = 128;
 
-/// Constraints of a block in the mean at least: the solves of an iteration, which cost the same for any blocks, gain
-/// nothing over all of Q when blocks are smaller. Two flush faces have up to four of corners, which seldom carry a force.
+/// Least mean number of constraints in a block. The solves of an iteration cost the same for any blocks, so with
+/// smaller blocks the iteration is no faster than solving with all of Q. Two flush faces have up to four constraints of
+/// corners, which seldom carry a force.
 const LEAST_BLOCK: usize = 8;
 
-/// Part of the entries of Q within the blocks at most, or blocks gain nothing.
+/// Largest part of the entries of Q within the blocks; with a larger part blocks gain nothing.
 const WITHIN: f64 = 0.25;
 
-/// Constraints between the same bodies from which on they are parted along the surfaces.
+/// Number of constraints between the same bodies from which on they are divided along the surfaces.
 const LEAST_PARTED: usize = 240;
 
-/// Slave nodes of a part.
+/// Number of slave nodes of a part.
 const PART: usize = 64;
 
-/// Entry of Q between some two constraints of every part, beside their own compliances, below which the parts are
-/// coupled weakly.
+/// Coupling of two constraints of every part, the entry of Q relative to the root of their own compliances, below which
+/// the parts are coupled weakly.
 const COUPLING: f64 = 0.1;
 
-/// Gaps and slips of the constraints of a problem under any forces.
+/// Gaps and slips of the constraints of a problem as functions of the forces.
 struct GapsAndSlips<'r, 'a> {
     response: &'r mut Response<'a>,
     constraints: &'r [&'r Constraint],
     /// eps Q_kk of eq. (5.3), zero without a weight.
     proximal: Vec<[f64; 2]>,
-    /// P^0 of eq. (5.3).
+    /// P^0 of eq. (5.3): the forces of the last pass.
     near: Vec<[f64; 2]>,
 }
 
 impl GapsAndSlips<'_, '_> {
-    /// g + G W B^T P + eps diag(Q) (P - P^0), g being gaps and slips without these forces.
+    /// g + G W B^T P + eps diag(Q) (P - P^0), where g are gaps and slips without contact forces.
     fn under(&mut self, system: &mut System, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let constraints = self.constraints.iter().copied();
         let acting = constraints.clone().zip(forces.iter().copied());
@@ -224,12 +228,12 @@ impl GapsAndSlips<'_, '_> {
     }
 }
 
-/// The blocks of a problem, with eps Q_kk of all its constraints.
+/// The blocks of a problem, and eps Q_kk of all its constraints.
 type ProblemBlocks = (Vec<LcpBlock>, Vec<[f64; 2]>);
 
 impl System<'_> {
-    /// Positions of constraints by the bodies that they are between, or by parts of surfaces, if their problem is to be
-    /// solved by blocks.
+    /// Positions of constraints, grouped by the bodies between which they act or by parts of surfaces; `None` if their
+    /// problem is not to be solved by blocks.
     pub(super) fn by_bodies(
         &self,
         constraints: &[&Constraint],
@@ -258,9 +262,9 @@ impl System<'_> {
         })
     }
 
-    /// Forces of constraints by blocks, `free` being their gaps and slips without
-    /// them: the pairs that carry one are `closed`. The pivots that it took; none where blocks gain nothing or are
-    /// coupled too strongly.
+    /// Solves for the forces of constraints by blocks, where `free` are their gaps and slips without these forces; the
+    /// pairs that carry a force are written to `closed`. Returns the number of pivots, or `None` if blocks gain nothing
+    /// or are coupled too strongly.
     fn solve_by_bodies(
         &mut self,
         response: &mut Response,
@@ -313,7 +317,7 @@ impl System<'_> {
         Ok(Some(solution.counters.pivots))
     }
 
-    /// The blocks, with eps Q_kk of all constraints; none where parts of surfaces are coupled strongly.
+    /// The blocks, and eps Q_kk of all constraints; `None` if parts of surfaces are coupled strongly.
     fn blocks(
         &mut self,
         all: &[&Constraint],
@@ -348,8 +352,8 @@ impl System<'_> {
     }
 }
 
-/// Whether a slave node of one contact is a target of another: pairs in both orders that face each other are as good as one, and
-/// no parts of surfaces keep them together.
+/// Whether a slave node of one contact is a target of another. Two pairs in both orders that face each other are almost
+/// the same, and a division along the surfaces would separate them.
 fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
     let mut contacts = BTreeMap::new();
     for constraint in constraints {
@@ -363,15 +367,16 @@ fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
     })
 }
 
-/// Whether the first contact of a part is coupled strongly to all others, so that the part is to those beside it.
+/// Whether the first contact of a part is coupled strongly to all others of the part; then the part is coupled strongly
+/// to its neighbours too.
 fn is_coupled(part: &FrictionalLcp) -> bool {
     let q = |i: usize, j: usize| part.q[(i, j)];
     let coupling = |j: usize| q(0, j).abs() / (q(0, 0) * q(j, j)).sqrt();
     (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
-/// u + W (f + B^T P) of some constraints, W being the inverse of the system matrix: at the nodes of the
-/// constraints at any time, everywhere at the end.
+/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. The sum is available at the
+/// nodes of the constraints at any time, and everywhere at the end.
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.
     start: &'a [f64],
@@ -382,7 +387,7 @@ impl<'a> Response<'a> {
     /// Begins with the forces `f`, over all dofs, and P = 0.
     ///
     /// # Errors
-    /// A matrix without factors.
+    /// Returns an error if the matrix has no factors.
     pub fn begin(
         system: &mut System,
         [start, f]: [&'a [f64]; 2],
@@ -408,7 +413,7 @@ impl<'a> Response<'a> {
         Ok(Response { start, vectors })
     }
 
-    /// Writes g + Gn y and Dt + Gt y of every constraint, y being the response so far, 0 where that is nothing.
+    /// Writes g + Gn y and Dt + Gt y of every constraint, where y is the response so far; negligible values become 0.
     pub fn gaps_and_slips<'c>(
         &mut self,
         system: &mut System,
@@ -442,7 +447,8 @@ impl<'a> Response<'a> {
         found.extend(constraints.map(after));
     }
 
-    /// Shows the free motions where their pins are without contact forces; gaps and slips must have been asked for.
+    /// Tells the free motions the positions of their pins without contact forces; gaps and slips must have been asked
+    /// for before.
     pub fn show_pins(&self, system: &mut System) {
         let at_nodes = &self.vectors.at_nodes;
         if let Some(free) = system.free_mut() {
@@ -450,8 +456,8 @@ impl<'a> Response<'a> {
         }
     }
 
-    /// Takes forces of the given constraints and those of the pins into the right-hand side, in place of those
-    /// before; gaps and slips without them must have been asked for.
+    /// Replaces the forces of the given constraints and of the pins in the right-hand side. Gaps and slips without
+    /// contact forces must have been asked for before.
     pub fn set_forces<'c>(
         &mut self,
         system: &mut System,
@@ -477,17 +483,17 @@ impl<'a> Response<'a> {
         forces.drain(..before);
     }
 
-    /// Writes the response, over all dofs.
+    /// Writes the response u + W (f + B^T P), over all dofs.
     ///
     /// # Errors
-    /// A solution that is not finite.
+    /// Returns an error if the solution is not finite.
     pub fn end(self, system: &mut System, response: &mut Vec<f64>) -> Result<(), LinearError> {
         system.give_back(self.vectors);
         system.end(self.start, response)
     }
 }
 
-/// Puts numbers in place of those in a list: increasing, each once.
+/// Replaces a list by the given numbers, increasing and each once.
 fn replace(list: &mut Vec<usize>, numbers: impl Iterator<Item = usize>) {
     list.clear();
     list.extend(numbers);

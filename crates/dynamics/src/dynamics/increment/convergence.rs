@@ -1,5 +1,5 @@
-//! Convergence criterion of the passes: relative residual and correction with local scales and a
-//! round-off floor. See docs/theory/time.md, Convergence.
+//! Convergence criterion of the passes: relative residual and relative correction, with local
+//! scales and a round-off floor. See docs/theory/time.md, Convergence.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -10,22 +10,21 @@ use crate::dynamics::results::{PassReport, Worst};
 use crate::dynamics::step::{Hinges, Parts, PerBody, ROUND_OFF};
 use crate::linear::larger;
 
-/// Part of the tolerance to which an iterate must be in balance to be the solution, unless its corrections
-/// have come down to round-off: a pass whose residual and correction are below the tolerance ends with
-/// an iterate that is better by the rate of the passes.
+/// Factor on the tolerance within which an iterate must be in balance to be the solution, unless its corrections are
+/// down to round-off. A pass whose residual and correction are below the tolerance ends with an iterate that is better
+/// by the rate of the passes.
 const BALANCED: f64 = 0.1;
-/// Round-off of the residual of an iterate whose corrections become hardly smaller, in units of eq. (4.10):
-/// a row of K has about as much beside its diagonal entry as the others have together.
+/// Round-off of the residual once corrections hardly decrease, in units of eq. (4.10): in a row of K the other entries
+/// together have about as much round-off as the diagonal entry.
 const STAGNANT_NOISE: f64 = 4.0;
 
-/// What residual and correction of a pass are measured against: computed scales, so that the
-/// answer does not depend on the system of units, of every part and body its own, so that a light one
-/// is solved beside a heavy one.
+/// Scales of residual and correction of a pass. The scales are computed, so the answer does not depend on the system of
+/// units; every part and body has its own, so that a light body next to a heavy one is solved as accurately.
 pub(crate) struct Scales<'a> {
     parts: &'a Parts,
-    /// Largest of the forces in equilibrium, of every part.
+    /// Largest force in equilibrium of every part.
     force: PerBody,
-    /// Round-off of the residual, of every part.
+    /// Round-off of the residual of every part.
     noise: PerBody,
     /// Largest displacement increment of every body.
     increment: PerBody,
@@ -34,7 +33,7 @@ pub(crate) struct Scales<'a> {
     tolerance: f64,
 }
 
-/// Lengths of every body.
+/// Length scales of every body.
 pub(crate) struct Lengths {
     /// Largest displacement U so far.
     pub displacement: PerBody,
@@ -44,14 +43,14 @@ pub(crate) struct Lengths {
     pub position: PerBody,
 }
 
-/// Round-off of the forces of a part, and what it meets.
+/// Round-off of the forces of a part, with the motion and stiffness that it acts on.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PartNoise {
-    /// n: round-off of the residual, eq. (4.10) (force).
+    /// Round-off n of the residual, eq. (4.10) (force).
     pub force: f64,
-    /// Largest displacement increment of its body (length).
+    /// Largest displacement increment of the body (length).
     pub travel: f64,
-    /// Largest K_ii + (2/dt²) M_ii (force/length).
+    /// Largest diagonal entry K_ii + (2/dt²) M_ii (force/length).
     pub stiffness: f64,
 }
 
@@ -62,12 +61,13 @@ pub(crate) struct Errors {
 }
 
 impl<'a> Scales<'a> {
-    /// `force`: largest force in equilibrium of every part, and largest one before; `stiffness`, `inertia`: largest
-    /// diagonal entries of theta2 K and (2/dt²) M of every part.
+    /// Scales of a pass. `force` and `before` are the largest force in equilibrium of every part, in this pass and so
+    /// far; `stiffness` and `inertia` are the largest diagonal entries of theta2 K and (2/dt²) M of every part.
     ///
-    /// A force from displacements U carries the round-off of K U, the inertia force that of
-    /// (2/dt²) M d, and a force that closes a gap between positions x that of K* x: a residual is
-    /// not measured finer than that. Displacements that close a gap carry the round-off of x.
+    /// A force from displacements U carries the round-off of K U, the inertia force that of (2/dt²)
+    /// M d, and a force that closes a gap between positions x that of K* x. A residual cannot be
+    /// measured more finely than the round-off of these forces. Displacements that close a gap
+    /// carry the round-off of x.
     pub fn new(
         parts: &'a Parts,
         [force, before]: [&PerBody; 2],
@@ -98,28 +98,29 @@ impl<'a> Scales<'a> {
         }
     }
 
-    /// Whether all forces, and all corrections, are finite.
+    /// Whether all forces and all corrections are finite.
     pub fn are_finite(&self, errors: &Errors) -> bool {
         let mut values = self.force.iter().chain(&errors.correction);
         values.all(|value| value.is_finite())
     }
 
-    /// A part of the tolerance, and no allowance for the round-off of residuals: as long as corrections
-    /// become smaller it has not been reached.
+    /// Stricter scales: a part of the tolerance, and no allowance for the round-off of residuals. The stricter scales
+    /// apply as long as corrections decrease, since round-off is then not reached.
     pub fn strict(mut self) -> Self {
         self.noise.fill(0.0);
         self.tolerance *= BALANCED;
         self
     }
 
-    /// All the round-off that residuals may have: there is nothing more to be gained.
+    /// Scales with all the round-off that residuals may have, for passes that can gain nothing
+    /// more.
     pub fn stagnant(mut self) -> Self {
         let noise = self.noise.iter_mut();
         noise.for_each(|noise| *noise *= STAGNANT_NOISE);
         self
     }
 
-    /// Round-off of the forces of every part, whose largest K_ii + (2/dt²) M_ii are given (force/length).
+    /// Round-off of the forces of every part; `stiffness` gives the largest K_ii + (2/dt²) M_ii of each (force/length).
     pub fn noise(&self, stiffness: impl Iterator<Item = f64>) -> Vec<PartNoise> {
         let parts = self.noise.iter().zip(self.parts.of_parts()).zip(stiffness);
         let of_part = |((force, &body), stiffness): ((&f64, &usize), f64)| PartNoise {
@@ -150,8 +151,8 @@ impl<'a> Scales<'a> {
         }
     }
 
-    /// Whether residual and correction of every part and body are below the tolerance, or round-off.
-    /// A residual that is all round-off says the same of the correction that follows from it.
+    /// Whether residual and correction of every part and body are below the tolerance, or round-off. If a residual is
+    /// all round-off, so is the correction that follows from it.
     pub fn converged(&self, errors: &Errors) -> bool {
         let mut is_noise: SmallVec<[bool; 8]> = smallvec![true; self.increment.len()];
         for (part, &body) in self.parts.of_parts().iter().enumerate() {
@@ -168,9 +169,9 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// Whether gaps and slips of the constraints are those of the contact law to the tolerance: closed
-    /// gaps zero, open ones not negative, no slip where a pair has not slipped in the last solution, none along its friction
-    /// where it slips.
+    /// Whether gaps and slips of the constraints obey the contact law to the tolerance. Closed gaps are zero and open
+    /// ones not negative; a pair that has not slipped in the last solution has no slip, and a pair that slips has no
+    /// slip in the direction of its friction.
     pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
         contact.iter().all(|(constraint, pair)| {
@@ -190,17 +191,17 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// Whether the forces of a pair obey the coefficient of friction of its own slip rate, where that
+    /// Whether the forces of a pair obey the coefficient of friction at the slip rate of the pair, if the coefficient
     /// depends on it.
     fn has_own_friction(&self, constraint: &Constraint, pair: &ClosedPair) -> bool {
         let most = self.tolerance * constraint.friction() * pair.force[0];
         !constraint.mu_varies || pair.out_of_cone(constraint.friction()) <= most
     }
 
-    /// Whether a pass with the correction dU closes the gaps of its closed pairs, as far as open pairs may
-    /// overlap, where its rows hold. Where pairs contradict each other, the equal-force rule lets the forces grow in
-    /// balance, and gaps stay. Where supports push a body along another under the same forces, the residual is all
-    /// round-off, but slave nodes come to other segments.
+    /// Whether a pass with the correction dU closes the gaps of its closed pairs by its rows, as far as open pairs may
+    /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets the forces grow in
+    /// balance, and gaps stay. The gaps do not close either if supports push a body along another under the same
+    /// forces: the residual is all round-off, but slave nodes come to other segments.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
             let most = |part: f64| larger(self.closed_gap(constraint), part * constraint.scale);
@@ -210,7 +211,7 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// Largest gap of a closed pair: tolerance times the displacement increment of its bodies, or round-off.
+    /// Largest allowed gap of a closed pair: tolerance times the displacement increment of its bodies, or round-off.
     fn closed_gap(&self, constraint: &Constraint) -> f64 {
         let of_body =
             |body: usize| larger(self.tolerance * self.increment[body], self.resolution[body]);
@@ -219,7 +220,7 @@ impl<'a> Scales<'a> {
         bodies.map(of_body).fold(round_off, larger)
     }
 
-    /// Whether the hinges of an iterate are closed as far as pairs in contact must be.
+    /// Whether the gaps of the hinges in an iterate are as small as those of closed pairs must be.
     pub fn closes_hinges(&self, hinges: &Hinges, u: &[f64]) -> bool {
         let of_node = |node: usize| {
             let body = self.parts.of_nodes()[node];
@@ -232,8 +233,8 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// The node with the largest relative residual, if there is any; `residual` over the unknowns, whose
-    /// dofs are given, with its largest value of every part.
+    /// The node with the largest relative residual, if any; `residual` is over the unknowns, whose dofs are given, and
+    /// has its largest value for every part.
     pub fn worst(
         &self,
         errors: &Errors,
@@ -263,7 +264,7 @@ impl<'a> Scales<'a> {
         self.relative(errors.residual[part], self.force[part], self.noise[part])
     }
 
-    /// `value` in units of its scale, or of the round-off over the tolerance where that is larger.
+    /// `value` in units of its scale, or of its round-off over the tolerance if that is larger.
     fn relative(&self, value: f64, scale: f64, floor: f64) -> f64 {
         let scale = larger(scale, floor / self.tolerance);
         if scale == 0.0 { value } else { value / scale }
@@ -288,7 +289,7 @@ mod tests {
     }
 
     /// Whether [`testing::at_face`] may end an increment of length 1 with the given gap, slip and
-    /// forces, none where it is open.
+    /// forces; `None` is an open pair.
     fn obeys(
         gap_and_slip: [f64; 2],
         friction: &Friction,
@@ -347,14 +348,14 @@ mod tests {
         assert!(!closed(0.0, -1e-9, mu, plus), "slides along its friction");
     }
 
-    /// A node over ground, at dofs 0 and 1, with the gap given.
+    /// A node over ground with the given gap, at dofs 0 and 1.
     fn over_ground(gap: f64) -> Constraint {
         let mut constraint = testing::made_up(&[0, 1], Rows::new(&[0.0, 1.0], &[1.0, 0.0]));
         (constraint.gap, constraint.start_gap) = (gap, gap);
         constraint
     }
 
-    /// A pair that is open, or closed in a state.
+    /// A pair that is open, or closed in a given state.
     fn contact(gap: f64, state: Option<ContactState>) -> ContactForces {
         let constraint = over_ground(gap);
         let pair = state.map(|state| ClosedPair::new(&constraint, [1.0, 0.0], state));
@@ -375,8 +376,8 @@ mod tests {
         })
     }
 
-    /// Scales of one node with forces up to 10, increments up to 0.1, and the noise 4 eps 1e3 = 9e-13 of forces,
-    /// at the tolerance 1e-9.
+    /// Scales of one node: forces up to 10, increments up to 0.1, round-off 4 eps 1e3 = 9e-13 of forces, and the
+    /// tolerance 1e-9.
     fn scales(parts: &Parts) -> Scales<'_> {
         let lengths = Lengths {
             displacement: smallvec![1.0],
@@ -411,7 +412,7 @@ mod tests {
         assert_eq!(ends(2e-8, 0.0), [false, false]);
         assert_eq!(ends(0.9e-9, 5e-11), [true, false]);
         assert_eq!(ends(0.9e-9, 2e-10), [false, false]);
-        // residuals of round-off say the same of the correction, unless corrections still fall
+        // if residuals are round-off, so are corrections, unless they still decrease
         assert_eq!(ends(5e-13, 1.0), [true, false]);
         assert_eq!(ends(f64::NAN, 0.0), [false, false]);
     }

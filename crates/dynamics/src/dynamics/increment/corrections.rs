@@ -1,26 +1,26 @@
-//! How the corrections of the passes become smaller: their rate, and whether they grow. See docs/theory/time.md.
+//! Decrease of the corrections from pass to pass: their rate, and whether they grow. See docs/theory/time.md.
 
 use crate::dynamics::results::Cause;
 
-/// Correction of a pass beside the increment above which its iterate is no solution, whatever the forces
-/// say.
+/// Correction of a pass, relative to the increment, above which its iterate is not a solution, whatever the forces say.
 const NEAR: f64 = 1e-4;
-/// Rate of corrections that become hardly smaller.
+/// Ratio of successive corrections above which they hardly decrease.
 const STAGNANT: f64 = 0.5;
-/// Passes after which slave nodes keep their targets: before, corrections may go to and fro with them.
+/// Number of passes after which slave nodes keep their targets; in earlier passes corrections may go to and fro with
+/// the targets.
 pub(super) const SEARCHING_PASSES: usize = 4;
-/// Passes in a row that then grow the correction before an attempt is given up.
+/// Number of later passes in a row that may let the correction grow before an attempt is given up.
 const GROWING: usize = 3;
 
 /// Corrections of the passes of an attempt.
 pub(super) struct Corrections {
     /// Passes done.
     passes: usize,
-    /// The last one, relative to the increment.
+    /// The last correction, relative to the increment.
     last: f64,
-    /// The last one over the one before.
+    /// The last correction divided by the correction before it.
     rate: f64,
-    /// Passes in a row that have grown it.
+    /// Number of last passes, in a row, in which the correction has grown.
     growing: usize,
 }
 
@@ -40,17 +40,17 @@ impl Corrections {
         self.last < NEAR
     }
 
-    /// Last correction over the one before.
+    /// The last correction divided by the correction before it.
     pub fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// Whether the corrections become hardly smaller: where they are small, that is round-off.
+    /// Whether the corrections hardly decrease; if they are small, they are then round-off.
     pub fn stagnate(&self) -> bool {
         self.rate > STAGNANT
     }
 
-    /// Takes in the relative correction of a pass. That it grows is no divergence where it `may_grow`.
+    /// Enters the relative correction of a pass. A growing correction is not divergence if it `may_grow`.
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         let is_first = self.last == f64::INFINITY;
         let rate = match correction {

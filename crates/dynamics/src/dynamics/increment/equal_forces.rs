@@ -1,30 +1,31 @@
-//! Weight of the equal-force rule, by which pairs that can carry the same force keep it near that of the
-//! pass before. See docs/theory/complementarity.md, Equal-force rule.
+//! Weight of the equal-force rule: it keeps the forces of pairs that can carry the same force near those of the last
+//! pass. See docs/theory/complementarity.md, Equal-force rule.
 
-/// Part of the compliance of a constraint that holds its force, at first.
+/// First weight: the part of the compliance of a constraint that keeps its force.
 pub(super) const FIRST_WEIGHT: f64 = 1e-5;
-/// Decrease of the weight from pass to pass.
+/// Factor on the weight from pass to pass.
 const DECREASE: f64 = 0.1;
 /// Least weight: with a smaller one, the round-off of the gaps moves the forces.
 const LEAST_WEIGHT: f64 = 1e-7;
-/// Rate of corrections that crawl although the weight has its least value: it then falls further.
+/// Ratio of successive corrections above which they crawl: if the weight has its least value, it
+/// then falls further.
 const CRAWLING: f64 = 0.7;
-/// The weight then.
+/// Weight of the equal-force rule for corrections that crawl.
 const WEIGHT_OF_CRAWLING: f64 = 1e-9;
-/// Correction, in tolerances, that is round-off where it does not become smaller.
+/// Correction, in tolerances, below which a correction that does not decrease is round-off.
 pub(super) const ROUND_OFF: f64 = 100.0;
 
 /// Weight eps of eq. (5.3) from pass to pass.
 ///
-/// Forces of pairs that are almost one go on changing at the rate eps/(eps + lambda), lambda being the
-/// compliance of their difference as a part of their own. The weight therefore decreases, until small
-/// corrections stay as large as they were with the same weight: then the round-off of the gaps moves the
-/// forces, and the first weight holds them.
+/// Forces of pairs that are almost the same keep changing at the rate eps/(eps + lambda), where lambda is the
+/// compliance of the pairs' difference relative to their own compliance. The weight therefore decreases from pass to
+/// pass, which makes the changes of these forces die away faster. If small corrections stay as large as before with the
+/// same weight, the round-off of the gaps moves the forces, and the weight returns to its first value.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,
     correction: f64,
-    /// Whether the weight is less than in the pass before: a slow mode then moves more.
+    /// Whether the weight is less than in the last pass, so that a slow mode moves more.
     has_decreased: bool,
     holds: bool,
 }
@@ -46,12 +47,13 @@ impl EqualForces {
         settled.then_some(self.weight)
     }
 
-    /// Whether the weight has become less since the last pass: a slow mode then moves more, which is no divergence.
+    /// Whether the weight has decreased since the last pass: a slow mode then moves more, which is not divergence.
     pub fn moves_more(&self) -> bool {
         self.has_decreased
     }
 
-    /// Takes in the relative correction of a pass, with the weight if they have `settled`.
+    /// Enters the relative correction of a pass; the pass used the weight if the passes have
+    /// `settled`.
     pub fn take_in(&mut self, correction: f64, settled: bool) {
         if !settled {
             return;

@@ -1,8 +1,8 @@
-//! Velocity jump at the start of an increment: the set of pairs that take impact impulses,
-//! iterated along with the passes. See docs/theory/impacts.md, Impact impulses (paper eq. 30).
+//! Velocity jump at the start of an increment; the set of pairs with impact impulses is iterated
+//! along with the passes. See docs/theory/impacts.md, Impact impulses (paper eq. 30).
 //!
-//! Whether the rows of an iterate are so near those that impulses were solved with that these may stay.
-//! docs/numerics.md, Kept impulses.
+//! Criterion for keeping impulses: the rows of the iterate are near enough to the rows with which they were computed.
+//! See docs/numerics.md, Kept impulses.
 
 use std::borrow::Cow;
 
@@ -18,45 +18,50 @@ use crate::dynamics::step::{Equilibrium, StartVelocity, StepProblem, System, Wor
 use crate::lcp::ContactState;
 use crate::linear::larger;
 
-/// Changes of the set of pairs with impulses after which it is kept.
+/// Number of changes of the set of pairs with impulses after which the set is kept.
 const SET_CHANGES: usize = 5;
 
-/// The impact impulses of an increment: they act on the pairs that carry force at its end, and on
-/// those that touch at its start where an impact ended the subincrement before.
+/// The impact impulses of an increment. Impulses act on the pairs that carry a force at the end of
+/// the increment, and on the pairs that touch at its start because an impact ended the previous
+/// subincrement.
 #[derive(Default)]
 pub(crate) struct Impulses {
-    /// The pairs closed at the end of the last pass; increasing.
+    /// Keys of the pairs closed at the end of the last pass, increasing.
     closed: Vec<ConstraintKey>,
-    /// The pairs that touch at the start and have impulses in any case; increasing.
+    /// Keys of the pairs that touch at the start and have impulses in any case, increasing.
     touching: Vec<ConstraintKey>,
     changes: usize,
     at_rest: bool,
-    /// The constraints that the impulses are for, with Phi, Psi.
+    /// Constraints with impulses, and their Phi and Psi.
     forces: ContactForces,
-    /// Constraints of the iterate.
+    /// Constraints with impulses in the iterate.
     of_iterate: Vec<Constraint>,
-    /// The pairs that have the impulse of their force at their disposal for them, eq. (11.7); increasing.
+    /// Keys of the pairs whose impulse may use the impulse of their force (standing impulse), eq. (11.7), increasing.
     lent: Vec<ConstraintKey>,
-    /// What they see of V0, eq. (11.5) and eq. (11.11); none where that is V0.
+    /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if
+    /// it is V0.
     seen: Option<Vec<f64>>,
-    /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
+    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty if
+    /// nothing strikes.
     resultant: Vec<f64>,
-    /// The pairs that did not slip in the last pass, with their normal forces; increasing.
+    /// Keys and normal forces of the pairs that did not slip in the last pass, increasing.
     sticking: Vec<(ConstraintKey, f64)>,
 }
 
-/// The pairs that do not slip, with their normal forces. The friction of some may be at its limit.
+/// Keys and normal forces of the pairs that do not slip, some of which may have friction at its
+/// limit.
 fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
     let stuck = closed.iter().filter(|pair| !pair.slips);
     stuck.map(|pair| (pair.key, pair.force[0])).collect()
 }
 
-/// Speed of approach, as a part of the largest speed at a pair, up to which it neither lands nor opens; less than a solved
-/// gap in the increment is none.
+/// Speed of approach, as a part of the largest speed at a pair, up to which the pair neither lands nor opens. A speed
+/// whose motion in the increment is less than a solved gap counts as zero too.
 const RESTING: f64 = 1e-9;
 
 impl Impulses {
-    /// Starts with the pairs that were closed in the last increment, and those that touch at the start.
+    /// Impulses before the first pass: `before` are the pairs closed in the last increment, `touching` those that touch
+    /// at the start.
     pub fn new(before: &ClosedPairs, touching: Vec<ConstraintKey>) -> Self {
         Impulses {
             closed: before.keys().collect(),
@@ -66,28 +71,29 @@ impl Impulses {
         }
     }
 
-    /// The constraints with their impulses.
+    /// The constraints that have impulses, with these impulses.
     pub fn acting(&self) -> impl Iterator<Item = (&Constraint, &ClosedPair)> {
         self.forces.acting()
     }
 
-    /// J = Bn^T Phi + Bt^T Psi with what hinges answer, over all dofs; empty where nothing strikes.
+    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty if
+    /// nothing strikes.
     pub fn resultant(&self) -> &[f64] {
         &self.resultant
     }
 
-    /// What they see of the velocity V0 of the start.
+    /// The velocity that impulses start from: V0 of the start, or the velocity in its place.
     pub fn seen<'a>(&'a self, v0: &'a [f64]) -> &'a [f64] {
         self.seen.as_deref().unwrap_or(v0)
     }
 
-    /// Whether a pair touches at the start because an impact ended the subincrement before.
+    /// Whether a pair touches at the start because an impact ended the previous subincrement.
     pub fn touches(&self, key: ConstraintKey) -> bool {
         self.touching.binary_search(&key).is_ok()
     }
 
-    /// Impulses Phi, Psi, eq. (6.2), for the constraints of the iterate, unless those at hand are near enough
-    /// to theirs after the pass `before`.
+    /// Solves for the impulses Phi and Psi of the constraints of the iterate, eq. (6.2). The available impulses are
+    /// kept if they are near enough to the new ones after the pass `before`.
     fn solve(
         &mut self,
         problem: &StepProblem,
@@ -100,7 +106,7 @@ impl Impulses {
         if !problem.has_impulses() {
             return Ok(());
         }
-        // rows of the start do not change with the iterate
+        // rows at the start do not change with the iterate
         let at_start = problem.integration.impulses_at_start();
         let configurations = problem.configurations(&start.u, &start.u);
         let rows = |constraint: &Constraint| match at_start {
@@ -148,7 +154,7 @@ impl Impulses {
             true => self.resultant.clear(),
             false => {
                 (self.forces).write_resultant(start.v.len(), &mut self.resultant);
-                // on bodies that turn they act by the arms of the start
+                // on bodies that turn the impulses act by the arms of the start
                 let nothing = vec![0.0; start.v.len()];
                 let turning = &problem.unknowns.turning;
                 turning.hand_over([&start.u, &nothing], false, &mut self.resultant);
@@ -158,7 +164,7 @@ impl Impulses {
         Ok(())
     }
 
-    /// Adds the impulses C^T Lambda by which the hinges answer those of contact, by the arms of the start.
+    /// Adds the reaction impulses C^T Lambda of the hinges to those of contact, with the arms at the start.
     fn add_hinges(
         &mut self,
         problem: &StepProblem,
@@ -181,8 +187,9 @@ impl Impulses {
         Ok(())
     }
 
-    /// Impulses P0 = dt Pn of the constraints of bodies that turn that did not slip in the last pass and neither land nor open,
-    /// zero of all others, eq. (11.7); none where no body turns.
+    /// Standing impulses P0 = dt Pn, eq. (11.7), of constraints of bodies that turn, if they did not slip in the last
+    /// pass and neither land nor open. The standing impulses are zero for all other constraints; the list is empty if
+    /// bodies that turn are driven.
     fn standing(&self, problem: &StepProblem, v0: &[f64], dt: f64) -> Vec<f64> {
         let turning = &problem.unknowns.turning;
         let of_pair = |constraint: &Constraint| {
@@ -203,8 +210,8 @@ impl Impulses {
         }
     }
 
-    /// By which part of the largest forces the impulses with the rows of the iterate differ from those at hand: any
-    /// where these are for others.
+    /// Relative difference, in parts of the largest forces, between the impulses with the rows of the iterate and the
+    /// available ones; infinite if these belong to other constraints.
     fn part_of_change(&self, steady: &Steady) -> f64 {
         let (struck, before) = (&self.of_iterate, &self.forces.constraints);
         let same_set = (before.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
@@ -220,9 +227,9 @@ impl Impulses {
         .fold(0.0, larger)
     }
 
-    /// What the equilibrium of an iterate with the given constraints needs of the velocity of the start: V0
-    /// with the impulses beside it, so that nothing is solved with M, unless U_theta depends on V0+, or the mass of bodies
-    /// that turn acts by other arms at the iterate than at the start.
+    /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. The velocity is
+    /// V0+ if U_theta depends on V0+, or if the mass of bodies that turn acts by other arms in the iterate than at the
+    /// start; else it is V0, with the impulses apart, so nothing is solved with M.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,
@@ -254,11 +261,11 @@ impl Impulses {
         Ok(StartVelocity { v0p, impulse: &[] })
     }
 
-    /// State of a pair in the impulses before; where it was not among them, it sticks if it approaches.
+    /// State of a pair in the last impulses; a pair that was not among them sticks if it approaches.
     fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
         let key = constraint.key;
         match (self.forces.constraints).binary_search_by_key(&key, |struck| struck.key) {
-            // what the other pairs of its node do tells nothing of it
+            // the other pairs of the slave node do not determine the state of this pair
             Ok(_) => self.forces.closed.own_state(key),
             Err(_) if approach(constraint, v0, dt) < 0.0 => ContactState::Stick,
             Err(_) => ContactState::Open,
@@ -270,9 +277,9 @@ impl Impulses {
         self.at_rest
     }
 
-    /// Takes over the pairs in contact after a pass. Says whether the pairs are the same as before, those that have the impulse of
-    /// their force still do not slip, and the impulses are theirs. After some changes it keeps its set of pairs: impulses of any
-    /// set take energy, and never give it.
+    /// Enters the pairs in contact after a pass. Returns whether the pairs are the same as before, those with a
+    /// standing impulse still do not slip, and the impulses belong to these pairs. After some changes the set of pairs
+    /// is kept: impulses on any set remove energy and never add any.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
         self.sticking = match problem.unknowns.turning.are_driven() {
             true => Vec::new(),
@@ -306,24 +313,24 @@ impl Impulses {
     }
 }
 
-/// Whether all nodes of a constraint have mass: no impulse acts on others.
+/// Whether all nodes of a constraint have mass; other constraints have no impulse.
 fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
     let mut nodes = constraint.nodes();
     !nodes.any(|node| problem.redistribution.is_massless(node))
 }
 
-/// Impact impulses Phi, Psi of constraints at the start of an increment, for the velocity after them
-/// V0+ = V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), posed as eq. (6.2):
+/// Impact impulses Phi and Psi of constraints at the start of an increment. The velocity after the impulses is V0+ =
+/// V0 + M^-1 (Bn^T Phi + Bt^T Psi), eq. (6.1) (paper eq. 30), and Phi and Psi satisfy eq. (6.2):
 ///
 /// ```text
 /// 0 <= Phi  complementary to  Gn V0+ + (2/dt) max(g0, 0) >= 0
 /// |Psi| <= mu Phi, Psi opposes Gt V0+
 /// ```
 ///
-/// so that kinetic energy never grows where G = B. The search begins with the given states.
+/// The kinetic energy therefore never grows where G = B. The search begins with the given states.
 ///
-/// Where many are solved by blocks, they take what is given of gaps and slips as their own, so that the round-off of V0
-/// stays out of what impulses add.
+/// Problems of many constraints are solved by blocks that use the given gaps and slips, so the round-off of V0 does not
+/// enter the effect of the impulses.
 fn impulses(
     constraints: &[Constraint],
     states: Vec<ContactState>,
@@ -331,7 +338,7 @@ fn impulses(
     dt: f64,
     system: &mut System,
 ) -> Result<ClosedPairs, Cause> {
-    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 where what they make of an increment is nothing
+    // Gn V0 + (2/dt) max(g0, 0) and Gt V0, eq. (6.2); 0 if their motion in an increment is negligible
     let resolved = |c: &Constraint, rate: f64| match c.resolved(dt * rate) {
         0.0 => 0.0,
         _ => rate,
@@ -369,8 +376,9 @@ fn impulses(
     Ok(closed)
 }
 
-/// The impulses of constraints of which some have the standing impulse P0, with Phi + P0 >= 0 in the place of Phi, eq. (11.7).
-/// V0 - M^-1 Bn^T P0 is the velocity without them. Where one would pull with all of P0 its pair has none.
+/// Impulses of constraints of which some have a standing impulse P0, with Phi + P0 >= 0 in place of Phi >= 0, eq.
+/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all of its P0,
+/// this P0 is set to zero and the impulses are computed anew.
 fn standing_impulses(
     constraints: &[Constraint],
     mut standing: Vec<f64>,
@@ -408,31 +416,32 @@ fn standing_impulses(
     impulses(constraints, states, v0, dt, &mut system)
 }
 
-/// Part of the tolerance of forces by which impulses may differ from those with the rows of the iterate.
+/// Part of the tolerance of forces up to which impulses may differ from those with the rows of the iterate.
 const EXACT: f64 = 1e-2;
 
-/// The pass before.
+/// The forces of the last pass, and the length of the increment.
 pub(crate) struct EarlierPass<'a> {
-    /// Forces of its iterate.
+    /// Forces of the iterate of the last pass.
     forces: &'a Equilibrium,
     /// Length of the increment.
     pub dt: f64,
 }
 
 impl<'a> EarlierPass<'a> {
-    /// A pass with the forces of its iterate, in an increment of length dt.
+    /// A last pass with the forces of its iterate, in an increment of length dt.
     pub fn new(forces: &'a Equilibrium, dt: f64) -> Self {
         EarlierPass { forces, dt }
     }
 }
 
-/// Gn V0 + (2/dt) max(g0, 0), eq. (6.2), of a constraint with its force rows as derivative rows; a fit shrinks beside.
+/// Speed Gn V0 + (2/dt) max(g0, 0), eq. (6.2), of a constraint with its force rows as derivative rows, plus the rate at
+/// which a fit shrinks.
 pub(super) fn approach(constraint: &Constraint, v0: &[f64], dt: f64) -> f64 {
     constraint.normal_motion(v0) - constraint.shrinkage / dt
         + 2.0 / dt * constraint.start_gap.max(0.0)
 }
 
-/// What a change of impulses is measured by.
+/// Scales by which a change of impulses is measured.
 pub(super) struct Steady<'a> {
     pub problem: &'a StepProblem<'a>,
     /// Largest diagonal entries of (2/dt²) M of every part.
@@ -460,9 +469,9 @@ impl Steady<'_> {
         most
     }
 
-    /// By which part of the largest forces the impulses of a constraint in a state change with its rows of `now` in
-    /// place of those `before`: an impulse that changes the velocity of a node by dV is at most M_ii dV, and the
-    /// force 2/dt of that.
+    /// Change of the impulses of a constraint, in parts of the largest forces, if its rows change from `before` to
+    /// `now`. An impulse that changes the velocity of a node by dV is at most M_ii dV, which is a force 2/dt times as
+    /// large.
     pub fn part(
         &self,
         [before, now]: [&Constraint; 2],
@@ -485,9 +494,9 @@ impl Steady<'_> {
     }
 }
 
-/// How much the velocity after the impulses of a constraint changes when its rows change from `before` to `now`. The sum of
-/// three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and of the direction
-/// of the jump that stops them.
+/// Change of the velocity after the impulses of a constraint if its rows change from `before` to `now`. The change is
+/// the sum of three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and
+/// of the direction of the velocity jump that stops them.
 fn change(
     before: &Constraint,
     now: &Constraint,
@@ -521,7 +530,8 @@ mod steady_tests {
     use super::*;
     use crate::contact::testing;
 
-    /// A node at dofs 0 and 1 over ground that turns by an angle: n = (-sin, cos), t = (cos, sin).
+    /// Constraint of a node at dofs 0 and 1 over ground that is turned by an angle: n = (-sin,
+    /// cos), t = (cos, sin).
     pub fn turned(angle: f64) -> Constraint {
         let (sin, cos) = angle.sin_cos();
         testing::made_up(&[0, 1], Rows::new(&[-sin, cos], &[cos, sin]))
@@ -538,11 +548,11 @@ mod steady_tests {
             ContactState::SlipPlus,
             ContactState::Open,
         );
-        // along the ground: the approach changes by 3 angles, the jump that turns is that of the slip
+        // motion along the ground: the approach changes by 3 angles, and the jump of the slip turns
         assert!(about(of([3.0, 0.0], slip), 3.0));
         assert!(about(of([3.0, 0.0], stick), 3.0 + 3.0));
         assert!(about(of([3.0, 0.0], open), 3.0));
-        // onto the ground: the slip rate changes by 2 angles, and the jump of 2, with its friction, turns
+        // motion on to the ground: the slip rate changes by 2 angles, and the jump of 2 turns with its friction
         assert!(about(of([0.0, -2.0], slip), 3.0));
         assert!(about(of([0.0, -2.0], stick), 2.0 + 2.0));
         assert!(about(of([0.0, -2.0], open), 0.0));
@@ -575,15 +585,16 @@ mod tests {
     use crate::prepare::{PreparedModel, redistribution_tests::block};
 
     const DT: f64 = 0.1;
-    /// Dofs of a block of one element.
+    /// Number of dofs of a block of one element.
     const DOFS: usize = 8;
 
-    /// Calls `test` with a step of a free block of one element, of which K* and M are factorised.
+    /// Calls `test` with a step of a free block of one element; K* and M of the step are
+    /// factorised.
     fn with_block(settings: Settings, test: impl FnOnce(&StepProblem, &mut Workspace)) {
         with_block_of(1, settings, test);
     }
 
-    /// The same with a block of so many rows of as many elements.
+    /// Calls `test` with a step of a free block of `rows` rows with as many elements each.
     fn with_block_of(
         rows: usize,
         settings: Settings,
@@ -622,7 +633,8 @@ mod tests {
             assert!(impulses.rest(problem, &closed(&one)));
             assert!(!impulses.rest(problem, &closed(&two)));
             assert!(impulses.rest(problem, &closed(&two)));
-            // pairs that touch at the start strike in any case, those of nodes without mass in none
+            // pairs that touch at the start have impulses in any case, pairs of nodes without mass
+            // never
             let mut touching = Impulses::new(&one, vec![testing::key(1, 0)]);
             assert!(touching.rest(problem, &closed(&two)));
         });
@@ -669,8 +681,8 @@ mod tests {
         });
     }
 
-    /// A node slides and falls on to ground that turns from pass to pass. Impulses whose rows have moved by round-off alone
-    /// are kept.
+    /// A node slides and falls on to ground that turns from pass to pass. Impulses whose rows have changed by round-off
+    /// alone are kept.
     #[test]
     fn impulses_are_those_of_the_rows_of_the_iterate() {
         let settings = Settings {

@@ -7,13 +7,13 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
 use crate::linear::largest;
 
-/// Change of N dU beside the other forces that is none.
+/// Change of N dU, relative to the other forces, up to which it counts as zero.
 const NO_CHANGE: f64 = 1e-13;
-/// Part of the first change that is left to the next pass at most.
+/// Largest part of the first change of N dU that is left to the next pass.
 const MOST_LEFT: f64 = 1e-3;
-/// Changes in a pass at most.
+/// Largest number of changes of N dU in a pass.
 const MOST_CHANGES: usize = 3;
-/// Part of the last change to which the next one falls, unless it is round-off.
+/// Factor below which successive changes of N dU must fall, unless they are round-off.
 const FALLS: f64 = 0.5;
 
 /// Vectors of the passes of an increment.
@@ -23,13 +23,13 @@ pub(super) struct Vectors {
     pub equilibrium: Equilibrium,
     /// Displacement U of the iterate.
     pub u: Vec<f64>,
-    /// What the predictor leaves of the supports' motion, d_p.
+    /// Prescribed motion d_p of the supports that the predictor leaves to the passes.
     pub d_p: Vec<f64>,
-    /// Its force theta2 K d_p.
+    /// Force theta2 K d_p of the prescribed motion.
     pub support_force: Vec<f64>,
-    /// r - theta2 K d_p
+    /// Load r - theta2 K d_p.
     pub load: Vec<f64>,
-    /// d_p with the motion that closes the hinges.
+    /// d_p plus the motion that closes the gaps of the hinges.
     pub closing: Vec<f64>,
     /// Correction dU.
     pub du: Vec<f64>,
@@ -39,22 +39,23 @@ pub(super) struct Vectors {
     pub skew: SkewPart,
 }
 
-/// What K* leaves out of the change of the forces in a static step: N dU, N being the skew parts of the changes of contact
-/// forces and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
+/// The part N dU of the change of the forces in a static step that K* omits. N are the skew parts of the changes of
+/// contact forces, and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
 #[derive(Default)]
 pub(super) struct SkewPart {
-    /// Dofs, with N over them.
+    /// Dofs of each skew part, and N over these dofs.
     parts: Vec<(Vec<usize>, DMatrix<f64>)>,
-    /// N dU (all dofs).
+    /// N dU over all dofs (force).
     force: Vec<f64>,
     /// Part of the first change of N dU that is left to the next pass.
     left: f64,
-    /// Changes of N dU so far, and the first and the last one (force).
+    /// Number of changes of N dU so far, and the first and the last change (force).
     changes: (usize, [f64; 2]),
 }
 
 impl SkewPart {
-    /// The skew parts of the given changes, with dU = 0. `correction` is the relative correction of the last pass.
+    /// The skew parts of the given changes, with dU = 0. The square of `correction`, the relative correction of the
+    /// last pass, is the part of the first change that is left to the next pass.
     pub fn new(all: &[ForceChange], correction: f64) -> Self {
         let skew = |change: &ForceChange| (change.dofs.clone(), change.skew());
         SkewPart {
@@ -81,7 +82,8 @@ impl SkewPart {
         force
     }
 
-    /// Takes in another dU; whether N dU has become as good as it was, beside the other forces, or as round-off lets it.
+    /// Enters the dU of another solve. Returns whether N dU has converged, relative to the other forces, or cannot
+    /// converge further because of round-off.
     pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
         let force = self.product(du);
         self.force.resize(du.len(), 0.0);
@@ -97,7 +99,8 @@ impl SkewPart {
     }
 }
 
-/// Writes d_p with the motion that closes the gaps of the hinges; gives the forces that make it.
+/// Writes d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of the
+/// closing motion.
 ///
 /// ```text
 /// y = d_p + T_1 V mu,  mu = -S^-1 (C U + C d_p)      eq. (11.10)

@@ -1,5 +1,5 @@
-//! Forces and displacements of a pass, and its residual beside its scales. See docs/theory/time.md,
-//! Convergence.
+//! Forces and displacements of a pass, and its residual relative to its scales. See
+//! docs/theory/time.md, Convergence.
 
 use std::ops::Range;
 
@@ -15,7 +15,7 @@ use crate::linear::larger;
 pub(crate) struct Pass<'a> {
     /// Load, internal force and inertia of the iterate.
     pub equilibrium: &'a Equilibrium,
-    /// Force of the supports' motion.
+    /// Force of the prescribed motion of the supports.
     pub support_force: &'a Vec<f64>,
     /// Constraints and their forces.
     pub contact: &'a ContactForces,
@@ -24,10 +24,10 @@ pub(crate) struct Pass<'a> {
 }
 
 impl Pass<'_> {
-    /// All forces and the correction must be finite.
+    /// Checks that all forces and the correction are finite.
     ///
     /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not.
+    /// Returns [`Cause::NotFinite`] with the first quantity that is not finite.
     pub fn check_finite(&self, contact_force: &Vec<f64>) -> Result<(), Cause> {
         check_finite(&[
             ("the load", &self.equilibrium.load),
@@ -39,10 +39,10 @@ impl Pass<'_> {
         ])
     }
 
-    /// Residual and correction of the pass, and what they are measured against; writes the residual.
+    /// Residual and correction of the pass, and their scales; writes the residual.
     ///
     /// # Errors
-    /// [`Cause::NotFinite`] with the first quantity that is not.
+    /// Returns [`Cause::NotFinite`] with the first quantity that is not finite.
     pub fn measure<'m>(
         &self,
         problem: &StepProblem<'m>,
@@ -76,7 +76,7 @@ impl Pass<'_> {
         Ok((scales, errors))
     }
 
-    /// What residual and correction of the pass are measured against.
+    /// Scales of residual and correction of the pass.
     pub fn scales<'m>(
         &self,
         problem: &StepProblem<'m>,
@@ -106,7 +106,7 @@ impl Pass<'_> {
         Scales::new(parts, [&force, before], diagonals, lengths, tolerance)
     }
 
-    /// The largest coordinate of the nodes of closed constraints and hinges with every body.
+    /// For every body the largest coordinate of the nodes of closed constraints and hinges at it.
     fn contact_positions(&self, problem: &StepProblem) -> PerBody {
         let [u, ..] = self.displacements;
         let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];
@@ -128,13 +128,13 @@ impl Pass<'_> {
     }
 }
 
-/// The residual of a pass, in memory that the next one uses again.
+/// The residual of a pass, in memory that the next pass uses again.
 #[derive(Default)]
 pub(crate) struct Residual {
     contact_force: ContactForce,
     /// Sum of all forces over the unknowns.
     pub values: Vec<f64>,
-    /// Zero at all dofs.
+    /// A vector of zeros over all dofs.
     none: Vec<f64>,
 }
 
@@ -142,12 +142,12 @@ pub(crate) struct Residual {
 #[derive(Default)]
 struct ContactForce {
     values: Vec<f64>,
-    /// Where it may not be zero.
+    /// Dofs at which the force may differ from zero.
     dofs: Vec<usize>,
 }
 
 impl ContactForce {
-    /// Writes Bn^T Pn + Bt^T Pt of eq. (3.1) in place of the force before, over so many dofs.
+    /// Writes Bn^T Pn + Bt^T Pt of eq. (3.1) over `dofs` dofs, in place of the force before.
     fn write(&mut self, contact: &ContactForces, dofs: usize) {
         let Self { values, dofs: own } = self;
         own.drain(..).for_each(|dof| values[dof] = 0.0);
@@ -159,19 +159,19 @@ impl ContactForce {
     }
 }
 
-/// How far the passes of an increment have come.
+/// Progress of the passes of an increment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassStage {
-    /// Whether the search for the closed pairs is over, so that open pairs may overlap by what is settled.
+    /// Whether the search for the closed pairs is over, so open pairs may overlap by `SETTLED_OVERLAP`.
     pub settled: bool,
-    /// Whether corrections become hardly smaller: residuals may have all their round-off.
+    /// Whether corrections hardly decrease, so residuals may have all their round-off.
     pub stagnates: bool,
 }
 
-/// An iterate with the contact forces of the pass before, linearised at it.
+/// An iterate with the contact forces of the last pass, linearised at the iterate.
 pub(crate) struct Iterate<'a> {
     pub equilibrium: &'a Equilibrium,
-    /// Constraints of the iterate and the forces at hand.
+    /// Constraints of the iterate and the available forces.
     pub contact: &'a ContactForces,
     /// Displacement U and increment d = U - U0.
     pub displacements: [&'a Vec<f64>; 2],
@@ -191,7 +191,7 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// The pass that makes the correction dU of the iterate.
+    /// The pass from the iterate with the correction dU.
     pub fn pass<'p>(&'p self, support_force: &'p Vec<f64>, du: &'p Vec<f64>) -> Pass<'p> {
         let [u, d] = self.displacements;
         Pass {
@@ -202,8 +202,8 @@ impl<'a> Iterate<'a> {
         }
     }
 
-    /// The relative residual, if the iterate is solved: residual, gaps and slips are below the tolerance,
-    /// or round-off.
+    /// The relative residual if the iterate is the solution, that is, if residual, gaps and slips are below the
+    /// tolerance or round-off; else `None`.
     pub fn residual(
         &self,
         problem: &StepProblem,

@@ -1,6 +1,5 @@
-//! What the passes of dynamic and static increments share: evaluation of the iterate, motion of the supports, forces of
-//! hinges, measure of residual and correction, end of the increment. See docs/theory/time.md (paper eqs 27, 29 and 36 to
-//! 49).
+//! Common parts of the passes of dynamic and static increments: evaluation of the iterate, motion of the supports,
+//! forces of hinges, errors of a pass, end of the increment. See docs/theory/time.md (paper eqs 27, 29 and 36 to 49).
 
 use super::contact_states::ContactStates;
 use super::impulses::EarlierPass;
@@ -19,15 +18,16 @@ use crate::dynamics::step::{
 };
 use crate::linear::larger;
 
-/// Passes after which those that follow are accelerated, and slave nodes that go to and fro between two targets keep both.
+/// Number of passes after which further ones are accelerated, and slave nodes that go to and fro between two targets
+/// keep both.
 pub(super) const SLOW_PASSES: usize = 10;
 
-/// Largest error of the friction after the last pass, as a part of the largest normal force. It is a tenth of the bound of
-/// the certificate.
+/// Largest error of the friction after the last pass, relative to the largest normal force. This largest error is a
+/// tenth of the limit in the certificate.
 const OWN_FRICTION: f64 = 1e-10;
 
-/// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even
-/// if others hold them now: none before the pass `keeping`.
+/// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even if
+/// they are now at others; `None` before the pass `keeping`.
 fn kept_beyond_ends(pass: usize, keeping: usize) -> Option<f64> {
     if pass < keeping {
         None
@@ -48,7 +48,7 @@ pub(super) struct Passes<'a, 'm> {
 }
 
 impl Passes<'_, '_> {
-    /// Starts passes whose nodes move with the velocities `v`.
+    /// Prepares the search for passes whose nodes move with the velocities `v`.
     pub fn start_search(&mut self, v: &[f64]) {
         let (problem, search) = (self.problem, &mut self.workspace.search);
         search.start(v, self.interval.dt);
@@ -101,8 +101,8 @@ impl Passes<'_, '_> {
         (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
     }
 
-    /// Writes what the predictor leaves of the prescribed motion, d_p, which the first pass makes, and its
-    /// force theta2 K d_p, then zero; and r - theta2 K d_p.
+    /// Writes the part d_p of the prescribed motion that the predictor leaves, its force theta2 K d_p, and r - theta2 K
+    /// d_p. The first pass makes the motion d_p; in later passes d_p is zero.
     pub fn supports(&mut self, pass: usize, vectors: &mut Vectors) {
         self.move_supports(pass, vectors);
         let Vectors {
@@ -141,7 +141,8 @@ impl Passes<'_, '_> {
         }
     }
 
-    /// Adds the forces of a pass to those of the hinges: what closes their gaps, and what the other forces ask of them.
+    /// Adds the forces of a pass to those of the hinges: the forces that close the gaps of the hinges, and the
+    /// reactions of the hinges to all other forces.
     pub fn take_hinge_forces(&mut self, closing: Vec<f64>, v: &mut Vectors) {
         let hinges = &self.problem.hinges;
         if hinges.are_none() {
@@ -159,8 +160,8 @@ impl Passes<'_, '_> {
         hinges.add_forces(&change, out_of_balance);
     }
 
-    /// The relative residual, where the forces at hand balance the iterate and its gaps and slips are those of the contact
-    /// law.
+    /// The relative residual if the available forces balance the iterate and its gaps and slips obey the contact law;
+    /// else `None`.
     pub fn residual(
         &mut self,
         iterate: &Iterate,
@@ -174,14 +175,15 @@ impl Passes<'_, '_> {
         Ok(solved)
     }
 
-    /// Takes in the constraints of the iterate U that were left out; whether they stay open, with a correction dU.
+    /// Adds the constraints of far slave nodes at the iterate U. Returns whether the constraints of far nodes stay open
+    /// after a correction dU.
     pub fn complete(&mut self, contact: &mut ContactStates, u: &[f64], du: Option<&[f64]>) -> bool {
         let of_increment = (self.start, self.interval);
         contact.complete(self.problem, self.workspace, of_increment, u, du)
     }
 
-    /// Compares residual and correction of a pass with their scales; whether it has converged, with a solve
-    /// that passes its check.
+    /// Compares residual and correction of a pass with their scales. Returns whether the pass has converged with a
+    /// solve that passes its residual check.
     pub fn measure(
         &mut self,
         pass: &Pass,
@@ -204,8 +206,8 @@ impl Passes<'_, '_> {
         Ok(has_converged)
     }
 
-    /// Whether the friction of a pass is that of the law at the slip rates and pressures that the pass leads to, which change
-    /// the coefficient that it had.
+    /// Whether the friction of a pass obeys the law at the slip rates and pressures after the pass, on which the
+    /// coefficient of friction depends.
     fn obeys_friction(&self, pass: &Pass) -> bool {
         if !pass
             .contact
@@ -227,8 +229,8 @@ impl Passes<'_, '_> {
             .all(|&outside| outside <= OWN_FRICTION * largest)
     }
 
-    /// Motion and forces at the end of a converged increment d from the vectors of its last pass; whether their
-    /// equilibrium is that of U0 + d.
+    /// Motion and forces at the end of a converged increment d, from the vectors of its last pass; `is_balanced` tells
+    /// whether their equilibrium is that of U0 + d.
     pub fn finish(
         &mut self,
         d: &[f64],
@@ -243,14 +245,14 @@ impl Passes<'_, '_> {
         (self.problem.unknowns.turning).turn([&self.start.u, d], &mut u);
         let mut equilibrium = std::mem::take(&mut v.equilibrium);
         if is_balanced {
-            // its impulses may have stood beside V0
+            // in the passes the impulses may have been separate from V0
             (self.problem).inertia(self.start, &v0p, d, self.interval, &mut equilibrium);
         } else {
             self.equilibrium(&v0p, [&u, d], &mut equilibrium)?;
         }
         let v0p = v0p.v0p.into_owned();
         let tangent = std::mem::take(&mut v.tangent);
-        // V1 of eq. (4.2); of what is prescribed from the amplitude
+        // V1 of eq. (4.2); at supports V1 comes from the amplitude
         let integration = &self.problem.integration;
         let mut v = integration.end_velocity(d, &v0p, self.interval.dt);
         (self.problem.unknowns).prescribe(self.interval.end, &mut u, &mut v);

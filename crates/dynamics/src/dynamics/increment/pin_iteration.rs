@@ -1,5 +1,6 @@
-//! A pass of a static increment with bodies that no support holds: contact forces, correction and the rigid motions of the
-//! bodies; motions that only facets resist are held; where there is no equilibrium. See docs/theory/bodies.md, Pins.
+//! A pass of a static increment with bodies that no support holds: contact forces, correction and rigid motions of the
+//! bodies. A motion that only facets resist is held; a motion that nothing resists has no equilibrium. See
+//! docs/theory/bodies.md, Pins.
 
 use super::contact_forces::ContactForces;
 use super::linear_pass::{Vectors, close_hinges};
@@ -10,11 +11,13 @@ use crate::dynamics::step::{
 use crate::lcp::Stability;
 use crate::linear::{larger, largest};
 
-/// Force along a motion that nothing resists, beside the other forces, that is let be where the motion cannot be held.
+/// Force, relative to all others, up to which it is ignored if it acts along a motion that nothing resists and that
+/// cannot be held.
 const SMALL_FORCE: f64 = 1e-9;
-/// Part of the largest force at the pins that is none at those of a body.
+/// Force at the pins of a body that counts as zero, relative to the largest force at all pins.
 const NO_PART: f64 = 1e-12;
-/// Passes in a row in which a body that touches nothing is not in balance, after which there is no equilibrium.
+/// Number of passes in a row with a body that touches nothing and is not in balance after which there is no
+/// equilibrium.
 const FREE_PASSES: usize = 3;
 
 /// A body that is not in balance: forces at all pins, and a correction that shows its motion.
@@ -23,12 +26,12 @@ struct Unbalance {
     du: Vec<f64>,
 }
 
-/// What the passes of an increment know of bodies that no support holds.
+/// Data that the passes of an increment keep of bodies that no support holds.
 #[derive(Default)]
 pub(super) struct PinState {
-    /// Passes in a row in which a body that touches nothing was not in balance.
+    /// Number of last passes, in a row, in which a body that touches nothing was not in balance.
     free_passes: usize,
-    /// What was seen before motions were held.
+    /// The unbalance before motions were held.
     before: Option<Unbalance>,
     /// Motions that are held.
     pub held: HeldMotions,
@@ -53,10 +56,10 @@ pub(super) struct PinIteration<'a, 'm> {
 }
 
 impl PinIteration<'_, '_> {
-    /// Contact forces, correction and rigid motions of a pass. Where a force drives a motion that only the facets of the mesh
-    /// resist, it is held; where nothing resists it, there is no equilibrium.
+    /// Solves a pass: contact forces, correction and rigid motions. A motion that a force drives is held if only the
+    /// facets of the mesh resist the motion. If nothing resists the motion, there is no equilibrium.
     ///
-    /// Gives the forces by which hinges close their gaps.
+    /// Returns the forces by which hinges close their gaps.
     pub fn iterate(
         &mut self,
         contact: &mut ContactForces,
@@ -76,7 +79,7 @@ impl PinIteration<'_, '_> {
             let closing = self.balance(contact, weight, v)?;
             state.has_tipped |= self.tips();
             self.take_held(&mut state.held, v);
-            // in balance other pairs may be closed
+            // the solve may have closed other pairs, with which a held motion is released
             if self.follow_held(contact, &mut state.held, v) {
                 continue;
             }
@@ -109,7 +112,8 @@ impl PinIteration<'_, '_> {
         }
     }
 
-    /// Contact forces and correction of a pass; gives the forces by which hinges close their gaps.
+    /// Contact forces and correction of a pass; returns the forces by which hinges close their
+    /// gaps.
     ///
     /// ```text
     /// dU = d_p + W (r + N dU + B^T P) + Z p      eq. (12.4)
@@ -128,25 +132,25 @@ impl PinIteration<'_, '_> {
             v.skew.add_to(&mut load);
             let mut k_star = self.workspace.k();
             contact.solve([&v.closing, &load], weight, &mut k_star, &mut v.du)?;
-            // Z p has its own N Z p
+            // the motion Z p already contains its N Z p
             let elastic = match k_star.free() {
                 Some(free) => difference(&v.du, &free.motion(&free.p())),
                 None => v.du.clone(),
             };
-            // forces of which several are answers would be others each time
+            // if several answers exist, each solve could return other forces
             if contact.pivots > 0 || v.skew.take_in(&elastic, others) {
                 return Ok(closing);
             }
         }
     }
 
-    /// Whether a body has tipped over, or is about to.
+    /// Whether a body has tipped over or is about to.
     fn tips(&self) -> bool {
         let free = self.workspace.stiffness.k.free();
         free.is_some_and(|free| free.stability() != Stability::Stable)
     }
 
-    /// Makes the rigid motions of the bodies that are not held unknowns.
+    /// Makes the rigid motions of the bodies unknowns, except the motions that are held.
     fn free_pins(
         &mut self,
         unbalanced: &[f64],
@@ -159,7 +163,7 @@ impl PinIteration<'_, '_> {
         freed.map_err(|error| problem.unsolvable(error))
     }
 
-    /// The largest of the other forces.
+    /// Largest load, internal or normal contact force.
     fn others(&self, contact: &ContactForces, v: &Vectors) -> f64 {
         let Equilibrium { load, internal, .. } = &v.equilibrium;
         let of_pairs = contact.acting().map(|(_, pair)| pair.force[0]);
@@ -169,8 +173,8 @@ impl PinIteration<'_, '_> {
             .fold(0.0, larger)
     }
 
-    /// Motions that a force drives and that contact does not resist, or as little as facets may with a force that they may
-    /// make.
+    /// Motions that a force drives although contact does not resist them, or resists them only as little as facets may.
+    /// A motion that facets resist counts only if its force is one that facets may cause.
     fn driven(&mut self, contact: &ContactForces, v: &Vectors) -> Vec<Loose> {
         let others = self.others(contact, v);
         let problem = self.problem;
@@ -192,7 +196,8 @@ impl PinIteration<'_, '_> {
         all.filter(is_driven).collect()
     }
 
-    /// Forces that drive motions, and the correction that they make, within the reach of the search.
+    /// Forces that drive motions of bodies, and a correction along these motions that stays within the reach of the
+    /// search.
     fn unbalance(&self, driven: &[Loose], v: &Vectors) -> Unbalance {
         let reach = self.workspace.search.reach();
         let (mut force, mut du) = (Vec::new(), vec![0.0; v.du.len()]);
@@ -214,7 +219,7 @@ impl PinIteration<'_, '_> {
         Unbalance { force, du }
     }
 
-    /// Whether a pair presses on the body with the largest of the forces at the pins.
+    /// Whether a pair presses on the body that has the largest force at its pins.
     fn touches(&self, contact: &ContactForces, force: &[f64]) -> bool {
         let pins = &self.workspace.pins;
         let acting: Vec<_> = contact.acting().collect();
@@ -224,8 +229,8 @@ impl PinIteration<'_, '_> {
         most.is_some_and(|(_, pressed)| pressed > 0.0)
     }
 
-    /// Holds the free motions of bodies with forces at their pins; whether there are any. What they are is seen where the bodies
-    /// have not gone anywhere.
+    /// Holds the free motions of bodies with forces at their pins; returns whether there are any. The free motions are
+    /// found in a configuration in which the bodies have not moved away.
     fn hold(
         &mut self,
         contact: &mut ContactForces,
@@ -241,7 +246,8 @@ impl PinIteration<'_, '_> {
         Ok(held.hold(&self.workspace.pins, &at, &acting, (force, least)))
     }
 
-    /// What holds motions in an increment that has converged must be within what facets make of its normal forces.
+    /// Checks that the forces that hold motions in a converged increment are within those that facets may cause under
+    /// the normal forces of the increment.
     pub fn check_held(
         &self,
         contact: &ContactForces,
@@ -266,7 +272,8 @@ impl PinIteration<'_, '_> {
         })
     }
 
-    /// Turns what is held with the surfaces of the iterate; whether something is let go.
+    /// Turns the held motions with the surfaces of the iterate; returns whether any held motion is
+    /// released.
     fn follow_held(
         &self,
         contact: &ContactForces,
@@ -283,7 +290,7 @@ impl PinIteration<'_, '_> {
         lets_go
     }
 
-    /// Takes what the pins carry along held motions in a pass into the equilibrium.
+    /// Adds the forces of the pins along held motions in a pass to the equilibrium.
     fn take_held(&mut self, held: &mut HeldMotions, v: &mut Vectors) {
         let Some(free) = self.workspace.stiffness.k.free() else {
             return;

@@ -1,21 +1,21 @@
-//! When K* is factorised anew in dynamic increments: by the measured rate of the corrections. docs/numerics.md, Kept factors
-//! of the stiffness.
+//! Decides when K* is factorised anew in dynamic increments, by the measured rate of the corrections. See
+//! docs/numerics.md, Kept factors of the stiffness.
 
 use super::corrections::Corrections;
 use crate::dynamics::results::Cause;
 use crate::model::Factorization;
 
-/// Rate that fresh factors are expected to have, until it has been measured.
+/// Rate that fresh factors are expected to have until it is measured.
 const FRESH_RATE: f64 = 0.03;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 1.0;
 
-/// Which factors an attempt uses.
+/// Rule for the factors of K* that an attempt uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum FactorRule {
-    /// Those at hand, as long as they pay.
+    /// The available factors are used as long as they pay.
     Kept,
-    /// New ones at every pass.
+    /// New factors are made for every pass.
     EveryPass,
 }
 
@@ -34,19 +34,19 @@ pub(super) struct Refactorization {
     rule: FactorRule,
     tolerance: f64,
     corrections: Corrections,
-    /// Whether the factors are of this attempt.
+    /// Whether the factors were made in this attempt.
     own: bool,
-    /// Passes so far.
+    /// Number of passes so far.
     passes: usize,
-    /// Passes since the last factorisation.
+    /// Number of passes since the last factorisation.
     age: usize,
     worn: bool,
-    /// Rate of fresh factors.
+    /// Rate of the corrections with fresh factors.
     fresh_rate: f64,
 }
 
 impl Refactorization {
-    /// Those of an attempt, which begins with new ones where these are due.
+    /// Factors of an attempt; it begins with new ones if these are due.
     pub fn new(rule: FactorRule, are_due: bool, tolerance: f64) -> Self {
         Refactorization {
             rule,
@@ -65,7 +65,7 @@ impl Refactorization {
         &self.corrections
     }
 
-    /// Whether they may serve in more than one pass.
+    /// Whether factors may serve in more than one pass.
     pub fn may_be_kept(&self) -> bool {
         self.rule == FactorRule::Kept
     }
@@ -75,7 +75,7 @@ impl Refactorization {
         self.worn
     }
 
-    /// Whether all passes so far had the same ones.
+    /// Whether all passes so far had the same factors.
     pub fn are_of_all_passes(&self) -> bool {
         !self.own || self.age == self.passes
     }
@@ -85,15 +85,15 @@ impl Refactorization {
         self.passes == 0
     }
 
-    /// K* is factorised.
+    /// Notes that K* has been factorised.
     pub fn renew(&mut self) {
         (self.own, self.age) = (true, 0);
     }
 
-    /// Takes in the relative correction of a pass. That it grows is no divergence where it `may_grow`.
+    /// Enters the relative correction of a pass. A growing correction is not divergence if it `may_grow`.
     ///
-    /// n(theta) = ln(correction/tolerance)/-ln(theta) passes are left at the rate theta; the factors are
-    /// worn when that is more than with fresh ones and the factorisation.
+    /// At the rate theta, n(theta) = ln(correction/tolerance)/-ln(theta) passes are left. The factors are worn if
+    /// n(theta) is more than the passes with fresh factors plus the cost of the factorisation.
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         self.corrections.take_in(correction, may_grow)?;
         self.age += 1;

@@ -3,47 +3,48 @@
 
 use crate::contact::{Constraint, ConstraintKey};
 
-/// What is given back after an increment, and what relaxed nodes have lost for it.
+/// Energy given back after an increment, and the energy that nodes without mass lost before.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Returned {
-    /// What was given back to each pair.
+    /// Return of each pair.
     pub pairs: Vec<PairReturn>,
-    /// Work of the supports that hold their velocity against what is given back (energy).
+    /// Work of the supports that keep their velocity during the return (energy).
     pub support_work: f64,
-    /// What nodes without mass lost as they came to rest.
+    /// Energy that nodes without mass lost as they came to rest.
     pub release: Release,
 }
 
-/// What nodes without mass lose as they come to rest at the end of an increment in which pairs open.
+/// Energy that nodes without mass lose as they come to rest at the end of an increment in which pairs open.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Release {
-    /// R: strain energy less that of the loads, W - R.u, before the rest and after it (energy).
+    /// Loss R: decrease of the strain energy less the potential of the loads, W - R.u, while the
+    /// nodes come to rest (energy).
     pub loss: f64,
-    /// Work of the loads on the way to the rest (energy).
+    /// Work of the loads while the nodes come to rest (energy).
     pub load_work: f64,
-    /// The pairs that have opened, at the end, with the forces that they carried before.
+    /// The opened pairs at the end of the increment, with the forces that they had before.
     pub opened: Vec<(Constraint, [f64; 2])>,
 }
 
-/// What was given back to a pair.
+/// Energy and impulses that a landing or release return gives to a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PairReturn {
     /// The pair.
     pub key: ConstraintKey,
     /// Energy D.
     pub energy: f64,
-    /// What friction had dissipated and gives back with its force (energy).
+    /// Energy that friction had dissipated and that returns with its force.
     pub friction: f64,
     /// Normal impulse (dt²/2) y (force time).
     pub normal: f64,
-    /// Tangential impulse (force time).
+    /// Tangential impulse of the return (force time).
     pub tangential: f64,
     /// Impulse on the slave node (force time).
     pub vector: [f64; 2],
 }
 
 impl Release {
-    /// The opened pairs, each with its part of the loss by the normal force that it carried.
+    /// The opened pairs, each with its part of the loss, in proportion to its earlier normal force.
     pub fn losses(&self) -> impl Iterator<Item = (ConstraintKey, f64)> + '_ {
         let whole: f64 = self.opened.iter().map(|(_, [pn, _])| pn).sum();
         let opened = self.opened.iter().filter(|(_, [pn, _])| *pn > 0.0);
@@ -52,12 +53,12 @@ impl Release {
 }
 
 impl Returned {
-    /// Energy given back to all pairs.
+    /// Energy given back at all pairs.
     pub fn energy(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.energy).sum()
     }
 
-    /// What friction gives back at all pairs.
+    /// Energy that friction gives back at all pairs.
     pub fn friction(&self) -> f64 {
         self.pairs.iter().map(|pair| pair.friction).sum()
     }

@@ -1,18 +1,19 @@
-//! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with
-//! finite rotation; the others move with the supports of the model where these all move alike. See docs/theory/time.md, Predictor.
+//! Predictor of the passes: bodies that are free, or turn about one node, go on as rigid bodies with finite rotation.
+//! All other bodies move with the supports of the model if these supports all move alike. See docs/theory/time.md,
+//! Predictor.
 
 use crate::dynamics::results::State;
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::vectors::{cross, difference};
 
-/// Displacement increments of two supports that differ by this part of their displacements are alike: they differ by round-off.
+/// Relative difference of the displacement increments of two supports up to which they are alike but for round-off.
 const ALIKE: f64 = 64.0 * f64::EPSILON;
 
-/// Sums over the nodes of a body.
+/// Rigid motion of a body, from sums over its nodes.
 #[derive(Debug, Clone, Copy, Default)]
 struct RigidMotion {
     mass: f64,
-    /// What the body turns about: its centre of mass, or the pin.
+    /// Point about which the body turns: its centre of mass, or the pin.
     pole: [f64; 2],
     /// Displacement of the pole.
     shift: [f64; 2],
@@ -28,9 +29,9 @@ struct RigidMotion {
 /// d = shift + (R - 1) r,  R the rotation by 2 atan(omega dt/2),  omega = H/I
 /// ```
 ///
-/// r from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about
-/// this configuration: from U0 a body that turns by the angle phi would be stretched by phi²/2. The other bodies have the
-/// increment that all supports of the model share, or zero.
+/// r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about the
+/// configuration of the predictor; started from U0, it would stretch a body that turns by the angle phi by phi²/2. The
+/// bodies that cannot move as rigid bodies have the increment that all supports of the model share, or zero.
 pub(super) fn rigid_predictor(
     problem: &StepProblem,
     start: &State,
@@ -59,7 +60,7 @@ pub(super) fn rigid_predictor(
             }
             continue;
         }
-        // without mass there is no motion to go on with
+        // a body without mass has no motion to continue
         if !(mass > 0.0 && inertia > 0.0) {
             continue;
         }
@@ -74,8 +75,8 @@ pub(super) fn rigid_predictor(
     d
 }
 
-/// Displacement increment along both axes that all supports of the model share, of those of `prescribed`, over all dofs: zero
-/// where they move otherwise.
+/// Displacement increment, along both axes, that all supports of the model share; zero if they move differently.
+/// `prescribed` are the increments of the supports over all dofs.
 fn of_all_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> [f64; 2] {
     let nodes = problem.model.mesh.node_count();
     [0, 1].map(|axis| {
@@ -92,7 +93,8 @@ fn of_all_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> [f6
     })
 }
 
-/// Rigid motion of every body in an increment of length `dt`; `prescribed` are the increments of the supports.
+/// Rigid motion of every body in an increment of length `dt`; `prescribed` are the displacement increments of the
+/// supports.
 fn motions(
     problem: &StepProblem,
     holds: &[Hold],

@@ -1,13 +1,13 @@
-//! Velocities of bodies that turn: those of their nodes at the end of an increment, and what impulses see of those at its
-//! start. See docs/theory/bodies.md, Rigid bodies that turn.
+//! Velocities of bodies that turn: those of their nodes at the end of an increment, and those from which impulses start
+//! at its start. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use std::borrow::Cow;
 
 use crate::dynamics::results::{Cause, State};
 use crate::dynamics::step::{StepProblem, Workspace, difference, sum};
 
-/// Gives the nodes of bodies that turn the velocities V1 = V0+ + dt A that go with their accelerations, eq. (11.4), and those
-/// without mass of elements the ones of their body at the displacements `u`.
+/// Sets the velocities of the nodes of bodies that turn to V1 = V0+ + dt A, eq. (11.4), with their accelerations A.
+/// Nodes without mass of elements get the velocity of their body at the displacements `u`.
 pub(super) fn carry_nodes(
     problem: &StepProblem,
     (v0p, dt): (&[f64], f64),
@@ -20,14 +20,15 @@ pub(super) fn carry_nodes(
     problem.unknowns.move_bodies(u, v);
 }
 
-/// The velocity that impulses of contact see in the place of V0, that of a motion of the model:
+/// The velocity V from which impulses of contact start in place of V0 is that of a motion of the
+/// model:
 ///
 /// ```text
 /// V = Vr + T_0 (T_0^T M T_0)^-1 T_0^T M (V0 - Vr)      eq. (11.5)
 /// ```
 ///
-/// Vr being any motion of the model with what is prescribed, T_0 the rows (11.3) of the start. The rest of V0 does no work
-/// with impulses, (V0 - V).M V = 0, so that they bring no energy in.
+/// Vr is any motion of the model with the prescribed values, and T_0 are the rows (11.3) at the start. The difference
+/// V0 - V does no work with impulses, (V0 - V).M V = 0, so impulses add no energy.
 pub(super) fn agreeing<'a>(
     problem: &StepProblem,
     workspace: &mut Workspace,

@@ -1,4 +1,4 @@
-//! A converged increment, and its motion as the path that another attempt begins with. See docs/theory/time.md.
+//! A converged increment, and its motion as the path from which another attempt begins. See docs/theory/time.md.
 
 use super::contact_states::ContactStates;
 use super::convergence::PartNoise;
@@ -20,38 +20,37 @@ pub(crate) struct Solved {
     pub equilibrium: Equilibrium,
     /// Contact forces and impact impulses.
     pub contact: ContactStates,
-    /// Motion at the end.
+    /// Motion at the end of the increment.
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
-    /// Work of the temperature, and the larger of its parts.
+    /// Work of the temperature, and the larger of its two parts.
     pub thermal_work: [f64; 2],
-    /// Displacement increment after the first pass, by the tangent of its start; where contact alone holds a body, after
-    /// the first one with closed pairs.
+    /// Displacement increment after the first pass, by the tangent at the start. If contact alone holds a body, the
+    /// increment is the one after the first pass with closed pairs.
     pub tangent: Vec<f64>,
     /// Its passes.
     pub passes: Vec<PassReport>,
-    /// What is given back once it has converged.
+    /// Energy given back after the increment has converged.
     pub returned: Returned,
-    /// Motions that are held in it.
+    /// Motions that are held in the increment.
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
-    /// What a static increment has measured of its factors.
+    /// Rates that a static increment has measured with its factors.
     pub rates: StaticRates,
     /// Whether the last factors of a static increment tell the stability of its end.
     pub tells_stability: bool,
-    /// Whether a body has tipped over, of which the next increment knows nothing.
+    /// Whether a body has tipped over, which the next increment cannot extrapolate.
     pub has_tipped: bool,
 }
 
-/// The motion of a converged increment between its ends, which another attempt from the same start may begin
-/// with.
+/// The motion of a converged increment between its ends, from which another attempt at the same start may begin.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Path {
     /// Velocity V0+.
     pub v: Vec<f64>,
-    /// Acceleration A, at the supports too.
+    /// Acceleration A, also at the supports.
     pub a: Vec<f64>,
     /// The pairs closed at the end.
     pub closed: ClosedPairs,
@@ -59,12 +58,12 @@ pub(crate) struct Path {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
-    /// What static increments have measured of their factors.
+    /// Rates that static increments have measured with their factors.
     pub rates: StaticRates,
 }
 
 impl Path {
-    /// t V0+ + t²/2 A, eq. (6.3).
+    /// Displacement t V0+ + t²/2 A after a time t, eq. (6.3).
     pub fn displacement(&self, t: f64) -> Vec<f64> {
         let both = self.v.iter().zip(&self.a);
         both.map(|(v, a)| t * (v + t / 2.0 * a)).collect()
@@ -72,8 +71,8 @@ impl Path {
 }
 
 impl Solved {
-    /// The motion of a static increment of length `dt` at a constant rate, which the next one begins with: none where a body has
-    /// tipped over to another contact, on which it stays.
+    /// The motion of a static increment of length `dt` at a constant rate, from which the next increment begins. The
+    /// rate is zero if a body has tipped over to another contact, on which it stays.
     pub fn static_path(&self, dt: f64) -> Path {
         let rate = |d: &f64| if self.has_tipped { 0.0 } else { d / dt };
         Path {
@@ -86,7 +85,7 @@ impl Solved {
         }
     }
 
-    /// The motion of an increment of length `dt`, A = (2/dt²) (d - dt V0+), eq. (4.1).
+    /// The motion of an increment of length `dt`, with A = (2/dt²) (d - dt V0+), eq. (4.1).
     pub fn path(&self, dt: f64) -> Path {
         let both = self.d.iter().zip(&self.v0p);
         let a = both.map(|(d, v0p)| 2.0 / (dt * dt) * (d - dt * v0p));

@@ -1,5 +1,5 @@
-//! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact lets
-//! them. See docs/theory/bodies.md, Static steps.
+//! Solution of a static increment: passes with an exact tangent, in which bodies that no support holds move as contact
+//! allows. See docs/theory/bodies.md, Static steps.
 
 use super::acceleration::{CorrectionProgress, PassAcceleration};
 use super::contact_forces::ContactForces;
@@ -20,27 +20,27 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{ClosedConstraints, ForceChange, HeldMotions, StiffnessForm};
 use crate::model::Factorization;
 
-/// Passes that are made in any case; further ones, once corrections are small, only while they will end within MAX PASSES: they
-/// converge quadratically.
+/// Number of passes that are made in any case while corrections are small. Passes converge quadratically, so an attempt
+/// goes on only if its passes will end within MAX PASSES.
 const PATIENCE: usize = 8;
-/// The same while corrections are large.
+/// Number of passes that are made in any case while corrections are large.
 const LARGE_PATIENCE: usize = 25;
-/// Passes after which slave nodes keep their targets.
+/// Number of passes after which slave nodes keep their targets.
 const SEARCHING_PASSES: usize = 3;
-/// Passes after which forces of pairs settle.
+/// Number of passes after which forces of pairs settle.
 const SETTLED_PASSES: usize = 4;
 
 /// An attempt at one static increment.
 pub(super) struct StaticAttempt<'a, 'm> {
     pub passes: Passes<'a, 'm>,
-    /// What the passes start from, in place of the rigid motion of the bodies.
+    /// The path from which the passes start, in place of the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
 impl<'m> StaticAttempt<'_, 'm> {
-    /// Solves the increment: from the motion of the last one, with factors that are kept as long as they pay, then with new ones in
-    /// every pass; then from rest; then with K* stiffened by closed pairs, since K alone, soft in bending, leaves the contact forces
-    /// of slender bodies few digits.
+    /// Solves the increment, starting from the motion of the last one, with factors that are kept as long as they pay,
+    /// then with new factors in every pass. If both fail, the increment starts from rest, and then with K* stiffened by
+    /// closed pairs: K alone is soft in bending and leaves the contact forces of slender bodies few digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
@@ -80,13 +80,13 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Whether closed pairs stiffen K*, and which factors the passes have, in the order in which it is tried.
+    /// Attempts in their order: whether closed pairs stiffen K*, and the rule for the factors of the passes.
     fn orders(&self) -> &'static [(bool, FactorRule)] {
         use FactorRule::{EveryPass, Kept};
         let may_keep = self.passes.problem.settings.factorization == Factorization::Keep;
         match self.guess {
             Some(path) if path.pairs_stiffen => &[(true, EveryPass), (false, EveryPass)],
-            // what facets make shows with exact tangents
+            // the effect of facets shows only with exact tangents
             Some(path) if may_keep && path.held.are_none() => &[
                 (false, Kept),
                 (false, EveryPass),
@@ -99,7 +99,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// The passes, with K* stiffened by closed pairs or not, and factors that may be kept.
+    /// Solves with passes in which closed pairs stiffen K* or not, and factors may be kept.
     fn solve_with(
         &mut self,
         pairs_stiffen: bool,
@@ -122,7 +122,8 @@ impl<'m> StaticAttempt<'_, 'm> {
         let all = self.passes.workspace.pins.dofs();
         let forces = pins.held.forces(&self.passes.workspace.pins);
         v.equilibrium.held = all.zip(forces).collect();
-        // the passes start from the rigid motion of the bodies, or from a motion that is known
+        // the passes start from the rigid motion of the bodies, or from the motion of an earlier
+        // solution
         let mut d = match self.guess {
             Some(path) => path.displacement(interval.dt),
             None => rigid_predictor(problem, start, interval),
@@ -142,7 +143,7 @@ impl<'m> StaticAttempt<'_, 'm> {
             let map = self.passes.workspace.stiffness.k.map();
             trace.balance(map.largest_restricted(&v.equilibrium.out_of_balance));
 
-            // the forces at hand may balance r and close the gaps of the iterate
+            // the available contact forces may already balance r and close the gaps of the iterate
             contact.relinearize();
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let stage = PassStage {
@@ -158,7 +159,7 @@ impl<'m> StaticAttempt<'_, 'm> {
                 return self.finish(&d, contact, pins, v, true);
             }
 
-            // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, which takes the force K d_p
+            // K - (C + C^T)/2 of eq. (12.1), and d_p at the supports, with the force K d_p
             let is_first = number == 0 && self.guess.is_none();
             let is_new = is_first || !self.fits(pairs_stiffen) || factors.are_worn();
             factors.begin(is_new);
@@ -171,13 +172,13 @@ impl<'m> StaticAttempt<'_, 'm> {
             let hinge_forces = self
                 .pins()
                 .iterate(&mut contact.forces, weight, &mut pins, v)?;
-            // the last equilibrium shows facets as they are
+            // in the first pass the facets are those of the last equilibrium
             if number == 0 && self.guess.is_none() {
                 self.pins().check_held(&contact.forces, &pins, v)?;
             }
             self.passes.take_hinge_forces(hinge_forces, v);
 
-            // residual r + Bn^T Pn + Bt^T Pt and correction dU beside their scales
+            // residual r + Bn^T Pn + Bt^T Pt and correction dU, relative to their scales
             let iterate = Iterate::new(&v.equilibrium, &contact.forces, [&v.u, &d]);
             let pass = iterate.pass(&v.support_force, &v.du);
             let ends = self.passes.measure(&pass, &mut v.residual, trace)?
@@ -188,7 +189,8 @@ impl<'m> StaticAttempt<'_, 'm> {
                 factors.end(correction);
             } else {
                 equal_forces.take_in(correction, settled);
-                // friction that falls with the slip rate moves away from that at rest
+                // a coefficient of friction that falls with the slip rate moves away from the
+                // coefficient at rest
                 let may_grow = equal_forces.moves_more() || contact.friction_moves;
                 corrections.take_in(correction, may_grow)?;
                 factors.take_in(correction)?;
@@ -216,7 +218,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(Cause::NotConverged)
     }
 
-    /// The motions of bodies that no support holds.
+    /// The passes with the motions of bodies that no support holds.
     fn pins(&mut self) -> PinIteration<'_, 'm> {
         PinIteration {
             problem: self.passes.problem,
@@ -224,14 +226,15 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Whether the factors at hand are of a K* of the same kind as the next one.
+    /// Whether the available factors belong to a K* of the kind that the next pass needs.
     fn fits(&self, pairs_stiffen: bool) -> bool {
         let stiffness = &self.passes.workspace.stiffness;
         let is_tangent = stiffness.form == StiffnessForm::Tangent && !pairs_stiffen;
         is_tangent && stiffness.k.solver.is_factorized()
     }
 
-    /// C of loads and pairs at the iterate, and K - (C + C^T)/2, factorised where it `is_new`.
+    /// Computes the changes C of the forces of loads and pairs at the iterate; factorises K - (C +
+    /// C^T)/2 if new factors are due (`is_new`).
     fn tangent(
         &mut self,
         (pairs_stiffen, is_new): (bool, bool),
@@ -269,7 +272,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         Ok(changes)
     }
 
-    /// What K* leaves out of the changes C: N.
+    /// The part N of the changes C that K* omits.
     fn skew_part(&self, changes: Vec<ForceChange>, correction: f64) -> SkewPart {
         match self.passes.workspace.stiffness.form {
             StiffnessForm::Positive => SkewPart::default(),
@@ -277,7 +280,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// The end of the increment, at rest.
+    /// State at the end of the increment, at rest.
     fn finish(
         &mut self,
         d: &[f64],

@@ -1,4 +1,4 @@
-//! When K is factorised anew in static increments: by the measured rates of kept factors and of new ones.
+//! Decides when K is factorised anew in static increments, by the measured rates of kept factors and of new ones. See
 //! docs/numerics.md, Kept factors of static steps.
 
 use serde::{Deserialize, Serialize};
@@ -8,24 +8,24 @@ use crate::dynamics::results::Cause;
 
 /// Rate of the corrections from which on kept factors never pay.
 const POOR: f64 = 0.3;
-/// Rate that kept factors are expected to have, until it has been measured.
+/// Rate that kept factors are expected to have until it is measured.
 const EXPECTED: f64 = 0.03;
-/// Rate of new factors in the first pass up to which kept ones are tried again.
+/// Rate of the first pass with new factors up to which kept factors are tried again.
 const SMOOTH: f64 = 0.01;
 /// Least rate that new factors are expected to have.
 const LEAST: f64 = 1e-4;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 2.0;
-/// Error of an iterate, beside the increment, up to which its factors tell the stability of the equilibrium.
+/// Error of an iterate, relative to the increment, up to which the factors there tell the stability of the equilibrium.
 const NEAR: f64 = 1e-3;
-/// What the increments of a static step have measured.
+/// Rates that the increments of a static step have measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StaticRates {
-    /// Rate in an increment of the factors that it began with.
+    /// Rate, within an increment, of the factors with which it began.
     kept: f64,
-    /// Rate of new factors over the error of the iterate that they are of.
+    /// Rate of new factors divided by the error of the iterate at which they are made.
     growth: f64,
-    /// Correction of the first pass.
+    /// Relative correction of the first pass.
     first: f64,
 }
 
@@ -45,26 +45,27 @@ pub(super) struct StaticFactors {
     /// Whether factors may serve in more than one pass.
     may_be_kept: bool,
     tolerance: f64,
-    /// Whether the factors of the last pass were made in this attempt, and those of the pass before.
+    /// Whether the factors of the pass before the last and of the last pass were made in this attempt.
     are_own: [bool; 2],
-    /// Passes so far.
+    /// Number of passes so far.
     passes: usize,
-    /// Passes since the last factorisation.
+    /// Number of passes since the last factorisation.
     age: usize,
-    /// Error of the iterate that the factors are of, beside the increment.
+    /// Error of the iterate at which the factors were made, relative to the increment.
     made_at: f64,
     /// Expected rate of the factors.
     rate: f64,
     /// Correction of the last pass.
     last: Option<f64>,
-    /// Whether it was smaller than that of the pass before: where it is not, contact looks for its states.
+    /// Whether the last correction was smaller than the one before. If the correction was not smaller, contact still
+    /// searches for its states.
     falls: bool,
-    /// Whether a pass was made with the factors of another.
+    /// Whether a pass has used the factors of an earlier one.
     have_been_kept: bool,
 }
 
 impl StaticFactors {
-    /// Those of an attempt, which may begin with factors at hand.
+    /// The factors of an attempt, which may begin with available ones.
     pub fn new(rates: StaticRates, rule: FactorRule, tolerance: f64) -> Self {
         StaticFactors {
             rates,
@@ -81,7 +82,7 @@ impl StaticFactors {
         }
     }
 
-    /// Expected error of the next iterate, beside the increment.
+    /// Expected error of the next iterate, relative to the increment.
     fn error(&self) -> f64 {
         self.last
             .map_or(self.rates.first, |last| last * self.rate.min(1.0))
@@ -94,8 +95,8 @@ impl StaticFactors {
     /// n(theta) + s > COST + n(growth e) + s_new
     /// ```
     ///
-    /// e is the error of the iterate, and s what the stability of the end costs: nothing with factors of an iterate
-    /// near to it, else another factorisation.
+    /// Here e is the error of the iterate at which factors would be made. The cost s of telling the stability at the
+    /// end is zero if the factors belong to an iterate near the end, else that of another factorisation.
     pub fn are_worn(&self) -> bool {
         if !self.may_be_kept || !self.falls || self.rate >= POOR {
             return true;
@@ -107,7 +108,7 @@ impl StaticFactors {
         left(self.rate) + of_stability(self.made_at) > COST + left(new) + of_stability(error)
     }
 
-    /// The next pass has factors that are new, or those of the pass before.
+    /// Begins a pass whose factors are new, or those of the last pass.
     pub fn begin(&mut self, is_new: bool) {
         self.are_own = [self.are_own[1], self.are_own[1] || is_new];
         if is_new {
@@ -117,10 +118,11 @@ impl StaticFactors {
         }
     }
 
-    /// Takes in the relative correction of a pass.
+    /// Enters the relative correction of a pass.
     ///
     /// # Errors
-    /// The first pass had factors at hand, and its correction is hardly smaller: it has led away.
+    /// Returns an error if the first pass used earlier factors and hardly decreased the correction,
+    /// so it has led away from the solution.
     pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
         self.age += 1;
         let of_last = self.are_own[0];
@@ -158,24 +160,24 @@ impl StaticFactors {
         Ok(())
     }
 
-    /// Takes in the relative correction of the pass that ends the attempt.
+    /// Enters the relative correction of the pass that ends the attempt.
     pub fn end(&mut self, correction: f64) {
         if self.age == 0 && self.are_own[1] {
             self.made_at = correction;
         }
     }
 
-    /// Whether a pass was made with the factors of another.
+    /// Whether a pass has used the factors of an earlier one.
     pub fn have_been_kept(&self) -> bool {
         self.have_been_kept
     }
 
-    /// Whether they tell the stability of the equilibrium.
+    /// Whether the factors tell the stability of the equilibrium.
     pub fn are_near(&self) -> bool {
         self.made_at <= NEAR
     }
 
-    /// What the attempt has measured.
+    /// Rates that the attempt has measured.
     pub fn rates(&self) -> StaticRates {
         self.rates
     }
@@ -187,8 +189,9 @@ mod tests {
 
     const TOLERANCE: f64 = 1e-11;
 
-    /// Passes and factorisations of an increment whose iterates have errors that fall by `growth` times the error of the
-    /// iterate that the factors are of; the first error is `first`, and factors of the increment before have the rate `kept`.
+    /// Number of passes and of factorisations of an increment. The error of the iterates falls by `growth` times the
+    /// error at which the factors were made. The first error is `first`, and the factors of the last increment have the
+    /// rate `kept`.
     fn solve(rates: &mut StaticRates, growth: f64, [first, kept]: [f64; 2]) -> [usize; 2] {
         let mut factors = StaticFactors::new(*rates, FactorRule::Kept, TOLERANCE);
         let (mut error, mut rate, mut count) = (first, kept, [0; 2]);

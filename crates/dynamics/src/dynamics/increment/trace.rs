@@ -1,7 +1,7 @@
-//! Progress of an attempt at an increment, which it leaves behind when it fails.
+//! Progress of an attempt at an increment, which remains when the attempt fails.
 //!
-//! Slave nodes whose contact goes to and fro from pass to pass: what keeps the passes from converging
-//! where the forces of contact do not come to rest.
+//! Slave nodes whose contact goes to and fro from pass to pass; these keep the passes from converging if contact forces
+//! do not come to rest.
 
 use std::collections::VecDeque;
 
@@ -11,17 +11,17 @@ use crate::dynamics::results::{Alternation, Cause, Course, PassReport, Worst};
 use crate::lcp::ContactState;
 use crate::model::Settings;
 
-/// Corrections whose mean rate counts at the end of an attempt.
+/// Number of corrections at the end of an attempt over which their mean rate is computed.
 const LAST: usize = 4;
-/// Growth of the corrections from their smallest to the last, or of the forces to be balanced from the
-/// first to the last, from which on passes diverged.
+/// Growth from which on passes count as diverged: of the corrections from their smallest to the last, or of the forces
+/// to be balanced from the first to the last.
 const GROWTH: f64 = 10.0;
-/// Passes for which there is room at the start.
+/// Number of passes for which memory is reserved at the start.
 const ROOM: usize = 100;
 /// Mean rate from which on the corrections count as not falling.
 const STALLED: f64 = 0.9;
 
-/// Why an attempt failed, and how far it came.
+/// Cause of a failed attempt, and its progress.
 pub(crate) struct Failed {
     pub cause: Cause,
     pub course: Option<Box<Course>>,
@@ -29,15 +29,15 @@ pub(crate) struct Failed {
     pub passes: Vec<PassReport>,
 }
 
-/// What an attempt leaves behind even when it fails.
+/// Records of an attempt, which remain even if it fails.
 #[derive(Default)]
 pub(super) struct Trace {
     pub passes: Vec<PassReport>,
     pub worst: Option<Worst>,
-    /// Number of passes before they last began with the predictor.
+    /// Number of passes before the last start from the predictor.
     earlier: usize,
     contact: PassContacts,
-    /// Largest force that the passes were to balance, of the first pass and of the last.
+    /// Largest force that the first and the last pass had to balance.
     unbalanced: Option<[f64; 2]>,
 }
 
@@ -50,19 +50,19 @@ impl Trace {
         }
     }
 
-    /// The passes begin with the predictor, perhaps anew.
+    /// Notes that the passes begin with the predictor, perhaps anew.
     pub fn begin(&mut self) {
         self.earlier = self.passes.len();
         self.contact.clear();
     }
 
-    /// Takes in the largest force that a pass is to balance.
+    /// Enters the largest force that a pass has to balance.
     pub fn balance(&mut self, force: f64) {
         let [first, _] = self.unbalanced.unwrap_or([force; 2]);
         self.unbalanced = Some([first, force]);
     }
 
-    /// Takes in a pass and its contact forces.
+    /// Enters a pass with its correction and its contact forces.
     pub fn add(&mut self, pass: PassReport, contact: &ContactForces) {
         self.passes.push(pass);
         self.contact.add(contact);
@@ -75,8 +75,7 @@ impl Trace {
             .map_or(f64::INFINITY, |pass| pass.correction)
     }
 
-    /// Whether the passes since they last began will have converged within MAX PASSES, at the rate of the
-    /// last ones.
+    /// Whether the passes since the last start will converge within MAX PASSES at the rate of the last ones.
     pub fn will_end(&self, settings: &Settings) -> bool {
         let corrections = self.corrections();
         match end_of(&corrections, settings.tolerance) {
@@ -85,20 +84,20 @@ impl Trace {
         }
     }
 
-    /// Relative corrections of the passes since they last began.
+    /// Relative corrections of the passes since the last start.
     fn corrections(&self) -> Vec<f64> {
         let passes = self.passes[self.earlier..].iter();
         passes.map(|pass| pass.correction).collect()
     }
 
-    /// The iterate of the last pass is solved to the given residual.
+    /// Notes that the iterate of the last pass is solved to the given residual.
     pub fn solved(&mut self, residual: f64) {
         if let Some(pass) = self.passes.last_mut() {
             pass.residual = residual;
         }
     }
 
-    /// The failure of the attempt, `tolerance` being that of the passes.
+    /// The failure of the attempt; `tolerance` is the tolerance of the passes.
     pub fn failed(self, cause: Cause, tolerance: f64) -> Failed {
         let cause = self.explain(cause);
         let course = match cause {
@@ -113,7 +112,7 @@ impl Trace {
         }
     }
 
-    /// How the passes went; none where they were too few to tell.
+    /// Course of the passes; `None` if they were too few to show one.
     fn course(&self, tolerance: f64) -> Option<Course> {
         let alternations = self.contact.alternations();
         let corrections = self.corrections();
@@ -126,14 +125,14 @@ impl Trace {
         }
     }
 
-    /// The cause as it is, or that passes with ever larger forces have made numbers overflow, or K*
-    /// indefinite.
+    /// The given cause, or `Diverged` if passes with ever larger forces have made numbers overflow
+    /// or K* indefinite.
     fn explain(&self, cause: Cause) -> Cause {
         let has_grown = |factor: f64| {
             let grown = |[first, last]: [f64; 2]| last > factor * first || last.is_nan();
             self.unbalanced.is_some_and(grown)
         };
-        // where an element is wrecked, there are no forces to compare
+        // with an element turned inside out there are no forces to compare
         let is_wrecked = matches!(cause, Cause::Inverted { .. }) && !self.passes.is_empty();
         let diverged = match cause {
             Cause::Indefinite { .. } => has_grown(GROWTH),
@@ -150,7 +149,7 @@ fn growth(corrections: &[f64]) -> Option<usize> {
     (last > GROWTH * least).then_some(smallest + 1)
 }
 
-/// How the last of some corrections went on, with n = ln(correction/tolerance)/-ln(rate) passes left.
+/// Course of the last corrections, with n = ln(correction/tolerance)/-ln(rate) passes left.
 fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
     let ends = &corrections[corrections.len().saturating_sub(LAST)..];
     let (&first, &last) = (ends.first()?, ends.last()?);
@@ -169,9 +168,9 @@ fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
     })
 }
 
-/// Passes in which a slave node must have left a state and come back to it.
+/// Number of last passes within which a slave node must have left a state and come back to it.
 const PASSES: usize = 6;
-/// Last passes, among those, in which its state must have changed.
+/// Number of the very last passes within which the state of a slave node must have changed.
 const RECENT: usize = 3;
 
 /// A closed pair after a pass.
@@ -184,9 +183,9 @@ struct Touch {
 /// Closed pairs after each of the last passes.
 #[derive(Debug, Default)]
 pub(super) struct PassContacts {
-    /// The touches of all passes, in their order.
+    /// The closed pairs of all passes, in the order of the passes.
     touches: Vec<Touch>,
-    /// Their number in every pass.
+    /// Number of closed pairs in every pass.
     counts: VecDeque<usize>,
 }
 
@@ -197,11 +196,11 @@ impl PassContacts {
         self.counts.clear();
     }
 
-    /// Takes in the pairs after a pass.
+    /// Enters the closed pairs after a pass.
     pub fn add(&mut self, contact: &ContactForces) {
         let touch = |(constraint, pair): (&Constraint, &ClosedPair)| Touch {
             pair: constraint.pair(),
-            // without friction it is all the same whether a pair slides
+            // without friction sticking and sliding are the same
             state: match constraint.mu {
                 0.0 => ContactState::Stick,
                 _ => pair.state,
@@ -222,7 +221,7 @@ impl PassContacts {
         self.make_room();
     }
 
-    /// Room for as many pairs in all passes as in the last.
+    /// Reserves memory for as many pairs in all passes as the last one has.
     fn make_room(&mut self) {
         let of_pass = self.counts.back().copied().unwrap_or(0);
         let passes = PASSES - self.counts.len();
@@ -230,7 +229,7 @@ impl PassContacts {
         self.counts.reserve(passes);
     }
 
-    /// Pairs of one pass after the other.
+    /// The closed pairs of every pass, one pass after the other.
     fn passes(&self) -> impl Iterator<Item = &[Touch]> {
         let mut rest = self.touches.as_slice();
         self.counts.iter().map(move |&count| {
@@ -263,7 +262,7 @@ impl PassContacts {
         if recent.windows(2).all(|pair| pair[0] == pair[1]) {
             return None;
         }
-        // the latest pass with another state than the last, and whether the last state was there before it
+        // the latest pass whose state differs from the last state, and whether the last state occurred before this pass
         let last = states.last()?;
         let other = states.iter().rposition(|state| state != last)?;
         let came_back = |state: &[Vec<Touch>], at: usize| state[..at].contains(last);
@@ -271,7 +270,7 @@ impl PassContacts {
     }
 }
 
-/// What differs between two states of a slave node; none if nothing does.
+/// The difference between two states of a slave node; `None` if there is none.
 fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
     let without = |p: &[Touch], q: &[Touch]| {
         let is_other = |touch: &&Touch| q.iter().all(|other| other.pair.nodes != touch.pair.nodes);
@@ -295,7 +294,7 @@ fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
 mod tests {
     use super::*;
 
-    /// The failure after passes with the given corrections, and others before.
+    /// The failure of passes with the given corrections, after other passes.
     fn failed(cause: Cause, corrections: &[f64]) -> Failed {
         let mut trace = Trace::default();
         let pass = |correction| PassReport {

@@ -1,6 +1,6 @@
-//! Results of a converged increment besides its energies: momentum, motion of the bodies,
-//! resultants of the contacts, nodal quantities and reactions of rigid surfaces.
-//! See docs/theory/impacts.md, Ledger.
+//! Results of a converged increment other than energies: momentum, motion of the bodies, resultants
+//! of the contacts, nodal quantities and reactions of rigid surfaces. See docs/theory/impacts.md,
+//! Ledger.
 
 use super::bodies::{BodyMasses, Moving, momentum, rigid_reactions};
 use super::contact_ledger::ContactLedger;
@@ -20,16 +20,16 @@ use crate::dynamics::step::{Discretization, Interval, Mass, SlaveFaces, StepProb
 use crate::model::Contact;
 use crate::prepare::Redistribution;
 
-/// Accounts of a run besides the energy ledger: bodies and contacts.
+/// Accounts of a run other than the energy ledger: bodies and contacts.
 pub(crate) struct Accounts {
     bodies: BodyMasses,
     faces: SlaveFaces,
     contacts: ContactLedger,
     touches: Touches,
     surface_work: SurfaceWork,
-    /// The consistent mass, where the mass is redistributed.
+    /// The consistent mass, if the mass is redistributed.
     consistent: Option<Mass>,
-    /// Momentum that mass-proportional damping has taken.
+    /// Momentum that mass-proportional damping has removed.
     damped: Momentum,
     /// Largest normal force of contact on a node so far (force).
     largest_normal: f64,
@@ -66,14 +66,14 @@ impl Accounts {
         }
     }
 
-    /// Transfers the sums over the run.
+    /// Transfers the sums over the run to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self {
             [contacts, touches, surface_work] damped, largest_normal; bodies, faces, consistent
         })
     }
 
-    /// Motion at the start with the energies of the ledger, without forces.
+    /// Enters the motion at the start with the energies of the ledger, without forces.
     pub fn start(&self, problem: &StepProblem, state: &State, ledger: &Ledger) -> IncrementReport {
         let (dofs, nodes) = (state.u.len(), state.u.len() / 2);
         let of_contact = |contact: &Contact| ContactResultant {
@@ -111,7 +111,7 @@ impl Accounts {
         }
     }
 
-    /// Enters a converged increment from a start: results at nodes, of contacts, bodies and rigid surfaces.
+    /// Enters a converged increment that began at `start`: results at nodes, of contacts, bodies and rigid surfaces.
     pub fn enter(
         &mut self,
         problem: &StepProblem,
@@ -125,7 +125,7 @@ impl Accounts {
         let mut contacts = contact_resultants(problem, bodies, solved, &start.u, interval);
         let mut report = self.moving(problem, &solved.end, ledger);
         let u = &solved.equilibrium.u_theta;
-        // forces that act in no time give no impulse
+        // in a step without rates forces give no impulse
         let interval = match problem.integration.has_rates {
             true => interval,
             false => Interval {
@@ -159,14 +159,14 @@ impl Accounts {
         }
     }
 
-    /// Adds the momentum that mass-proportional damping takes in an increment: alpha M d, which acts
-    /// halfway, eq. (9.10).
+    /// Adds the momentum that mass-proportional damping removes in an increment: alpha M d, which acts at
+    /// mid-increment, eq. (9.10).
     fn enter_damping(&mut self, problem: &StepProblem, solved: &Solved) {
         if !problem.has_damping() {
             return;
         }
         let (d, u_theta) = (&solved.d, &solved.equilibrium.u_theta);
-        // U0 + d/2: U_theta where nodes without mass may have gone on from U0 + d to their rest
+        // U0 + d/2 is U_theta if nodes without mass may have moved on from U0 + d to their rest
         let halfway: Vec<f64> = match problem.integration.energy_momentum {
             true => u_theta.clone(),
             false => solved

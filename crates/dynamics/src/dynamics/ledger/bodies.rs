@@ -1,4 +1,4 @@
-//! Motion and energies of every body, docs/theory/impacts.md, Ledger.
+//! Motion and energies of every body; see docs/theory/impacts.md, Ledger.
 //!
 //! Resultant reactions of rigid surfaces at their reference nodes. See docs/theory/impacts.md, Ledger.
 
@@ -11,7 +11,7 @@ use crate::vectors::dot;
 /// Masses of the bodies of a model, constant over a run.
 pub(crate) struct BodyMasses {
     pub bodies: Bodies,
-    /// Bodies of elements that turn: the body, the centre of mass and the moment of inertia about it.
+    /// Turning bodies with elements: number of the body, centre of mass and moment of inertia about it.
     turning: Vec<(usize, usize, f64)>,
     /// Mass of every body.
     mass: Vec<f64>,
@@ -59,7 +59,8 @@ impl BodyMasses {
     /// H = sum_a r_a x p_a,  I = sum_ab r_a.M_ab r_b,  omega = H / I     eq. (9.7)
     /// ```
     ///
-    /// p = M v with the consistent mass, m_a its row sums, positions of the current configuration.
+    /// Here p = M v with the consistent mass, m_a are the row sums of M, and positions are those of
+    /// the current configuration.
     pub fn results(&self, problem: &StepProblem, moving: &Moving) -> Vec<BodyResult> {
         let Moving { u, v, p, elements } = *moving;
         let centers = self.centers(problem, u);
@@ -102,7 +103,7 @@ impl BodyMasses {
         results
     }
 
-    /// Enters the contact forces on the nodes (2 N entries), which act in the configuration of
+    /// Adds the contact forces on the nodes (2 N entries), which act in the configuration of
     /// displacements `u`; moments are about the centres of mass.
     pub fn add_contact(
         &self,
@@ -125,7 +126,7 @@ impl BodyMasses {
         }
     }
 
-    /// Nodes of bodies, with their bodies.
+    /// Nodes that belong to a body, each with its body.
     fn nodes(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let numbered = self.bodies.of_node.iter().enumerate();
         let centres = self.turning.iter().map(|&(body, centre, _)| (centre, body));
@@ -134,7 +135,7 @@ impl BodyMasses {
             .chain(centres)
     }
 
-    /// Centres of mass.
+    /// Centres of mass of the bodies.
     fn centers(&self, problem: &StepProblem, u: &[f64]) -> Vec<[f64; 2]> {
         let mut centers = vec![[0.0; 2]; self.bodies.count];
         for (node, body) in self.nodes() {
@@ -149,7 +150,8 @@ impl BodyMasses {
         centers
     }
 
-    /// Moments of inertia about the centres of mass, from the arms of the nodes (2 N entries).
+    /// Moments of inertia of the bodies about their centres of mass, from the arms of the nodes (2
+    /// N entries).
     fn moments_of_inertia(&self, problem: &StepProblem, arms: &[f64]) -> Vec<f64> {
         let weighted = problem.mass.times(arms);
         let mut inertia = vec![0.0; self.bodies.count];
@@ -161,7 +163,7 @@ impl BodyMasses {
     }
 }
 
-/// Length of the body that turns by an angle.
+/// Length by which the rotation dof of a turning body is divided to give the body's angle.
 fn own_length(problem: &StepProblem, spin: usize) -> f64 {
     let mut bodies = problem.unknowns.turning.bodies.iter();
     bodies
@@ -169,12 +171,12 @@ fn own_length(problem: &StepProblem, spin: usize) -> f64 {
         .map_or(1.0, |body| body.length)
 }
 
-/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, p = M V; of bodies of
-/// revolution that along the axis, all others being zero around it.
+/// Linear momentum sum p and angular momentum sum x cross p about the origin of all bodies, with p = M V. For bodies of
+/// revolution only the momentum along the axis is given; the other components are zero.
 pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum {
     let mut momentum = Momentum::default();
     let bodies = problem.unknowns.turning.bodies.iter();
-    // I omega, which is L times what belongs to s = L c
+    // I omega is L times the momentum that belongs to s = L c
     bodies.for_each(|body| momentum.angular += body.length * p[body.spin]);
     let centres = problem
         .unknowns
@@ -195,8 +197,8 @@ pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum 
     momentum
 }
 
-/// The motion of the rigid bodies, and the forces `reaction` at their reference nodes and angles, to which those of their nodes
-/// have been handed over, eq. (9.9).
+/// The motion of the rigid bodies, and the forces `reaction` at their reference nodes and angles, which include those
+/// handed over from their nodes, eq. (9.9).
 pub(crate) fn rigid_reactions(
     problem: &StepProblem,
     state: &State,

@@ -1,7 +1,7 @@
-//! Work, impulses and slip of every contact since the start, docs/theory/impacts.md, Ledger.
+//! Work, impulses and slip of every contact since the start; see docs/theory/impacts.md, Ledger.
 //!
-//! How far the pairs at the end of a converged increment are from the contact law.
-//! See docs/theory/complementarity.md, Problem of a pass.
+//! Errors of the pairs against the contact law at the end of a converged increment. See
+//! docs/theory/complementarity.md, Problem of a pass.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ struct Sums {
     normal_work: f64,
     handover_work: f64,
     friction_dissipation: f64,
-    /// Normal forces times the ways that pairs slide (energy).
+    /// Sum of normal force times sliding path of the pairs (energy).
     sliding: f64,
     landing_return: f64,
     release_loss: f64,
@@ -34,14 +34,14 @@ struct Sums {
 /// Sums over the run of every contact, and the accumulated slip of every slave node.
 pub(crate) struct ContactLedger {
     contacts: Vec<Sums>,
-    /// `N` entries; NaN at all nodes but slave nodes.
+    /// Slip of every node, `N` entries; NaN at nodes that are not slave nodes.
     pub slip: Vec<f64>,
     /// Reference node of every contact whose master is a rigid surface.
     reference: Vec<Option<usize>>,
 }
 
 impl ContactLedger {
-    /// Opens the ledger; `slip` is the slip of every node accumulated so far.
+    /// Opens the ledger; `slip` is the accumulated slip of every node.
     pub fn new(model: &Model, slip: Vec<f64>) -> Self {
         let reference = |master: usize| {
             let mut bodies = model.rigid_bodies.iter();
@@ -56,7 +56,7 @@ impl ContactLedger {
         }
     }
 
-    /// Transfers the sums and slips.
+    /// Transfers the sums and slips to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             contacts,
@@ -127,15 +127,15 @@ impl ContactLedger {
         }
     }
 
-    /// Of every contact the energy that friction has dissipated, and the sum of normal forces times the ways that pairs
-    /// slide.
+    /// For every contact the energy that friction has dissipated, and the sum of normal force times sliding path of the
+    /// pairs.
     pub fn slid(&self) -> impl Iterator<Item = (f64, f64)> {
         let sums = self.contacts.iter();
         sums.map(|sums| (sums.friction_dissipation, sums.sliding))
     }
 
-    /// Enters what is given back after an increment, before the increment itself; gives the total impulses of these
-    /// pairs.
+    /// Enters the returns after an increment, before the increment itself; returns the total impulses of the pairs with
+    /// returns.
     pub fn enter_returns(
         &mut self,
         model: &Model,
@@ -182,8 +182,8 @@ impl ContactLedger {
         solved.returned.pairs.iter().filter_map(total).collect()
     }
 
-    /// How far the total impulses are from Coulomb's cone, contact by contact. Without returns they are in it, as
-    /// forces and impacts each are.
+    /// Distance of the total impulses from Coulomb's cone, for each contact. Without returns the total impulses are in
+    /// the cone, since the impulses of forces and those of impacts are each in it.
     fn measure_cones(totals: &Totals, resultants: &mut [ContactResultant]) {
         let mut largest = vec![0.0_f64; resultants.len()];
         for (key, (constraint, [normal, tangential, size])) in totals {
@@ -200,8 +200,8 @@ impl ContactLedger {
         }
     }
 
-    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes, and their mean to that of master nodes, eq. (9.16);
-    /// where a node has several pairs, the largest.
+    /// Adds |Bt d| of the closed pairs to the slip of their slave nodes, and its mean to the slip of master nodes, eq.
+    /// (9.16). If a node has several pairs, the largest slip is added.
     fn slide(&mut self, solved: &Solved) {
         let mut increments = vec![0.0_f64; self.slip.len()];
         let mut of_masters = MasterMeans::new(self.slip.len());
@@ -218,8 +218,8 @@ impl ContactLedger {
     }
 }
 
-/// 1 where the slave surface that a constraint acts on is the side whose forces are told, -1 where it is the other, 0
-/// within one body.
+/// The result is 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other
+/// side, 0 within one body.
 fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64 {
     let on_side = forces_on_side(model, bodies, constraint, [1.0, 0.0]);
     let slave = constraint.forces_on_slave_surface([1.0, 0.0]).next();
@@ -230,11 +230,11 @@ fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64
     }
 }
 
-/// Normal and tangential impulses of pairs in an increment, and the sum of the sizes of the normal ones: where all of
-/// a force is taken back, the total is round-off of its parts.
+/// Normal and tangential impulses of pairs in an increment, and the sum of the absolute normal impulses: if all of a
+/// force is taken back, the total is only the round-off of its parts.
 type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 3])>;
 
-/// Total impulses dt P + (Phi, Psi) and what is given back, pair by pair.
+/// Total impulses of every pair: dt P + (Phi, Psi) plus the return.
 fn total_impulses<'s>(solved: &'s Solved, dt: f64) -> Totals<'s> {
     let mut totals = Totals::new();
     let mut add = |constraint: &'s Constraint, impulse: [f64; 2]| {
@@ -265,7 +265,8 @@ fn add_impulse([normal, tangential, size]: &mut [f64; 3], impulse: [f64; 2]) {
 }
 
 impl ContactImpulse {
-    /// Adds the normal and tangential impulse of a constraint, whose impulses at the nodes of the side are given.
+    /// Adds the normal and tangential impulse of a constraint; `on_side` are its impulses at the nodes of the reported
+    /// side.
     fn add(
         &mut self,
         [normal, tangential]: [f64; 2],
@@ -279,7 +280,8 @@ impl ContactImpulse {
         self.tangential += tangential;
     }
 
-    /// Adds the impulse of a landing return, whose slave node is on the side (1), on the other (-1) or on both (0).
+    /// Adds the impulse of a landing return; its slave node is on the reported side (1), on the other side (-1) or on
+    /// both (0).
     fn add_return(&mut self, returned: &PairReturn, side: f64) {
         self.vector[0] += side * returned.vector[0];
         self.vector[1] += side * returned.vector[1];
@@ -301,7 +303,7 @@ impl ContactImpulse {
     }
 }
 
-/// Adds forces at nodes to those on the bodies of the nodes; moments about the origin.
+/// Adds forces at nodes to the forces on their bodies; moments are about the origin.
 fn add_to_bodies(
     problem: &StepProblem,
     bodies: &Bodies,
@@ -321,8 +323,8 @@ fn add_to_bodies(
     }
 }
 
-/// The largest violations at the end of an increment that began with `start`, with lists of candidates that
-/// hold there.
+/// The largest violations of the contact law at the end of an increment that began at `start`; candidate lists are
+/// those of the end.
 pub(crate) fn contact_violation(
     problem: &StepProblem,
     search: &Search,
@@ -349,7 +351,7 @@ pub(crate) fn contact_violation(
     }
 }
 
-/// An open pair must not overlap.
+/// Violation of an open pair, which must not overlap.
 fn violation_of_open_pair(gap: f64, scale: f64) -> ContactViolation {
     ContactViolation {
         overlap: (-gap).max(0.0) / scale,
@@ -357,7 +359,7 @@ fn violation_of_open_pair(gap: f64, scale: f64) -> ContactViolation {
     }
 }
 
-/// A closed pair has no gap, one that sticks no slip.
+/// Violation of a closed pair, which must have no gap and, if it sticks, no slip.
 fn violation_of_closed_pair(constraint: &Constraint, slips: bool) -> ContactViolation {
     let part = |length: f64| length / constraint.scale;
     let sticks = !slips && constraint.mu > 0.0;
@@ -378,7 +380,7 @@ mod tests {
     use super::*;
     use crate::contact::testing;
 
-    /// Violation of [`testing::at_face`].
+    /// Violation of the constraint [`testing::at_face`].
     fn violation(gap_and_slip: [f64; 2], mu: f64, slips: Option<bool>) -> ContactViolation {
         let mut constraint = testing::at_face(gap_and_slip);
         constraint.mu = mu;

@@ -15,27 +15,27 @@ use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, diff
 use crate::elements::{ElementResult, TangentPart};
 use crate::linear::{larger, largest};
 
-/// Normal work of contact in an increment up to which it is round-off, as a part of the largest energy
-/// so far: forces and displacements are converged to 1e-11 (`TOLERANCE`), and pairs add up.
+/// Normal work of contact in an increment up to which it is round-off, relative to the largest energy so far: forces
+/// and displacements are converged to 1e-11 (`TOLERANCE`), and the errors of pairs add up.
 pub(super) const CONTACT_WORK_ROUND_OFF: f64 = 1e-10;
 
-/// Energy that elements, whose results are given, and springs store in a state (force length).
+/// Energy stored by elements, whose results are given, and by springs in a state (force length).
 fn strain_energy(problem: &StepProblem, state: &State, elements: &[ElementResult]) -> f64 {
     let of_elements: f64 = elements.iter().map(|element| element.energy).sum();
     of_elements + problem.elements.spring_energy(&state.u)
 }
 
-/// Energy ledger: every term is computed on its own, so that the balance shows what is wrong.
+/// Energy ledger: every term is computed on its own, so the balance shows errors.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Ledger {
     pub energy: Energy,
     /// Largest kinetic or strain energy of every body so far.
     pub largest: Vec<f64>,
-    /// M V of the state that it stands at.
+    /// Momentum M V of the state that the ledger has reached.
     pub momentum: Vec<f64>,
     /// Strain energy, stress and strain of every element.
     pub elements: Arc<[ElementResult]>,
-    /// Energy that contact put in in the last increment, if it did.
+    /// Energy that contact added in the last increment, if any.
     pub contact_energy: Option<f64>,
     /// Work of the pairs in the last increment.
     pub works: Vec<PairWork>,
@@ -43,13 +43,13 @@ pub(crate) struct Ledger {
     pub end: Option<EndForces>,
     /// T + W at the start of the analysis.
     start: f64,
-    /// Work of the loads and of the supports in static steps.
+    /// Work of the loads and work of the supports in static steps.
     sources: [f64; 2],
     /// Largest K_ii of an element or spring in every part at the start (force/length).
     stiffness: Vec<f64>,
 }
 
-/// Largest K_ii of an element or spring in every part.
+/// Largest K_ii of an element or spring in every part of the model.
 fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
     let StepProblem {
         elements, parts, ..
@@ -72,7 +72,8 @@ fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
     most
 }
 
-/// Forces at the end of an increment of a slow motion, from which a static step goes on: its inertia counts as load.
+/// Forces at the end of an increment of a slow motion, from which a static step goes on; the inertia of the slow motion
+/// counts as load.
 fn end_of_slow_motion(problem: &StepProblem, solved: &Solved) -> EndForces {
     let Equilibrium {
         load,
@@ -112,7 +113,7 @@ impl Ledger {
         ledger
     }
 
-    /// Transfers all of it.
+    /// Transfers all fields of the ledger to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let mut of_elements = self.elements.to_vec();
         archive.transfer(&mut of_elements)?;
@@ -122,8 +123,9 @@ impl Ledger {
         })
     }
 
-    /// Goes on to a step of another procedure at a state, whose velocities have become those of the step: what a body
-    /// loses as it comes to rest is numerical dissipation, what supports give as they begin to move is their work.
+    /// Changes the ledger to a step of another procedure at a state with the velocities of the new step. Kinetic energy
+    /// that bodies lose as they come to rest is numerical dissipation; energy that supports give as they begin to move
+    /// is their work.
     pub fn change_procedure(&mut self, problem: &StepProblem, state: &State) {
         problem.mass.write_product(&state.v, &mut self.momentum);
         let kinetic = dot(&state.v, &self.momentum) / 2.0;
@@ -139,7 +141,7 @@ impl Ledger {
         }
     }
 
-    /// Takes in the kinetic energy of every body in a state, and the strain energy of every element.
+    /// Enters the kinetic energy of every body and the strain energy of every element in a state.
     fn enter_bodies(&mut self, problem: &StepProblem, state: &State, elements: &[ElementResult]) {
         let parts = problem.parts;
         let mut kinetic = vec![0.0; parts.bodies()];
@@ -160,11 +162,10 @@ impl Ledger {
         }
     }
 
-    /// The ledger with a converged increment of length `dt` entered, which started from `start`, and what is given back
-    /// after it.
+    /// The ledger after a converged increment of length `dt`, which began at `start`, and after the energy given back.
     ///
     /// # Errors
-    /// An energy that is not finite.
+    /// Returns an error if an energy is not finite.
     pub fn entered(
         mut self,
         problem: &StepProblem,
@@ -187,7 +188,8 @@ impl Ledger {
         Ok(self)
     }
 
-    /// Enters the impulses at the start of an increment: what they take, and the work of supports, which keep their velocity.
+    /// Enters the impulses at the start of an increment: the energy that they remove, and the work of supports, which
+    /// keep their velocity.
     fn enter_impulses(&mut self, problem: &StepProblem, start: &State, solved: &Solved) {
         if solved.v0p == start.v {
             return;
@@ -208,7 +210,7 @@ impl Ledger {
             impulse_support_work(unknowns.prescribed(), &start.v, &reaction);
     }
 
-    /// Takes in the energies and the momentum of the state at the end of an increment.
+    /// Enters the energies and the momentum of the state at the end of an increment.
     fn enter_state(&mut self, problem: &StepProblem, end: &State) {
         let elements = problem.elements.evaluate(end.motion());
         problem.mass.write_product(&end.v, &mut self.momentum);
@@ -220,8 +222,8 @@ impl Ledger {
         e.kinetic = dot(&end.v, &self.momentum) / 2.0;
     }
 
-    /// Enters the work and the losses of a dynamic increment that started from `start` with the strain energy `strain0`, term by
-    /// term, eq. (9.1) to eq. (9.5).
+    /// Enters the work and the losses, term by term, of a dynamic increment that began at `start` with the strain
+    /// energy `strain0`, eq. (9.1) to eq. (9.5).
     fn enter_motion(
         &mut self,
         problem: &StepProblem,
@@ -295,8 +297,9 @@ impl Ledger {
         self.end = (problem.integration.fades()).then(|| end_of_slow_motion(problem, solved));
     }
 
-    /// Enters the work of a static increment that started from `start` with the strain energy `strain0`: between two
-    /// equilibria loads, internal force and normal contact forces act with the mean of both, eq. (12.7) and eq. (12.8).
+    /// Enters the work of a static increment that began at `start` with the strain energy `strain0`. Between two
+    /// equilibria, loads, internal force and normal contact forces act with the mean of their two values, eq. (12.7)
+    /// and eq. (12.8).
     fn enter_equilibrium(
         &mut self,
         problem: &StepProblem,
@@ -341,7 +344,8 @@ impl Ledger {
             *all += work;
             e.scale = larger(e.scale, all.abs());
         }
-        // d.(F0 + F1)/2 + H - (W1 - W0) - D, and what the mean force of a pair differs from that of its slip
+        // d.(F0 + F1)/2 + H - (W1 - W0) - D, and the difference between a pair's work with its mean force and with the
+        // force during its slip
         let dissipated = solved.material_dissipation;
         e.material_dissipation += dissipated;
         e.enter_thermal_work(solved.thermal_work);
@@ -354,8 +358,8 @@ impl Ledger {
         Ok(())
     }
 
-    /// What the round-off of the forces of a static increment may do of work on its way: forces that no pass can balance,
-    /// of elements without unknowns too.
+    /// Bound of the work that the round-off of forces may do in a static increment. No pass can balance the round-off
+    /// of forces; forces of elements without unknowns count too.
     ///
     /// ```text
     /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)
@@ -370,11 +374,11 @@ impl Ledger {
         work.fold(0.0, larger)
     }
 
-    /// Closes an increment that ends in a state: the balance, the largest energy, and the work of the normal contact forces
-    /// since `contact_work0` if it is positive beyond round-off.
+    /// Completes an increment that ends in the state `end`: computes the balance and the largest energy. Returns the
+    /// work of the normal contact forces since `contact_work0` if it is positive beyond round-off.
     ///
     /// # Errors
-    /// An energy that is not finite.
+    /// Returns an error if an energy is not finite.
     fn close(&mut self, end: &State, contact_work0: f64) -> Result<Option<f64>, Cause> {
         let e = &mut self.energy;
         e.balance = balance(e, self.start);
@@ -387,10 +391,10 @@ impl Ledger {
         Ok(is_positive.then_some(work))
     }
 
-    /// All energies must be finite.
+    /// Checks that all energies are finite.
     ///
     /// # Errors
-    /// [`Cause::NotFinite`] with the node that moves most in `state`, or is the fastest.
+    /// Returns [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
     pub fn check(&self, state: &State) -> Result<(), Cause> {
         let e = &self.energy;
         let energies = [

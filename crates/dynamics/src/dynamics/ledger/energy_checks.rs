@@ -10,15 +10,15 @@ use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{StepProblem, Workspace};
 use crate::linear::larger;
 
-/// Energy balance, as a part of the largest energy, beyond which the results of a run mean nothing: it stops.
+/// Energy balance, relative to the largest energy, beyond which the results of a run mean nothing and the run stops.
 const UNBALANCED: f64 = 1e-3;
 
-/// Checks that contact puts no energy in, in a converged increment from `start`, that counts beside
-/// the largest energy that the bodies in contact have had up to its end.
+/// Checks that contact adds no energy in a converged increment from `start` that is significant
+/// against the largest energy of the bodies in contact up to its end.
 ///
 /// # Errors
-/// [`Cause::GainedEnergy`]: in halves of the increment a node passes a corner before or after the
-/// corner turns concave.
+/// Returns [`Cause::GainedEnergy`]: if the increment is halved, a node passes the corner before or
+/// after the corner turns concave.
 pub(crate) fn check_energy_gain(
     problem: &StepProblem,
     start: &State,
@@ -39,17 +39,17 @@ pub(crate) fn check_energy_gain(
     Err(Cause::GainedEnergy { part, pair })
 }
 
-/// Checks that the energy balance counts for nothing beside the largest energy so far.
+/// Checks that the energy balance is negligible against the largest energy so far.
 ///
-/// Round-off of positions makes forces that are out of balance by as much as they are. Of a motion with so
-/// little energy that these forces n are more than a thousandth of its own no balance is asked,
+/// Round-off of positions causes forces n that cannot be balanced. No balance is demanded of a motion with so little
+/// energy that the forces n exceed a thousandth of its own forces:
 ///
 /// ```text
 /// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
 /// ```
 ///
-/// E the largest energy so far, n, K_ii and M_ii those of eq. (4.10); nor is one asked in a static step of bodies on whose
-/// way n has done more than a thousandth of E of work, since they move rigidly.
+/// Here E is the largest energy so far; n, K_ii and M_ii are those of eq. (4.10). In a static step no balance is
+/// demanded either if n has done more than a thousandth of E of work, since the bodies then move rigidly.
 ///
 /// # Errors
 /// [`Cause::Unbalanced`].
@@ -88,12 +88,12 @@ pub(crate) fn check_balance(
     })
 }
 
-/// Energy that contact puts in because nodes slide on to segments that they were behind: the sum over
-/// the pairs, each relative to the largest energy of its bodies.
+/// Energy that contact adds because nodes slide on to segments behind which they were: the sum over the pairs, each
+/// relative to the largest energy of its bodies.
 ///
-/// With energy-momentum rows a pair does the work Pn (g1 - g0). It is positive where a node slides over
-/// a convex corner on to a segment with g0 < 0, and that segment holds it because the corner turns
-/// concave in the same increment. Nodes that the mesh places inside are left out.
+/// With energy-momentum rows a pair does the work Pn (g1 - g0). The work Pn (g1 - g0) is positive if a node slides over
+/// a convex corner on to a segment with g0 < 0, and the segment stops the node because the corner turns concave in the
+/// same increment. Nodes that the mesh places inside a body do not count.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.integration.energy_momentum {
         return 0.0;
@@ -104,7 +104,8 @@ fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) 
             None => constraint.start_gap < -CLOSED_GAP * constraint.scale,
             Some(lift) => !(0.0..=1.0).contains(&p.xi) && lift.of(p).gap < -CLOSED_GAP * p.length,
         };
-        // Pn (Bn d) of a pair that was behind, beyond the ends, eq. (7.7)
+        // Pn (Bn d) of a pair whose node was behind the line of the segment, beyond its ends, eq.
+        // (7.7)
         let work = if was_beyond {
             pair.force[0] * (constraint.normal_motion(&solved.d) - constraint.shrinkage)
         } else {

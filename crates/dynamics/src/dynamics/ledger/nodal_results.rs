@@ -1,6 +1,5 @@
-//! Postprocessing of a converged increment: nodal quantities, resultants of the contacts and
-//! landings, the latter by paper eq. 50 with the exact crossing (docs/theory/geometry.md,
-//! Crossing).
+//! Postprocessing of a converged increment: nodal quantities, resultants of the contacts, and
+//! landings by paper eq. 50 with the exact crossing (docs/theory/geometry.md, Crossing).
 //!
 //! Contact pressure at slave nodes: normal force over the area of a node.
 
@@ -22,12 +21,12 @@ use crate::linear::larger;
 use crate::model::{Bodies, ContactMass, Model};
 use crate::vectors::{cross, length};
 
-/// Change of velocity, relative to the largest velocity of the two bodies, from which an impulse is
-/// an impact.
+/// Change of velocity, relative to the largest velocity of the two bodies, from which on an impulse
+/// is an impact.
 const STRUCK: f64 = 1e-9;
 
-/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces are still at
-/// their own nodes.
+/// Reactions, contact forces, gaps and status at the nodes; here reactions of rigid surfaces are still at their own
+/// nodes.
 pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
     let contact_force = solved.contact.forces.resultant(dofs);
@@ -50,7 +49,7 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     for p in problem.unknowns.prescribed() {
         reaction[p] = missing[p];
     }
-    // of nodes only, not of the angles of bodies that turn
+    // only nodes have held forces, angles of bodies that turn have none
     for &(dof, force) in held {
         reaction[dof] += force;
     }
@@ -90,7 +89,8 @@ pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResu
     results
 }
 
-/// Means at the master nodes of constraints from surface to surface, by the parts of their normal forces that the nodes take.
+/// Means of values of constraints (surface to surface) at the master nodes, weighted by the parts of the normal forces
+/// on these nodes.
 ///
 /// ```text
 /// g = sum_j |Bn_j| g_j / sum_j |Bn_j|    eq. (9.16)
@@ -106,7 +106,7 @@ impl MasterMeans {
         }
     }
 
-    /// Adds a value of a constraint at its master nodes.
+    /// Adds a value of a constraint to the means at its master nodes.
     pub fn add(&mut self, constraint: &Constraint, value: f64) {
         for (node, share) in constraint.shares_of_masters() {
             let [sum, whole] = &mut self.sums[node];
@@ -115,18 +115,19 @@ impl MasterMeans {
         }
     }
 
-    /// The mean at every node, NaN where there is none.
+    /// The mean at every node; NaN at nodes without values.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         let mean = |[sum, whole]: &[f64; 2]| match *whole > 0.0 {
             true => sum / whole,
-            // 0/0 has a sign that depends on the processor
+            // the sign of 0/0 depends on the processor
             false => f64::NAN,
         };
         self.sums.iter().map(mean)
     }
 }
 
-/// Mean coefficient of friction by Pn: a first one, and Pn with Pn times what the others differ from it.
+/// Mean coefficient of friction, weighted by Pn: the first coefficient, and the sums of Pn and of Pn times the
+/// differences from the first.
 #[derive(Clone, Copy, Default)]
 struct MeanCoefficient {
     first: f64,
@@ -142,7 +143,8 @@ impl MeanCoefficient {
         self.sums[1] += pn * (mu - self.first);
     }
 
-    /// NaN where no force was added. It is not computed: the sign of 0/0 depends on the processor.
+    /// Mean coefficient; NaN if no force was added. NaN is not computed as 0/0, whose sign depends
+    /// on the processor.
     fn value(&self) -> f64 {
         match self.sums[0] == 0.0 {
             true => f64::NAN,
@@ -151,7 +153,7 @@ impl MeanCoefficient {
     }
 }
 
-/// Coefficients of friction at the nodes; none where no friction varies.
+/// Coefficients of friction at the nodes; empty if no friction varies.
 fn friction_coefficients(problem: &StepProblem, forces: &ContactForces) -> Vec<f64> {
     if !problem.model.has_varying_friction() {
         return Vec::new();
@@ -166,7 +168,7 @@ fn friction_coefficients(problem: &StepProblem, forces: &ContactForces) -> Vec<f
     means.iter().map(MeanCoefficient::value).collect()
 }
 
-/// What of the forces of constraints on the dofs is that of ties; none where there are no ties.
+/// The part of the constraint forces on the dofs that comes from ties; empty if there are no ties.
 pub(crate) fn tie_forces(model: &Model, force: impl Fn(usize) -> f64) -> Vec<f64> {
     if model.ties.is_empty() {
         return Vec::new();
@@ -177,10 +179,10 @@ pub(crate) fn tie_forces(model: &Model, force: impl Fn(usize) -> f64) -> Vec<f64
         let slaves: HashSet<usize> = nodes.clone().collect();
         for dof in nodes.flat_map(|node| [2 * node, 2 * node + 1]) {
             let equation = model.equations.binary_search_by_key(&dof, |e| e.dof);
-            // a support takes the place of an equation
+            // a support replaces the equation of a dof
             let Ok(equation) = equation else { continue };
             all[dof] += force(dof);
-            // and its node may stand in those of its neighbours
+            // a tied node may also be a term in the equations of its neighbours
             for &(to, c) in &model.equations[equation].terms {
                 if slaves.contains(&(to / 2)) {
                     all[to] -= c * force(dof);
@@ -191,7 +193,7 @@ pub(crate) fn tie_forces(model: &Model, force: impl Fn(usize) -> f64) -> Vec<f64
     all
 }
 
-/// Masses of the nodes, where they are redistributed.
+/// Kind of mass of every node, if masses are redistributed.
 pub(crate) fn node_masses(problem: &StepProblem) -> Vec<NodeMass> {
     if problem.settings.contact_mass == ContactMass::Consistent {
         return Vec::new();
@@ -212,7 +214,7 @@ fn end_gap(problem: &StepProblem, solved: &Solved, constraint: &Constraint) -> f
     constraint.gap_and_scale(&at).0
 }
 
-/// One configuration, with the gradients of gap and slip as rows.
+/// A single configuration as start and end; its rows are the gradients of gap and slip.
 fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a> {
     Configurations {
         form: RowForm::End,
@@ -220,8 +222,8 @@ fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a>
     }
 }
 
-/// Forces of a constraint on the slave surface of its contact. Where the surface touches itself it is no side of the
-/// contact: those on the body with the smaller number, none within one body.
+/// Forces of a constraint on the slave surface of its contact. If the surface touches itself, it is not a side of the
+/// contact: the forces are then those on the body with the smaller number, and zero within one body.
 pub(super) fn forces_on_side(
     model: &Model,
     bodies: &Bodies,
@@ -239,8 +241,8 @@ pub(super) fn forces_on_side(
         .collect()
 }
 
-/// Resultants of every contact in an increment from the displacements `u0`; moments about the origin, forces acting at
-/// U_theta. How far friction is from the cone is measured with the coefficients of the law.
+/// Resultants of every contact in an increment from the displacements `u0`; forces act at U_theta, and moments are
+/// about the origin. The distance of friction from the cone is measured with the coefficients of the law.
 pub(crate) fn contact_resultants(
     problem: &StepProblem,
     bodies: &Bodies,
@@ -292,8 +294,9 @@ pub(crate) fn contact_resultants(
     resultants
 }
 
-/// Pairs that carry force now, or were struck at the start, and were open before: time and place
-/// from the second-order motion of the start (paper eq. 50), with the exact condition of crossing.
+/// Landings of pairs that were open before and carry a force now, or were struck at the start. Time
+/// and place come from the second-order motion of the start (paper eq. 50) with the exact crossing
+/// condition.
 pub(crate) fn landings(
     problem: &StepProblem,
     start: &State,
@@ -302,7 +305,7 @@ pub(crate) fn landings(
 ) -> Vec<Landing> {
     let fastest = problem.parts.largest_of_bodies(&start.v);
     let landing_of = |(constraint, pair): (&Constraint, Option<&ClosedPair>)| {
-        // less than a solved gap in the increment is no approach
+        // a motion of less than a solved gap in the increment is no approach
         let none = SOLVED_GAP * constraint.scale / interval.dt;
         let least = larger(
             STRUCK * problem.parts.most(&fastest, constraint.nodes()),
@@ -341,7 +344,7 @@ fn landing(
         false => Some(impact_time(&motions, interval.dt)),
     };
     let tau = match time.unwrap_or(interval.dt) {
-        // it touches at the start and does not cross
+        // the pair touches at the start, so its node does not cross the segment
         tau if touched && (of_mean || tau == interval.dt) => 0.0,
         tau => tau,
     };
@@ -380,7 +383,7 @@ pub(crate) fn node_path(
 }
 
 /// First time in [0, dt] at which the node reaches the segment, or else its line, from outside; 0
-/// when it is inside at the start, dt when it stays outside.
+/// if it is inside at the start, dt if it stays outside.
 fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
     let [s, a, b] = motions.map(|m| m.position);
     if project(s, a, b).gap <= 0.0 {
@@ -395,15 +398,16 @@ fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
         .unwrap_or(dt)
 }
 
-/// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`; NaN
-/// without area, and at all nodes but those of slave surfaces, and of masters that meet them face to face.
+/// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`. The
+/// pressure is NaN at nodes without area, and at all nodes except those of slave surfaces and of masters with contact
+/// from surface to surface.
 ///
 /// ```text
 /// N = sum Bn^T Pn,  p = |N|/A    eq. (9.8)
 /// ```
 ///
-/// The sum of N runs over all pairs of the node. What the tolerance of the passes leaves of the `largest` |N| of the run so
-/// far, which this grows with, is no force.
+/// N is summed over all pairs of the node. `largest`, the largest |N| of the run so far, is updated; forces below the
+/// tolerance of the passes times `largest` count as zero.
 pub(crate) fn contact_pressure(
     faces: &SlaveFaces,
     problem: &StepProblem,
@@ -437,7 +441,8 @@ pub(crate) fn contact_pressure(
 mod tests {
     use super::*;
 
-    /// Time at which a node thrown from the height `c`, y = a t² + b t + c, lands on a segment.
+    /// Time at which a node that is thrown from the height `c`, y = a t² + b t + c, lands on a
+    /// segment.
     fn landing_time(a: f64, b: f64, c: f64, dt: f64) -> f64 {
         let s = QuadraticMotion {
             position: [0.2, c],

@@ -1,4 +1,4 @@
-//! Work of the contact forces of an increment, pair by pair. See docs/theory/impacts.md, Ledger.
+//! Work of the contact forces of an increment for each pair. See docs/theory/impacts.md, Ledger.
 
 use std::collections::BTreeMap;
 
@@ -12,19 +12,20 @@ use crate::dynamics::step::{StepProblem, difference, dot};
 pub(crate) struct PairWork {
     /// The pair.
     pub key: ConstraintKey,
-    /// Work of the normal force, without the parts below.
+    /// Work of the normal force, without the work at fits.
     pub normal: f64,
-    /// Work of the normal force as it parts the surfaces of a fit.
+    /// Work of the normal force that separates the surfaces of a fit.
     pub fit: f64,
     /// Energy that friction dissipates.
     pub friction: f64,
-    /// Normal force times the way that the pair slides (energy).
+    /// Normal force times the sliding path of the pair (energy).
     pub sliding: f64,
-    /// Where it acts on the slave surface and on the master. A pair that has opened is no pair of the end any more.
+    /// Nodes on the slave surface and on the master at which the pair acts. The nodes are stored because a pair that
+    /// has opened is no longer a pair at the end.
     pub surfaces: [SurfaceParts; 2],
 }
 
-/// Work of the pairs in an increment whose forces act all the time:
+/// Work of the pairs in an increment whose forces are constant over it:
 ///
 /// ```text
 /// Pn.(Bn d) - Pn (a0 - a1), eq. (9.2), Pn (a0 - a1), eq. (9.14), and -Pt.(Bt d), eq. (9.3)
@@ -49,7 +50,7 @@ pub(super) fn steady_works(solved: &Solved) -> Vec<PairWork> {
     acting.map(work).collect()
 }
 
-/// Work of friction that landing returns take back, of pairs in contact and of those that have opened.
+/// Work of friction that landing returns take back, for pairs in contact and for pairs that have opened.
 pub(super) fn given_back(solved: &Solved) -> Vec<PairWork> {
     if solved.returned.pairs.is_empty() {
         return Vec::new();
@@ -76,8 +77,8 @@ pub(super) fn given_back(solved: &Solved) -> Vec<PairWork> {
     solved.returned.pairs.iter().filter_map(work).collect()
 }
 
-/// Work that parts the surfaces of fits by the impulses in an increment of length `dt`: the surfaces move with the velocity
-/// of the overlap that is allowed.
+/// Work of impulses that separates the surfaces of fits in an increment of length `dt`: the surfaces move with the rate
+/// of the allowed overlap.
 ///
 /// ```text
 /// Phi (a0 - a1)/dt, eq. (9.14)
@@ -90,7 +91,7 @@ pub(super) fn fit_impulse_work(solved: &Solved, dt: f64) -> f64 {
         .sum()
 }
 
-/// Forces of an equilibrium, from which the work of the next static increment begins.
+/// Forces in an equilibrium, with which the work of the next static increment begins.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct EndForces {
     /// Load and internal force over all dofs (force).
@@ -103,7 +104,7 @@ pub(crate) struct EndForces {
 }
 
 impl EndForces {
-    /// Those with the given contact forces.
+    /// Forces in an equilibrium with the given contact forces.
     pub fn new(load: Vec<f64>, internal: Vec<f64>, forces: &ContactForces) -> Self {
         let acting = forces.acting().map(|(c, pair)| (c.clone(), pair.force));
         EndForces {
@@ -114,7 +115,8 @@ impl EndForces {
         }
     }
 
-    /// Those of a state that no static increment has led to: what its internal force balances counts as load.
+    /// Forces at a state that is no result of a static increment: the forces that balance the internal force count as
+    /// load.
     pub fn at(problem: &StepProblem, state: &State) -> Result<Self, Cause> {
         let motion = state.motion();
         let internal = problem.elements.internal_force(motion)?;
@@ -134,8 +136,8 @@ impl EndForces {
         missing
     }
 
-    /// Forces of supports, with what equations and bodies that turn hand on to them at the end, at displacements `u`, of an
-    /// increment `d`, or at its start (dof, force).
+    /// Forces of supports, including those that equations and bodies that turn hand on to them, (dof, force). The
+    /// forces hold at displacements `u`: the end of an increment `d`, or its start.
     pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
         let unknowns = &problem.unknowns;
         let mut missing = unknowns.passed_on(&self.missing(d.len())).into_owned();
@@ -152,8 +154,8 @@ impl EndForces {
         force
     }
 
-    /// Makes loads of the forces of contacts that do not act any more, and of supports that the next step has not; gives
-    /// them (dof, force), eq. (12.9).
+    /// Turns the forces of removed contacts, and of supports that the next step does not have, into loads; returns them
+    /// (dof, force), eq. (12.9).
     pub fn release(
         &mut self,
         removed: &[usize],
@@ -175,7 +177,7 @@ impl EndForces {
         released
     }
 
-    /// Sums of the normal and tangential forces of every slave node.
+    /// Sums of the normal and of the tangential forces of every slave node.
     fn of_slaves(&self) -> BTreeMap<SlaveKey, [f64; 2]> {
         let mut sums: BTreeMap<SlaveKey, [f64; 2]> = BTreeMap::new();
         for (constraint, force) in &self.pairs {
@@ -186,16 +188,17 @@ impl EndForces {
         sums
     }
 
-    /// Work of the pairs in a static increment from these forces to those of its end, and what of the trapezoid's
-    /// work of tangential forces friction does not dissipate:
+    /// Work of the pairs in a static increment that leads from the equilibrium with these forces to its end, and the
+    /// part of the trapezoidal work of tangential forces that friction does not dissipate:
     ///
     /// ```text
     /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2
     /// -(1 + Pn*/Pn1)/2 Pt1.(Bt1 d),   max(0, -Pt0.(Bt0 d)/2) where Pn1 = 0              eq. (12.8)
     /// ```
     ///
-    /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force as the pair begins to slide, tau = (1 -+ Pt0/(mu Pn0))/2. From there on
-    /// |Pt| = mu Pn, and Pn is linear: it slides with the mean force. One that opens has only the force of its start.
+    /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
+    /// Pn0))/2. From the slide on |Pt| = mu Pn, and Pn is linear, so the pair slides with the mean force. A pair that
+    /// opens has only the force of its start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
         let (before, after) = (self.of_slaves(), end.of_slaves());
@@ -236,7 +239,7 @@ impl EndForces {
                     true => -mean * work,
                     false => (-mean * work).max(0.0),
                 };
-                // one that opens slides as far as its friction works
+                // a pair that opens slides as far as corresponds to its work of friction
                 let sliding = match is_end || constraint.mu == 0.0 {
                     true => mean * constraint.stretch * pn * slip.abs(),
                     false => friction / constraint.mu,
@@ -255,7 +258,7 @@ impl EndForces {
         (works, tangential + friction)
     }
 
-    /// Work of a force that is linear between its two values, on the way d.
+    /// Work, along the path d, of a force that changes linearly between its two values.
     pub fn trapezoid(d: &[f64], [from, to]: [&[f64]; 2]) -> f64 {
         (dot(d, from) + dot(d, to)) / 2.0
     }

@@ -11,37 +11,39 @@ use crate::dynamics::step::{SlaveFaces, StepProblem};
 use crate::linear::{larger, largest};
 use crate::model::{Contact, Model};
 
-/// Sums over the run, where the deck asks for wear or heat.
+/// Sums over the run, if the deck asks for wear or heat.
 pub(crate) struct SurfaceWork {
     fields: FrictionResults,
-    /// What has been added to the nodes: work, volume of wear and heat; and the sizes of all that was added.
+    /// Sums over the run of all that was added to the nodes (work, volume of wear, heat), and the sums of its absolute
+    /// values.
     added: [Sums; 2],
-    /// What each contact has to do with it.
+    /// For each contact the wear and heat of its surfaces, if any.
     contacts: Vec<Option<Surfaces>>,
 }
 
 /// Work of friction (energy), volume of wear (length^3) and heat (energy).
 type Sums = [f64; 3];
 
-/// What the work of friction of a contact does to its surfaces.
+/// Wear and heat of the surfaces of a contact by its work of friction.
 #[derive(Debug, Clone, Copy)]
 struct Surfaces {
-    /// Whether both are slaves, where a surface touches itself.
+    /// Whether both surfaces are slaves, as where a surface touches itself.
     both: bool,
-    /// Depth of wear over its measure (length^2/force), and whether this is the work of friction.
+    /// Depth of wear per unit of its measure (length^2/force), and whether the measure is the work
+    /// of friction.
     wear: Option<(f64, bool)>,
-    /// Part of the work of friction that heats each of these surfaces.
+    /// Part of the work of friction that heats each slave surface.
     heat: f64,
-    /// Whether all slave nodes have faces, as those of discs have not.
+    /// Whether all slave nodes have faces; the centres of discs have none.
     has_faces: bool,
 }
 
 impl Surfaces {
-    /// Those of a contact; none where it has neither wear nor heat.
+    /// The surfaces of a contact; `None` if it has neither wear nor heat.
     fn new(model: &Model, contact: &Contact, faces: &SlaveFaces) -> Option<Self> {
         let interaction = &contact.interaction;
         let both = contact.is_self_contact();
-        // no side of it is the slave that the part is meant for
+        // in self-contact neither side is the slave for which the part is given
         let of_each = |to_slave: f64| if both { 0.5 } else { to_slave };
         let own = Surfaces {
             both,
@@ -52,7 +54,8 @@ impl Surfaces {
         (interaction.wear.is_some() || interaction.heat.is_some()).then_some(own)
     }
 
-    /// Work, volume of wear and heat of all its surfaces, of work of friction and of normal force times way.
+    /// Work, volume of wear and heat of all surfaces of the contact, for a work of friction and a normal force times
+    /// sliding path.
     fn sums(&self, friction: f64, sliding: f64) -> Sums {
         let count = if self.both { 2.0 } else { 1.0 };
         let on_faces = if self.has_faces { count } else { 0.0 };
@@ -68,8 +71,8 @@ impl Surfaces {
 }
 
 impl SurfaceWork {
-    /// Nothing yet; 0 at the nodes of slave surfaces with wear or heat, NaN at others, and work and wear at those without
-    /// faces.
+    /// The sums at the start of a run. The sums are 0 at the nodes of slave surfaces with wear or heat and NaN
+    /// elsewhere; work and wear are NaN at nodes without faces too.
     pub fn new(model: &Model, faces: &SlaveFaces) -> Self {
         let of_contact = |contact: &Contact| Surfaces::new(model, contact, faces);
         let contacts: Vec<Option<Surfaces>> = model.contacts.iter().map(of_contact).collect();
@@ -106,7 +109,7 @@ impl SurfaceWork {
         }
     }
 
-    /// Transfers the sums.
+    /// Transfers the sums to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let FrictionResults {
             coefficient: _,
@@ -125,8 +128,8 @@ impl SurfaceWork {
         self.fields.clone()
     }
 
-    /// Enters the works of the pairs in a converged increment. With D the work of friction of a pair, f the part of a node
-    /// in its normal force and A the area of the node against this force,
+    /// Enters the works of the pairs in a converged increment. D is the work of friction of a pair, f the part of a
+    /// node in its normal force, and A the area of the node for this force:
     ///
     /// ```text
     /// w += f D/A,  h += k/H f Pn |Bt d|/A  or  k/H f D/A,  q += eta s f D    eq. (9.15)
@@ -157,12 +160,12 @@ impl SurfaceWork {
             for &(node, part) in parts {
                 let (friction, sliding) = (part * work.friction, part * work.sliding);
                 let area = match faces.area(node, *normal, at) {
-                    // a node at a corner, whose faces are along the normal
+                    // a node at a corner, whose faces are parallel to the normal
                     0.0 => faces.whole_area(node, at),
                     area => area,
                 };
                 let mut added = [0.0; 3];
-                // sums over nodes are told where all of them have faces
+                // sums over nodes are compared only if all nodes have faces
                 let is_told = if own.has_faces { 1.0 } else { 0.0 };
                 if area > 0.0 {
                     self.fields.work[node] += friction / area;
@@ -185,8 +188,8 @@ impl SurfaceWork {
         }
     }
 
-    /// The largest difference of what has been added to the nodes from what the contacts have in the ledger, as a part of
-    /// the sizes of all that was added.
+    /// Largest difference between the sums over the nodes and the sums of the contacts in the ledger, relative to the
+    /// sums of absolute values.
     pub fn difference(&self, ledger: &ContactLedger) -> f64 {
         let [mut missing, sizes] = self.added;
         let mut scales = sizes;

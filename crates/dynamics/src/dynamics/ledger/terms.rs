@@ -1,5 +1,5 @@
-//! Terms of the energy ledger, one function each, named by their equations. See docs/theory/impacts.md, Ledger, and
-//! docs/theory/bodies.md, Static steps, for static increments.
+//! Terms of the energy ledger: one function for each, with its equation. See docs/theory/impacts.md, Ledger; for static
+//! increments docs/theory/bodies.md, Static steps.
 
 use std::borrow::Cow;
 
@@ -27,8 +27,8 @@ impl Kinematics<'_> {
     }
 }
 
-/// Forces of an increment over all dofs (force), those on dofs that follow others and on nodes of rigid bodies handed over to
-/// what holds or drives them.
+/// Forces of an increment over all dofs (force). Forces on dofs that follow others, and on nodes of rigid bodies, have
+/// been handed over to the dofs that hold or drive them.
 pub(super) struct HandedOver<'f> {
     load: Cow<'f, [f64]>,
     internal: Cow<'f, [f64]>,
@@ -37,7 +37,7 @@ pub(super) struct HandedOver<'f> {
 }
 
 impl<'f> HandedOver<'f> {
-    /// Those of a converged increment with the contact force B^T P.
+    /// Forces of a converged increment with the contact force B^T P.
     pub fn new(problem: &'f StepProblem, solved: &'f Solved, contact: &'f [f64]) -> Self {
         let turning = &problem.unknowns.turning;
         let handed_over = |force, keeps_driven| {
@@ -66,8 +66,8 @@ impl<'f> HandedOver<'f> {
             + k.d[p] * (self.internal[p] - self.load[p] - self.contact[p])
     }
 
-    /// What the inertia takes of the motion by the backward Euler scheme beyond the change of the kinetic energy (energy), of
-    /// what is free: the sum over all dofs, from their inertia, less that over the dofs of supports.
+    /// Energy that the backward Euler scheme removes from the free motion beyond the change of the kinetic energy: the
+    /// sum over all dofs, from their inertia, less the sum over the dofs of supports.
     ///
     /// ```text
     /// (d - dt V_mid).M A      eq. (4.27)
@@ -86,19 +86,20 @@ impl<'f> HandedOver<'f> {
     }
 }
 
-/// Work of the loads in an increment `d` (energy), without that of hinges, whose forces lambda are in the load R and do none:
+/// Work of the loads in an increment `d` (energy). The forces lambda of hinges are part of the load R but do no work,
+/// so they are excluded:
 ///
 /// ```text
 /// d.R - lambda.(C d)      eq. (9.1)
 /// ```
 ///
-/// `gaps` are those of the hinges, C d (length).
+/// `gaps` are the gaps C d of the hinges (length).
 pub(super) fn load_work(d: &[f64], load: &[f64], hinges: &[f64], gaps: &[f64]) -> f64 {
     dot(d, load) - dot(hinges, gaps)
 }
 
-/// Work of the impulses J = Bn^T Phi + Bt^T Psi (force time) on what they see of the velocity V0, which they change by
-/// dV (energy):
+/// Work of the impulses J = Bn^T Phi + Bt^T Psi (force time) on the velocity V0 from which they start and which they
+/// change by dV (energy):
 ///
 /// ```text
 /// J.(V0 + V0+)/2 = J.V0 + J.dV/2      eq. (9.4)
@@ -107,8 +108,8 @@ pub(super) fn impulse_work(seen: &[f64], change: &[f64], impulse: &[f64]) -> f64
     dot(seen, impulse) + dot(change, impulse) / 2.0
 }
 
-/// Work of supports that keep their velocity V0 through the impulses (energy), of their own impulse
-/// M (V0+ - V0) - J (force time):
+/// Work (energy) of the reaction impulses M (V0+ - V0) - J (force time) of supports, which keep
+/// their velocity V0 through the impulses:
 ///
 /// ```text
 /// sum over supports p of V0_p (M (V0+ - V0) - J)_p      eq. (9.1)
@@ -121,8 +122,8 @@ pub(super) fn impulse_support_work(
     supports.map(|p| v0[p] * reaction[p]).sum()
 }
 
-/// What the scheme dissipates (energy), of the work d.F of the internal force with that of damping, and of the work H of the
-/// temperature:
+/// Energy that the scheme dissipates. `internal_work` is the work d.F of the internal force, with damping, plus the
+/// work H of the temperature:
 ///
 /// ```text
 /// d.F + H - (W1 - W0) - d.F_d - int D dOmega      eq. (9.5)
@@ -136,7 +137,8 @@ pub(super) fn scheme_dissipation(
     internal_work - (strain1 - strain0) - damping - material_dissipation
 }
 
-/// Strain energy at the end of an increment before nodes without mass came to rest (energy), from that after it:
+/// Strain energy at the end of an increment before nodes without mass came to rest (energy), computed from the energy
+/// at rest:
 ///
 /// ```text
 /// W1 + R - (work of the loads on the way to the rest)      eq. (6.15)
@@ -153,8 +155,9 @@ pub(super) fn enter_pair_works(energy: &mut Energy, works: &[PairWork]) {
     }
 }
 
-/// Enters what landings and releases are given back: D of eq. (6.5) with the work of the supports on the way, eq. (6.10), and of
-/// friction that is taken back, eq. (6.13); R and the work of the loads on the way to rest, eq. (6.15).
+/// Enters the returns and losses of landings and releases. The terms of landings are D of eq. (6.5) with the work of
+/// the supports, eq. (6.10), and the friction taken back, eq. (6.13); the terms of releases are R and the work of the
+/// loads on the way to the rest, eq. (6.15).
 pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
     let Release {
         loss, load_work, ..
@@ -165,7 +168,8 @@ pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
     energy.external_work += load_work + returned.support_work;
 }
 
-/// Work of supports between two equilibria (energy), on the way d from their forces f (dof, force) to those of the end:
+/// Work of supports between two equilibria (energy), along the path d from their forces f (dof, force) at the start to
+/// those at the end:
 ///
 /// ```text
 /// sum over supports p of d_p (f0 + f1)_p/2      eq. (12.7)
@@ -175,14 +179,14 @@ pub(super) fn static_support_work(travel: &[f64], reactions: [&[(usize, f64)]; 2
     all.fold(0.0, |sum, &(p, reaction)| sum + travel[p] * reaction / 2.0)
 }
 
-/// Work of the forces that are missing from equilibrium (force) on a way, less that of the supports (energy): what rigid bodies
-/// hold within on the chords of their nodes.
+/// Work along a path of the forces that are missing from equilibrium (force), less the work of the supports (energy):
+/// the part that rigid bodies absorb because their nodes move on chords.
 pub(super) fn work_within(travel: &[f64], missing: &[f64], reactions: &[(usize, f64)]) -> f64 {
     let of_supports = |left: f64, &(p, reaction): &(usize, f64)| left - travel[p] * reaction;
     reactions.iter().fold(dot(travel, missing), of_supports)
 }
 
-/// The balance of all energies, `start` being T + W at the start of the analysis:
+/// The balance of all energies; `start` is T + W at the start of the analysis:
 ///
 /// ```text
 /// balance = T + W - (T + W)_start - external_work - thermal_work - normal_contact_work
@@ -214,7 +218,7 @@ mod tests {
         );
     }
 
-    /// Forces that nothing hands over.
+    /// Forces of an increment of which none is handed over to other dofs.
     fn forces(load: [f64; 2], internal: [f64; 2], contact: [f64; 2]) -> HandedOver<'static> {
         let own = |force: [f64; 2]| Cow::Owned(force.to_vec());
         HandedOver {
@@ -225,8 +229,8 @@ mod tests {
         }
     }
 
-    /// A mass m that a support moves from rest with the acceleration a against a load R and a contact force P, on a spring k:
-    /// the support does the work m (a dt)²/2 + k d²/2 - (R + P) d.
+    /// A support accelerates a mass m on a spring k from rest with the acceleration a, against a load R and a contact
+    /// force P. The support does the work m (a dt)²/2 + k d²/2 - (R + P) d.
     #[test]
     fn a_support_gives_kinetic_and_strain_energy_against_the_other_forces() {
         let (m, a, k, dt) = (3.0, 0.7, 5.0, 0.4);
@@ -244,8 +248,8 @@ mod tests {
         near(forces.support_work(&kinematics, 1), expected);
     }
 
-    /// Backward Euler, d = dt V1: M A = M (V1 - V0)/dt takes (V1 - V0).M (V1 - V0)/2 beyond the change of the kinetic
-    /// energy, eq. (4.27), of the free mass alone.
+    /// Backward Euler has d = dt V1 and M A = M (V1 - V0)/dt. From the free mass backward Euler removes (V1 - V0).M
+    /// (V1 - V0)/2 beyond the change of the kinetic energy, eq. (4.27).
     #[test]
     fn the_backward_euler_scheme_dissipates_the_square_of_the_change_of_velocity() {
         let (m, dt) = ([3.0, 7.0], 0.4);
@@ -268,7 +272,7 @@ mod tests {
         near(found(&[0, 1]), 0.0);
     }
 
-    /// The force of a hinge that the passes have left a gap of does no work: only d.R remains.
+    /// The force of a hinge does no work even if the passes have left a gap: only d.R remains.
     #[test]
     fn hinges_do_no_work() {
         let (d, own, lambda) = ([0.3, 0.2999], [2.0, -5.0], 7.0);
@@ -280,7 +284,7 @@ mod tests {
         );
     }
 
-    /// A mass that hits the ground with v rebounds with e v: impulses take m v² (1 - e²)/2, by Poisson's law.
+    /// A mass that hits the ground at v rebounds at e v: by Poisson's law, impulses remove m v² (1 - e²)/2.
     #[test]
     fn an_impact_takes_the_kinetic_energy_of_the_rebound_less() {
         let (m, v) = (2.0, 3.0);
@@ -291,8 +295,8 @@ mod tests {
         }
     }
 
-    /// A mass m of velocity v that a plate of prescribed velocity w stops: what the plate's support does, less the loss
-    /// m (v - w)²/2, is the change of kinetic energy m (w² - v²)/2.
+    /// A plate with the prescribed velocity w stops a mass m with the velocity v. The work of the plate's support, less
+    /// the loss m (v - w)²/2, is the change of kinetic energy m (w² - v²)/2.
     #[test]
     fn supports_keep_their_velocity_through_an_impact() {
         let (m, plate, v, w) = (2.0, 50.0, -3.0, 0.8);
@@ -306,8 +310,8 @@ mod tests {
         near(work - loss, m * (w * w - v * v) / 2.0);
     }
 
-    /// A spring of energy k u⁴/4 whose force is taken halfway, a dashpot c and a flow that dissipates 1/2: the force at half of
-    /// u is k u³/8, which is k u⁴/8 less than its energy.
+    /// A spring of energy k u⁴/4 whose force is evaluated at mid-increment, a dashpot c, and a flow that dissipates
+    /// 1/2. The force of the spring at u/2 is k u³/8, so its work is k u⁴/8 less than its energy.
     #[test]
     fn the_scheme_dissipates_what_no_other_term_has() {
         let (k, u, c, dt): (f64, f64, f64, f64) = (3.0, 2.0, 0.5, 0.25);
@@ -318,8 +322,8 @@ mod tests {
         near(found, -k * u.powi(4) / 8.0);
     }
 
-    /// A node on a spring k that a load R holds at u when its contact opens comes to rest at R/k: it loses
-    /// k (u - R/k)²/2, of which W - R.u is less.
+    /// A load R holds a node on a spring k at u until its contact opens; then the node comes to rest at R/k. The node
+    /// loses k (u - R/k)²/2, by which W - R.u decreases.
     #[test]
     fn the_strain_energy_before_the_rest_is_that_of_the_place_left() {
         let (k, load, u) = (4.0, 1.0, 0.75);
@@ -346,7 +350,8 @@ mod tests {
         }
     }
 
-    /// Two pairs add to what the ledger has; the work of a fit is that of its supports and is entered there.
+    /// The works of two pairs are added to those in the ledger. The work of a fit belongs to the supports of the fit
+    /// and is entered there.
     #[test]
     fn pairs_add_their_normal_work_and_their_friction() {
         let mut energy = Energy {
@@ -366,8 +371,8 @@ mod tests {
         assert_eq!(energy, expected);
     }
 
-    /// What is given back and what a release takes leave the balance as it is where the kinetic energy has them: D and the
-    /// work of supports are gained, with what friction had dissipated, and the strain energy has lost R less the work of loads.
+    /// Returns and releases leave the balance unchanged if the kinetic energy has changed by them. D, the work of
+    /// supports and the energy from friction are gained; the strain energy has lost R less the work of loads.
     #[test]
     fn what_is_given_back_keeps_the_balance() {
         let mut energy = Energy {
@@ -404,7 +409,7 @@ mod tests {
         near(balance(&energy, 0.0), 0.0);
     }
 
-    /// Two supports stretch a spring k from u to u + d, at its two ends: their work is the change of k u²/2.
+    /// Two supports at the ends of a spring k stretch it from u to u + d; their work is the change of k u²/2.
     #[test]
     fn static_supports_stretch_a_linear_spring() {
         let (k, u, travel): (f64, f64, [f64; 3]) = (6.0, 0.5, [-0.125, 9.0, 0.25]);
@@ -414,8 +419,8 @@ mod tests {
         near(static_support_work(&travel, [&before, &after]), expected);
     }
 
-    /// A rod between a support and a node that a force pulls: on the chord of the node the force does work that no support has
-    /// done. A support of the node does all of it.
+    /// A rod turns between a support and a node that a force pulls: along the chord of the node the force does work
+    /// that no support has done. If the node has a support, the support does all of the work on the chord.
     #[test]
     fn rigid_bodies_hold_work_on_the_chords_of_their_nodes() {
         let (travel, missing) = ([0.0, 0.0, 0.5, 0.25], [-4.0, 0.0, 4.0, 2.0]);

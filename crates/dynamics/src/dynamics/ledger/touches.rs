@@ -1,5 +1,5 @@
-//! Touches: contacts of two bodies from the landing of a first node until no node is closed, and the
-//! landings of nodes that take the place of others. See docs/theory/impacts.md, Touches.
+//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Landings of nodes that
+//! take over from nodes that have opened. See docs/theory/impacts.md, Touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,10 +12,10 @@ use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::model::{Bodies, Mesh};
 use crate::vectors::{angle, difference};
 
-/// Angle (rad) from which on a surface has a corner, at which a contact of any size ends.
+/// Angle (rad) from which on a surface has a corner, at which a contact ends however large it is.
 const CORNER: f64 = 1.0;
 
-/// What touches: a body, or the rigid surface of a contact.
+/// One side of a touch: a body, or the rigid surface of a contact.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
@@ -26,7 +26,7 @@ enum Partner {
 
 /// The touches of a run.
 pub(crate) struct Touches {
-    /// Whether a node is at a corner of its body.
+    /// For every node whether it is at a corner of its body.
     corners: Vec<bool>,
     /// Number of increments so far.
     increments: usize,
@@ -37,16 +37,16 @@ pub(crate) struct Touches {
 #[derive(Default, serde::Serialize, serde::Deserialize)]
 struct TouchUnderWay {
     touch: Touch,
-    /// Impulse on the first partner.
+    /// Impulse on the first partner of the touch.
     impulse: [f64; 2],
     /// Slave nodes closed at the end of the last increment.
     closed: BTreeSet<SlaveKey>,
-    /// Nodes that have opened and whose place none has taken.
+    /// Number of nodes that have opened without another node landing in their place.
     opened: usize,
 }
 
 impl Touches {
-    /// No touches yet.
+    /// The touches at the start of a run: none.
     pub fn new(mesh: &Mesh) -> Self {
         Touches {
             corners: corners(mesh),
@@ -55,13 +55,13 @@ impl Touches {
         }
     }
 
-    /// Transfers the touches under way.
+    /// Transfers the touches under way to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self { increments, under_way; corners })
     }
 
-    /// Enters a converged increment; adds the work of nodes that take the place of others to the contacts, and gives
-    /// the touches that have ended.
+    /// Enters a converged increment. Adds the work of nodes that take over from others to the contacts, and returns the
+    /// touches that have ended.
     pub fn enter(
         &mut self,
         problem: &StepProblem,
@@ -99,7 +99,7 @@ impl Touches {
         ended.into_iter().filter_map(end).collect()
     }
 
-    /// Adds the impulses of an increment of length `dt`: dt P + (Phi, Psi), and what is given back.
+    /// Adds the impulses of an increment of length `dt`: dt P + (Phi, Psi) plus the returns.
     fn add_impulses(&mut self, bodies: &Bodies, solved: &Solved, dt: f64) {
         let forces =
             (solved.contact.forces.acting()).map(|(c, pair)| (c, pair.force.map(|p| dt * p)));
@@ -128,7 +128,7 @@ impl Touches {
     }
 }
 
-/// The two partners of a constraint in their order, and 1 where the slave is the first, else -1.
+/// The two partners of a constraint in increasing order, and 1 if the slave is the first, else -1.
 fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     let [s, a, _] = constraint.pair().nodes;
     let side = |node: usize| match bodies.of_node[node] {
@@ -141,7 +141,8 @@ fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     }
 }
 
-/// The two partners in their order, and 1 where the slave surface of the contact is on the first, else -1.
+/// The two partners of a constraint in increasing order, and 1 if the slave surface of the contact is on the first,
+/// else -1.
 fn sides(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     let (both, sign) = partners(bodies, constraint);
     (
@@ -155,7 +156,7 @@ fn sides(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
 }
 
 impl TouchUnderWay {
-    /// A touch that begins with some pairs in an increment, whose number is given.
+    /// A touch that begins with some pairs in the increment number `increment`.
     fn begin(
         both: [Partner; 2],
         pairs: &[(&Constraint, &ClosedPair)],
@@ -174,8 +175,8 @@ impl TouchUnderWay {
         }
     }
 
-    /// Nodes that land where others have opened before, with the work Pn (Bn d) of their landings.
-    /// Where more land than have opened, all have their share: which of them come first would be a matter of order.
+    /// Nodes that land after others have opened, with the work Pn (Bn d) of their landings. If more nodes land than
+    /// have opened, each counts with the same share, since their order is arbitrary.
     fn hand_over(
         &mut self,
         pairs: &[(&Constraint, &ClosedPair)],
@@ -197,7 +198,7 @@ impl TouchUnderWay {
         landings
     }
 
-    /// Takes in how many nodes of one side are closed, and whether the contact reaches a corner.
+    /// Enters the number of closed nodes of one side, and whether the contact reaches a corner.
     fn measure(&mut self, bodies: &Bodies, pairs: &[(&Constraint, &ClosedPair)], corners: &[bool]) {
         let mut slaves = [BTreeSet::new(), BTreeSet::new()];
         for (constraint, _) in pairs {
@@ -215,7 +216,7 @@ impl TouchUnderWay {
         }
     }
 
-    /// The touch that has ended at a time, `mass` being the reduced mass of its bodies.
+    /// The touch as it ends at a time; `mass` is the reduced mass of its bodies.
     fn end(self, time: f64, mass: f64) -> Touch {
         let [x, y] = self.impulse;
         let impulse = x.hypot(y);
@@ -238,7 +239,7 @@ impl Partner {
     }
 }
 
-/// Masses of the bodies that nothing holds; those of others, and of rigid surfaces, count as infinite.
+/// Masses of the bodies that no support holds; other bodies and rigid surfaces have infinite mass.
 struct FreeMasses(Vec<f64>);
 
 impl FreeMasses {
@@ -256,14 +257,15 @@ impl FreeMasses {
         FreeMasses(masses)
     }
 
-    /// 1/m = 1/m_1 + 1/m_2, eq. (9.11)
+    /// Reduced mass m of the partners, 1/m = 1/m_1 + 1/m_2, eq. (9.11).
     fn reduced(&self, partners: [Partner; 2]) -> f64 {
         let inverse = |partner: Partner| partner.body().map_or(0.0, |body| 1.0 / self.0[body]);
         1.0 / partners.map(inverse).iter().sum::<f64>()
     }
 }
 
-/// Whether the outline of the bodies turns at a node by more than [`CORNER`], or has no one way through it.
+/// For every node whether the outline of its body turns there by more than [`CORNER`], or does not pass through it
+/// exactly once.
 fn corners(mesh: &Mesh) -> Vec<bool> {
     let x = |node: usize| mesh.coordinates[node];
     let mut sides: Vec<[Vec<usize>; 2]> = vec![Default::default(); mesh.node_count()];

@@ -1,4 +1,4 @@
-//! Momenta, results of bodies and reactions of rigid ones. See docs/theory/impacts.md, Bodies and Rigid bodies.
+//! Momenta, results of bodies and reactions of rigid bodies. See docs/theory/impacts.md, Bodies and Rigid bodies.
 
 /// Momentum of all bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -7,12 +7,11 @@ pub struct Momentum {
     pub linear: [f64; 2],
     /// Angular momentum about the origin (mass length^2/time).
     pub angular: f64,
-    /// That of the consistent mass, where the mass is redistributed.
+    /// Angular momentum with the consistent mass, if the mass is redistributed.
     pub consistent_angular: Option<f64>,
-    /// Linear momentum that mass-proportional damping has taken since the start of the analysis (mass
-    /// length/time).
+    /// Linear momentum that mass-proportional damping has removed since the start of the analysis (mass length/time).
     pub damped_linear: [f64; 2],
-    /// Angular momentum that it has taken (mass length^2/time).
+    /// Angular momentum that mass-proportional damping has removed (mass length^2/time).
     pub damped_angular: f64,
 }
 
@@ -21,9 +20,9 @@ pub struct Momentum {
 pub struct BodyResult {
     /// Centre of mass (length).
     pub center: [f64; 2],
-    /// Its velocity (length/time).
+    /// Velocity of the centre of mass (length/time).
     pub velocity: [f64; 2],
-    /// Angular momentum about the centre of mass over the moment of inertia (1/time).
+    /// Angular momentum about the centre of mass divided by the moment of inertia (1/time).
     pub angular_velocity: f64,
     /// Kinetic energy.
     pub kinetic: f64,
@@ -31,12 +30,13 @@ pub struct BodyResult {
     pub strain: f64,
     /// Force of all contacts on the body (force).
     pub contact_force: [f64; 2],
-    /// Its moment about the centre of mass (force length).
+    /// Moment of all contact forces about the centre of mass (force length).
     pub contact_moment: f64,
 }
 
 impl BodyResult {
-    /// Leaves out what is zero in a body of revolution: all but what is along its axis.
+    /// Sets to zero the components that vanish in a body of revolution, all except those along its
+    /// axis.
     pub(crate) fn keep_to_axis(&mut self) {
         self.center[0] = 0.0;
         self.velocity[0] = 0.0;
@@ -51,9 +51,9 @@ impl BodyResult {
 pub struct RigidReaction {
     /// Force.
     pub force: [f64; 2],
-    /// Its moment about the reference node (force length).
+    /// Moment of the reaction about the reference node (force length).
     pub moment: f64,
-    /// Angle since the start (rad).
+    /// Angle of rotation since the start (rad).
     pub angle: f64,
     /// Angular velocity (1/time).
     pub angular_velocity: f64,

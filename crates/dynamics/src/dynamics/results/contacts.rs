@@ -5,20 +5,21 @@
 pub struct ContactImpulse {
     /// Impulse on the slave surface (force time).
     pub vector: [f64; 2],
-    /// Sum of dt Pn + Phi and of what landing returns give (force time).
+    /// Normal impulse: sum of dt Pn + Phi and of the normal impulses of landing returns (force
+    /// time).
     pub normal: f64,
-    /// Sum of dt Pt + Psi (force time).
+    /// Tangential impulse: sum of dt Pt + Psi (force time).
     pub tangential: f64,
-    /// Sum of Phi, the impact impulses (force time).
+    /// Sum of Phi, the normal impact impulses (force time).
     pub impact_normal: f64,
-    /// Sum of Psi (force time).
+    /// Sum of Psi, the tangential impact impulses (force time).
     pub impact_tangential: f64,
-    /// Sum of the normal impulses of landing returns; negative ones take back what the next increment
-    /// gives (force time).
+    /// Sum of the normal impulses of landing returns; a negative impulse takes a part of the contact force back (force
+    /// time).
     pub landing_return: f64,
 }
 
-/// How far the pairs at the end of an increment are from the contact law, in lengths of their segments.
+/// Errors of the pairs against the contact law at the end of an increment, in lengths of their segments.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactViolation {
     /// Largest overlap of an open pair.
@@ -27,8 +28,8 @@ pub struct ContactViolation {
     pub gap: f64,
     /// Largest slip of a sticking pair in the increment, in absolute value.
     pub slip: f64,
-    /// Largest penetration: of an open pair, of edges that cross, or of nodes whose means are kept out, in lengths of the
-    /// edge.
+    /// Largest penetration: of an open pair, of edges that cross, or of nodes in contact from surface to surface, in
+    /// lengths of the edge.
     pub penetration: f64,
 }
 
@@ -37,7 +38,7 @@ pub struct ContactViolation {
 pub struct ContactOnBody {
     /// Force.
     pub force: [f64; 2],
-    /// Its moment about the origin (force length).
+    /// Moment of the force about the origin (force length).
     pub moment: f64,
 }
 
@@ -48,37 +49,39 @@ pub struct ContactResultant {
     pub force: [f64; 2],
     /// Moment of that force about the origin (force length).
     pub moment: f64,
-    /// Sum of Pn (force).
+    /// Sum of the normal forces Pn (force).
     pub normal: f64,
-    /// Sum of Pt (force).
+    /// Sum of the tangential forces Pt (force).
     pub tangential: f64,
-    /// Pairs with Pn > 0.
+    /// Number of pairs with Pn > 0.
     pub closed: usize,
-    /// Closed pairs that do not slip.
+    /// Number of closed pairs that do not slip.
     pub sticking: usize,
     /// Smallest gap over the candidate pairs (length); NaN without candidates.
     pub min_gap: f64,
-    /// Coefficient of friction of the closed pairs, their mean by Pn; NaN without any.
+    /// Mean coefficient of friction of the closed pairs, weighted by Pn; NaN without closed pairs.
     pub friction_coefficient: f64,
-    /// max(|Pt| - mu Pn, 0) / max(Pn), of a pair that slips ||Pt| - mu Pn| / max(Pn); 0 without contact; mu is that of the
-    /// law.
+    /// Largest max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the largest Pn. The error is 0
+    /// without contact; mu is the coefficient of the law.
     pub cone_violation: f64,
-    /// Distance from the cone of the total impulses of the pairs in the increment, with impacts and what is given back; of a
-    /// pair whose total pulls, the pull.
+    /// Distance of the pairs' total impulses from the cone in the increment, with impacts and returns; for a pair whose
+    /// total normal impulse pulls, it is the pull.
     pub impulse_cone_violation: f64,
     /// Moment of the force about the reference node of a rigid master (force length); 0 for other
     /// masters.
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,
-    /// The part of it of nodes that landed where others of the same two bodies had opened, while the bodies stayed in
-    /// contact.
+    /// Part of the normal work at nodes that landed where others of the same two bodies had opened, while the bodies
+    /// stayed in contact.
     pub handover_work: f64,
     /// Energy dissipated by friction since the start of the analysis.
     pub friction_dissipation: f64,
-    /// Kinetic energy given back after its landings and releases since the start of the analysis.
+    /// Kinetic energy given back after landings and releases of the contact since the start of the
+    /// analysis.
     pub landing_return: f64,
-    /// Energy that nodes without mass lost after its releases since the start of the analysis.
+    /// Energy that nodes without mass lost after releases of the contact since the start of the
+    /// analysis.
     pub release_loss: f64,
     /// Impulses of the increment.
     pub impulse: ContactImpulse,
@@ -92,30 +95,30 @@ pub struct ContactResultant {
 /// closed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Touch {
-    /// The bodies, in the order of [`crate::model::Bodies`]; none for a rigid surface.
+    /// The two bodies, numbered as in [`crate::model::Bodies`]; `None` for a rigid surface.
     pub bodies: [Option<usize>; 2],
-    /// A slave node that landed first (index).
+    /// Index of a slave node that landed first.
     pub node: usize,
-    /// Time at the start of the first increment.
+    /// Time at the start of the first increment of the touch.
     pub start: f64,
-    /// Time at the end of the last increment.
+    /// Time at the end of the last increment of the touch.
     pub end: f64,
-    /// Number of the first increment.
+    /// Number of the first increment of the touch.
     pub first: usize,
-    /// Number of the last increment.
+    /// Number of the last increment of the touch.
     pub last: usize,
-    /// Most nodes of one side in contact at a time.
+    /// Largest number of nodes of one side in contact at a time.
     pub nodes: usize,
     /// Whether the contact reached a corner of an outline.
     pub is_at_corner: bool,
     /// Impulse J on one of the bodies (force time).
     pub impulse: f64,
-    /// J²/(8 m), m being the reduced mass of the bodies: the kinetic energy of their approach where they rebound
-    /// with their speed; 0 where both are held.
+    /// J²/(8 m) with the reduced mass m of the bodies: their kinetic energy of approach if they rebound with the same
+    /// speed; 0 if both are held.
     pub energy: f64,
 }
 
-/// Total impulses on a pair of an increment after which it was given energy back.
+/// Total impulses on a pair in an increment after which energy was given back to the pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReturnedImpulse {
     /// Time at the end of the increment.
@@ -124,11 +127,11 @@ pub struct ReturnedImpulse {
     pub slave: usize,
     /// Nodes a and b of the segment (indices).
     pub segment: [usize; 2],
-    /// Total normal impulse: dt Pn + Phi and what is given back (force time).
+    /// Total normal impulse: dt Pn + Phi plus the return (force time).
     pub normal: f64,
     /// Total tangential impulse (force time).
     pub tangential: f64,
-    /// Normal impulse that gives back (force time).
+    /// Normal impulse of the return (force time).
     pub returned_normal: f64,
     /// Tangential impulse that comes with `returned_normal` (force time).
     pub returned_tangential: f64,
@@ -144,8 +147,8 @@ pub struct Landing {
     pub slave: usize,
     /// Nodes a and b of the segment (indices).
     pub segment: [usize; 2],
-    /// Local coordinate on the segment, 0 at a, 1 at b.
+    /// Local coordinate on the segment, 0 at a and 1 at b.
     pub xi: f64,
-    /// Approach speed -dg/dt just before (length/time).
+    /// Approach speed -dg/dt just before the landing (length/time).
     pub approach_speed: f64,
 }

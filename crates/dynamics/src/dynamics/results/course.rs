@@ -1,20 +1,21 @@
-//! How the passes of an attempt went that did not converge, as the report of its failure tells it.
+//! Course of the passes of an attempt that did not converge, for the report of its failure.
 
-/// The passes of an attempt that did not converge, from where they last began with the predictor.
+/// Course of the passes of an attempt that did not converge, from their last start with the
+/// predictor.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Course {
     /// Corrections grew.
     Growing {
-        /// Number of the first pass that they grew after.
+        /// The corrections grew after the pass with this number.
         from: usize,
     },
-    /// Pairs went to and fro between two states, one of every slave node that did.
+    /// Pairs went to and fro between two states; the list has one entry for each slave node.
     Alternating(Vec<Alternation>),
     /// Corrections became smaller, but slowly.
     Slow {
-        /// Correction over the one before, mean of the last passes.
+        /// Mean ratio of successive corrections in the last passes.
         rate: f64,
-        /// Further passes that would have been needed at this rate.
+        /// Number of further passes needed at the mean ratio.
         left: usize,
     },
     /// Corrections became no smaller.
@@ -27,15 +28,16 @@ pub enum Course {
 /// A slave node whose contact left a state and came back to it; all numbers are indices of nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Alternation {
-    /// Its pair with a segment closed and opened: slave, segment ends a and b.
+    /// The pair of the node with a segment closed and opened: slave, segment ends a and b.
     Closing([usize; 3]),
-    /// It was on one segment and on another.
+    /// The node changed between two segments.
     Changing {
         /// Slave node.
         slave: usize,
-        /// Ends a and b of both.
+        /// Ends a and b of both segments.
         segments: [[usize; 2]; 2],
     },
-    /// Its pair stuck and slid, or slid one way and the other: slave, segment ends a and b.
+    /// The pair of the node stuck and slid, or slid one way and the other: slave, segment ends a
+    /// and b.
     Sliding([usize; 3]),
 }

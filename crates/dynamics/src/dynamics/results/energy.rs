@@ -2,24 +2,25 @@
 
 use crate::linear::larger;
 
-/// Energies; all but the first two are cumulative from the start of the analysis.
+/// Energies; all except the kinetic and the strain energy are cumulative from the start of the
+/// analysis.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Energy {
     /// Kinetic energy T.
     pub kinetic: f64,
     /// Strain energy W.
     pub strain: f64,
-    /// The part of it in hourglass modes.
+    /// Part of the strain energy in hourglass modes.
     pub hourglass: f64,
-    /// Work of the loads and of the supports' prescribed motion.
+    /// Work of the loads and of the prescribed motion of supports.
     pub external_work: f64,
-    /// Work of the temperature: energy that it brings into the materials that expand.
+    /// Work of the temperature: energy that it adds to materials that expand.
     pub thermal_work: f64,
     /// Work of the normal contact forces.
     pub normal_contact_work: f64,
     /// Energy dissipated by friction.
     pub friction_dissipation: f64,
-    /// Kinetic energy taken by the impact impulses.
+    /// Kinetic energy removed by the impact impulses.
     pub impact_loss: f64,
     /// Kinetic energy given back after landings.
     pub landing_return: f64,
@@ -31,17 +32,17 @@ pub struct Energy {
     pub material_dissipation: f64,
     /// Energy dissipated by the integration scheme.
     pub numerical_dissipation: f64,
-    /// Energy balance; for exact solutions zero, so that it measures the residual of the passes.
+    /// Energy balance; zero for exact solutions, so it measures the residual of the passes.
     pub balance: f64,
-    /// Largest kinetic or strain energy or external work so far, in static steps also the work of the loads or of the
-    /// supports alone.
+    /// Largest kinetic energy, strain energy or external work so far; in static steps also the largest work of the
+    /// loads alone or of the supports alone.
     pub scale: f64,
     /// Work that the round-off of the forces may have done in static steps.
     pub round_off: f64,
 }
 
 impl Energy {
-    /// Enters the work of the temperature in an increment, with the larger of its parts.
+    /// Enters the work of the temperature in an increment, and the larger of its two parts.
     pub(crate) fn enter_thermal_work(&mut self, [work, part]: [f64; 2]) {
         self.thermal_work += work;
         self.scale = larger(self.scale, part);

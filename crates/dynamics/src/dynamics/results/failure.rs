@@ -10,7 +10,7 @@ use crate::elements::Inverted;
 use crate::lcp::{FrictionalLcp, LcpError};
 use crate::linear::LinearError;
 
-/// Why an increment failed.
+/// Cause of a failed increment.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cause {
     /// The passes did not converge.
@@ -24,17 +24,17 @@ pub enum Cause {
     },
     /// A segment has shrunk to almost no length.
     Collapsed {
-        /// Its ends (indices).
+        /// Ends of the segment (indices).
         segment: [usize; 2],
     },
-    /// A body that contact alone holds is not in balance, whatever the forces of contact.
+    /// A body that only contact holds is not in balance, whatever the contact forces.
     Unbalanceable(Box<Unbalanced>),
     /// The equilibrium is not stable.
     Unstable {
         /// Node (index) whose pivot is not positive.
         node: usize,
     },
-    /// A static increment leads much farther than the last one of the same load: to another equilibrium.
+    /// A static increment leads much farther than the last one under the same load, and so to another equilibrium.
     Jump {
         /// Node (index) that moves most.
         node: usize,
@@ -46,9 +46,9 @@ pub enum Cause {
     },
     /// The truncation error of a converged increment is too large.
     Inaccurate {
-        /// It, beside the displacements.
+        /// The truncation error, relative to the displacements.
         error: f64,
-        /// The largest that counts as small.
+        /// Largest truncation error that is accepted.
         tolerance: f64,
     },
     /// The factorisation or a solve with it failed.
@@ -61,7 +61,7 @@ pub enum Cause {
         slave: usize,
         /// Ends (indices) of the segment.
         segment: [usize; 2],
-        /// Whether the motion of all three is prescribed.
+        /// Whether supports prescribe the motion of the slave node and of both ends of the segment.
         prescribed: bool,
     },
     /// A contact is added while a slave node is inside the master body.
@@ -70,22 +70,23 @@ pub enum Cause {
         slave: usize,
         /// Ends (indices) of the segment.
         segment: [usize; 2],
-        /// How deep it is inside (length).
+        /// Depth of the node inside the body (length).
         depth: f64,
     },
-    /// Positive work of the normal contact forces: contact would put energy in.
+    /// The normal contact forces do positive work, so contact would add energy.
     GainedEnergy {
-        /// The energy put in, relative to the largest energy.
+        /// The added energy, relative to the largest energy.
         part: f64,
-        /// Slave node and ends of the segment (indices) of the pair whose force puts the most in.
+        /// Slave node and ends of the segment (indices) of the pair whose force adds the most
+        /// energy.
         pair: Option<[usize; 3]>,
     },
-    /// The energy balance is off: the residual that the passes have left does work that counts.
+    /// The energy balance is off: the residual that the passes have left does significant work.
     Unbalanced {
         /// The balance relative to the largest energy.
         part: f64,
-        /// Whether the round-off of positions makes forces whose work in an increment counts by itself: in halves
-        /// it is not less.
+        /// Whether the round-off of positions causes forces whose work in an increment is significant by itself;
+        /// halving the increment does not reduce it.
         is_round_off: bool,
     },
     /// A complementarity problem was not solved.
@@ -94,7 +95,7 @@ pub enum Cause {
     NotFinite {
         /// Which.
         what: &'static str,
-        /// Node (index) of the value, or the node that moves most.
+        /// Index of the node with the value, or of the node that moves most.
         node: usize,
     },
 }
@@ -102,36 +103,36 @@ pub enum Cause {
 /// A body that is not in balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unbalanced {
-    /// One of its nodes (index).
+    /// A node (index) of the body that is not in balance.
     pub node: usize,
-    /// Force that is left over.
+    /// Resultant force on the body that nothing balances.
     pub force: [f64; 2],
-    /// Its moment about the mean of the nodes (force length).
+    /// Moment on the body that nothing balances, about the mean of its nodes (force length).
     pub moment: f64,
-    /// Rigid motion that the body is about to make: displacement of that place and angle (length; rad).
+    /// Rigid motion that the body is about to make: displacement of the mean of the nodes, and angle (length; rad).
     pub motion: [f64; 3],
-    /// Distance of its farthest node from there (length).
+    /// Distance of the farthest node of the body from the mean of the nodes (length).
     pub size: f64,
 }
 
 /// A complementarity problem without solution, of a pass or of the impulses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FailedLcp {
-    /// Why it was not solved.
+    /// Reason why the complementarity problem was not solved.
     pub error: LcpError,
     /// The problem.
     pub problem: FrictionalLcp,
-    /// Nodes (indices) of its pairs: slave, segment ends a and b.
+    /// Nodes (indices) of the pairs of the problem: slave, segment ends a and b.
     pub pairs: Vec<[usize; 3]>,
 }
 
 impl FailedLcp {
-    /// Whether its pairs contradict each other.
+    /// Whether the pairs of the problem contradict each other.
     pub fn is_contradiction(&self) -> bool {
         matches!(self.error, LcpError::Ray { .. })
     }
 
-    /// The problem of some constraints that was not solved.
+    /// The failure of the complementarity problem of some constraints.
     pub(crate) fn new(
         error: LcpError,
         problem: FrictionalLcp,
@@ -150,34 +151,34 @@ impl FailedLcp {
 pub struct Worst {
     /// Node (index).
     pub node: usize,
-    /// Its current position (length).
+    /// Current position of the node (length).
     pub position: [f64; 2],
-    /// Which quantity is worst there.
+    /// Name of the quantity that is worst at the node.
     pub quantity: &'static str,
-    /// Its value relative to the tolerance's scale.
+    /// Value of the quantity relative to the scale of the tolerance.
     pub value: f64,
 }
 
 /// A failed attempt at an increment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Failure {
-    /// Number of the increment over all steps.
+    /// Number of the increment, counted over all steps.
     pub increment: usize,
     /// Number of the step, from 1.
     pub step: usize,
     /// Time at the start of the increment.
     pub time: f64,
-    /// Length of the attempt.
+    /// Length of the attempted increment.
     pub dt: f64,
     /// Why.
     pub cause: Cause,
-    /// How the passes went, where they did not converge.
+    /// Course of the passes, if they did not converge.
     pub course: Option<Box<Course>>,
-    /// The node with the largest error, where the passes have one.
+    /// The node with the largest error, if the passes have one.
     pub worst: Option<Worst>,
     /// Passes of the attempt.
     pub passes: Vec<PassReport>,
-    /// How many times the increment had been halved.
+    /// Number of times that the increment had been halved.
     pub halvings: u32,
 }
 
@@ -244,7 +245,7 @@ impl From<LinearError> for Cause {
 }
 
 impl Cause {
-    /// Whether the increment would fail in halves as well.
+    /// Whether the increment would fail in halves too.
     pub fn stays(&self) -> bool {
         matches!(
             self,
@@ -255,7 +256,7 @@ impl Cause {
         )
     }
 
-    /// Whether the only cause is a number that has become too large.
+    /// Whether a number that has grown too large is the only cause of the failure.
     pub(crate) fn is_overflow(&self) -> bool {
         match self {
             Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,

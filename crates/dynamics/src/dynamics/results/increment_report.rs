@@ -11,36 +11,36 @@ use super::pass_report::PassReport;
 use super::state::State;
 use crate::elements::{ConnectorState, ElementResult, Strained};
 
-/// Work of the solver in an increment or in a whole run, and the errors of its answer.
+/// Work of the solver in an increment or in a whole run, and the errors of its solution.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct SolverCounts {
-    /// Predictor and corrector passes.
+    /// Number of predictor and corrector passes.
     pub passes: usize,
-    /// Complementarity problems solved (passes and impulses).
+    /// Number of complementarity problems solved (passes and impulses).
     pub lcps: usize,
-    /// Largest number of pairs in one of them.
+    /// Largest number of pairs in a complementarity problem.
     pub lcp_size: usize,
-    /// Pivots of Lemke's method.
+    /// Number of pivots of Lemke's method.
     pub pivots: usize,
-    /// Iterations of the active-set method.
+    /// Number of iterations of the active-set method.
     pub active_set_iterations: usize,
-    /// Sweeps of the Gauss-Seidel method.
+    /// Number of sweeps of the Gauss-Seidel method.
     pub gauss_seidel_sweeps: usize,
-    /// Calls of Lemke's method.
+    /// Number of calls of Lemke's method.
     pub lemke_calls: usize,
-    /// Factorisations of the effective matrix.
+    /// Number of factorisations of the effective matrix.
     pub factorizations: usize,
     /// Relative force residual of the last pass.
     pub residual: f64,
-    /// How far the pairs are from the contact law at the end.
+    /// Errors of the pairs against the contact law at the end of the increment.
     pub violation: ContactViolation,
-    /// Largest force that holds a motion which only facets resist, as a part of the normal forces at its body.
+    /// Largest force that holds a motion resisted only by facets, relative to the normal forces on the body.
     pub held: f64,
     /// Whether the increment converged.
     pub converged: bool,
 }
 
-/// Everything about one finished increment; number 0 is the start. A checkpoint keeps the numbers of the last one
+/// Everything about one finished increment; number 0 is the start. A checkpoint keeps the numbers of the last report
 /// ([`IncrementReport::numbers`]).
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct IncrementReport {
@@ -56,9 +56,10 @@ pub struct IncrementReport {
     pub dt: f64,
     /// Whether this is the last increment of its step.
     pub ends_step: bool,
-    /// Truncation error beside the displacements, in a step whose increments it decides.
+    /// Truncation error relative to the displacements, in a step in which it decides the
+    /// increments.
     pub truncation_error: Option<f64>,
-    /// Motion at the end.
+    /// Motion and state at the end of the increment.
     #[serde(skip)]
     pub state: State,
     /// Results at nodes.
@@ -69,36 +70,36 @@ pub struct IncrementReport {
     pub elements: Arc<[ElementResult]>,
     /// Energy ledger.
     pub energy: Energy,
-    /// Energy that contact put in, if its normal work was positive beyond round-off.
+    /// Energy that contact added, if its normal work was positive beyond round-off.
     pub contact_energy: Option<f64>,
     /// Momentum.
     pub momentum: Momentum,
     /// Results of every body, in the order of [`crate::model::Bodies`].
     pub bodies: Vec<BodyResult>,
-    /// Reactions, one per rigid surface with a reference node.
+    /// Reactions, one for each rigid surface with a reference node.
     pub rigid: Vec<RigidReaction>,
-    /// Springs and dashpots, in the order of the model.
+    /// States of springs and dashpots, in the order of the model.
     pub connectors: Vec<ConnectorState>,
     /// Largest principal strain.
     pub strain: Strained,
-    /// Resultants, one per contact of the model.
+    /// Resultants, one for each contact of the model.
     pub contacts: Vec<ContactResultant>,
-    /// Difference of the work of friction, wear and heat of the nodes from those of the contacts, as a part of all that
+    /// Difference between the friction work, wear and heat at the nodes and those of the contacts, relative to all that
     /// was added since the start.
     pub surface_work_difference: f64,
     /// Landings of this increment.
     #[serde(skip)]
     pub landings: Vec<Landing>,
-    /// Total impulses of the pairs that were given energy back.
+    /// Total impulses of the pairs to which energy was given back.
     #[serde(skip)]
     pub returns: Vec<ReturnedImpulse>,
-    /// Touches that have ended.
+    /// Touches that ended in the increment.
     #[serde(skip)]
     pub touches: Vec<Touch>,
-    /// The body with the largest force that holds a motion which only facets resist.
+    /// The body with the largest force that holds a motion resisted only by facets.
     #[serde(skip)]
     pub held: Option<Box<Unbalanced>>,
-    /// Counters of this increment.
+    /// Counters of the solver in this increment.
     pub solver: SolverCounts,
     /// Its passes.
     #[serde(skip)]
@@ -106,7 +107,7 @@ pub struct IncrementReport {
 }
 
 impl IncrementReport {
-    /// Its numbers, without fields and without what happened in it.
+    /// The numbers of the report, without fields and events (for example landings).
     pub fn numbers(&self) -> IncrementReport {
         IncrementReport {
             increment: self.increment,
@@ -129,7 +130,7 @@ impl IncrementReport {
         }
     }
 
-    /// Leaves out what vectors over the dofs hold beyond those of so many nodes.
+    /// Shortens vectors over the dofs to those of `nodes` nodes.
     pub fn keep_nodes(&mut self, nodes: usize) {
         let (state, nodal) = (&mut self.state, &mut self.nodal);
         for vector in [

@@ -1,4 +1,5 @@
-//! Results of a run, as the output receives them through [`Observer`]: of increments, of failed attempts and of the whole.
+//! Results of a run that the output receives through [`Observer`]: of increments, of failed attempts and of the whole
+//! run.
 
 mod bodies;
 mod contacts;

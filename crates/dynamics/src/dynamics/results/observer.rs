@@ -1,4 +1,4 @@
-//! Who receives the results of a run as it goes.
+//! Receiver of the results of a run while it goes on.
 
 use std::io;
 
@@ -10,30 +10,31 @@ use super::increment_report::IncrementReport;
 pub struct Cutback {
     /// The failed attempt.
     pub failure: Failure,
-    /// Length of the next attempt.
+    /// Length of the next attempt at the increment (time).
     pub next_dt: f64,
 }
 
-/// Receives the results of a run as it goes. The numerics neither print nor open files.
+/// Receives the results of a run while it goes on. The solver itself neither prints nor opens
+/// files.
 pub trait Observer {
-    /// An increment is done (number 0: the start).
+    /// Receives a finished increment (number 0 is the start).
     fn increment(&mut self, report: &IncrementReport) -> io::Result<()>;
 
-    /// An increment is repeated with half its length.
+    /// Receives a failed attempt, which is repeated with half the length.
     fn cutback(&mut self, cutback: &Cutback) -> io::Result<()>;
 
-    /// Whether the run shall end here; asked before every attempt at an increment.
+    /// Whether the run is to end here; called before every attempt at an increment.
     fn wants_stop(&self) -> bool {
         false
     }
 
-    /// Whether a checkpoint is due; asked after every increment.
+    /// Whether a checkpoint is due; called after every increment.
     fn wants_checkpoint(&self) -> bool {
         false
     }
 
-    /// All that the rest of the run depends on, for [`crate::dynamics::resume`]: when it is wanted, and before the run ends
-    /// because it shall.
+    /// Receives all data on which the rest of the run depends, for [`crate::dynamics::resume`]: when a checkpoint is
+    /// wanted, and before the run ends on request.
     fn checkpoint(&mut self, _checkpoint: Vec<u8>) -> io::Result<()> {
         Ok(())
     }

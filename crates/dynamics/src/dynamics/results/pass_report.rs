@@ -7,12 +7,12 @@ pub struct PassReport {
     pub residual: f64,
     /// Relative displacement correction.
     pub correction: f64,
-    /// Pairs with Pn > 0.
+    /// Number of pairs with Pn > 0.
     pub active: usize,
-    /// Active pairs that stick.
+    /// Number of active pairs that stick.
     pub stick: usize,
-    /// Pairs in the complementarity problem.
+    /// Number of pairs in the complementarity problem.
     pub lcp_size: usize,
-    /// Pivots of Lemke's method.
+    /// Number of pivots of Lemke's method.
     pub pivots: usize,
 }

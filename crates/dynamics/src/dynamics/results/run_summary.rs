@@ -5,14 +5,14 @@ use std::time::Duration;
 use super::failure::Failure;
 use super::increment_report::SolverCounts;
 
-/// Wall-clock time per phase.
+/// Wall-clock time of each phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Timings {
     /// Internal force, tangent and loads.
     pub assembly: Duration,
     /// Factorisations.
     pub factorization: Duration,
-    /// Solves with the factors, those for the Delassus matrices included.
+    /// Solves with the factors, including those for the Delassus matrices.
     pub solve: Duration,
     /// Contact search: territories and their candidates.
     pub search: Duration,
@@ -25,18 +25,18 @@ pub struct Timings {
 /// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// All steps are done.
+    /// All steps of the run are done.
     Finished,
     /// An increment failed for good; the results up to it are valid.
     Stopped(Box<Failure>),
-    /// The observer requested the end; the results up to there are valid.
+    /// The observer requested the end of the run; the results up to there are valid.
     Interrupted,
 }
 
 /// Totals of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSummary {
-    /// How it ended.
+    /// How the run ended.
     pub outcome: Outcome,
     /// Number of increments done.
     pub increments: usize,
@@ -46,8 +46,9 @@ pub struct RunSummary {
     pub rejections: usize,
     /// Number of increments that an impact ended (`IMPACT TIME=EVENT`).
     pub events: usize,
-    /// Counters summed over the increments (`lcp_size`, `residual` and `violation`: the largest).
+    /// Counters summed over the increments; `lcp_size`, `residual` and `violation` are the largest
+    /// values.
     pub solver: SolverCounts,
-    /// Time per phase.
+    /// Wall-clock time of each phase.
     pub timings: Timings,
 }

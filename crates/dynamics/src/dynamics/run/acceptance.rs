@@ -1,5 +1,5 @@
-//! Checks that a converged increment must pass before it is accepted, and the failures of those that
-//! do not. See docs/theory/time.md, Cutback.
+//! Checks that a converged increment must pass before it is accepted, and the failures of increments that do not pass.
+//! See docs/theory/time.md, Cutback.
 
 use super::nominal_increments::NominalIncrement;
 use crate::contact::NodeAtSegment;
@@ -12,10 +12,10 @@ use crate::dynamics::release_return::return_release;
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
-/// Most halvings of an increment because of the energy that contact puts in.
+/// Largest number of halvings of an increment because contact adds energy.
 const GAIN_HALVINGS: u32 = 5;
 
-/// Where a subincrement starts from: state and energies at the end of the last one.
+/// Start of a subincrement: state and energies at the end of the last one.
 #[derive(Clone, Copy)]
 pub(crate) struct SubincrementStart<'a> {
     pub state: &'a State,
@@ -29,8 +29,8 @@ pub(crate) struct Accepted {
 }
 
 impl Accepted {
-    /// Finishes a converged subincrement, `halvings` times halved, of the `nominal` increment, and accepts it if it
-    /// passes the checks.
+    /// Finishes a converged subincrement of the `nominal` increment, which has been halved `halvings` times, and
+    /// accepts it if it passes the checks.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,
@@ -72,8 +72,8 @@ impl Accepted {
     }
 }
 
-/// Finishes the motion of a converged increment: brings released nodes to rest and gives back what landings and
-/// releases have taken. No element may be turned inside out, no node may have gone through a surface.
+/// Finishes the motion of a converged increment: brings released nodes to rest and gives back the energy that landings
+/// and releases have removed. Fails if an element is turned inside out or a node has passed through a surface.
 fn finish_motion(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -92,8 +92,8 @@ fn finish_motion(
     Ok(())
 }
 
-/// Enters a finished increment of length `dt` in the ledger: the energies must be finite and in balance, and contact
-/// must put in none where the increment may be halved for that.
+/// Enters a finished increment of length `dt` in the ledger. Fails if the energies are not finite or not in balance, or
+/// if contact adds energy and the increment may be halved for that reason.
 fn accept(
     problem: &StepProblem,
     workspace: &Workspace,
@@ -111,8 +111,8 @@ fn accept(
     Ok(ledger)
 }
 
-/// No node may have gone into a body on its straight path from U0 to U1. What the tolerance of the
-/// passes leaves of a displacement is no depth.
+/// Checks that no node has entered a body on its straight path from U0 to U1. A depth within the
+/// error that the tolerance of the passes leaves does not count as entry.
 fn check_paths(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -132,7 +132,8 @@ fn check_paths(
     })
 }
 
-/// The failure of an attempt at increment number `increment`, `halvings` times halved.
+/// The failure of an attempt at the increment number `increment`, which has been halved `halvings`
+/// times.
 pub(crate) fn failure(
     increment: usize,
     place: StepPlace,
@@ -165,7 +166,7 @@ pub(crate) fn start_failure(state: &State, ledger: &Ledger, place: StepPlace) ->
     checked.err().map(|cause| failure_at_start(cause, 0, place))
 }
 
-/// The failure of a step before its first increment, after so many of the run.
+/// The failure of a step before its first increment, when the run has done `increment` increments.
 pub(crate) fn failure_at_start(cause: Cause, increment: usize, place: StepPlace) -> Failure {
     Failure {
         increment,

@@ -8,28 +8,29 @@ use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::{Interval, StepPlace};
 use crate::model::{Incrementation, Increments};
 
-/// Passes up to which an increment is easy.
+/// Largest number of passes of an easy increment.
 const EASY_PASSES: usize = 5;
-/// Easy increments after which they grow.
+/// Number of easy increments in a row after which increments grow.
 const EASY_INCREMENTS: u32 = 2;
-/// Growth of an increment after easy ones.
+/// Factor by which an increment grows after easy ones.
 const GROWTH: f64 = 1.5;
-/// Part of an increment that is tried after it has failed.
+/// Factor on the length of an increment after it has failed.
 const CUT: f64 = 0.25;
-/// A rest of the step below this part of an increment is added to the increment.
+/// Rest of the step, as a part of an increment, below which it is added to the increment.
 const LEFT_OVER: f64 = 1e-6;
-/// Rejections in a row because of the truncation error.
+/// Largest number of rejections in a row because of the truncation error.
 const REJECTIONS: u32 = 2;
-/// Least part of a rejected increment that is tried next.
+/// Least factor on the length of an increment after a rejection.
 const LEAST_PART: f64 = 0.3;
 /// Safety factors on the length whose truncation error would equal the tolerance: after a rejection, and in growth.
 const SAFE: f64 = 0.85;
 const SAFE_GROWTH: f64 = 0.9;
-/// Growth that is worth new factors of K*.
+/// Least growth for which new factors of K* are worth their cost.
 const WORTHWHILE: f64 = 1.25;
 
-/// Automatic increments of a whole step, shorter where one fails and longer after easy ones: by their passes, cut to a
-/// quarter where one fails, or by their truncation error (docs/theory/time.md, Automatic increments).
+/// Automatic increments of a whole step: longer after easy increments, shorter after failed ones. If the passes decide
+/// the increments, a failed one is cut to a quarter; the truncation error may decide them instead (docs/theory/time.md,
+/// Automatic increments).
 pub(crate) struct Automatic {
     /// The step.
     nominal: NominalIncrement,
@@ -38,18 +39,19 @@ pub(crate) struct Automatic {
     ends_at_impacts: bool,
     from: f64,
     dt: f64,
-    /// Increments in a row that allow growth.
+    /// Number of last increments, in a row, that allow growth.
     easy: u32,
-    /// Cuts since the last accepted increment.
+    /// Number of cuts since the last accepted increment.
     cuts: u32,
-    /// Those of them because of the truncation error, in a row.
+    /// Number of cuts since the last accepted increment that are rejections because of the
+    /// truncation error.
     rejections: u32,
-    /// Impacts in a row that have ended subincrements.
+    /// Number of last impacts, in a row, that have ended subincrements.
     events: usize,
 }
 
 impl Automatic {
-    /// Starts with the first increment of a step.
+    /// Starts a step with its first increment.
     pub fn new(place: StepPlace, increments: Increments, ends_at_impacts: bool) -> Self {
         Automatic {
             nominal: NominalIncrement {
@@ -70,12 +72,12 @@ impl Automatic {
         }
     }
 
-    /// The step as one increment.
+    /// The whole step as one increment.
     pub fn nominal(&self) -> NominalIncrement {
         self.nominal
     }
 
-    /// Growth that an accepted increment allows the next one; none where it was not easy.
+    /// Growth that an accepted increment allows the next one; `None` if it was not easy.
     fn allowed_growth(&self, how: Ended) -> Option<f64> {
         let growth = match self.increments.incrementation {
             Incrementation::Error { tolerance } => {
@@ -101,7 +103,7 @@ impl TimeControl for Automatic {
         let (end, dt) = if self.dt >= left * (1.0 - LEFT_OVER) {
             (self.nominal.to, left)
         } else if by_error && 2.0 * self.dt >= left {
-            // no short one is left over
+            // two equal halves, so that no short increment is left over
             (self.from + left / 2.0, left / 2.0)
         } else if by_error {
             // the same length keeps the factors of K* valid
@@ -139,7 +141,7 @@ impl TimeControl for Automatic {
         let growth = self.allowed_growth(how);
         (self.from, self.cuts, self.rejections) = (interval.end.step, 0, 0);
         self.events = if how.at_impact { self.events + 1 } else { 0 };
-        // what an impact has cut short says nothing of the whole
+        // an increment that an impact has cut short says nothing about the length of whole ones
         if how.at_impact {
             return;
         }
@@ -205,7 +207,7 @@ mod tests {
             lengths.push(interval.dt);
             control.accepted(&interval, SMOOTH);
         }
-        // the cut one is not easy, and what is left ends the step
+        // the increment after a cut does not count as easy, and the rest ends the step
         let expected = [
             0.1, 0.1, 0.15, 0.15, 0.05625, 0.05625, 0.05625, 0.084375, 0.084375, 0.1265625,
             0.0359375,
@@ -216,7 +218,8 @@ mod tests {
         }
     }
 
-    /// Runs a step of length 1 whose increments have errors `error(dt)`; lengths of the accepted and of the repeated ones.
+    /// Runs a step of length 1 whose increments have the error `error(start, dt)`; returns the lengths of the accepted
+    /// and of the repeated increments.
     fn lengths(error: impl Fn(f64, f64) -> f64) -> [Vec<f64>; 2] {
         let increments = Increments {
             dt: 0.01,

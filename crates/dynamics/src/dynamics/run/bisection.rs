@@ -1,12 +1,12 @@
-//! Fixed grid: a nominal increment in halves, quarters ... that join again as soon as they align.
-//! See docs/theory/time.md, Cutback.
+//! Fixed grid: a nominal increment is divided into halves, quarters and so on, which join again as
+//! soon as they align. See docs/theory/time.md, Cutback.
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::Interval;
 
-/// A nominal increment of which the parts up to number `part` of 2^`halvings` are done.
+/// A nominal increment whose parts up to number `part` of 2^`halvings` are done.
 pub(crate) struct Bisection {
     nominal: NominalIncrement,
     part: u32,
@@ -14,7 +14,7 @@ pub(crate) struct Bisection {
 }
 
 impl Bisection {
-    /// Starts with the increment as a whole.
+    /// Starts with the nominal increment as a whole.
     pub fn new(nominal: NominalIncrement) -> Self {
         Bisection {
             nominal,
@@ -65,7 +65,7 @@ mod tests {
         let mut control = Bisection::new(nominal());
         let mut lengths = Vec::new();
         while let Some(NextSubincrement { interval, .. }) = control.next() {
-            // the first half of the increment needs two halvings, its second none
+            // the first half of the increment needs two halvings, the second half none
             if interval.start.step < 0.34 && interval.dt > 0.026 {
                 control.failed(&interval, None);
             } else {

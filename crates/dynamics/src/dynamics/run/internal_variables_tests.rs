@@ -17,10 +17,10 @@ const YIELDING: Yielding = Yielding {
     r: 0.3,
     c: 0.05,
 };
-/// Nodes along a side of the block.
+/// Number of nodes along a side of the block.
 const SIDE: usize = 4;
 
-/// A free square of side 1 that is stretched along x at this rate and turns.
+/// A free square of side 1 that is stretched along x at the given rate and turns.
 fn block(rate: f64) -> Model {
     let mut model = Model::default();
     model.add_section(Law::Yielding(YIELDING), 1.0, 1.0);
@@ -50,7 +50,7 @@ fn step(dt: f64, count: usize) -> Step {
 #[derive(Default)]
 struct Keep {
     reports: Vec<IncrementReport>,
-    /// Accepted reports before each cutback.
+    /// Number of accepted reports before each cutback.
     cutbacks: Vec<usize>,
 }
 
@@ -66,7 +66,7 @@ impl Observer for Keep {
     }
 }
 
-/// All reports of a run to the end; what holds in each of its increments is checked.
+/// All reports of a complete run; in each increment their common properties are checked.
 fn checked_run(mut model: Model, step: Step) -> Keep {
     model.steps = vec![step];
     let prepared = PreparedModel::new(model);
@@ -77,7 +77,8 @@ fn checked_run(mut model: Model, step: Step) -> Keep {
     let start = keep.reports[0].energy.kinetic;
     for pair in keep.reports.windows(2) {
         let [before, after] = [&pair[0], &pair[1]];
-        // from what the last accepted increment has left, whatever was tried in between
+        // each increment starts from the variables of the last accepted one, whatever attempts came
+        // in between
         let updated = elements.update(Motion {
             start: Some(&before.state.u),
             ..Motion::at(&after.state.u, &before.state.internal)

@@ -3,7 +3,7 @@
 use crate::dynamics::step::{Interval, StepPlace};
 use crate::model::Increments;
 
-/// A step's duration counts as a multiple of its increment within this relative difference.
+/// Relative difference within which a step's duration counts as a multiple of its increment.
 const WHOLE: f64 = 1e-6;
 
 /// One nominal increment of a step, in step time.
@@ -17,7 +17,7 @@ pub(crate) struct NominalIncrement {
 }
 
 impl NominalIncrement {
-    /// Part number `part` of 2^halvings.
+    /// Part number `part` of the 2^`halvings` parts of the increment.
     pub fn part(&self, part: u32, halvings: u32) -> Interval {
         let parts = f64::from(1_u32 << halvings);
         let at = |k: u32| match k {

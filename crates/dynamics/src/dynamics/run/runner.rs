@@ -1,4 +1,4 @@
-//! Time stepping of a run: steps, and nominal increments divided by their time control; each
+//! Time stepping of a run: steps, and nominal increments divided by their time control. Each
 //! subincrement is attempted, checked, and accepted or cut back. See docs/theory/time.md, Cutback.
 
 use std::{io, iter};
@@ -30,21 +30,22 @@ use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
-/// A static increment may be a jump if its displacement is this many times what the rate of the last increment gives.
+/// A static increment may be a jump if its displacement exceeds this multiple of the displacement at the rate of the
+/// last increment.
 const FAR: f64 = 5.0;
-/// Smaller displacement increments, as parts of the displacements, are no jump.
+/// Displacement increment, relative to the displacements, below which it is not a jump.
 const COUNTS: f64 = 0.01;
-/// An increment that is repeated with a shorter length is no jump if its rate of displacement is at most this multiple of
-/// the rate of the longer, rejected one.
+/// An increment that is repeated with a shorter length is no jump if its rate of displacement is at most this multiple
+/// of the rate of the rejected longer increment.
 const SHRINKS: f64 = 1.5;
 
-/// Errors that end a run, apart from a failed increment.
+/// Errors that end a run, other than a failed increment.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The observer could not take the results.
+    /// The observer could not receive the results.
     #[error(transparent)]
     Observer(#[from] io::Error),
-    /// A checkpoint is not that of the model.
+    /// A checkpoint is of another model.
     #[error("the checkpoint cannot be read: {0}")]
     Checkpoint(#[from] ArchiveError),
 }
@@ -52,18 +53,18 @@ pub enum RunError {
 /// Runs all steps of a model; the observer receives the start and every increment.
 ///
 /// # Errors
-/// Those of the observer. A failed increment is an [`Outcome`].
+/// Errors of the observer are returned. A failed increment is an [`Outcome`].
 pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     let discretization = Discretization::new(prepared);
     Runner::new(&discretization, observer).steps(None, 0.0)
 }
 
-/// Goes on with a run from a checkpoint that its observer has received, in the same bits, and beyond the end of the last
-/// step by a time `extension`; the observer receives the increments after it. Only the time that this takes is in the
-/// summary.
+/// Continues a run from a checkpoint that its observer has received, with the same bits, and beyond the end of the last
+/// step by a time `extension`. The observer receives the increments after the checkpoint. The summary contains only the
+/// times of the continuation.
 ///
 /// # Errors
-/// Those of the observer; a checkpoint of another model.
+/// Returns errors of the observer, or an error if the checkpoint is of another model.
 pub fn resume(
     prepared: &PreparedModel,
     checkpoint: &[u8],
@@ -95,20 +96,21 @@ fn nominal_controls(
     Box::new(nominal_increments(place, step.increments).map(with_control))
 }
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Default, serde::Serialize, serde::Deserialize)]
 struct RunProgress {
     /// Number of the step, from 1.
     step: usize,
-    /// Displacement and velocity at its start.
+    /// Displacement and velocity at the start of the step.
     start: [Vec<f64>; 2],
-    /// Forces of supports that fade over it (dof, force).
+    /// Forces of supports that fade over the step (dof, force).
     released: Vec<(usize, f64)>,
-    /// Index of its nominal increment.
+    /// Index of the nominal increment in the step.
     nominal: usize,
 }
 
-/// Velocities of a model, with those of angles as the unknowns have them.
+/// Initial velocities of a model; those of angles are multiplied by their length, as in the
+/// unknowns.
 fn initial_velocity(discretization: &Discretization) -> Vec<f64> {
     let mut v = discretization.model.initial_velocity.clone();
     v.resize(discretization.model.dof_count(), 0.0);
@@ -118,7 +120,7 @@ fn initial_velocity(discretization: &Discretization) -> Vec<f64> {
     v
 }
 
-/// The ends of an increment of length `dt` from a state.
+/// The data of an increment of length `dt` from a state for its truncation error.
 fn ends<'a>(start: &'a State, solved: &'a Solved, dt: f64) -> Ends<'a> {
     Ends {
         u1: &solved.end.u,
@@ -128,7 +130,7 @@ fn ends<'a>(start: &'a State, solved: &'a Solved, dt: f64) -> Ends<'a> {
     }
 }
 
-/// Static increment that has led too far.
+/// A static increment that has led too far.
 #[derive(Debug, Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct RejectedTravel {
     /// Largest displacement increment (length).
@@ -143,15 +145,15 @@ struct Runner<'m, 'o> {
     /// State and energies at the end of the last increment.
     state: State,
     ledger: Ledger,
-    /// Largest displacements and forces of the steps before, the base of tolerances.
+    /// Largest displacements and forces of earlier steps, on which tolerances are based.
     seen: Seen,
-    /// The static increment before that has led too far.
+    /// The last attempt at a static increment, if it has led too far.
     rejected: Option<RejectedTravel>,
-    /// Procedure of the step before.
+    /// Procedure of the last step.
     procedure: Procedure,
     /// The motion of the last increment, in a static step.
     path: Option<Path>,
-    /// Measures the increments, in a step whose truncation error decides their length.
+    /// Truncation error of the increments, in a step in which it decides their length.
     accuracy: Option<TruncationError>,
     accounts: Accounts,
     summary: RunSummary,
@@ -196,8 +198,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// Runs the steps, the last one for a time `extension` longer than in the deck; `resumed` is the checkpoint that
-    /// they go on from.
+    /// Runs the steps, the last one longer than in the deck by a time `extension`; `resumed` is the checkpoint from
+    /// which they continue.
     fn steps(
         mut self,
         mut resumed: Option<Archive>,
@@ -231,7 +233,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(self.summary)
     }
 
-    /// Transfers what increments hand on, but for the workspace of their step and their time control.
+    /// Transfers the data that increments hand on, except the workspace of their step and their time control.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let dofs = self.state.u.len();
         transfer_fields!(archive, self => Runner {
@@ -247,7 +249,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         })
     }
 
-    /// Hands the observer all that the rest of the run depends on.
+    /// Hands the observer all data on which the rest of the run depends.
     fn checkpoint(
         &mut self,
         workspace: &mut Workspace,
@@ -260,7 +262,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(self.observer.checkpoint(archive.into_bytes())?)
     }
 
-    /// Runs a step, or what is left of it after the checkpoint `resumed`; returns how it ends.
+    /// Runs a step, or its rest after the checkpoint `resumed`; returns how it ends.
     fn step(
         &mut self,
         step: &'m Step,
@@ -290,8 +292,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         outcome
     }
 
-    /// Takes the forces of contacts that a step has removed, and of supports that it has not any more: at once in a
-    /// dynamic step, while over a static or quasi-static one they fade.
+    /// Removes the forces of contacts that a step removes, and of supports that it no longer has: at once in a dynamic
+    /// step, gradually over a static or quasi-static one.
     fn release(&mut self, problem: &mut StepProblem, step: &Step) {
         let removed = &step.contacts.removed;
         (self.state.contact).retain(|pair| !removed.contains(&pair.key.contact()));
@@ -305,7 +307,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         problem.release(&self.progress.released);
     }
 
-    /// The motion of the start, then all increments; or those after the checkpoint `resumed`.
+    /// Runs the motion of the start and all increments, or the increments after the checkpoint
+    /// `resumed`.
     fn increments(
         &mut self,
         problem: &StepProblem<'m>,
@@ -337,7 +340,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(Outcome::Finished)
     }
 
-    /// The motion at the start of a step; the failure where that of the analysis is not finite.
+    /// Computes the motion at the start of a step; returns a failure if the motion at the start of
+    /// the analysis is not finite.
     fn begin(
         &mut self,
         problem: &StepProblem<'m>,
@@ -400,7 +404,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         Some(failure_at_start(cause, self.summary.increments, place))
     }
 
-    /// One nominal increment, divided by its time control: attempt, check, accept or cut back.
+    /// Runs one nominal increment, divided by its time control: attempt, check, acceptance or
+    /// cutback.
     fn increment(
         &mut self,
         problem: &StepProblem<'m>,
@@ -466,12 +471,12 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// An accepted increment with its truncation error, where that decides the increments of the step. An error that is
-    /// too large counts without what is too stiff for the increment.
+    /// An accepted increment with its truncation error, in a step in which this error decides the increments. If the
+    /// error is too large, it is computed without the part of the motion that is too stiff for the increment.
     ///
     /// # Errors
-    /// [`Cause::Inaccurate`] where it is so large that the increment is to be repeated; those of
-    /// [`factorize_anew`].
+    /// Returns [`Cause::Inaccurate`] if the error is so large that the increment is to be repeated;
+    /// also the errors of [`factorize_anew`].
     fn measured(
         &self,
         problem: &StepProblem,
@@ -511,7 +516,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         Err(Box::new((accepted.subincrement.interval, failed)))
     }
 
-    /// Solves a span, or its part up to the next impact.
+    /// Solves a subincrement, or its part up to the next impact.
     fn attempt(
         &mut self,
         problem: &StepProblem<'m>,
@@ -570,7 +575,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// The equilibrium at the end of a static increment must be stable.
+    /// Checks that the equilibrium at the end of a static increment is stable.
     fn check_stability(
         &self,
         problem: &StepProblem,
@@ -596,9 +601,11 @@ impl<'m, 'o> Runner<'m, 'o> {
         })
     }
 
-    /// A static increment must not lead to another equilibrium: much farther than at the rate of the last increment,
-    /// in the first one than by its tangent, unless the travel becomes shorter with the increment, or is below what the
-    /// passes resolve. Bodies that contact alone holds may move freely up to it, and others suddenly when it begins.
+    /// Checks that a static increment does not lead to another equilibrium, that is, much farther than at the rate of
+    /// the last increment, or in the first one than by its tangent. The check passes too if the travel decreases with
+    /// the length of the increment, or is below the resolution of the passes. Bodies that only contact holds are not
+    /// checked, since they may move freely until contact begins; the other bodies may then move as far as by the
+    /// tangent.
     fn check_jump(
         &mut self,
         problem: &StepProblem,
@@ -638,8 +645,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         })
     }
 
-    /// Reports a failed attempt that is to be repeated with a smaller length; returns it when
-    /// that would fail too, or there is none.
+    /// Reports a failed attempt that is to be repeated with a smaller length. Returns the failure
+    /// if the repetition would fail too, or if there is no smaller length.
     fn cut_back(
         &mut self,
         failure: Failure,
@@ -726,8 +733,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(())
     }
 
-    /// Velocity of supports and equations, and acceleration, at the start of a dynamic step that is not the
-    /// continuation of another; at rest at that of a static one.
+    /// Computes the velocity of supports and equations, and the acceleration, at the start of a dynamic step that does
+    /// not continue another; at the start of a static step both are zero.
     fn begin_motion(
         &mut self,
         problem: &StepProblem,
@@ -751,7 +758,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Completes the start state (velocity of supports and equations, acceleration; at rest in a static step) and
-    /// reports it, or gives the failure when it is not finite.
+    /// reports it. Returns a failure if the start state is not finite.
     fn start(
         &mut self,
         problem: &StepProblem,
@@ -780,8 +787,8 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 }
 
-/// What holds motions that only facets resist in a static increment: the body with the largest force, and the largest
-/// force as a part of the normal forces at its body, where it is more than the tolerance.
+/// Forces that hold motions resisted only by facets in a static increment: the body with the largest force, and the
+/// largest force relative to the normal forces on its body, if it is above the tolerance.
 fn held_motions(
     problem: &StepProblem,
     workspace: &Workspace,

@@ -1,25 +1,25 @@
-//! Time control of a step: how the increments of its grid are divided. See docs/theory/time.md,
+//! Time control of a step: division of the increments of its grid. See docs/theory/time.md,
 //! Cutback, and docs/theory/impacts.md, Impacts as events.
 
 use crate::archive::{Archive, ArchiveError};
 use crate::dynamics::step::Interval;
 
-/// Most halvings of an increment; a further failure stops the run.
+/// Largest number of halvings of an increment; a further failure stops the run.
 const HALVINGS: u32 = 10;
 
 /// The next subincrement of a time control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct NextSubincrement {
     pub interval: Interval,
-    /// Whether the next impact ends it.
+    /// Whether the next impact ends the subincrement.
     pub until_impact: bool,
-    /// Length of the increment that it is part of (time).
+    /// Length of the increment to which the subincrement belongs (time).
     pub nominal: f64,
 }
 
-/// Divides one nominal increment.
+/// Divides one nominal increment into subincrements.
 pub(crate) trait TimeControl {
-    /// The next subincrement; none at the end of the nominal increment.
+    /// The next subincrement; `None` at the end of the nominal increment.
     fn next(&self) -> Option<NextSubincrement>;
 
     /// Number of halvings of the next subincrement.
@@ -28,21 +28,23 @@ pub(crate) trait TimeControl {
     /// Continues from the end of an accepted interval.
     fn accepted(&mut self, interval: &Interval, how: Ended);
 
-    /// Truncation error above which a converged interval of this length is repeated; none where it counts as it is.
+    /// Truncation error above which a converged interval of this length is repeated; `None` if it is accepted with any
+    /// error.
     fn largest_error(&self, _dt: f64) -> Option<f64> {
         None
     }
 
-    /// Cuts an interval that failed, or whose truncation error is too large.
+    /// Divides an interval that failed, or whose truncation error is too large.
     fn failed(&mut self, interval: &Interval, error: Option<f64>);
 
-    /// Transfers how far the nominal increment is solved.
+    /// Transfers the progress of the nominal increment to or from an archive.
     ///
     /// # Errors
-    /// What is read is no such control.
+    /// Returns an error if the archive is of another kind of control.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
-    /// Whether an interval of this length may be cut once more; `dt_min` is the least of the step.
+    /// Whether an interval of this length may be cut once more; `dt_min` is the least length that
+    /// the step allows.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
         self.halvings() < HALVINGS && dt / 2.0 >= dt_min
     }
@@ -51,11 +53,11 @@ pub(crate) trait TimeControl {
 /// How an accepted interval ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ended {
-    /// Whether an impact has ended it.
+    /// Whether an impact has ended the interval.
     pub at_impact: bool,
-    /// Passes that it took.
+    /// Number of passes of the interval.
     pub passes: usize,
-    /// Its truncation error, beside the displacements.
+    /// Truncation error of the interval, relative to the displacements.
     pub error: f64,
 }
 
@@ -63,7 +65,7 @@ pub(crate) struct Ended {
 pub(super) mod testing {
     use super::*;
 
-    /// Ends of subincrements.
+    /// An ordinary end of a subincrement, for tests.
     pub const SMOOTH: Ended = Ended {
         at_impact: false,
         passes: 4,

@@ -5,29 +5,31 @@ use crate::dynamics::step::{Seen, StepProblem, System, dot};
 use crate::linear::{LinearError, larger};
 use crate::vectors::distance;
 
-/// What the truncation error of the increments of a step is measured by.
+/// Data from which the truncation error of the increments of a step is computed.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct TruncationError {
     /// Displacement at the start of the step.
     start: Vec<f64>,
-    /// The largest displacement from there so far, at least the way by which fits part surfaces in the step (length).
+    /// Largest displacement since the start of the step so far, at least the length by which fits separate surfaces in
+    /// the step.
     travel: f64,
-    /// Error that the step allows.
+    /// Truncation error that the step allows.
     tolerance: f64,
-    /// The last two increments, the later one last; at first the start, of no length.
+    /// The last two increments, the later one last; at first only the start of the step, as an
+    /// increment of length 0.
     last: Vec<Past>,
 }
 
-/// An increment that is done.
+/// An increment whose result is known.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Past {
-    /// Mean acceleration, with impulses and what landings are given back.
+    /// Mean acceleration, including impulses and landing returns.
     acceleration: Vec<f64>,
     /// Length (time).
     dt: f64,
 }
 
-/// Ends of an increment: displacement, and velocity before and after.
+/// Data of an increment: displacement at its end, and velocities before and after.
 pub(crate) struct Ends<'a> {
     pub u1: &'a [f64],
     pub v0: &'a [f64],
@@ -36,7 +38,7 @@ pub(crate) struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// A = (V1 - V0)/dt
+    /// Mean acceleration A = (V1 - V0)/dt.
     fn acceleration(&self) -> impl Iterator<Item = f64> {
         let both = self.v1.iter().zip(self.v0);
         both.map(|(v1, v0)| (v1 - v0) / self.dt)
@@ -44,8 +46,8 @@ impl Ends<'_> {
 }
 
 impl TruncationError {
-    /// At the start of a step, with its displacement and acceleration, the way by which its fits part surfaces
-    /// (length), and the error that it allows.
+    /// Data at the start of a step: its displacement and acceleration, the length `parted` by which its fits separate
+    /// surfaces, and the error that it allows.
     pub fn new([u, a]: [&[f64]; 2], parted: f64, tolerance: f64) -> Self {
         TruncationError {
             start: u.to_vec(),
@@ -58,13 +60,14 @@ impl TruncationError {
         }
     }
 
-    /// Error of an increment in the displacements.
+    /// Truncation error of an increment in the displacements:
     ///
     /// ```text
     /// e = (dt³/12) (A - A_2)/(dt/2 + dt_1 + dt_2/2)    eq. (4.22)
     /// ```
     ///
-    /// 1 being the increment before and 2 that before it: what is too stiff for the increments changes its sign in each.
+    /// Here index 1 is the last increment and 2 the one before it: a motion that is too stiff for the increments
+    /// changes its sign in each of them.
     pub fn of(&self, problem: &StepProblem, ends: &Ends) -> Vec<f64> {
         let (before, since) = match &self.last[..] {
             [earlier, later] => (earlier, later.dt + earlier.dt / 2.0),
@@ -77,14 +80,15 @@ impl TruncationError {
         e
     }
 
-    /// What of an error is not too stiff for increments of length `dt`, `k` being their K*.
+    /// The part of an error that is not too stiff for increments of length `dt`, where `k` is their
+    /// K*.
     ///
     /// ```text
     /// e <- K*^-1 (2/dt²) M e    eq. (4.24)
     /// ```
     ///
     /// # Errors
-    /// Factors that cannot be used.
+    /// Returns an error if the factors cannot be used.
     pub fn filter(
         problem: &StepProblem,
         mut k: System,
@@ -99,8 +103,8 @@ impl TruncationError {
         Ok(e)
     }
 
-    /// The largest error of the bodies in the norm of their mass, beside the largest displacement of the step so far. What
-    /// the passes do not resolve of the displacements of a body is within the tolerance.
+    /// The largest error of a body, in the norm of its mass, relative to the largest displacement of the step so far.
+    /// The part of a body's displacements that the passes do not resolve counts as within the tolerance.
     ///
     /// ```text
     /// sqrt(e.M e/m)/max |U - U_start|    eq. (4.23)
@@ -127,7 +131,7 @@ impl TruncationError {
         all.map(of_body).fold(0.0, larger)
     }
 
-    /// Goes on from an accepted increment.
+    /// Enters an accepted increment with its motion.
     pub fn accept(&mut self, ends: &Ends) {
         self.travel = larger(self.travel, self.travel_to(ends.u1));
         if self.last.len() == 2 {

@@ -1,7 +1,7 @@
-//! Angles of bodies, by which the factors of K* turn with them. docs/numerics.md, Turned
+//! Angles of bodies by which the factors of K* turn with them; see docs/numerics.md, Turned
 //! factors.
 //!
-//! How bodies are held by supports and equations.
+//! Ways in which supports and equations hold bodies.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -11,13 +11,14 @@ use crate::archive::{Archive, ArchiveError};
 use crate::elements::Motion;
 use crate::vectors::{cross, difference, dot};
 
-/// Angles of the bodies that are free or turn about one node, in the configuration in which K* was
-/// assembled. Other bodies have the angle 0: their supports do not turn with them.
+/// Angles, in the configuration in which K* was assembled, of the bodies that are free or turn
+/// about one node. Bodies that are held otherwise have the angle 0, since their supports do not
+/// turn with them.
 pub(crate) struct BodyAngles {
-    /// Nodes of the bodies that turn, and arm r0 of each from the centre of mass of its body, times its mass
-    /// (mass length).
+    /// Nodes of the bodies that turn, each with its arm r0 from the centre of mass of the body times its mass (mass
+    /// length).
     arms: Vec<(usize, [f64; 2])>,
-    /// Angle of every body (rad).
+    /// Angle of every body at the assembly (rad).
     assembled: PerBody,
 }
 
@@ -39,27 +40,27 @@ impl BodyAngles {
         }
     }
 
-    /// Transfers the angles of the configuration in which K* was assembled.
+    /// Transfers the angles of the configuration in which K* was assembled to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer_values(&mut self.assembled)
     }
 
-    /// K* is assembled in the configuration of a motion.
+    /// Notes that K* is assembled in the configuration of a motion.
     pub fn assemble(&mut self, problem: &StepProblem, motion: Motion) {
         self.assembled = self.angles(problem, motion);
     }
 
-    /// Angles of the bodies from the configuration in which K* was assembled to that of a motion (rad).
+    /// Rotations of the bodies from the configuration in which K* was assembled to that of a motion (rad).
     pub fn since_assembly(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let angles = self.angles(problem, motion);
         let since = angles.iter().zip(&self.assembled).map(|(a, b)| a - b);
         since.collect()
     }
 
-    /// Mean rotation of every body in the configuration of a motion (rad), in the energy-momentum form
-    /// that halfway:
+    /// Mean rotation of every body in the configuration of a motion (rad); in the energy-momentum form in the mid
+    /// configuration:
     ///
-    /// phi = atan2(sum m r0 x r, sum m r0.r), r from any point, since sum m r0 = 0
+    /// phi = atan2(sum m r0 x r, sum m r0.r), with r from any point, since sum m r0 = 0
     fn angles(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let u = |dof: usize| match motion.start {
             Some(start) => (start[dof] + motion.end[dof]) / 2.0,
@@ -77,7 +78,8 @@ impl BodyAngles {
     }
 }
 
-/// Reference position of the centre of mass of every body; `mass` of the nodes, over all dofs.
+/// Reference position of the centre of mass of every body; `mass` are the masses of the nodes, over
+/// all dofs.
 fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     let mut sums = vec![[0.0; 3]; problem.parts.bodies()];
     for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
@@ -93,18 +95,18 @@ fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     sums.iter().map(centre).collect()
 }
 
-/// How a body is held.
+/// How supports and equations hold a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
-    /// Neither by supports nor by equations.
+    /// Neither supports nor equations hold the body.
     Free,
     /// Both dofs of this node are prescribed, and no others.
     Pinned(usize),
-    /// More is prescribed, equations tie it, or it is a body of revolution.
+    /// More dofs are prescribed, equations tie the body, or the body is one of revolution.
     Held,
 }
 
-/// How the bodies of a step are held: bodies of revolution can move along their axis alone.
+/// How the bodies of a step are held; bodies of revolution can only move along their axis.
 pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
     let (parts, unknowns) = (problem.parts, &problem.unknowns);
     if problem.model.mesh.is_axisymmetric() {
@@ -140,15 +142,15 @@ mod tests {
     use crate::model::{Element, ElementType, Increments, Model, Step, Support, SupportMotion};
     use crate::prepare::PreparedModel;
 
-    /// Nodes along a side of a block.
+    /// Number of nodes along a side of a block.
     const SIDE: usize = 3;
-    /// Nodes of a block.
+    /// Number of nodes of a block.
     const NODES: usize = SIDE * SIDE;
     const DOFS: usize = 4 * NODES;
     /// Dofs of a constraint between the two blocks.
     const CONSTRAINED: [usize; 6] = [10, 11, 2 * NODES, 2 * NODES + 1, DOFS - 2, DOFS - 1];
 
-    /// Two blocks beside each other.
+    /// Two blocks next to each other.
     fn blocks() -> PreparedModel {
         let mut model = Model::default();
         model.add_section(Law::elastic(100.0, 0.3), 1.0, 1.0);
@@ -180,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Displacements of a turn of the first block by an angle about its first node.
+    /// Displacements of a rotation of the first block by an angle about its first node.
     fn turned(prepared: &PreparedModel, angle: f64) -> Vec<f64> {
         let (x, [sin, cos]) = (&prepared.model.mesh.coordinates, [angle.sin(), angle.cos()]);
         let turn = |[x, y]: &[f64; 2]| [(cos - 1.0) * x - sin * y, sin * x + (cos - 1.0) * y];
@@ -189,7 +191,7 @@ mod tests {
         u
     }
 
-    /// A constraint between the two blocks with derivative rows of its own.
+    /// A constraint between the two blocks with its own derivative rows.
     fn constraint() -> Constraint {
         let rows = |shift: f64| {
             let row =
@@ -218,9 +220,9 @@ mod tests {
         all
     }
 
-    /// Largest difference, relative to the largest entry, of the responses of turned factors and of those
-    /// of K* assembled in the turned configuration; the first block turns by an angle within increments
-    /// of another.
+    /// Largest difference, relative to the largest entry, between the responses of turned factors and those of K*
+    /// assembled in the turned configuration. The first block has turned by `angle` since the assembly, and turns by
+    /// `increment` within an increment.
     fn error_of_turned_factors(supports: &[usize], angle: f64, increment: f64) -> f64 {
         let prepared = blocks();
         let discretization = Discretization::new(&prepared);

@@ -1,4 +1,4 @@
-//! What the materials are at the end of an increment: their internal variables, and the work of the temperature. See
+//! State of the materials at the end of an increment: internal variables, and the work of the temperature. See
 //! docs/theory/impacts.md, Ledger.
 
 use super::step_problem::StepProblem;
@@ -6,26 +6,28 @@ use crate::dynamics::results::State;
 use crate::elements::{Motion, Updated};
 use crate::linear::larger;
 
-/// What the materials are at the end of an increment.
+/// State of the materials at the end of an increment.
 #[derive(Debug, Default)]
 pub(crate) struct Committed {
-    /// Internal variables, and what is dissipated on the way to them.
+    /// Internal variables, and the energy dissipated on the way to them.
     pub updated: Updated,
-    /// Work of the temperature, and the larger of its parts, which cancel where a body may expand (force length).
+    /// Work of the temperature, and the larger of its two parts, which cancel if a body may expand freely (force
+    /// length).
     pub thermal_work: [f64; 2],
 }
 
 impl StepProblem<'_> {
-    /// Internal variables at the end of an increment to displacements `u1` and temperatures T1, what is dissipated, and the work
-    /// of the temperature. Where the temperature changes, the materials follow it at once: their variables are those of the
-    /// end, and the work is what the potential of the elements changes by at displacements that stay,
+    /// Internal variables at the end of an increment to displacements `u1` and temperatures T1, the dissipated energy,
+    /// and the work of the temperature. If the temperature changes, the materials follow the change at once: their
+    /// variables are those of the end. The work of the temperature is the change of the potential of the elements at
+    /// constant displacements,
     ///
     /// ```text
     /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0                   energy-momentum form, Tm halfway
     /// (Phi(U0; T1) - W0 + Phi(U1; T1) - Phi(U1; T0))/2               else                    eq. (9.18)
     /// ```
     ///
-    /// The first adds up to W1 + D - W0 with the work of the internal force at Tm.
+    /// Together with the work of the internal force at Tm, the first form adds up to W1 + D - W0.
     pub fn commit(&self, start: &State, u1: &[f64], [halfway, t1]: [&[f64]; 2]) -> Committed {
         let committed = Motion::at(u1, &start.internal).heated(t1);
         if start.temperature == t1 || !self.elements.expand() {

@@ -15,13 +15,13 @@ pub(crate) struct Fits<'m> {
 /// A contact that allows an overlap.
 struct Fit<'m> {
     load: &'m Load<Interference>,
-    /// What its magnitude multiplies at every slave node: the overlap of the start of the analysis (length), or 1.
+    /// Factor of the magnitude at every slave node: the overlap at the start of the analysis (length), or 1.
     nodes: Cow<'m, [f64]>,
 }
 
 impl<'m> Fits<'m> {
-    /// Those of a step; `overlaps` are the overlaps of the slave nodes at the start of the analysis, and `slaves` their
-    /// number, contact by contact.
+    /// Fits of a step. `overlaps` are the overlaps of the slave nodes at the start of the analysis, and `slaves` is the
+    /// number of slave nodes of every contact.
     pub fn new(
         model: &'m Model,
         step: &'m Step,
@@ -47,8 +47,8 @@ impl<'m> Fits<'m> {
         self.all.is_empty()
     }
 
-    /// Overlaps that the slave nodes of every contact may have at the start of an increment and at its end (length), none
-    /// of a contact without a fit.
+    /// Overlaps that the slave nodes of every contact may have at the start and at the end of an increment (length);
+    /// empty for a contact without a fit.
     pub fn allowed(&self, interval: Interval) -> Vec<Vec<[f64; 2]>> {
         let mut allowed = vec![Vec::new(); self.model.contacts.len()];
         for Fit { load, nodes } in &self.all {
@@ -59,14 +59,15 @@ impl<'m> Fits<'m> {
         allowed
     }
 
-    /// The largest way by which they part surfaces in an interval (length).
+    /// The largest length by which the fits separate surfaces in an interval of time.
     pub fn travel(&self, interval: Interval) -> f64 {
         let allowed = self.allowed(interval);
         let ways = allowed.iter().flatten().map(|[a0, a1]| (a0 - a1).abs());
         ways.fold(0.0, larger)
     }
 
-    /// Contacts with the largest overlap at the start of the analysis that they press out (length).
+    /// Contacts with a fit, each with the largest overlap at the start of the analysis that it
+    /// presses out (length).
     pub fn largest(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let shrinks = self.all.iter().filter(|fit| fit.load.at.is_shrink);
         shrinks.map(|fit| (fit.load.at.contact, largest(&fit.nodes)))

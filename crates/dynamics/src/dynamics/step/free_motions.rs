@@ -7,20 +7,22 @@ use crate::contact::Constraint;
 use crate::lcp::{FreeUnknowns, FrictionalLcp, FrictionalSolution, Stability};
 use crate::linear::{larger, largest};
 
-/// eps of eq. (12.5) beside the stiffness of the pins in the mean.
+/// Factor eps of eq. (12.5), relative to the mean stiffness of the pins.
 const REGULAR: f64 = 1e-11;
-/// Stiffness against a motion that nothing resists, in units of E.
+/// Stiffness, in units of E, up to which a motion counts as not resisted.
 const UNRESISTED: f64 = 10.0;
-/// Force, beside the others, that is round-off.
+/// Force, relative to the other forces, up to which it is round-off.
 const NO_FORCE: f64 = 1e-12;
 
-/// Places p of the far ends of the pins as unknowns: with pins of the stiffness a that end there,
+/// The places p of the far ends of the pins as unknowns. With pins of the stiffness a that end at
+/// the places p,
 ///
 /// ```text
 /// dU = y + W B^T P + Z p,   f = a S^T (y + W B^T P) - S_p p,   S_p = a - a S^T Z    eq. (12.3)
 /// ```
 ///
-/// W being the inverse with the pins, Z = W (S a + N Z), y = d_p + W r and f what the pins carry.
+/// W is the inverse with the pins, Z = W (S a + N Z), y = d_p + W r, and f are the forces of the
+/// pins.
 pub(crate) struct FreeMotions {
     /// The pinned dofs.
     pub dofs: Vec<usize>,
@@ -28,23 +30,23 @@ pub(crate) struct FreeMotions {
     a: Vec<f64>,
     /// Z as motions of all dofs, column by column (dimensionless).
     motions: Vec<Vec<f64>>,
-    /// W S a as what forces at all dofs do.
+    /// The columns W S a, in the form of the work of forces at all dofs.
     works: Vec<Vec<f64>>,
     /// S a + N Z (dof, force/length).
     loads: Vec<Vec<(usize, f64)>>,
     /// S_p (force/length).
     stiffness: DMatrix<f64>,
-    /// Mean square motion of every body, over the motions of its pins.
+    /// Mean square motion of every body, as a quadratic form of the motions of its pins.
     mean_square: DMatrix<f64>,
     /// P of eq. (12.11): the part of the motions of the pins that is held.
     held: DMatrix<f64>,
     /// Round-off of forces at the pins.
     round_off: f64,
-    /// How far nodes may go in a pass (length).
+    /// Largest distance that nodes may move in a pass (length).
     reach: f64,
-    /// S^T y: motions of the pins without contact forces and with p = 0.
+    /// S^T y: motions of the pins without contact forces and with their far ends at p = 0.
     pub alone: Vec<f64>,
-    /// The last answer.
+    /// The answer of the last complementarity problem.
     answer: Option<Answer>,
 }
 
@@ -53,24 +55,25 @@ struct Answer {
     p: DVector<f64>,
     /// Stiffness against p under the closed pairs, eq. (12.6).
     under_contact: DMatrix<f64>,
-    /// E is this part of the mean square motion (force/length).
+    /// Factor of the mean square motion in E (force/length).
     regular: f64,
     stability: Stability,
 }
 
 /// A motion that contact hardly resists.
 pub(crate) struct Loose {
-    /// Motions of the pins, of the mean square 1.
+    /// Motions of the pins, with a mean square of 1.
     pub pins: DVector<f64>,
-    /// Force along it that nothing balances at the start of the pass.
+    /// Force along the motion that nothing balances at the start of the pass.
     pub force: f64,
-    /// Whether it is as good as zero.
+    /// Whether contact resists the motion practically not at all.
     pub is_unresisted: bool,
 }
 
 impl FreeMotions {
-    /// Those of pins of the stiffness `a` at some dofs, from Z, W S a and S a + N Z over all dofs; and the mean square
-    /// motion of the bodies, the stiffness of forces that are not balanced yet and the held part of the motions.
+    /// Free motions of pins with the stiffness `a` at some dofs, from Z, W S a and S a + N Z over all dofs. The
+    /// matrices are the mean square motion of the bodies, the stiffness of forces that are not balanced yet, and the
+    /// held part of the motions.
     pub fn new(
         (dofs, a): (Vec<usize>, Vec<f64>),
         [motions, works, loads]: [Vec<Vec<f64>>; 3],
@@ -102,8 +105,8 @@ impl FreeMotions {
         }
     }
 
-    /// Free unknowns of the complementarity problem of some constraints. The balance of what is held is that the pins stay
-    /// there:
+    /// The free unknowns of the complementarity problem of some constraints. For held motions the balance says that the
+    /// far ends of the pins stay in place:
     ///
     /// ```text
     /// H f + P^T a P S^T dU = 0,   H = (1 - P)^T - P^T P    eq. (12.11)
@@ -135,14 +138,14 @@ impl FreeMotions {
         }
     }
 
-    /// Part of the mean square motion in E (force/length).
+    /// Factor of the mean square motion in E (force/length).
     fn regular(&self) -> f64 {
         let mean = self.a.iter().sum::<f64>() / self.a.len() as f64;
         REGULAR * mean
     }
 
-    /// Takes the answer p of a problem. Motions that nothing resists and that round-off of the other forces drives are
-    /// none.
+    /// Stores the answer p of a problem. Motions that nothing resists, and that only the round-off of other forces
+    /// drives, are set to zero.
     pub fn answer(&mut self, problem: &FrictionalLcp, solution: &FrictionalSolution) {
         self.answer = Some(Answer {
             p: solution.free.clone(),
@@ -164,7 +167,7 @@ impl FreeMotions {
         }
     }
 
-    /// p of the last answer.
+    /// Places p of the last answer.
     pub fn p(&self) -> Vec<f64> {
         match &self.answer {
             Some(answer) => answer.p.as_slice().to_vec(),
@@ -178,7 +181,7 @@ impl FreeMotions {
         of_pins.flat_map(|(p, load)| load.iter().map(move |&(dof, force)| (dof, p * force)))
     }
 
-    /// What the pins carry along what is held, for a correction of all dofs: P^T f, f = a (S^T dU - p).
+    /// Forces of the pins along held motions, for a correction of all dofs: P^T f with f = a (S^T dU - p).
     pub fn carried(&self, du: &[f64]) -> Vec<f64> {
         let p = self.p();
         let force = |k: usize| self.a[k] * (du[self.dofs[k]] - p[k]);
@@ -186,9 +189,9 @@ impl FreeMotions {
         self.held.tr_mul(&force).as_slice().to_vec()
     }
 
-    /// Motions n of the mean square 1 with a stiffness of at most that of E and of facets, `of_facets`, under the closed pairs
-    /// of the last answer: right singular vectors of S_e beside the mean square motion, since a pair that slides resists with
-    /// its friction what it does not feel.
+    /// Motions n with a mean square of 1 whose stiffness under the closed pairs of the last answer is at most that of E
+    /// or of facets (`of_facets`). The motions n are right singular vectors of S_e relative to the mean square motion,
+    /// since a sliding pair resists by its friction motions that do not change its gap.
     pub fn loose(&self, of_facets: &dyn Fn(&[f64]) -> f64) -> Vec<Loose> {
         let Some(Answer {
             p,
@@ -218,7 +221,7 @@ impl FreeMotions {
             let Some(pins) = root.tr_solve_lower_triangular(&direction.transpose()) else {
                 continue;
             };
-            // |S_e n| and n^T S_e n, n being of the mean square 1
+            // |S_e n| and n^T S_e n, where n has a mean square of 1
             let resisted = root.solve_lower_triangular(&(under_contact * &pins));
             let resisted = resisted.map_or(f64::INFINITY, |force| force.norm());
             let stiffness = pins.dot(&(under_contact * &pins));
@@ -246,25 +249,25 @@ impl FreeMotions {
         motion
     }
 
-    /// Forces at the pins with the given work on the motion of the pins n and none on those beside it.
+    /// Forces at the pins that do the given work on the motion n of the pins and none on motions orthogonal to it.
     pub fn force_along(&self, Loose { pins, force, .. }: &Loose) -> Vec<f64> {
         let along = &self.mean_square * pins * *force;
         along.as_slice().to_vec()
     }
 
-    /// What contact does against the motions in the last answer.
+    /// Stability of the motions under contact in the last answer.
     pub fn stability(&self) -> Stability {
         self.answer
             .as_ref()
             .map_or(Stability::default(), |answer| answer.stability)
     }
 
-    /// Whether the last answer moves a node farther than it may go.
+    /// Whether the last answer moves a node farther than the reach.
     pub fn goes_too_far(&self) -> bool {
         largest(&self.motion(&self.p())) > self.reach
     }
 
-    /// A force along a motion that is round-off beside others of the given size.
+    /// Force along a motion up to which it is round-off, if the other forces have the given size.
     pub fn none_beside(&self, others: f64) -> f64 {
         larger(NO_FORCE * others, self.round_off)
     }

@@ -7,27 +7,27 @@ use crate::contact::{ClosedPair, ClosedPairs, Constraint, position};
 use crate::linear::larger;
 use crate::model::{FormerFriction, Friction, Model, Step};
 
-/// Part of a slip that passes leave of it.
+/// Relative error of a slip that the passes leave.
 const SOLVED_SLIP: f64 = 1e-9;
 
-/// Slip rate at the start of an increment, as a part of the largest speed at the pair, up to which the pair is at rest.
+/// Slip rate at the start of an increment, relative to the largest speed at the pair, up to which the pair is at rest.
 const RESTING: f64 = 1e-9;
 
-/// What the coefficients of an iterate depend on besides its constraints.
+/// Data on which the coefficients of an iterate depend, other than its constraints.
 #[derive(Clone, Copy)]
 pub(crate) struct BeforeIterate<'a> {
     /// Displacements U0 of the start.
     pub u0: &'a [f64],
     /// The increment.
     pub interval: Interval,
-    /// The pairs closed in the solution before.
+    /// The pairs closed in the last solution.
     pub closed: &'a ClosedPairs,
-    /// Velocity V0 of the start, if there are velocities and the iterate is the one that the passes begin with.
+    /// Velocity V0 of the start, if there are velocities and the iterate is the first one of the passes.
     pub v0: Option<&'a [f64]>,
 }
 
 impl BeforeIterate<'_> {
-    /// Slip rate that the coefficient of a constraint is taken at; none at rest.
+    /// Slip rate at which the coefficient of a constraint is evaluated; `None` at rest.
     ///
     /// ```text
     /// |Dt|/dt,   of the iterate that passes begin with |Bt V0|    eq. (3.10)
@@ -44,8 +44,8 @@ impl BeforeIterate<'_> {
         }
     }
 
-    /// Normal force of every constraint in the solution before. The first constraint of a slave node that has left all its
-    /// targets has the forces that it had there.
+    /// Normal force of every constraint in the last solution. If a slave node has left all its targets, its first
+    /// constraint has the forces that the node had there.
     fn normal_forces(&self, constraints: &[Constraint]) -> Vec<f64> {
         let mut forces: Vec<f64> = (constraints.iter())
             .map(|constraint| self.closed.force(constraint.key)[0])
@@ -66,14 +66,14 @@ impl BeforeIterate<'_> {
 pub(crate) struct Frictions<'m> {
     model: &'m Model,
     of_contacts: Vec<FrictionOfContact<'m>>,
-    /// Where the pressure counts.
+    /// Faces of slave nodes, if any friction depends on the pressure.
     faces: Option<SlaveFaces>,
 }
 
 /// Friction of a contact.
 struct FrictionOfContact<'m> {
     friction: &'m Friction,
-    /// One that gives way to it.
+    /// The former friction, which is replaced gradually in the step.
     from: Option<&'m FormerFriction>,
 }
 
@@ -91,7 +91,7 @@ impl FrictionOfContact<'_> {
         self.all().any(Friction::depends_on_pressure)
     }
 
-    /// Coefficient at a slip rate, none at rest, under a pressure, at a time.
+    /// Coefficient at a slip rate (`None` at rest), under a pressure, at a time.
     fn at(&self, rate: Option<f64>, pressure: f64, (time, model): (TimePoint, &Model)) -> f64 {
         match (self.from, rate) {
             (Some(from), _) => {
@@ -131,14 +131,15 @@ impl<'m> Frictions<'m> {
         }
     }
 
-    /// Gives the constraints of an iterate their coefficients: at rest where a pair has not slipped in the solution before,
-    /// else at the slip rate of the increment; both under the pressure that the forces at hand exert on the slave node,
+    /// Sets the coefficients of the constraints of an iterate: at rest if the pair has not slipped in the last
+    /// solution, else at the slip rate of the increment. Both coefficients depend on the pressure of the available
+    /// forces on the slave node,
     ///
     /// ```text
     /// p = |N|/A,  N = sum Bn^T Pn    eq. (3.13)
     /// ```
     ///
-    /// A being its area against N in the configuration of the start.
+    /// A is the area of the node for N in the configuration of the start.
     pub fn give(&self, x: &[[f64; 2]], before: BeforeIterate, constraints: &mut [Constraint]) {
         let BeforeIterate { u0, interval, .. } = before;
         let normal = match self.faces {
@@ -158,9 +159,11 @@ impl<'m> Frictions<'m> {
         }
     }
 
-    /// The least and the largest coefficient that the law allows every closed pair of a converged increment, whatever
-    /// coefficients the passes had: that of its slip rate Bt d/dt, or any up to that at rest where it has not slipped, under
-    /// the pressure of the forces. A slip that is round-off is none. Their friction is between mu Pn of both.
+    /// The least and the largest coefficient that the law allows for every closed pair of a converged increment, under
+    /// the pressure of its forces and whatever coefficients the passes had. The two coefficients of a pair that slips
+    /// enclose, within round-off, that of its slip rate Bt d/dt; those of a pair that does not slip are 0 and at least
+    /// the one at rest. A slip within round-off counts as zero. The friction of the pair must be between mu Pn of the
+    /// two.
     pub fn bounds<'c>(
         &self,
         x: &[[f64; 2]],
@@ -185,7 +188,7 @@ impl<'m> Frictions<'m> {
         pairs.map(of_pair).collect()
     }
 
-    /// Friction of every closed pair beyond that of the law, or below it where the pair slips (force), as [`Self::bounds`].
+    /// Friction of every closed pair above the law, or below it if the pair slips (force), by [`Self::bounds`].
     pub fn outside<'c>(
         &self,
         x: &[[f64; 2]],
@@ -201,7 +204,8 @@ impl<'m> Frictions<'m> {
         pairs.zip(bounds).map(of_pair).collect()
     }
 
-    /// N of eq. (3.13) over the dofs of all nodes from the forces Pn of constraints, none where no pressure counts.
+    /// N of eq. (3.13) over the dofs of all nodes, from the forces Pn of constraints; empty if no friction depends on
+    /// pressure.
     fn normal_forces<'c>(
         &self,
         nodes: usize,
@@ -215,8 +219,8 @@ impl<'m> Frictions<'m> {
         normal
     }
 
-    /// Pressure on the slave node of a constraint from the forces N at the nodes, 0 where its friction does not depend on
-    /// it, eq. (3.13).
+    /// Pressure on the slave node of a constraint from the forces N at the nodes, eq. (3.13); 0 if its friction does
+    /// not depend on pressure.
     fn pressure(
         &self,
         constraint: &Constraint,
@@ -344,7 +348,7 @@ mod tests {
                 u: &u,
             };
             let mut constraint = Constraint::new(testing::face(), &at);
-            // a wrong one, which the check must not take over
+            // a wrong coefficient, which the check must not use
             constraint.mu = 9.0;
             let pair = ClosedPair::new(&constraint, [1.0, 0.3], state);
             let pairs = std::iter::once((&constraint, &pair));

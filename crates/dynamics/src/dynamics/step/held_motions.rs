@@ -1,5 +1,5 @@
-//! Rigid motions of static steps that only the facets of the mesh resist: held where they are.
-//! See docs/theory/bodies.md, Neutral motions.
+//! Rigid motions of static steps that only the facets of the mesh resist; they are held where they
+//! are. See docs/theory/bodies.md, Neutral motions.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,34 +9,34 @@ use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::Unbalanced;
 use crate::linear::{larger, largest};
 
-/// Part of a motion along free ones from which on it is one of them.
+/// Size of the part of a held motion along free motions from which on it counts as free.
 const ALONG: f64 = 0.7;
 
-/// Motions that are held, of every body its own.
+/// Held motions of every body.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct HeldMotions(Vec<HeldBody>);
 
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 struct HeldBody {
-    /// Its number among those with pins.
+    /// Number of the body among the bodies with pins.
     body: usize,
     directions: Vec<HeldDirection>,
-    /// Resultant of what holds it, along the free rigid motions of the body.
+    /// Resultant of the forces that hold a body, along the free rigid motions of the body.
     force: DVector<f64>,
 }
 
-/// A rigid motion that is held, one of some that are orthogonal and of size 1.
+/// A rigid motion that is held; those of a body are orthogonal and of size 1.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 struct HeldDirection {
-    /// D: parts of the free rigid motions.
+    /// D: the components of the motion in the free rigid motions.
     rigid: DVector<f64>,
-    /// Z_p D: motion of the pins.
+    /// Z_p D: motions of the pins.
     motion: DVector<f64>,
     /// Z_p^-T D: forces at the pins with the resultant D.
     force: DVector<f64>,
 }
 
-/// Part of a vector along orthogonal motions.
+/// Component of a vector along orthogonal motions.
 fn along(directions: &[DVector<f64>], vector: &DVector<f64>) -> DVector<f64> {
     let zero = DVector::zeros(vector.len());
     let parts = directions.iter().map(|m| m * m.dot(vector));
@@ -44,7 +44,8 @@ fn along(directions: &[DVector<f64>], vector: &DVector<f64>) -> DVector<f64> {
 }
 
 impl HeldBody {
-    /// A body that is held along orthogonal rigid motions with what they take of a resultant.
+    /// A body that is held along orthogonal rigid motions; the holding force is the component of
+    /// `force` along them.
     fn new(body: usize, pins: &PinMotions, rigid: Vec<DVector<f64>>, force: &DVector<f64>) -> Self {
         let force = along(&rigid, force);
         let seen = |rigid: DVector<f64>| HeldDirection {
@@ -66,12 +67,12 @@ impl HeldBody {
 }
 
 impl HeldMotions {
-    /// Whether none is held.
+    /// Whether no motion is held.
     pub fn are_none(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// P of eq. (12.11) over all pins: the part of their motions that is held.
+    /// P of eq. (12.11) over all pins: the projection of their motions on the held part.
     pub fn projection(&self, pins: &Pins) -> DMatrix<f64> {
         let of_bodies = pins.of_bodies();
         let m = of_bodies.last().map_or(0, |own| own.end);
@@ -87,7 +88,7 @@ impl HeldMotions {
         all
     }
 
-    /// Forces at all pins.
+    /// Holding forces at all pins.
     pub fn forces(&self, pins: &Pins) -> Vec<f64> {
         let of_bodies = pins.of_bodies();
         let mut forces = DVector::zeros(of_bodies.last().map_or(0, |range| range.end));
@@ -101,7 +102,7 @@ impl HeldMotions {
         forces.as_slice().to_vec()
     }
 
-    /// Adds forces at all pins to what holds.
+    /// Adds forces at all pins to the holding forces.
     pub fn add_forces(&mut self, pins: &Pins, forces: &[f64]) {
         let of_bodies = pins.of_bodies();
         for held in &mut self.0 {
@@ -112,7 +113,8 @@ impl HeldMotions {
         }
     }
 
-    /// Turns what is held with the surfaces at which bodies lie; what is not free any more is let go. Whether there is any.
+    /// Turns the held motions with the surfaces at which the bodies lie, and releases those that are not free any more.
+    /// Returns whether any motion is released.
     pub fn follow(
         &mut self,
         pins: &Pins,
@@ -142,7 +144,7 @@ impl HeldMotions {
         lets_go
     }
 
-    /// Holds all free motions of bodies with forces at the pins that are larger than `least`; whether one is new.
+    /// Holds all free motions of bodies with forces above `least` at their pins; returns whether a motion is new.
     pub fn hold(
         &mut self,
         pins: &Pins,
@@ -171,8 +173,8 @@ impl HeldMotions {
         is_new
     }
 
-    /// The largest ratio, over the held bodies, of the force of the pins to the largest one that facets and errors explain.
-    /// Errors are `tolerance` times the normal forces, and the force `noise`.
+    /// Largest ratio, over the held bodies, of the force of the pins to the force that facets and errors can explain.
+    /// The errors are `tolerance` times the normal forces, plus the force `noise`.
     pub fn beside_facets(
         &self,
         pins: &Pins,
@@ -192,7 +194,7 @@ impl HeldMotions {
         self.0.iter().map(part).fold(0.0, f64::max)
     }
 
-    /// Largest force that holds a body, as a part of the normal forces at it.
+    /// Largest force that holds a body, relative to the normal forces on it.
     pub fn part(
         &self,
         pins: &Pins,
@@ -204,7 +206,7 @@ impl HeldMotions {
         self.0.iter().map(part).fold(0.0, larger)
     }
 
-    /// The body that is held with the largest force, with the force and the motion that it would make without.
+    /// The body with the largest holding force, with this force and the motion that the body would make without it.
     pub fn strongest(
         &self,
         pins: &Pins,
@@ -220,8 +222,8 @@ impl HeldMotions {
         pins.most_unbalanced(problem, u, &motion, &left)
     }
 
-    /// Stiffness against motions whose stability is not asked, over the dofs of their pins: `a` of each pin where they are
-    /// held, and what facets may have where they are free.
+    /// Stiffness against motions whose stability is not demanded, over the dofs of their pins: `a` of each pin for held
+    /// motions, and the stiffness that facets may have for free ones.
     pub fn stiffness(
         &self,
         pins: &Pins,

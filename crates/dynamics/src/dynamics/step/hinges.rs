@@ -1,4 +1,4 @@
-//! Hinges between bodies: nodes at one place, whose forces keep them there. See docs/theory/bodies.md, Hinges.
+//! Hinges between bodies: forces that keep two nodes at one place together. See docs/theory/bodies.md, Hinges.
 
 use nalgebra::DMatrix;
 
@@ -6,11 +6,12 @@ use super::rank_update::{RankUpdate, UpdateColumns};
 use crate::linear::{LinearError, Rotation, Transformation};
 use crate::model::{Model, Step};
 
-/// Least eigenvalue of the compliances of hinges, each in units of its own, below which some of them say the same: light
-/// bodies between heavy ones are far above.
+/// Least eigenvalue of the matrix of hinge compliances, scaled to a unit diagonal, below which some hinges are
+/// redundant. The eigenvalues of light bodies between heavy ones are far above this bound.
 const INDEPENDENT: f64 = 1e-12;
 
-/// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x, then along y of each.
+/// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x and then along y for
+/// each hinge.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Hinges {
     rows: Vec<Row>,
@@ -19,7 +20,8 @@ pub(crate) struct Hinges {
 #[derive(Debug, Clone)]
 struct Row {
     dofs: [usize; 2],
-    /// Whether supports prescribe the same motion for both: the row has no gap and no force.
+    /// Whether supports prescribe the same motion for both nodes; such a row has no gap and no
+    /// force.
     is_held: bool,
 }
 
@@ -38,7 +40,7 @@ impl Hinges {
         }
     }
 
-    /// Whether there are none.
+    /// Whether the model has no hinges.
     pub fn are_none(&self) -> bool {
         self.rows.is_empty()
     }
@@ -48,7 +50,7 @@ impl Hinges {
         self.rows.len()
     }
 
-    /// Nodes that they join.
+    /// Pairs of nodes that the hinges join.
     pub fn nodes(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         self.rows
             .iter()
@@ -74,14 +76,15 @@ impl Hinges {
         }
     }
 
-    /// What makes solutions with a matrix keep the gaps, from its solver and T and R of its iterate:
+    /// The update by which solutions with a matrix keep the gaps closed, from its solver and T and R of its iterate:
     ///
     /// ```text
     /// W = A^-1 - V S^-1 Y^T,  V = A^-1 T_m^T C^T,  Y = A^-1 T_1^T C^T,  S = C T_1 V      eq. (11.9)
     /// ```
     ///
     /// # Errors
-    /// [`LinearError::Dependent`] with the number of a hinge that other ones make superfluous.
+    /// Returns [`LinearError::Dependent`] with the number of a hinge that is redundant because of
+    /// others.
     pub fn hold(
         &self,
         (map, rotation): (&Transformation, &Rotation),
@@ -111,7 +114,7 @@ impl Hinges {
         Ok(RankUpdate::new([v, y], inverse))
     }
 
-    /// S^-1, if no row follows from the others.
+    /// S^-1, the inverse of the matrix of hinge compliances, if no row depends on the others.
     fn inverse(&self, s: DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
         let m = s.nrows();
         let size: Vec<f64> = (0..m).map(|i| s[(i, i)].abs().sqrt()).collect();

@@ -1,14 +1,14 @@
-//! What an increment is balanced with, by the procedure of its step: weights and configurations of the
-//! schemes SS22 of Zienkiewicz, Wood & Hine (1984) and the energy-momentum form of Simo & Tarnow (1992), of the backward
-//! Euler rule, and whether anything depends on rates. See docs/theory/time.md.
+//! Balance equation of an increment, by the procedure of its step. The balance has the weights and configurations of
+//! the scheme SS22 of Zienkiewicz, Wood & Hine (1984), of the energy-momentum form of Simo & Tarnow (1992), or of the
+//! backward Euler rule, and tells whether anything depends on rates. See docs/theory/time.md.
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;
 use crate::elements::Motion;
 use crate::model::{Procedure, Scheme, Step};
 
-/// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule; a static
-/// step is SS22 with both weights 1 without rates, a quasi-static one that with the inertia of the backward Euler rule.
+/// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule. A static step is
+/// SS22 with both weights 1 and without rates; a quasi-static step adds the inertia of the backward Euler rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Integration {
     pub theta1: f64,
@@ -16,13 +16,13 @@ pub(crate) struct Integration {
     pub energy_momentum: bool,
     /// Whether inertia and damping take part.
     pub has_rates: bool,
-    /// Whether V1 = d/dt, the backward Euler rule, which needs no impulses: a node that lands is at rest in the next
-    /// increment.
+    /// Whether V1 = d/dt, the backward Euler rule. The backward Euler rule needs no impulses, since a node that lands
+    /// is at rest in the next increment.
     pub backward_euler: bool,
 }
 
 impl Integration {
-    /// The integration that a step asks for.
+    /// The integration scheme of a step.
     pub fn new(step: &Step) -> Self {
         match (step.procedure, step.settings.scheme) {
             (Procedure::Static, _) => Integration {
@@ -56,7 +56,7 @@ impl Integration {
         }
     }
 
-    /// How contact rows are made.
+    /// Form of the contact rows.
     pub fn row_form(&self) -> RowForm {
         if self.energy_momentum {
             RowForm::DiscreteGradient
@@ -65,17 +65,18 @@ impl Integration {
         }
     }
 
-    /// Whether velocities tell how far nodes go in an increment.
+    /// Whether velocities tell how far nodes move in an increment.
     pub fn velocities_tell(&self) -> bool {
         self.has_rates && !self.backward_euler
     }
 
-    /// Whether the forces of supports and contacts that a step removes fade over it.
+    /// Whether the forces of supports and contacts that a step removes fade over the step.
     pub fn fades(&self) -> bool {
         !self.has_rates || self.backward_euler
     }
 
-    /// Rows of the impulses: at the start in the energy-momentum form, else those of the end.
+    /// Whether the rows of the impulses are those of the start, as in the energy-momentum form;
+    /// otherwise they are the rows of the end.
     pub fn impulses_at_start(&self) -> bool {
         self.energy_momentum
     }
@@ -116,8 +117,8 @@ impl Integration {
         }
     }
 
-    /// The motion at which internal force and tangent are evaluated: U_theta, in the energy-momentum form
-    /// from U0 to U1, at temperatures between those of the start and of the end.
+    /// The motion at which internal force and tangent are evaluated: at U_theta, or in the energy-momentum form from U0
+    /// to U1; temperatures are between those of the start and of the end.
     pub fn motion<'a>(
         &self,
         start: &'a State,

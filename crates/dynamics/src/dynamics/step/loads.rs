@@ -1,7 +1,7 @@
-//! External loads at a time point and their consistent nodal forces: concentrated loads, body
+//! External loads at a point in time and their consistent nodal forces: concentrated loads, body
 //! forces, tractions and follower pressures. See docs/theory/time.md (R_theta).
 //!
-//! Place of a step among the times of the analysis.
+//! Times of a step within the analysis.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::model::{CentrifugalForce, Load, Model, Pressure, Step, Thickness, Tim
 use crate::prepare::Redistribution;
 use crate::vectors::difference;
 
-/// A point in time: time since the start of the step and of the analysis, and the step's duration.
+/// A point in time: times since the start of the step and of the analysis, and the step's duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimePoint {
     pub step: f64,
@@ -27,7 +27,8 @@ impl TimePoint {
         amplitude.at(self.of(amplitude.time))
     }
 
-    /// Rate of an amplitude. Where the rate jumps, it is that before the jump; at the start of a step, that behind it.
+    /// Rate of an amplitude. Where the rate jumps, the result is the rate before the jump; at the start of a step it is
+    /// the rate after.
     pub fn amplitude_rate(&self, model: &Model, index: usize) -> f64 {
         let amplitude = &model.amplitudes[index];
         let t = self.of(amplitude.time);
@@ -50,7 +51,7 @@ impl TimePoint {
         [amplitude.at(end), to[0] - from[0], second]
     }
 
-    /// Part of what is ramped over the step.
+    /// Ramp over the step: the part of the step's duration that has passed, at most 1.
     pub fn ramped(&self) -> f64 {
         (self.step / self.period).min(1.0)
     }
@@ -72,7 +73,7 @@ impl TimePoint {
     }
 }
 
-/// Times of an increment.
+/// Start and end of an increment as points in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interval {
     pub start: TimePoint,
@@ -80,7 +81,8 @@ pub(crate) struct Interval {
     pub dt: f64,
 }
 
-/// Change of the forces at some dofs with their displacements, rows: force, columns: displacement (force/length).
+/// Derivative of the forces at some dofs with respect to their displacements; rows are forces, columns displacements
+/// (force/length).
 #[derive(Debug, Clone)]
 pub(crate) struct ForceChange {
     pub dofs: Vec<usize>,
@@ -88,12 +90,12 @@ pub(crate) struct ForceChange {
 }
 
 impl ForceChange {
-    /// Its symmetric part.
+    /// Symmetric part of the matrix.
     pub fn symmetric(&self) -> DMatrix<f64> {
         (&self.matrix + self.matrix.transpose()) / 2.0
     }
 
-    /// Its skew part.
+    /// Skew part of the matrix.
     pub fn skew(&self) -> DMatrix<f64> {
         (&self.matrix - self.matrix.transpose()) / 2.0
     }
@@ -102,7 +104,7 @@ impl ForceChange {
 /// Dead loads of one magnitude: body forces, and tractions over the reference faces.
 struct DeadLoad {
     load: Load<()>,
-    /// Forces of a unit of the magnitude (dof, force), in the order of the dofs.
+    /// Nodal forces for a magnitude of 1 (dof, force), in the order of the dofs.
     forces: Vec<(usize, f64)>,
 }
 
@@ -120,14 +122,14 @@ pub(crate) struct Loads<'m> {
     redistribution: &'m Redistribution,
     dead: Vec<DeadLoad>,
     spinning: Vec<SpinningMass>,
-    /// Forces of supports that the step has not any more (dof, force), which fade over it.
+    /// Forces of supports that the step no longer has (dof, force); they fade over the step.
     released: Vec<(usize, f64)>,
 }
 
-/// Nodal forces of a unit of a load's magnitude, by their dofs (force).
+/// Nodal forces of a load with a magnitude of 1, by their dofs (force).
 type UnitForces = BTreeMap<usize, f64>;
 
-/// Those of a load, which loads of the same magnitude behind it share.
+/// Unit forces of a load; subsequent loads with the same magnitude are added to them.
 fn unit_forces<'d, T>(
     all: &'d mut Vec<(Load<()>, UnitForces)>,
     &Load {
@@ -214,7 +216,7 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// Lets the forces of supports that the step has not any more fade over it (dof, force).
+    /// Lets the forces of supports that the step no longer has fade over the step (dof, force).
     pub fn release(&mut self, forces: Vec<(usize, f64)>) {
         self.released = forces;
     }
@@ -228,7 +230,7 @@ impl<'m> Loads<'m> {
             && self.released.is_empty()
     }
 
-    /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), follower pressures in the
+    /// External load R_theta = (1 - theta1) R(t0) + theta1 R(t1), eq. (4.4), with follower pressures in the
     /// configuration of displacements `u` (2 N entries, force).
     pub fn write_weighted(&self, theta1: f64, interval: Interval, u: &[f64], r: &mut [f64]) {
         r.fill(0.0);
@@ -236,14 +238,14 @@ impl<'m> Loads<'m> {
         self.add(theta1, interval.end, u, r);
     }
 
-    /// External load R at a time, pressures as in [`Self::write_weighted`].
+    /// External load R at a time, with pressures as in [`Self::write_weighted`].
     pub fn at(&self, now: TimePoint, u: &[f64]) -> Vec<f64> {
         let mut r = vec![0.0; u.len()];
         self.add(1.0, now, u, &mut r);
         r
     }
 
-    /// Changes of the loads at a time that follow the displacements `u`: those of pressures and centrifugal forces.
+    /// Derivatives of the loads that follow the displacements `u`, at a time: of pressures and centrifugal forces.
     pub fn changes(&self, now: TimePoint, u: &[f64]) -> Vec<ForceChange> {
         let of_pressure = |load: &Load<Pressure>| {
             let p = now.magnitude(self.model, load);
@@ -268,7 +270,7 @@ impl<'m> Loads<'m> {
         of_pressures.chain(of_centrifugal).collect()
     }
 
-    /// The part of the concentrated loads in this, `dofs` entries (force).
+    /// The part of the concentrated loads in R_theta, `dofs` entries (force).
     pub fn concentrated(
         &self,
         theta1: f64,
@@ -291,7 +293,7 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// The part of the dead loads.
+    /// Adds the dead loads.
     fn add_dead_loads(&self, weight: f64, at: TimePoint, r: &mut [f64]) {
         for DeadLoad { load, forces } in &self.dead {
             let f = weight * at.magnitude(self.model, load);
@@ -299,8 +301,8 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// omega² int rho N^T N (x - x_axis) dOmega, the arm in the configuration of displacements `u`, on the nodes that carry
-    /// the mass, eq. (4.28).
+    /// Adds omega² int rho N^T N (x - x_axis) dOmega, with the arm in the configuration of displacements `u`, at the
+    /// nodes that carry the mass, eq. (4.28).
     fn add_centrifugal_forces(&self, weight: f64, at: TimePoint, u: &[f64], r: &mut [f64]) {
         for SpinningMass { load, mass } in &self.spinning {
             let (element, axis) = (load.at.element, load.at.axis);
@@ -334,8 +336,8 @@ impl<'m> Loads<'m> {
         }
     }
 
-    /// Pressure p on the current face: -p int N^T n t dl, n the outward normal, t the thickness or 2 pi r; shear p along the
-    /// face: p int N^T e t dl, e the unit vector along it.
+    /// Adds the pressure p on the current face, -p int N^T n t dl, where n is the outward normal and t the thickness or
+    /// 2 pi r. A shear p along the face adds p int N^T e t dl, where e is the unit vector along the face.
     fn add_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64], r: &mut [f64]) {
         let side = load.at.face.of(&self.model.mesh);
         let (x, a) = (&self.model.mesh.coordinates, side.nodes()[0]);
@@ -354,8 +356,8 @@ impl<'m> Loads<'m> {
         [0, 1].map(|i| self.model.mesh.coordinates[node][i] + u[2 * node + i])
     }
 
-    /// Change of the pressure p on a face. Its forces are polynomials of at most degree 2 of the positions, whose
-    /// derivatives are central differences of any step; it is the length of the face.
+    /// Derivative of the forces of the pressure p on a face. The forces of the pressure are polynomials of degree 2 at
+    /// most in the positions, so central differences of any step are exact; the step is the length of the face.
     fn change_of_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64]) -> ForceChange {
         let side = load.at.face.of(&self.model.mesh);
         let thickness = self.elements.thickness(load.at.face.element);
@@ -392,11 +394,11 @@ impl<'m> Loads<'m> {
 pub(crate) struct StepPlace {
     /// Number of the step, from 1.
     pub number: usize,
-    /// Time of the analysis at which it starts.
+    /// Time of the analysis at which the step starts.
     pub start: f64,
-    /// Duration in the deck (time).
+    /// Duration of the step in the deck (time).
     pub period: f64,
-    /// Time by which a run goes on beyond it; what is ramped over the step stays as it is at its end.
+    /// Time by which a run goes on beyond the step; ramped loads keep the value of its end.
     pub extension: f64,
 }
 
@@ -406,7 +408,7 @@ impl StepPlace {
         self.period + self.extension
     }
 
-    /// The point at time `step` since the start of the step.
+    /// The point in time at `step` after the start of the step.
     pub fn time_point(&self, step: f64) -> TimePoint {
         TimePoint {
             step,

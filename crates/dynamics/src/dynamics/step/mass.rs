@@ -8,7 +8,7 @@ use crate::linear::{Assembled, NodalMatrix, Transformation};
 use crate::prepare::Redistribution;
 
 /// Mass matrix M, the same for both directions: consistent, or redistributed at contact surfaces.
-/// Stored over the nodes.
+/// Nodal masses M 1: the mass that every node carries.
 pub(crate) struct Mass {
     nodal: NodalMatrix,
     /// M 1: the mass that every node carries.
@@ -64,12 +64,13 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Masses of elements, at nodes, and of bodies that turn over the nodes that carry them.
+/// Masses of elements, point masses and masses of bodies that turn, over the nodes that carry them.
 pub(super) struct Masses {
-    /// Lists of nodes: those of every element, none of a rigid one, and of every spring and dashpot, then for each with
-    /// massless nodes those that carry it, then those that carry the masses at nodes, then centre and angle of every body that turns.
+    /// Lists of nodes, in this order: one for every element (empty for a rigid one), spring and dashpot; for each
+    /// element with massless nodes those that carry it; those that carry the masses at nodes; centre and angle of every
+    /// body that turns.
     nodes: Vec<Vec<usize>>,
-    /// List of every mass, and the mass, n x n column by column.
+    /// For every mass the number of its list, and its matrix, n x n column by column.
     of_elements: Vec<(usize, Vec<f64>)>,
 }
 
@@ -115,7 +116,7 @@ impl Masses {
         masses
     }
 
-    /// Adds them to a matrix over unknowns that was made with their lists.
+    /// Adds the masses to a matrix over unknowns that was made with their lists.
     pub fn add_to(&self, mass: &mut Assembled) {
         for (list, m) in &self.of_elements {
             let n = self.nodes[*list].len();
@@ -124,8 +125,8 @@ impl Masses {
     }
 }
 
-/// P_e^T M_e P_e, eq. (2.17), of an element's mass `m` over its nodes `own`: the nodes with mass that
-/// carry it, and the matrix over them.
+/// P_e^T M_e P_e, eq. (2.17), for an element's mass `m` over its nodes `own`: the nodes with mass that carry it, and
+/// the matrix over them.
 fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<usize>, Vec<f64>) {
     let row = |node: &usize| match redistribution.donors(*node) {
         Some(donors) => donors.to_vec(),
@@ -150,8 +151,8 @@ fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<us
     (carriers, carried)
 }
 
-/// Mass matrix T^T M T over the unknowns of a step. Its pattern is that of the elements too, which come
-/// first among what it is assembled from.
+/// Mass matrix T^T M T over the unknowns of a step. The pattern of the mass matrix includes that of the elements, which
+/// come first in the assembly.
 pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     let of_node = |&node: &usize| [2 * node, 2 * node + 1];
     let of_list = |nodes: &Vec<usize>| nodes.iter().flat_map(of_node).collect();
@@ -161,7 +162,8 @@ pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     mass
 }
 
-/// A mass per direction, n x n, over the dofs of its nodes, 2n x 2n; both column by column.
+/// Expands a mass over nodes, n x n, to both directions of their dofs, 2n x 2n; both are stored
+/// column by column.
 fn in_both_directions(m: &[f64], n: usize) -> Vec<f64> {
     let d = 2 * n;
     let mut both = vec![0.0; d * d];

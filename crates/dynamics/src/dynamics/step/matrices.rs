@@ -1,8 +1,8 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
 //! stiffness K* of the passes and the mass of the impulses. See docs/theory/time.md and docs/theory/impacts.md.
 //!
-//! A system matrix of a step, K* or M, whose work is measured: solves, in one go or in parts, and its
-//! complementarity problems. See docs/theory/time.md and docs/theory/complementarity.md.
+//! A system matrix of a step, K* or M, whose work is measured: its solves, at once or in parts, and its complementarity
+//! problems. See docs/theory/time.md and docs/theory/complementarity.md.
 
 use std::collections::BTreeMap;
 
@@ -37,23 +37,23 @@ use crate::linear::{
 pub(crate) struct FactoredMatrix {
     pub solver: CheckedSolver,
     pub compliance: Compliance,
-    /// Factors of the last complementarity problems.
+    /// Factors from the last complementarity problems, one set for each scope.
     pub kept: BTreeMap<ConstraintGroup, KeptFactors>,
-    /// Memory of its Delassus operators.
+    /// Memory of the Delassus operators of the matrix.
     pub space: DelassusSpace,
-    /// Memory of its solves.
+    /// Memory of the solves with the matrix.
     pub vectors: SolveVectors,
-    /// What its inverse differs by from that of its factors, where its solutions keep hinges closed.
+    /// Difference between the inverse that keeps hinges closed and the inverse of the factors, if there are hinges.
     update: Option<RankUpdate>,
-    /// Hinges that its solutions keep closed.
+    /// Hinges that solutions keep closed.
     hinges: Hinges,
-    /// Motions of pins that are unknowns of its complementarity problems.
+    /// Motions of pins that are unknowns of the complementarity problems.
     free: Option<FreeMotions>,
-    /// Solver of its complementarity problems.
+    /// Solver of the complementarity problems.
     method: LcpMethod,
 }
 
-/// Vectors of a solve in parts, used again by the next.
+/// Vectors of a solve in parts, which the next solve uses again.
 #[derive(Default)]
 pub(crate) struct SolveVectors {
     /// Forces turned back, over all dofs.
@@ -65,15 +65,15 @@ pub(crate) struct SolveVectors {
 /// Vectors of the response at the nodes of some constraints.
 #[derive(Default)]
 pub(crate) struct ResponseVectors {
-    /// The nodes, increasing.
+    /// The nodes at which the response is computed, increasing.
     pub nodes: Vec<usize>,
-    /// What their dofs depend on, increasing.
+    /// Unknowns on which the dofs of the nodes depend, increasing.
     pub unknowns: Vec<usize>,
     /// Forces of the constraints in the right-hand side (unknown, force).
     pub forces: Vec<(usize, f64)>,
-    /// Values at the unknowns.
+    /// Values of the response at the unknowns.
     pub values: Vec<f64>,
-    /// The response at the nodes, over all dofs; elsewhere nothing of meaning.
+    /// The response at the nodes, over all dofs; other entries have no meaning.
     pub at_nodes: Vec<f64>,
 }
 
@@ -104,7 +104,7 @@ impl FactoredMatrix {
         self.compliance.map()
     }
 
-    /// Motions of pins that are free unknowns.
+    /// Motions of pins that are free unknowns of the complementarity problems.
     pub fn free(&self) -> Option<&FreeMotions> {
         self.free.as_ref()
     }
@@ -117,7 +117,7 @@ impl FactoredMatrix {
         self.solver.factorize()
     }
 
-    /// Transfers the matrix and what is known of its inverse.
+    /// Transfers the matrix and the known part of its inverse to or from an archive.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let Self {
             solver,
@@ -143,7 +143,7 @@ impl FactoredMatrix {
         archive.transfer(update)
     }
 
-    /// The rows of T of bodies that turn, which are to change.
+    /// Mutable rows of T of bodies that turn.
     fn map_mut(&mut self) -> &mut Transformation {
         self.update = None;
         self.compliance.map_mut()
@@ -162,32 +162,31 @@ impl FactoredMatrix {
     }
 }
 
-/// Stiffness of closed constraints beside the largest K*_ii, and that of pins beside K*_ii, where the stability of an
-/// equilibrium is asked: motions that nothing resists are neutral.
+/// Stiffness of closed constraints, relative to the largest K*_ii, in the check of stability.
 const AS_RIGID: f64 = 1e3;
 const NEUTRAL: f64 = 1e-10;
 
-/// Changes of N Z at most, and the part of the stiffness of a pin up to which they are none.
+/// Largest number of iterations for N Z.
 const MOST_CHANGES: usize = 20;
 const SMALL_CHANGE: f64 = 1e-14;
 
-/// What K* is made of besides inertia.
+/// Parts of K* other than inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum StiffnessForm {
     /// Tangents of the elements and contact stiffness.
     Tangent,
-    /// Tangents of the elements, in a static step with contact stiffness, stiffened by the closed constraints.
+    /// Tangents of the elements, stiffened by the closed constraints; in a static step also contact stiffness.
     Stiffened,
     /// Positive parts of the tangents, stiffened by the closed constraints.
     Positive,
-    /// Tangents of the elements and contact stiffness, stiffened by the closed constraints as good as rigidly: definite
-    /// where a static equilibrium is stable.
+    /// Tangents of the elements and contact stiffness, stiffened almost rigidly by the closed constraints: the sum is
+    /// definite if a static equilibrium is stable.
     Stability,
 }
 
 impl StiffnessForm {
-    /// All, from the one with which passes converge fastest to the one that is never indefinite; those that closed
-    /// constraints stiffen where these `pairs_stiffen`.
+    /// The forms to be tried, from the one with the fastest passes to the one that is never indefinite. With
+    /// `pairs_stiffen` only those forms that closed constraints stiffen are tried.
     pub fn forms(pairs_stiffen: bool) -> &'static [Self] {
         match pairs_stiffen {
             false => &[Self::Tangent, Self::Stiffened, Self::Positive],
@@ -195,7 +194,7 @@ impl StiffnessForm {
         }
     }
 
-    /// Part of the tangents of the elements.
+    /// Part of the tangents of the elements in this form.
     fn part(self) -> TangentPart {
         match self {
             Self::Tangent | Self::Stiffened | Self::Stability => TangentPart::Whole,
@@ -207,20 +206,20 @@ impl StiffnessForm {
 /// Closed constraints of an iterate with their forces.
 pub(crate) struct ClosedConstraints<'a> {
     pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
-    /// Configurations that they are linearised between.
+    /// Configurations between which the closed constraints are linearised.
     pub at: Configurations<'a>,
-    /// Whether they stiffen K* though it is definite without.
+    /// Whether the constraints stiffen K* even if it is definite without them.
     pub pairs_stiffen: bool,
-    /// Changes of the loads that follow the iterate, in a static step.
+    /// Derivatives of the loads that follow the iterate, in a static step.
     pub followers: &'a [ForceChange],
     /// Load less internal force, over all dofs, in a static step.
     pub out_of_balance: &'a [f64],
-    /// Motions that are held where the stability of an equilibrium is asked.
+    /// Motions that are held, for the check of stability.
     pub held: &'a HeldMotions,
 }
 
-/// The largest entry of the mass on the diagonal of nodes without mass: no impulse acts there, and M
-/// has factors.
+/// Diagonal entries for nodes without mass, equal to the largest diagonal entry of the mass: no impulse acts there, and
+/// with them M has factors.
 fn diagonal_of_massless(problem: &StepProblem, mass: &Assembled) -> AddedBlocks {
     let most = mass.diagonal().fold(0.0, larger);
     let mut blocks = AddedBlocks::default();
@@ -238,20 +237,20 @@ fn masses(problem: &StepProblem) -> Masses {
 }
 
 /// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
-/// the mass matrix, both over the unknowns of a step: T^T K* T and T^T M T.
+/// the mass matrix. Both matrices are over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M, factorised for the acceleration at the start, and anew when an impulse first needs it, with a diagonal at nodes
-    /// without mass.
+    /// M with a diagonal at nodes without mass. The mass matrix is factorised for the acceleration at the start, and
+    /// again when an impulse first needs it.
     pub m: FactoredMatrix,
-    /// Angles of the bodies in K*.
+    /// Angles of the bodies in the configuration of K*.
     angles: BodyAngles,
-    /// What K* is made of.
+    /// Form of the stiffness in K*.
     pub form: StiffnessForm,
     /// Stiffness of every pin in K* (force/length).
     pub pins: Vec<f64>,
-    /// Length of the increments of K* (time).
+    /// Length of the increments for which K* is made (time).
     dt: f64,
     /// Largest diagonal entry of theta2 K, with damping, in every part (force/length).
     pub stiffness: Vec<f64>,
@@ -285,7 +284,7 @@ impl EffectiveStiffness {
         }
     }
 
-    /// Transfers both matrices and the configuration of K*.
+    /// Transfers both matrices and the configuration of K* to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self {
             [k, m, angles] form, pins, dt, stiffness, inertia
@@ -298,8 +297,8 @@ impl EffectiveStiffness {
         turning.write_rows(increment, self.k.map_mut());
     }
 
-    /// Sets the rows of T of bodies that turn in M to those of the start of an increment, and M with them where it
-    /// changes.
+    /// Sets the rows of T of bodies that turn in M to those at the start of an increment, and updates M where it
+    /// depends on them.
     pub fn start(&mut self, problem: &StepProblem, u0: &[f64]) {
         let turning = &problem.unknowns.turning;
         if turning.are_driven() {
@@ -323,14 +322,14 @@ impl EffectiveStiffness {
         self.dt
     }
 
-    /// Whether K* is factorised for increments of length `dt`, or of a length that differs from it
-    /// by at most the relative difference `near`.
+    /// Whether K* is factorised for increments of length `dt`, up to the relative difference
+    /// `near`.
     pub fn fits(&self, dt: f64, near: f64) -> bool {
         self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
     }
 
-    /// Assembles K* in the given configuration from the tangents of the elements or their positive
-    /// parts, without contact.
+    /// Assembles K* in the given configuration from the tangents of the elements, or from their
+    /// positive parts, without contact.
     pub fn assemble(
         &mut self,
         problem: &StepProblem,
@@ -378,7 +377,7 @@ impl EffectiveStiffness {
         (self.k.compliance).turn(&angles, problem.parts.of_nodes());
     }
 
-    /// Adds the stiffness of the closed constraints to K*, to be factorised next, and that of pins at rigid motions.
+    /// Adds the stiffness of the closed constraints, and of pins at rigid motions, to K* before it is factorised.
     pub fn add_contact(
         &mut self,
         problem: &StepProblem,
@@ -411,7 +410,7 @@ impl EffectiveStiffness {
                         StiffnessForm::Stability => AS_RIGID,
                         _ => 1.0,
                     };
-                    // a pair that slides one way holds the other way
+                    // a pair that slides in one direction resists motion in the other
                     let sticks = pair.state == ContactState::Stick
                         || (form == StiffnessForm::Stability && constraint.mu > 0.0);
                     let stiffening = constraint.stiffening(sticks) * (rigid * gamma);
@@ -463,7 +462,7 @@ impl EffectiveStiffness {
     }
 }
 
-/// K* or M of a step with the meter of the work that is done with it.
+/// K* or M of a step, with the meter of its work.
 pub(crate) struct System<'a> {
     matrix: &'a mut FactoredMatrix,
     meter: &'a mut Meter,
@@ -486,9 +485,9 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.factorization, || matrix.factorize())
     }
 
-    /// Makes the motions of pins of the stiffness `a`, of which a part is `held`, free unknowns of the complementarity problems.
-    /// The bodies are at the positions `at`, with forces that are not balanced there. N are the changes of forces that the
-    /// matrix leaves out, over all dofs. The reach is how far nodes may go.
+    /// Makes the motions of pins with the stiffness `a` free unknowns of the complementarity problems; a part of them
+    /// is `held`. The bodies are at the positions `at`, with the forces `unbalanced` there. `skew` gives N x, the
+    /// changes of forces that the matrix omits, over all dofs. `reach` is the largest distance that nodes may move.
     ///
     /// ```text
     /// Z = W (S a + N Z),   works W S a      eq. (12.3)
@@ -535,8 +534,8 @@ impl<'a> System<'a> {
         Ok(())
     }
 
-    /// T_m A^-T T_1^T f for the forces `f` over all dofs: what forces do, of a matrix whose bodies have not turned since it was
-    /// factorised.
+    /// T_m A^-T T_1^T f for the forces `f` over all dofs, the transposed response. The bodies of the matrix must not
+    /// have turned since it was factorised.
     fn respond_transposed(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
         let map = self.matrix.map().clone();
         let b = map.restrict_derivatives(f);
@@ -547,17 +546,17 @@ impl<'a> System<'a> {
         })
     }
 
-    /// The motions of pins that are free unknowns.
+    /// Motions of pins that are free unknowns of the complementarity problems.
     pub fn free(&self) -> Option<&FreeMotions> {
         self.matrix.free.as_ref()
     }
 
-    /// The same, to be changed.
+    /// Mutable motions of pins that are free unknowns.
     pub fn free_mut(&mut self) -> &mut Option<FreeMotions> {
         &mut self.matrix.free
     }
 
-    /// Makes solutions keep the hinges closed, with T of the iterate.
+    /// Makes solutions keep the hinges closed, with T at the iterate.
     fn hold(&mut self) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         let FactoredMatrix {
@@ -577,12 +576,12 @@ impl<'a> System<'a> {
         Ok(())
     }
 
-    /// Whether bodies that no pair lies between act on each other.
+    /// Whether bodies act on each other without a pair between them.
     pub fn couples_bodies(&self) -> bool {
         !self.matrix.hinges.are_none()
     }
 
-    /// Forces of the hinges, and the motion that they make over all dofs, by which the gaps `gaps` of the hinges close.
+    /// Forces of the hinges that close their `gaps`, and the motion that these forces cause, over all dofs.
     pub fn close(&mut self, gaps: &[f64]) -> Result<(Vec<f64>, Vec<f64>), LinearError> {
         self.hold()?;
         let update = self.matrix.update.as_ref();
@@ -602,13 +601,13 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
     }
 
-    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, A being the matrix and R the rotation of its
-    /// bodies (docs/numerics.md, Turned factors).
+    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, where A is the matrix and R the rotation of its bodies
+    /// (docs/numerics.md, Turned factors).
     pub fn respond(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.respond_from(&vec![0.0; f.len()], f)
     }
 
-    /// The same with `start` added to it.
+    /// The response to the forces `f`, plus `start`.
     pub fn respond_from(&mut self, start: &[f64], f: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.begin(f)?;
         let mut response = Vec::new();
@@ -617,7 +616,7 @@ impl<'a> System<'a> {
         Ok(response)
     }
 
-    /// Begins the response to the forces `f`, in parts.
+    /// Begins the response to the forces `f`, which is computed in parts.
     pub fn begin(&mut self, f: &[f64]) -> Result<(), LinearError> {
         self.hold()?;
         let Self { matrix, meter } = self;
@@ -644,7 +643,7 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || solver.begin(write))
     }
 
-    /// Writes A^-1 b for the right-hand side so far, at some unknowns, to `values`.
+    /// Writes A^-1 b for the present right-hand side b, at some unknowns, to `values`.
     pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
@@ -654,15 +653,14 @@ impl<'a> System<'a> {
             .for_each(|update| update.correct(unknowns, values));
     }
 
-    /// Adds to the right-hand side at unknowns of the last part (unknown, value).
+    /// Adds values to the right-hand side at the unknowns of the last part (unknown, value).
     pub fn add(&mut self, b: &[(usize, f64)]) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.add(b));
         matrix.update.iter_mut().for_each(|update| update.add(b));
     }
 
-    /// Ends the response and writes it, over all dofs, with `start` added to it; [`Self::check`] checks the
-    /// solution.
+    /// Ends the response and writes it over all dofs, plus `start`; [`Self::check`] checks the solution.
     pub fn end(&mut self, start: &[f64], response: &mut Vec<f64>) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         let FactoredMatrix {
@@ -688,12 +686,12 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || solver.end().map(write))
     }
 
-    /// Memory for the response at some nodes, which [`Self::give_back`] gives back.
+    /// Memory for the response at some nodes, to be returned with [`Self::give_back`].
     pub fn take_vectors(&mut self) -> ResponseVectors {
         std::mem::take(&mut self.matrix.vectors.response)
     }
 
-    /// Gives memory back.
+    /// Gives the memory of a response back for the next one.
     pub fn give_back(&mut self, response: ResponseVectors) {
         self.matrix.vectors.response = response;
     }
@@ -714,12 +712,12 @@ impl<'a> System<'a> {
         self.matrix.map()
     }
 
-    /// R of the bodies since the matrix was factorised.
+    /// Rotation R of the bodies since the matrix was factorised.
     pub fn rotation(&self) -> &Rotation {
         self.matrix.compliance.rotation()
     }
 
-    /// The part of the constraints between the same bodies that a constraint belongs to, where parts have so many slave
+    /// The part to which a constraint belongs among the constraints between the same bodies; a part has `nodes` slave
     /// nodes.
     pub fn part_of(&self, constraint: &Constraint, nodes: usize) -> ConstraintGroup {
         self.matrix.compliance.part_of(constraint, nodes)
@@ -761,8 +759,8 @@ impl<'a> System<'a> {
         Ok(meter.time(|t| &mut t.contact, pose))
     }
 
-    /// Solves the complementarity problem of some constraints, starting from the states `warm`. Constraints between the same
-    /// bodies are a joint.
+    /// Solves the complementarity problem of some constraints, starting from the states `warm`. Constraints between the
+    /// same two bodies form a joint of the problem.
     pub fn solve_lcp(
         &mut self,
         problem: &FrictionalLcp,
@@ -797,18 +795,18 @@ impl<'a> System<'a> {
         Ok(solution)
     }
 
-    /// Takes the memory of a complementarity problem that is not needed any more.
+    /// Reclaims the memory of a complementarity problem that is not needed any more.
     pub fn take_back(&mut self, problem: FrictionalLcp) {
         self.matrix.space.take(problem);
     }
 
-    /// Takes the memory of a solution that is not needed any more.
+    /// Reclaims the memory of a solution that is not needed any more.
     pub fn take_back_solution(&mut self, solution: FrictionalSolution) {
         let kept = self.matrix.kept.entry(ConstraintGroup::All).or_default();
         kept.take(solution);
     }
 
-    /// Solves the blocks of an iteration: the forces of all its contacts.
+    /// Solves the blocks of an iteration for the forces of all their contacts.
     pub fn solve_blocks(
         &mut self,
         iteration: &mut BlockIteration,
@@ -822,12 +820,12 @@ impl<'a> System<'a> {
         self.meter.count_lcp(size, work);
     }
 
-    /// Takes the factors of the last complementarity problem of a scope.
+    /// Removes and returns the factors from the last complementarity problem of a scope.
     pub fn take_kept(&mut self, scope: &ConstraintGroup) -> KeptFactors {
         self.matrix.kept.remove(scope).unwrap_or_default()
     }
 
-    /// Keeps the factors of the last complementarity problem of a scope.
+    /// Stores the factors from the last complementarity problem of a scope.
     pub fn keep(&mut self, scope: ConstraintGroup, kept: KeptFactors) {
         self.matrix.kept.insert(scope, kept);
     }

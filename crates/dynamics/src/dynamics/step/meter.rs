@@ -6,7 +6,7 @@ use crate::dynamics::results::{ContactViolation, SolverCounts, Timings};
 use crate::lcp::Counters;
 use crate::linear::larger;
 
-/// Time and work spent, per phase.
+/// Time and work of each phase.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Meter {
     pub timings: Timings,
@@ -32,7 +32,7 @@ impl Meter {
         self.counts.residual = residual;
     }
 
-    /// Counts a complementarity problem of `size` pairs.
+    /// Counts a complementarity problem of `size` pairs with its work.
     pub fn count_lcp(&mut self, size: usize, work: Counters) {
         let counts = &mut self.counts;
         counts.lcps += 1;
@@ -57,7 +57,7 @@ impl Timings {
 }
 
 impl SolverCounts {
-    /// The counts of the start: no work, converged.
+    /// Counts at the start of a run: no work, and convergence.
     pub(crate) fn at_start() -> Self {
         SolverCounts {
             converged: true,
@@ -83,7 +83,7 @@ impl SolverCounts {
 }
 
 impl ContactViolation {
-    /// The larger of two, of each kind.
+    /// The larger value of two violations, for each kind.
     pub(crate) fn larger(self, other: Self) -> Self {
         ContactViolation {
             overlap: larger(self.overlap, other.overlap),

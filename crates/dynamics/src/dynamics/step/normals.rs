@@ -1,5 +1,5 @@
-//! Normals of the closed pairs of a body along its rigid motions, and the facets of its contact surfaces.
-//! See docs/theory/bodies.md, Neutral motions.
+//! Normals of the closed pairs of a body along its rigid motions, and facets of its contact surfaces. See
+//! docs/theory/bodies.md, Neutral motions.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use crate::contact::tolerances::CORNER_COSINE;
 use crate::model::Model;
 use crate::vectors::{cross, difference, dot, length};
 
-/// Largest mean slope of the normals of pairs against a motion that they let free.
+/// Largest mean slope of the normals of pairs along a motion that still counts as free.
 const SLOPE: f64 = 0.25;
 
 /// The pairs of a body along its free rigid motions.
@@ -17,12 +17,12 @@ pub(super) struct Normals(pub Vec<Normal>);
 
 /// Normal of a pair.
 pub(super) struct Normal {
-    /// Gn Z and Gt Z
+    /// Row of the normal, Gn Z, and of the tangent, Gt Z.
     pub row: DVector<f64>,
     pub tangent: DVector<f64>,
-    /// |Gn Z0|², Z0 being all rigid motions of the body, those that supports hold too.
+    /// |Gn Z0|², where Z0 are all rigid motions of the body, including those that supports hold.
     pub size: f64,
-    /// Largest sine of the angle between neighbouring segments at its nodes.
+    /// Largest sine of the angle between neighbouring segments at the nodes of the pair.
     pub kink: f64,
     /// Pn
     pub force: f64,
@@ -32,12 +32,12 @@ pub(super) struct Normal {
 }
 
 impl Normals {
-    /// Sum of Pn.
+    /// Sum of the normal forces Pn.
     pub fn force(&self) -> f64 {
         self.0.iter().map(|normal| normal.force).sum()
     }
 
-    /// Orthogonal motions that pairs without friction let free.
+    /// Orthogonal motions that pairs without friction do not resist.
     ///
     /// ```text
     /// sum_j (Gn_j z)² <= (1/4)² sum_j |Gn_j Z0|²      eq. (12.10)
@@ -63,8 +63,8 @@ impl Normals {
             .collect()
     }
 
-    /// Force along a motion that facets may make, since their normals differ from those of a smooth surface by up to half
-    /// the angle between neighbours.
+    /// Force along a motion that facets may cause, since their normals differ from those of a smooth surface by up to
+    /// half the angle between neighbours.
     ///
     /// ```text
     /// f_e = sum_j Pn_j |Gt_j z| sin(beta_j)/2      eq. (12.12)
@@ -75,7 +75,8 @@ impl Normals {
         self.0.iter().map(of_pair).sum()
     }
 
-    /// Stiffness against a motion that facets may make, whose normals change by the angle between neighbours in a length.
+    /// Stiffness against a motion that facets may cause, since their normals change by the angle between neighbours
+    /// within a segment length.
     ///
     /// ```text
     /// k_e = sum_j Pn_j (Gt_j z)² sin(beta_j)/l_j      eq. (12.13)
@@ -88,12 +89,12 @@ impl Normals {
     }
 }
 
-/// The nodes before and after every node of the contact surfaces, where these are smooth.
+/// The nodes before and after every node at which the contact surfaces are smooth.
 #[derive(Default)]
 pub(super) struct Vertices(HashMap<usize, [Option<usize>; 2]>);
 
 impl Vertices {
-    /// Normals at the nodes of the contacts of a model.
+    /// Neighbours of the nodes of the contacts of a model.
     pub fn new(model: &Model) -> Self {
         let mut all: HashMap<usize, [Option<usize>; 2]> = HashMap::new();
         for contact in &model.contacts {

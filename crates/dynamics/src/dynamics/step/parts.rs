@@ -11,10 +11,10 @@ use crate::model::{Equation, Model};
 
 /// The bodies of a model and their parts, both numbered from 0.
 ///
-/// A body is what elements and equations connect. Nodes of a body are in one part when the elements
-/// around them, and around the nodes of their equations, have the same sections: a light part
-/// beside a stiff or heavy part of its body is solved to its own scale, as is a light body beside a
-/// heavy one.
+/// A body consists of all that elements and equations connect. Nodes of a body are in one part if
+/// the elements around them, and around the nodes of their equations, have the same sections. A
+/// light part next to a stiff or heavy one is therefore solved to its own scale, like a light body
+/// next to a heavy one.
 pub(crate) struct Parts {
     /// Body of every node.
     body: Vec<usize>,
@@ -23,12 +23,12 @@ pub(crate) struct Parts {
     /// Body of every part.
     body_of: Vec<usize>,
     bodies: usize,
-    /// Dofs of one body after the other, and of one part after the other.
+    /// Runs of the dofs of each body, and of each part.
     runs_of_bodies: Vec<DofRun>,
     runs_of_parts: Vec<DofRun>,
 }
 
-/// A value of every body, or part: up to eight are stored in place.
+/// One value for every body, or every part; up to eight values are stored in place.
 pub(crate) type PerBody = SmallVec<[f64; 8]>;
 
 /// Consecutive dofs or unknowns of a body or part.
@@ -38,7 +38,7 @@ pub(crate) struct DofRun {
 }
 
 impl DofRun {
-    /// The runs of all nodes or unknowns, whose groups are given, with so many values each.
+    /// The runs of all nodes or unknowns with `values` values each; `groups` is the group of each.
     fn all(groups: &[usize], values: usize) -> Vec<DofRun> {
         let mut end = 0;
         let run = |of_group: &[usize]| {
@@ -101,13 +101,14 @@ impl Parts {
         self.part[dof / 2]
     }
 
-    /// Unknowns of one part after the other; their dofs are given.
+    /// Runs of the unknowns of each part; `dof_of` are their dofs.
     pub fn of_unknowns(&self, dof_of: &[usize]) -> Vec<DofRun> {
         let parts: Vec<usize> = dof_of.iter().map(|&dof| self.part(dof)).collect();
         DofRun::all(&parts, 1)
     }
 
-    /// Largest absolute value of every part; `values` over the unknowns, of which the runs are.
+    /// Largest absolute value of every part; `values` are over the unknowns, and `runs` are the
+    /// runs of the unknowns.
     pub fn largest_of_unknowns(&self, runs: &[DofRun], values: &[f64]) -> PerBody {
         largest_of(runs, self.body_of.len(), values)
     }
@@ -119,13 +120,13 @@ impl Parts {
         most
     }
 
-    /// Largest absolute value of every body; `values` over all dofs.
+    /// Largest absolute value of every body; `values` are over all dofs.
     pub fn largest_of_bodies(&self, values: &[f64]) -> PerBody {
         largest_of(&self.runs_of_bodies, self.bodies, values)
     }
 
-    /// Values over all dofs, those of every body in units of its largest of the increment `d`; zero where
-    /// that is zero.
+    /// Values over all dofs, relative to the largest value of the increment `d` in the body of the dof; zero where that
+    /// is zero.
     pub fn beside_increments(&self, d: &[f64], values: &[f64]) -> Vec<f64> {
         let units = self.largest_of_bodies(d);
         let beside = |(dof, value): (usize, &f64)| match units[self.body[dof / 2]] {
@@ -135,7 +136,7 @@ impl Parts {
         values.iter().enumerate().map(beside).collect()
     }
 
-    /// Largest diagonal entry of every part; the matrix is over unknowns, whose dofs are given.
+    /// Largest diagonal entry of every part; the matrix is over unknowns, with the dofs `dof_of`.
     pub fn largest_diagonal(&self, matrix: &Assembled, dof_of: &[usize]) -> Vec<f64> {
         let mut most = vec![0.0; self.body_of.len()];
         for (&dof, entry) in dof_of.iter().zip(matrix.diagonal()) {
@@ -145,14 +146,14 @@ impl Parts {
         most
     }
 
-    /// The largest of the values of the bodies that some nodes belong to.
+    /// The largest of the values of the bodies to which some nodes belong.
     pub fn most(&self, of_bodies: &[f64], nodes: impl Iterator<Item = usize>) -> f64 {
         let of_node = |node: usize| of_bodies[self.body[node]].abs();
         nodes.map(of_node).fold(0.0, larger)
     }
 }
 
-/// First node of the body of every node, with the rigid bodies.
+/// First node of the body of every node; rigid bodies are included.
 fn bodies_of(model: &Model) -> Vec<usize> {
     let mut first = model.mesh.bodies();
     first.extend(first.len()..model.dof_count() / 2);
@@ -190,8 +191,8 @@ fn sections(model: &Model) -> Vec<Vec<usize>> {
     cluster.iter().map(of_node).collect()
 }
 
-/// First node of the group of every node after equations have united groups; `first` holds the
-/// first nodes of the groups before.
+/// First node of the group of every node after equations have united groups; `first` are the first
+/// nodes of the earlier groups.
 fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
     for equation in equations {
         for &(dof, _) in &equation.terms {
@@ -217,14 +218,15 @@ fn unite(first: &mut [usize], nodes: &[usize]) {
     }
 }
 
-/// Largest absolute value of every group, given by its runs; `values` over all dofs.
+/// Largest absolute value of every group, given by its runs; `values` are over all dofs.
 fn largest_of(runs: &[DofRun], count: usize, values: &[f64]) -> PerBody {
     let mut most = smallvec![0.0; count];
     enlarge(&mut most, runs, values);
     most
 }
 
-/// Makes the value of every group at least the largest absolute value that it has among `values`.
+/// Raises the value of every group to the largest absolute value of the group in `values`, if that
+/// is larger.
 fn enlarge(most: &mut [f64], runs: &[DofRun], values: &[f64]) {
     for DofRun { group, places } in runs {
         most[*group] = larger(most[*group], largest(&values[places.clone()]));

@@ -1,5 +1,5 @@
-//! Pins of static steps: stiffness at a few dofs that holds the rigid motions which supports leave free.
-//! See docs/theory/bodies.md, Pins.
+//! Pins of static steps: stiffness at a few dofs that holds the rigid motions left free by supports. See
+//! docs/theory/bodies.md, Pins.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -14,17 +14,19 @@ use crate::model::Equation;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// Largest motion of a node, and angle (rad), by which a pass moves a body as a rigid one: of the reach of the search.
+/// Largest motion of a node by which a pass moves a body rigidly, relative to the reach of the search, and the largest
+/// angle (rad).
 const LARGEST_TRAVEL: f64 = 0.8;
 const LARGEST_ANGLE: f64 = 0.2;
-/// Part of the largest eigenvalue up to which a rigid motion is free.
+/// Eigenvalue, relative to the largest one possible, up to which a rigid motion is free.
 const FREE: f64 = 1e-10;
-/// Part of the size of its terms up to which an equation agrees with a rigid motion.
+/// Sum of the terms of an equation in a rigid motion, relative to their size, up to which the
+/// equation allows the motion.
 const AGREES: f64 = 1e-9;
-/// Least stiffness of the pins of a rigid body, beside the largest force over its size: what moves them is to be little beside
-/// the body.
+/// Least stiffness of the pins of a rigid body, relative to the largest force divided by the body's size, so that pins
+/// move little against the size of the body.
 const STIFF: f64 = 1e3;
-/// Round-off of the resultant of many nodal forces, in multiples of the round-off of one of them.
+/// Round-off of the resultant of many nodal forces, relative to the round-off of one nodal force.
 const RESULTANT: f64 = 10.0;
 
 /// The pins of a step.
@@ -34,35 +36,35 @@ pub(crate) struct Pins {
     vertices: Vertices,
 }
 
-/// A body with rigid motions that no support holds, or a part of a body that equations join to others and in which they
-/// leave it free.
+/// A body with rigid motions that no support holds, or a part of a body that equations join to others but leave free.
 struct PinnedBody {
-    /// The body of its nodes.
+    /// Number of the body to which the nodes belong.
     body: usize,
-    /// Its nodes, and the centres of mass of the rigid bodies in it that turn, increasing.
+    /// Nodes of the body, and the centres of mass of the rigid bodies in it that turn, increasing.
     nodes: Vec<usize>,
     /// Dofs of the angles of these rigid bodies, with their lengths.
     spins: Vec<Spin>,
-    /// Whether it is a rigid body, without elements that deform.
+    /// Whether the body is rigid, without elements that deform.
     is_rigid: bool,
-    /// Whether it has no support, or is pinned at a node.
+    /// Whether the body has no support, or is pinned at a node.
     hold: Hold,
-    /// Free motions: two translations and the rotation about the pole in units of the body's size, column by column.
+    /// Free motions in terms of the two translations and the rotation about the pole, in units of the body's size,
+    /// column by column.
     free: DMatrix<f64>,
     /// Size of the body (length).
     size: f64,
-    /// Dofs that are pinned, one per free motion.
+    /// Dofs that are pinned, one for each free motion.
     dofs: Vec<usize>,
 }
 
-/// What the pins of a body see of its free rigid motions, Z_p, and its inverse.
+/// The motions Z_p of the pins of a body in its free rigid motions, and the inverse.
 pub(super) struct PinMotions {
     seen: DMatrix<f64>,
     inverse: DMatrix<f64>,
 }
 
 impl PinMotions {
-    /// Z_p z: motions of the pins of a free motion.
+    /// Z_p z: motions of the pins in a free motion z.
     pub fn motions(&self, z: &DVector<f64>) -> DVector<f64> {
         &self.seen * z
     }
@@ -73,10 +75,10 @@ impl PinMotions {
     }
 }
 
-/// Dof L theta of an angle, with the length L.
+/// Dof L theta of an angle theta, and its length L.
 type Spin = (usize, f64);
 
-/// Two translations and the rotation about a pole, in units of a size, at a configuration.
+/// Two translations and the rotation about a pole, in units of a size, in one configuration.
 struct PinFrame<'a> {
     pole: [f64; 2],
     size: f64,
@@ -85,7 +87,7 @@ struct PinFrame<'a> {
 }
 
 impl PinFrame<'_> {
-    /// Motion of a dof in both translations and the rotation that moves places at the distance of the size by 1.
+    /// Motion of a dof in both translations and in the rotation that moves points at the distance of the size by 1.
     fn row(&self, dof: usize) -> Vector3<f64> {
         if let Some((_, length)) = self.spins.iter().find(|spin| spin.0 == dof) {
             return Vector3::new(0.0, 0.0, length / self.size);
@@ -99,7 +101,7 @@ impl PinFrame<'_> {
 }
 
 impl Pins {
-    /// Those of a static step; in a dynamic one inertia holds all bodies.
+    /// The pins of a static step; in a dynamic step there are none, since inertia holds all bodies.
     pub fn new(problem: &StepProblem) -> Self {
         if problem.integration.has_rates {
             return Pins::default();
@@ -113,7 +115,7 @@ impl Pins {
         for body in turning.bodies {
             spins[parts.of_nodes()[body.centre]].push((body.spin, body.length));
         }
-        // the angles of bodies that turn have no place
+        // the pairs of dofs of angles have no position
         let mut is_angle = vec![false; parts.of_nodes().len()];
         (turning.bodies.iter()).for_each(|body| is_angle[body.spin / 2] = true);
         let placed = parts.of_nodes().iter().enumerate();
@@ -140,7 +142,7 @@ impl Pins {
             if let Some(whole) = PinnedBody::new(problem, of_body, (nodes, spins)) {
                 return vec![whole];
             }
-            // what equations join may move where they ask for nothing
+            // parts that equations join may have motions that the equations allow
             let part = |nodes| PinnedBody::new(problem, of_body, (nodes, Vec::new()));
             parts.into_iter().filter_map(part).collect()
         };
@@ -151,7 +153,7 @@ impl Pins {
         }
     }
 
-    /// Whether there are none.
+    /// Whether the step has no pins.
     pub fn are_none(&self) -> bool {
         self.bodies.is_empty()
     }
@@ -170,9 +172,9 @@ impl Pins {
             .flat_map(|body| body.dofs.iter().copied())
     }
 
-    /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of its body, eq. (12.2). That of a
-    /// rigid body, to which springs give them stiffness, is at least the mean over all unknowns where pairs touch it, and
-    /// always at least 1e3 times `force` over its size.
+    /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of the body, eq.
+    /// (12.2). Springs alone give a rigid body its stiffness; its pins have at least the mean over all unknowns if
+    /// pairs touch it, and always at least 1e3 times `force` divided by its size.
     pub fn stiffnesses(
         &self,
         diagonal: &[f64],
@@ -200,7 +202,7 @@ impl Pins {
                 true => larger(a, STIFF * force / body.size),
                 false => a,
             };
-            // without stiffness and forces nothing moves
+            // without stiffness and forces any positive value serves, since nothing moves
             if a > 0.0 { a } else { 1.0 }
         };
         let all = self.bodies.iter();
@@ -208,7 +210,7 @@ impl Pins {
             .collect()
     }
 
-    /// Makes the stiffness of the unknowns of rigid bodies at least that of their pins, `a` of each.
+    /// Raises the stiffness of the unknowns of rigid bodies to that of their pins, `a`, if that is larger.
     pub fn stiffen_rigid(&self, (map, parts): (&Transformation, &Parts), a: &[f64], k: &mut [f64]) {
         let all = self.bodies.iter().zip(self.of_bodies());
         for (body, pins) in all.filter(|(body, _)| body.is_rigid) {
@@ -223,8 +225,8 @@ impl Pins {
         }
     }
 
-    /// Largest round-off of the forces at the pins of bodies that deform, `a` being the stiffness of each in K*: ten times that
-    /// of the force of one node, 4 eps a |x|, x being the size of a body.
+    /// Largest round-off of the forces at the pins of deformable bodies. Their round-off is ten times that of one nodal
+    /// force, 4 eps a |x|, where a is the stiffness of the pin in K* and x the size of the body.
     pub fn round_off(&self, a: &[f64]) -> f64 {
         let all = self.bodies.iter().zip(self.of_bodies());
         all.filter(|(body, _)| !body.is_rigid)
@@ -232,7 +234,7 @@ impl Pins {
             .fold(0.0, larger)
     }
 
-    /// Places of the pins of every body among all.
+    /// Range of the pins of every body among all pins.
     pub fn of_bodies(&self) -> Vec<Range<usize>> {
         let mut end = 0;
         let places = self.bodies.iter().map(|body| {
@@ -243,7 +245,8 @@ impl Pins {
         places.collect()
     }
 
-    /// Mean square, over the nodes of every body at the positions `at`, of what its free motions are for the motions of its pins.
+    /// Mean square of the free motions over the nodes of every body at the positions `at`, as a quadratic form of the
+    /// motions of its pins.
     ///
     /// ```text
     /// E = Z_p^-T (sum_i Z_i^T Z_i/n) Z_p^-1      eq. (12.5)
@@ -261,8 +264,8 @@ impl Pins {
         all
     }
 
-    /// Stiffness against turns that forces over all dofs, which the iterate does not balance yet, will make once it does, where
-    /// they pull apart, over the motions of the pins at the positions `at`:
+    /// Stiffness against rotations from forces over all dofs that the iterate does not balance yet but will balance, if
+    /// they pull apart; it is over the motions of the pins at the positions `at`:
     ///
     /// ```text
     /// Z_p^-T e max(sum_i x_i.r_i, 0) e^T Z_p^-1,   e the turn      eq. (12.14)
@@ -282,8 +285,8 @@ impl Pins {
         all
     }
 
-    /// That bodies are not in balance with the forces `f` left at their pins, which make the correction `du` at the
-    /// displacements `u`: the body with the largest.
+    /// The failure of bodies that are not in balance: it names the body with the largest of the forces `f` left at the
+    /// pins, which cause the correction `du` at the displacements `u`.
     pub fn unbalanceable(&self, problem: &StepProblem, u: &[f64], du: &[f64], f: &[f64]) -> Cause {
         match self.most_unbalanced(problem, u, du, f) {
             Some(unbalanced) => Cause::Unbalanceable(unbalanced),
@@ -306,8 +309,8 @@ impl Pins {
         most.map(|(body, pins)| Box::new(body.unbalanced(&at, du, &f[pins])))
     }
 
-    /// What the pins of the body of this number among those with pins see of its free motions in the positions `at`,
-    /// unless they do not see all.
+    /// Motions of the pins of body number `body` among those with pins, in its free motions at the positions `at`;
+    /// `None` if the pins do not determine all free motions.
     pub(super) fn motions(
         &self,
         body: usize,
@@ -318,7 +321,7 @@ impl Pins {
         body.motions_of_pins(&frame)
     }
 
-    /// Sum of the normal forces at every body.
+    /// Sum of the normal forces on every body with pins.
     pub fn normal_forces(&self, acting: &[(&Constraint, &ClosedPair)]) -> Vec<f64> {
         let of_body = |body: &PinnedBody| {
             let is_own = |node: usize| body.nodes.binary_search(&node).is_ok();
@@ -328,7 +331,7 @@ impl Pins {
         self.bodies.iter().map(of_body).collect()
     }
 
-    /// The pairs of the body of this number among those with pins along its free motions, in the positions `at`.
+    /// The pairs of body number `body` among those with pins, along its free motions at the positions `at`.
     pub(super) fn normals(
         &self,
         body: usize,
@@ -338,7 +341,8 @@ impl Pins {
         self.bodies[body].normals(&self.vertices, at, acting)
     }
 
-    /// Force along a motion Z n of all dofs that facets may make, and stiffness against it, over the pairs without friction.
+    /// Force along a motion Z n of all dofs that facets may cause, and their stiffness against it, over the pairs
+    /// without friction.
     ///
     /// ```text
     /// f_e = sum_j Pn_j |Gt_j Z n| sin(beta_j)/2,   k_e = sum_j Pn_j (Gt_j Z n)² sin(beta_j)/l_j      eq. (12.12), eq. (12.13)
@@ -360,8 +364,8 @@ impl Pins {
         [force, stiffness]
     }
 
-    /// Makes the rigid part of a correction a finite motion of bodies that turn, and limits it to what the search
-    /// for contact sees; whether it is limited. `at` are the positions of the iterate.
+    /// Turns the rigid part of a correction into a finite motion of bodies that turn, and limits it to the reach of the
+    /// contact search; returns whether it is limited. `at` are the positions of the iterate.
     pub fn make_finite(&self, at: &dyn Fn(usize) -> [f64; 2], reach: f64, du: &mut [f64]) -> bool {
         let mut is_limited = false;
         for body in &self.bodies {
@@ -393,7 +397,7 @@ impl PinnedBody {
             x: &x,
         };
         let row = |dof: usize| frame.row(dof);
-        // what supports and equations ask of a rigid motion
+        // conditions of supports and equations on a rigid motion
         let mut gram = Matrix3::zeros();
         let of_nodes = |dof: usize| nodes.binary_search(&(dof / 2)).is_ok();
         let of_angles = |dof: usize| spins.iter().any(|spin| spin.0 == dof);
@@ -406,7 +410,7 @@ impl PinnedBody {
         {
             gram += row(dof) * row(dof).transpose();
         }
-        // the other nodes of its equations stand
+        // nodes of other bodies in its equations are taken to be at rest
         let own_row = |dof: usize| if own(dof) { row(dof) } else { Vector3::zeros() };
         let is_rigid = |e: &&Equation| !e.terms.iter().any(|term| moves_parts(term.0));
         for Equation { dof, terms } in model.equations.iter().filter(is_rigid) {
@@ -465,7 +469,7 @@ impl PinnedBody {
         }
     }
 
-    /// Its motions about a pole.
+    /// Rigid motions of the body about a pole.
     fn frame<'a>(&'a self, pole: [f64; 2], x: &'a dyn Fn(usize) -> [f64; 2]) -> PinFrame<'a> {
         PinFrame {
             pole,
@@ -475,7 +479,8 @@ impl PinnedBody {
         }
     }
 
-    /// Z_p, what its pins see of its free motions, unless they do not see all.
+    /// Z_p, the motions of the pins in the free motions of the body; `None` if the pins do not
+    /// determine all free motions.
     fn motions_of_pins(&self, frame: &PinFrame) -> Option<PinMotions> {
         let m = self.dofs.len();
         let seen =
@@ -485,7 +490,8 @@ impl PinnedBody {
         Some(PinMotions { seen, inverse })
     }
 
-    /// Z_p^-T e: by how much a motion of its pins turns it, unless they do not see all of its motions (1/length).
+    /// Z_p^-T e: rotation of the body for unit motions of its pins (1/length); `None` if the pins do not determine all
+    /// its motions.
     fn turn(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DVector<f64>> {
         let frame = self.frame(pole(self.hold, &self.nodes, at), at);
         let inverse = self.motions_of_pins(&frame)?.inverse;
@@ -493,7 +499,8 @@ impl PinnedBody {
         Some(inverse.tr_mul(&turn))
     }
 
-    /// sum_i x_i.r_i of forces over all dofs at its nodes about its pole (force length).
+    /// sum_i x_i.r_i, with forces over all dofs at the nodes of the body and positions relative to
+    /// its pole (force length).
     fn virial(&self, force: &[f64], at: &dyn Fn(usize) -> [f64; 2]) -> f64 {
         let [px, py] = pole(self.hold, &self.nodes, at);
         let of_node = |&node: &usize| {
@@ -503,7 +510,8 @@ impl PinnedBody {
         self.nodes.iter().map(of_node).sum()
     }
 
-    /// E of its pins, unless they do not see all of its motions.
+    /// E, the mean square motion as a quadratic form of the pins of the body; `None` if the pins do
+    /// not determine all its motions.
     fn mean_square(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DMatrix<f64>> {
         let frame = self.frame(pole(self.hold, &self.nodes, at), at);
         let inverse = self.motions_of_pins(&frame)?.inverse;
@@ -511,7 +519,7 @@ impl PinnedBody {
         for dof in self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]) {
             sum += frame.row(dof) * frame.row(dof).transpose();
         }
-        // a body of one node turns all the same
+        // the angles count too, so that a body of one node can turn
         for &(spin, length) in &self.spins {
             let turn = frame.row(spin) * (self.size / length);
             sum += turn * turn.transpose();
@@ -520,7 +528,7 @@ impl PinnedBody {
         Some(inverse.transpose() * free * inverse)
     }
 
-    /// Rigid part of a correction: Z_p^-1 dU_p
+    /// Rigid part Z_p^-1 dU_p of a correction.
     fn motion(
         &self,
         at: &dyn Fn(usize) -> [f64; 2],
@@ -589,7 +597,7 @@ impl PinnedBody {
         if angle.abs() > LARGEST_ANGLE {
             part = part.min(LARGEST_ANGLE / angle.abs());
         }
-        // a rigid body whose places stay the same stays
+        // a rigid body whose motion is below the round-off of its positions stays at rest
         let far = |node: &usize| at(*node).map(f64::abs).into_iter().fold(0.0, larger);
         let extent = self.nodes.iter().map(far).fold(0.0, larger);
         if self.is_rigid && most <= 4.0 * f64::EPSILON * extent {
@@ -618,8 +626,9 @@ impl PinnedBody {
     }
 }
 
-/// Dofs of nodes without elements that move parts of a body relative to each other by equations, as the tightening of a
-/// pre-tension section does. With such a dof an equation forbids rigid motions that it allows without the dof.
+/// Dofs of nodes without elements that, through equations, move parts of a body relative to each other, as the
+/// tightening of a pre-tension section does. The terms of tightening dofs make an equation forbid rigid motions that
+/// the equation without them allows.
 fn tightening(
     equations: &[Equation],
     has_elements: &[bool],
@@ -645,8 +654,8 @@ fn tightening(
     found
 }
 
-/// Those of the nodes of a body that elements connect, group by group, where they are not the whole body; `components` are
-/// the first nodes of the groups of all nodes.
+/// Groups of the nodes of a body that elements connect, if no group is the whole body; `components` are the first nodes
+/// of the groups of all nodes.
 fn components_of(nodes: &[usize], components: &[usize], has_elements: &[bool]) -> Vec<Vec<usize>> {
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for &node in nodes.iter().filter(|&&node| has_elements[node]) {
@@ -660,7 +669,7 @@ fn components_of(nodes: &[usize], components: &[usize], has_elements: &[bool]) -
     }
 }
 
-/// What a body turns about: the node that it is pinned at, or the mean of its nodes.
+/// Point about which a body turns: the node at which it is pinned, or the mean of its nodes.
 fn pole(hold: Hold, nodes: &[usize], x: &dyn Fn(usize) -> [f64; 2]) -> [f64; 2] {
     if let Hold::Pinned(node) = hold {
         return x(node);
@@ -673,7 +682,8 @@ fn pole(hold: Hold, nodes: &[usize], x: &dyn Fn(usize) -> [f64; 2]) -> [f64; 2] 
     sum.map(|sum| sum / nodes.len() as f64)
 }
 
-/// As many dofs as there are free motions, by a pivoted QR factorisation of what they see of them.
+/// As many dofs as there are free motions, chosen by a pivoted QR factorisation of their rows in
+/// these motions.
 fn independent_dofs(
     dofs: Vec<usize>,
     free: &DMatrix<f64>,

@@ -1,33 +1,33 @@
-//! Inverses that differ from that of the factors of a matrix by few columns: those of matrices whose solutions keep hinges
-//! closed. See docs/theory/bodies.md, Hinges.
+//! Inverses that differ from the inverse of a factorised matrix by a few columns: those of matrices whose solutions
+//! keep hinges closed. See docs/theory/bodies.md, Hinges.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::contact::Constraint;
 use crate::linear::{Rotation, Transformation};
 
-/// W b = A^-1 b - V C Y^T b for the inverse A^-1 of the factors.
+/// The inverse W b = A^-1 b - V C Y^T b, where A^-1 is the inverse of the factors.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct RankUpdate {
     /// Columns of V and of Y.
     columns: [UpdateColumns; 2],
     /// C.
     c: DMatrix<f64>,
-    /// Y^T b of the solve that is under way.
+    /// Y^T b of the present solve.
     projected: Vec<f64>,
 }
 
 /// Columns of an update.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct UpdateColumns {
-    /// Over the unknowns.
+    /// The columns over the unknowns.
     pub of_unknowns: Vec<Vec<f64>>,
-    /// Over all dofs.
+    /// The columns over all dofs.
     pub of_dofs: Vec<Vec<f64>>,
 }
 
 impl UpdateColumns {
-    /// Motions: R T of columns over the unknowns, T of the derivatives.
+    /// Motions R T of columns over the unknowns, with T of the derivative rows.
     pub fn motions(
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
@@ -35,7 +35,8 @@ impl UpdateColumns {
         UpdateColumns::turned(of_unknowns, |column| map.motion(column), rotation)
     }
 
-    /// What forces over the dofs do: R T of columns over the unknowns, T of the force rows.
+    /// Columns over the unknowns in the form of the work of forces over the dofs: R T times the
+    /// columns, with T of the force rows.
     pub fn works(
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
@@ -68,7 +69,7 @@ impl UpdateColumns {
     }
 }
 
-/// A vector over the unknowns less parts of columns.
+/// A vector over the unknowns less `parts` times the columns.
 fn less(vector: &[f64], columns: &UpdateColumns, parts: &[f64]) -> Vec<f64> {
     let mut left = vector.to_vec();
     for (part, column) in parts.iter().zip(&columns.of_unknowns) {
@@ -80,7 +81,7 @@ fn less(vector: &[f64], columns: &UpdateColumns, parts: &[f64]) -> Vec<f64> {
 }
 
 impl RankUpdate {
-    /// That with the columns V and Y, and C.
+    /// The update with the columns V and Y, and the matrix C.
     pub fn new(columns: [UpdateColumns; 2], c: DMatrix<f64>) -> Self {
         RankUpdate {
             columns,
@@ -89,12 +90,12 @@ impl RankUpdate {
         }
     }
 
-    /// A right-hand side over the unknowns begins.
+    /// Begins a solve with a right-hand side over the unknowns.
     pub fn begin(&mut self, b: &[f64]) {
         self.projected = self.columns[1].products(b);
     }
 
-    /// Adds to the right-hand side (unknown, value).
+    /// Adds values to the right-hand side (unknown, value).
     pub fn add(&mut self, b: &[(usize, f64)]) {
         for (projected, column) in self.projected.iter_mut().zip(&self.columns[1].of_unknowns) {
             *projected += b.iter().map(|&(at, value)| column[at] * value).sum::<f64>();
@@ -107,12 +108,12 @@ impl RankUpdate {
         (0..p.len()).map(row).collect()
     }
 
-    /// C Y^T b
+    /// Factors p = C Y^T b of the columns V.
     pub fn parts(&self) -> Vec<f64> {
         self.weighted(&self.projected)
     }
 
-    /// -C p and V (-C p) over all dofs.
+    /// Forces -C p of the update, and the motion V (-C p) over all dofs.
     pub fn answer(&self, p: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let parts: Vec<f64> = self.weighted(p).iter().map(|part| -part).collect();
         let columns = &self.columns[0].of_dofs;
@@ -126,7 +127,7 @@ impl RankUpdate {
         (parts, motion)
     }
 
-    /// Makes A^-1 b at some unknowns W b.
+    /// Changes A^-1 b at some unknowns into W b.
     pub fn correct(&self, unknowns: &[usize], values: &mut [f64]) {
         for (part, column) in self.parts().iter().zip(&self.columns[0].of_unknowns) {
             for (&at, value) in unknowns.iter().zip(values.iter_mut()) {
@@ -135,7 +136,7 @@ impl RankUpdate {
         }
     }
 
-    /// W^T b from b and A^-1 b over all unknowns, A being symmetric.
+    /// W^T b over all unknowns, from b and A^-1 b; A is symmetric.
     pub fn transposed(&self, b: &[f64], solution: &[f64]) -> Vec<f64> {
         let [v, y] = self.columns.each_ref();
         let products = v.products(b);
@@ -143,12 +144,12 @@ impl RankUpdate {
         less(solution, y, parts.as_slice())
     }
 
-    /// W b for A^-1 b over all unknowns.
+    /// W b over all unknowns, from A^-1 b.
     pub fn corrected(&self, solution: &[f64]) -> Vec<f64> {
         less(solution, &self.columns[0], &self.parts())
     }
 
-    /// Makes G A^-1 B^T of some constraints G W B^T.
+    /// Changes G A^-1 B^T of some constraints into G W B^T.
     pub fn change(&self, constraints: &[&Constraint], q: &mut DMatrix<f64>) {
         let (n, m) = (constraints.len(), self.c.nrows());
         type Row = fn(&Constraint, &[f64]) -> f64;

@@ -1,26 +1,27 @@
-//! What a run has seen so far: floors of the scales of its increments. See docs/theory/time.md, Convergence.
+//! Largest values of a run so far, which are lower bounds of the scales of its increments. See docs/theory/time.md,
+//! Convergence.
 
 use super::parts::{Parts, PerBody};
 use super::step_problem::StepProblem;
 use crate::archive::{Archive, ArchiveError};
 use crate::linear::larger;
 
-/// Round-off of a sum of some terms, in units of its largest term.
+/// Round-off of a sum of some terms, relative to its largest term.
 pub(crate) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// Largest displacement of every body and largest force of every part so far. A body that has carried a load keeps the
-/// round-off of it: what is left when loads, displacements and motions go back to zero is no scale of anything.
+/// Largest displacement of every body and largest force of every part so far. A body that has carried a load keeps its
+/// round-off: small rests after loads, displacements and motions have gone back to zero must not become a scale.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Seen {
     /// Displacement of every body (length).
     displacement: PerBody,
-    /// Load and internal force of every part; inertia and contact forces, which grow without bound as increments become
-    /// shorter, are left out (force).
+    /// Load and internal force of every part (force). The list omits inertia and contact forces, which grow without
+    /// bound as increments become shorter.
     force: PerBody,
 }
 
 impl Seen {
-    /// Nothing seen yet, before the first increment of a run.
+    /// The values before the first increment of a run, all zero.
     pub fn new(parts: &Parts) -> Self {
         let none = |count: usize| std::iter::repeat_n(0.0, count).collect();
         Seen {
@@ -29,16 +30,16 @@ impl Seen {
         }
     }
 
-    /// Transfers all of it.
+    /// Transfers all values to or from an archive.
     ///
     /// # Errors
-    /// What is read is of another model.
+    /// Returns an error if the archive is of another model.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer_values(&mut self.displacement)?;
         archive.transfer_values(&mut self.force)
     }
 
-    /// Takes in the displacement, load and internal force of an increment.
+    /// Enters the displacement, load and internal force of an increment.
     pub fn take_in(&mut self, problem: &StepProblem, u: &[f64], forces: [&[f64]; 2]) {
         let parts = problem.parts;
         let forces = forces.map(|force| problem.unknowns.magnitudes(force));
@@ -52,14 +53,14 @@ impl Seen {
         }
     }
 
-    /// Largest displacements so far, given those of an iterate.
+    /// Largest displacements so far, including those of an iterate.
     pub fn displacements(&self, mut of_iterate: PerBody) -> PerBody {
         enlarge(&mut of_iterate, &self.displacement);
         of_iterate
     }
 
-    /// What the passes do not resolve of the displacements of every body, given those of an iterate: the tolerance beside
-    /// the largest so far, or the round-off of positions (length).
+    /// Part of the displacements of every body that the passes do not resolve, including those of an iterate: the
+    /// tolerance times the largest displacement so far, or the round-off of positions (length).
     pub fn unresolved(&self, problem: &StepProblem, u: &[f64]) -> PerBody {
         let tolerance = problem.settings.tolerance;
         let mut all: PerBody = (self.displacement.iter())
@@ -79,7 +80,7 @@ impl Seen {
     }
 }
 
-/// Makes each of some values at least the one beside it.
+/// Raises each value to the corresponding entry of `values`, if that entry is larger.
 fn enlarge(most: &mut PerBody, values: &PerBody) {
     for (most, value) in most.iter_mut().zip(values) {
         *most = larger(*most, *value);

@@ -1,31 +1,33 @@
-//! Faces of the slave surfaces, and the area that a slave node has on them. See docs/theory/impacts.md, Ledger.
+//! Faces of the slave surfaces, and the area of a slave node on them. See docs/theory/impacts.md, Ledger.
 
 use std::collections::BTreeSet;
 
 use crate::model::{ContactFormulation, Face, Model, Segment, SurfaceKind, Thickness};
 
-/// A segment of a face on which a slave node takes pressure.
+/// A segment of a face on which a slave node has a part of the pressure.
 struct SlaveFace {
     node: usize,
     segment: Segment,
     thickness: Thickness,
-    /// Place of the node on the segment's line at whose distance from the axis its part is: 0 at itself.
+    /// Place along the segment, from the node (0) to the other end (1), at whose distance from the axis the node's part
+    /// lies.
     place: f64,
-    /// Part of the segment that the node has.
+    /// Part of the segment that belongs to the node.
     part: f64,
 }
 
 /// The slave nodes of all contacts with their faces.
 pub(crate) struct SlaveFaces {
-    /// 0 at slave nodes, and at master nodes of contact from surface to surface, NaN at others, `N` entries.
+    /// The value is 0 at slave nodes and at master nodes of contact from surface to surface, NaN at other nodes, `N`
+    /// entries.
     pub start: Vec<f64>,
-    /// With increasing nodes.
+    /// The faces of all nodes, with increasing nodes.
     faces: Vec<SlaveFace>,
 }
 
 impl SlaveFaces {
-    /// Faces of the slave surfaces; slave nodes without such a face take the exterior faces of their elements. Master
-    /// nodes of contact from surface to surface that are no slaves have those of the master surfaces.
+    /// Faces of the slave surfaces; slave nodes without a slave face get the exterior faces of their elements. Master
+    /// nodes of contact from surface to surface that are not slave nodes get the faces of the master surfaces.
     pub fn new(model: &Model) -> Self {
         let mesh = &model.mesh;
         let (mut start, mut own) = (vec![f64::NAN; mesh.node_count()], BTreeSet::new());
@@ -89,16 +91,16 @@ impl SlaveFaces {
         SlaveFaces { start, faces }
     }
 
-    /// Area of a node against a force N on it, with the given positions of nodes.
+    /// Area of a node for a force N on it, at the given positions of nodes.
     ///
     /// ```text
     /// A = sum over its segments max(-n.N/|N|, 0) t l w    eq. (9.8)
     /// ```
     ///
-    /// n, l and t are outward normal, current length and thickness of a segment, w the part of it that the node has:
-    /// 1/2, and on a side with a node between its corners 1/3 at a corner and 2/3 between, so that the forces of a
-    /// uniform pressure give this pressure. In a body of revolution t is 2 pi r at a third of the segment from the node,
-    /// eq. (2.35), and at the node itself where the side has a node between its corners.
+    /// n, l and t are the outward normal, current length and thickness of a segment, and w is the node's part of it:
+    /// 1/2, or on a side with a mid-side node 1/3 at a corner and 2/3 at the mid-side node. The area is such that the
+    /// forces of a uniform pressure give back this pressure. In a body of revolution t is 2 pi r, evaluated at a third
+    /// of the segment from the node, eq. (2.35); on a side with a mid-side node it is evaluated at the node itself.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let size = force[0].hypot(force[1]);
         // n l = (e_y, -e_x): on the right of the direction from a to b
@@ -107,7 +109,7 @@ impl SlaveFaces {
         })
     }
 
-    /// Area of a node whatever its faces are turned to.
+    /// Area of a node, whatever the direction of its faces.
     pub fn whole_area(&self, node: usize, at: impl Fn(usize) -> [f64; 2]) -> f64 {
         self.sum(node, at, |e| e[0].hypot(e[1]))
     }
@@ -123,7 +125,7 @@ impl SlaveFaces {
         all.take_while(move |face| face.node == node)
     }
 
-    /// Sum over the segments of a node of t w l, with a length l of the way from one end to the other.
+    /// Sum of t w l over the segments of a node, where `length` gives l for the vector from one end to the other.
     fn sum(
         &self,
         node: usize,

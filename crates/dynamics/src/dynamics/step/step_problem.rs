@@ -31,7 +31,7 @@ use crate::vectors::distance;
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
-    /// Reference coordinates of the nodes, with those of the bodies that turn.
+    /// Reference coordinates of the nodes, followed by those of the bodies that turn.
     pub coordinates: &'m [[f64; 2]],
     pub elements: &'m Elements,
     pub mass: &'m Mass,
@@ -42,7 +42,7 @@ pub(crate) struct StepProblem<'m> {
     pub settings: Settings,
     pub integration: Integration,
     pub unknowns: Unknowns<'m>,
-    /// Unknowns of the parts.
+    /// Runs of the unknowns of each part.
     pub parts_of_unknowns: Vec<DofRun>,
     pub loads: Loads<'m>,
     pub fits: Fits<'m>,
@@ -52,9 +52,10 @@ pub(crate) struct StepProblem<'m> {
 
 /// Velocity at the start of an increment.
 pub(crate) struct StartVelocity<'a> {
-    /// V0+, or V0 where the impulses stand beside it.
+    /// The velocity is V0+, or V0 if the impulses are given separately.
     pub v0p: Cow<'a, [f64]>,
-    /// Impulses J = M (V0+ - V0) that are not in the velocity, over all dofs; else none.
+    /// Impulses J = M (V0+ - V0) that the velocity does not contain, over all dofs; empty if it
+    /// contains them.
     pub impulse: &'a [f64],
 }
 
@@ -63,15 +64,16 @@ pub(crate) struct StartVelocity<'a> {
 pub(crate) struct Equilibrium {
     /// Displacement U_theta.
     pub u_theta: Vec<f64>,
-    /// Temperature of every node at which the materials are evaluated; none where the deck gives none.
+    /// Temperature of every node at which the materials are evaluated; empty if the deck gives no temperatures.
     pub temperature: Vec<f64>,
     /// Forces lambda of the hinges.
     pub hinges: Vec<f64>,
-    /// Forces that hold motions of a static step, each with its dof.
+    /// Forces that hold motions in a static step, each with its dof.
     pub held: Vec<(usize, f64)>,
-    /// Load R_theta, with the forces C^T lambda of the hinges and those that hold motions.
+    /// Load R_theta, including the forces C^T lambda of the hinges and the forces that hold
+    /// motions.
     pub load: Vec<f64>,
-    /// Internal force F_theta, with that of damping.
+    /// Internal force F_theta, including damping.
     pub internal: Vec<f64>,
     /// Acceleration A.
     pub acceleration: Vec<f64>,
@@ -82,12 +84,12 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// U_theta and the temperatures there.
+    /// U_theta and the temperatures of the nodes in it.
     pub fn place(&self) -> [&[f64]; 2] {
         [&self.u_theta, &self.temperature]
     }
 
-    /// Vectors over so many dofs.
+    /// Sets the length of the vectors to `dofs`.
     fn resize(&mut self, dofs: usize) {
         for vector in [
             &mut self.u_theta,
@@ -101,7 +103,7 @@ impl Equilibrium {
         }
     }
 
-    /// r = R_theta - F(U_theta) - M A, eq. (4.5).
+    /// Sets r = R_theta - F(U_theta) - M A, eq. (4.5).
     fn set_out_of_balance(&mut self) {
         let forces = self.load.iter().zip(&self.internal).zip(&self.inertia);
         for (r, ((load, internal), inertia)) in self.out_of_balance.iter_mut().zip(forces) {
@@ -111,7 +113,7 @@ impl Equilibrium {
 }
 
 impl<'m> StepProblem<'m> {
-    /// The problem of a step that starts with these displacements and velocities.
+    /// The problem of a step; `start` are the displacements and velocities at its start.
     pub fn new(discretization: &'m Discretization<'m>, step: &'m Step, start: [&[f64]; 2]) -> Self {
         let Discretization {
             model,
@@ -149,7 +151,7 @@ impl<'m> StepProblem<'m> {
 }
 
 impl StepProblem<'_> {
-    /// Lets forces fade over the step that acted at the end of the step before (dof, force).
+    /// Lets forces that acted at the end of the last step fade over this step (dof, force).
     pub fn release(&mut self, forces: &[(usize, f64)]) {
         let load = |&(dof, force): &(usize, f64)| {
             let length = self.unknowns.turning.length_of(dof);
@@ -168,7 +170,8 @@ impl StepProblem<'_> {
         self.integration.has_rates && self.elements.has_damping()
     }
 
-    /// Whether landing nodes have a velocity that something is done about.
+    /// Whether the step treats the velocity of landing nodes: it has rates and does not use the
+    /// backward Euler rule.
     fn has_impacts(&self) -> bool {
         self.integration.has_rates && !self.integration.backward_euler
     }
@@ -183,7 +186,7 @@ impl StepProblem<'_> {
         self.has_impacts() && self.settings.impact_time == ImpactTime::Event
     }
 
-    /// Whether what landings take is given back.
+    /// Whether the energy that landings remove is given back.
     pub fn returns_landings(&self) -> bool {
         self.has_impacts() && self.settings.landing == LandingRule::Return
     }
@@ -194,7 +197,7 @@ impl StepProblem<'_> {
             .follow(v, |dof| self.unknowns.depends(dof));
     }
 
-    /// What the tolerance of the passes leaves of the displacement of every node in an increment `d`.
+    /// Error of the displacement of every node that the tolerance of the passes leaves in an increment `d`.
     pub fn unsolved(&self, d: &[f64]) -> Vec<f64> {
         let largest = self.parts.largest_of_bodies(d);
         let unsolved = |&body: &usize| self.settings.tolerance * largest[body];
@@ -211,7 +214,7 @@ impl StepProblem<'_> {
         Positions::new(&self.model.mesh.coordinates, u)
     }
 
-    /// Why K* has no factors.
+    /// Cause of the failure of a factorisation or solve.
     pub fn unsolvable(&self, error: LinearError) -> Cause {
         match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
@@ -221,10 +224,10 @@ impl StepProblem<'_> {
         }
     }
 
-    /// Every segment must have a length to have a normal.
+    /// Checks that every segment has a length, and so a normal.
     ///
     /// # Errors
-    /// [`Cause::Collapsed`] with the first segment that has almost no length.
+    /// Returns [`Cause::Collapsed`] with the first segment that has almost no length.
     pub fn check_segments(&self, u: &[f64]) -> Result<(), Cause> {
         let x = &self.model.mesh.coordinates;
         let length = |[p, q]: [[f64; 2]; 2]| distance(p, q);
@@ -240,11 +243,11 @@ impl StepProblem<'_> {
         }
     }
 
-    /// No element may be turned inside out at the end of an increment. The passes see it in the energy-momentum form,
-    /// and with both weights 1; else they see U_theta only.
+    /// Checks that no element is turned inside out at the end of an increment. The passes detect inverted elements
+    /// themselves in the energy-momentum form, and if both weights are 1; in other schemes they see only U_theta.
     ///
     /// # Errors
-    /// [`Cause::Inverted`] with the first element that is.
+    /// Returns [`Cause::Inverted`] with the first element that is turned inside out.
     pub fn check_end(&self, end: &State) -> Result<(), Cause> {
         let Integration {
             theta1,
@@ -259,8 +262,8 @@ impl StepProblem<'_> {
         Ok(())
     }
 
-    /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; rigid
-    /// surfaces have none among themselves.
+    /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; there are none between
+    /// rigid surfaces.
     pub fn constraints(
         &self,
         pairs: &[PairTarget],
@@ -279,7 +282,7 @@ impl StepProblem<'_> {
         }
     }
 
-    /// The configurations between which constraints of the scheme are linearised.
+    /// The configurations between which the scheme linearises constraints.
     pub fn configurations<'a>(&'a self, u0: &'a [f64], u: &'a [f64]) -> Configurations<'a> {
         Configurations {
             form: self.integration.row_form(),
@@ -303,7 +306,8 @@ impl StepProblem<'_> {
         Ok(())
     }
 
-    /// Writes load and internal force of the iterate U = U0 + d. They depend on V0+ only where U_theta does.
+    /// Writes load and internal force of the iterate U = U0 + d. Load and internal force depend on V0+ only if U_theta
+    /// does.
     fn load_and_internal_force(
         &self,
         start: &State,
@@ -332,7 +336,7 @@ impl StepProblem<'_> {
             let damping = (self.elements).damping_force([&start.u, u], d, interval.dt);
             internal.iter_mut().zip(&damping).for_each(|(f, c)| *f += c);
         }
-        // without loads it is zero as it was made
+        // without loads the load vector is still zero
         if !self.loads.are_none() {
             (self.loads).write_weighted(theta1, interval, u_theta, load);
             self.unknowns.turning.scale_moments(d, load);
@@ -345,8 +349,8 @@ impl StepProblem<'_> {
         Ok(())
     }
 
-    /// Writes the inertia of the iterate U = U0 + d, and the out-of-balance force with the load and internal
-    /// force at hand.
+    /// Writes the inertia of the iterate U = U0 + d, and the out-of-balance force with the available load and internal
+    /// force.
     pub fn inertia(
         &self,
         start: &State,
@@ -360,7 +364,7 @@ impl StepProblem<'_> {
             inertia,
             ..
         } = equilibrium;
-        // without inertia they are zero as they were made
+        // without inertia both vectors are still zero
         if !self.integration.has_rates {
             return equilibrium.set_out_of_balance();
         }
@@ -393,10 +397,10 @@ impl StepProblem<'_> {
     }
 }
 
-/// All values of some quantities, each over all dofs, must be finite.
+/// Checks that all values of some quantities, each over all dofs, are finite.
 ///
 /// # Errors
-/// [`Cause::NotFinite`] with the first quantity and node that is not.
+/// Returns [`Cause::NotFinite`] with the first quantity and node whose value is not finite.
 pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(), Cause> {
     for &(what, values) in quantities {
         if !largest(values).is_finite()
@@ -410,12 +414,12 @@ pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(
 }
 
 impl State {
-    /// Displacements with the internal variables and the temperatures there.
+    /// Motion to the displacements of the state, with its internal variables and temperatures.
     pub fn motion(&self) -> Motion<'_> {
         Motion::at(&self.u, &self.internal).heated(&self.temperature)
     }
 
-    /// Displacement, velocity and acceleration must be finite.
+    /// Checks that displacement, velocity and acceleration are finite.
     ///
     /// # Errors
     /// [`Cause::NotFinite`].
@@ -428,46 +432,48 @@ impl State {
     }
 }
 
-/// sum = a + b
+/// Writes sum = a + b.
 pub(crate) fn write_sum(a: &[f64], b: &[f64], sum: &mut Vec<f64>) {
     sum.clear();
     sum.extend(a.iter().zip(b).map(|(a, b)| a + b));
 }
 
-/// difference = a - b
+/// Writes difference = a - b.
 pub(crate) fn write_difference(a: &[f64], b: &[f64], difference: &mut Vec<f64>) {
     difference.clear();
     difference.extend(a.iter().zip(b).map(|(a, b)| a - b));
 }
 
-/// a + b
+/// The sum a + b.
 pub(crate) fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + b).collect()
 }
 
-/// a - b
+/// The difference a - b.
 pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
-/// A prepared model with its elements, their mass, and the bodies and parts that scale convergence.
+/// A prepared model with its elements, their mass, and the bodies and parts for which convergence
+/// is scaled.
 pub(crate) struct Discretization<'m> {
     pub model: &'m Model,
     contacts: &'m [ContactSurfaces],
-    /// The same without nodes and segments of those that some steps have removed: their indices, and all contacts.
+    /// For each set of contacts that some steps have removed: their indices, and the surfaces of all contacts, of which
+    /// the removed ones have no nodes and segments.
     remaining: Vec<(&'m [usize], Vec<ContactSurfaces>)>,
     pub elements: Elements,
     pub mass: Mass,
     pub redistribution: &'m Redistribution,
     pub parts: Parts,
     pub turning: Vec<TurningBody>,
-    /// Reference coordinates of the nodes, then of the bodies that turn.
+    /// Reference coordinates of the nodes, followed by those of the bodies that turn.
     pub coordinates: Vec<[f64; 2]>,
-    /// Overlaps of slave nodes at the start, of contacts with shrink fits (length).
+    /// Overlaps of slave nodes at the start, for contacts with shrink fits (length).
     pub overlaps: &'m [Vec<f64>],
 }
 
-/// The contacts of the steps that have removed some.
+/// The contacts in the steps that have removed some.
 fn remaining(prepared: &PreparedModel) -> Vec<(&[usize], Vec<ContactSurfaces>)> {
     let mut all: Vec<(&[usize], Vec<ContactSurfaces>)> = Vec::new();
     for step in &prepared.model.steps {
@@ -494,7 +500,7 @@ impl<'m> Discretization<'m> {
         found.map_or(self.contacts, |(_, contacts)| contacts)
     }
 
-    /// Whether there are dofs beside those of the nodes.
+    /// Whether there are dofs other than those of the nodes.
     pub fn has_more_dofs(&self) -> bool {
         !self.turning.is_empty()
     }

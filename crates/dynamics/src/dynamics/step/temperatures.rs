@@ -12,7 +12,7 @@ pub(crate) struct Temperatures<'m> {
 }
 
 impl<'m> Temperatures<'m> {
-    /// Those of a step.
+    /// Temperatures of a step.
     pub fn new(model: &'m Model, step: &'m Step) -> Self {
         Temperatures {
             model,
@@ -21,7 +21,7 @@ impl<'m> Temperatures<'m> {
         }
     }
 
-    /// Temperature of every node at a time; none where the deck gives none.
+    /// Temperature of every node at a time; empty if the deck gives no temperatures.
     pub fn at(&self, time: TimePoint) -> Vec<f64> {
         if self.are_none {
             return Vec::new();
@@ -33,7 +33,7 @@ impl<'m> Temperatures<'m> {
         all
     }
 
-    /// Writes (1 - theta1) T0 + theta1 T1, at which an increment is balanced, T0 being those of its start.
+    /// Writes (1 - theta1) T0 + theta1 T1, at which an increment is balanced; T0 are the temperatures at its start.
     pub fn write_weighted(
         &self,
         theta1: f64,
@@ -51,7 +51,7 @@ impl<'m> Temperatures<'m> {
     }
 }
 
-/// Temperature of every node at the start of the analysis; none where the deck gives no temperatures.
+/// Temperature of every node at the start of the analysis; empty if the deck gives no temperatures.
 pub(crate) fn initial_temperatures(model: &Model) -> Vec<f64> {
     let nodes = 0..model.mesh.node_count();
     match model.has_temperatures() {

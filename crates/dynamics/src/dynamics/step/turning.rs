@@ -1,4 +1,4 @@
-//! Rigid bodies: positions of their nodes and rows of T at an iterate of two translations and a
+//! Rigid bodies: positions of their nodes and rows of T in an iterate, from two translations and a
 //! finite rotation. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use crate::elements::Elements;
@@ -6,41 +6,44 @@ use crate::linear::Transformation;
 use crate::model::{Model, RigidBody};
 use crate::vectors::{cross, difference, distance, dot};
 
-/// A rigid body, which turns where its angle is not held. Its unknowns are the displacement of its pole and s = L c: c = 2 tan(dtheta/2) is its
-/// rotation in the increment, L a length of the body, which makes s a displacement and its force a force.
+/// A rigid body, which turns if its angle is not held. The unknowns of a rigid body are the displacement of its pole
+/// and s = L c. Here c = 2 tan(dtheta/2) is the body's rotation in the increment, and L is a length of the body, by
+/// which s is a displacement and its work-conjugate a force.
 pub struct TurningBody {
-    /// Node that is its centre of mass.
+    /// The node of the centre of mass.
     pub centre: usize,
     /// Reference node.
     pub reference: usize,
-    /// Dof of its angle: displacements hold L theta, velocities L omega, increments s = L c.
+    /// Dof of the angle: the displacement there is L theta, the velocity L omega, the increment s =
+    /// L c.
     pub spin: usize,
-    /// L: the largest arm from the reference node.
+    /// L, the largest arm from the reference node.
     pub length: f64,
     /// Mass.
     pub mass: f64,
     /// Moment of inertia about the centre of mass.
     pub inertia: f64,
-    /// Its nodes, the reference node and the centre among them, with their arms in the reference configuration
-    /// from the reference node.
+    /// Nodes of the body, including the reference node and the centre, with their arms from the reference node in the
+    /// reference configuration.
     arms: Vec<(usize, [f64; 2])>,
-    /// Nodes that carry mass of elements that deform, increasing.
+    /// Nodes that carry mass of deformable elements, increasing.
     loaded: Vec<usize>,
-    /// Arm of the centre of mass.
+    /// Arm of the centre of mass from the reference node.
     to_centre: [f64; 2],
 }
 
-/// J r: r turned by a right angle to the left.
+/// J r: the vector r turned by a right angle to the left.
 fn turned([x, y]: [f64; 2]) -> [f64; 2] {
     [-y, x]
 }
 
-/// R r of the sine and the cosine of an angle.
+/// R r: the vector r rotated by an angle, given by its sine and cosine.
 fn rotated((sin, cos): (f64, f64), [x, y]: [f64; 2]) -> [f64; 2] {
     [cos * x - sin * y, sin * x + cos * y]
 }
 
-/// r_m = (r_0 + r_1)/2 of an arm that is r_0 at the start, with r_1 - r_0 = c J r_m:
+/// Mean arm r_m = (r_0 + r_1)/2 in an increment, for an arm that is r_0 at the start, with r_1 -
+/// r_0 = c J r_m:
 ///
 /// ```text
 /// r_m = (r_0 + (c/2) J r_0)/(1 + c²/4)      eq. (11.2)
@@ -51,7 +54,7 @@ fn mean_arm(r0: [f64; 2], c: f64) -> [f64; 2] {
 }
 
 impl TurningBody {
-    /// A body of a model; `deforming` are the nodes of elements that deform.
+    /// A rigid body of a model; `deforming` marks the nodes of deformable elements.
     fn new(model: &Model, elements: &Elements, deforming: &[bool], rigid: &RigidBody) -> Self {
         let x = &model.mesh.coordinates;
         // mass, its moments and int rho (X - X_ref)² dOmega from the consistent mass
@@ -120,7 +123,7 @@ impl TurningBody {
             .collect()
     }
 
-    /// Takes in those of its nodes that carry mass of elements that deform in the place of nodes without mass.
+    /// Adds those nodes of the body that carry mass of deformable elements for nodes without mass.
     pub fn load(&mut self, carriers: &[usize]) {
         let nodes: Vec<usize> = self.nodes().collect();
         let own = carriers.iter().filter(|node| nodes.contains(node));
@@ -129,22 +132,22 @@ impl TurningBody {
         self.loaded.dedup();
     }
 
-    /// Reference position of its centre of mass, the reference node being at `x`.
+    /// Reference position of the centre of mass if the reference node is at `x`.
     pub fn centre_from(&self, x: [f64; 2]) -> [f64; 2] {
         [0, 1].map(|i| x[i] + self.to_centre[i])
     }
 
-    /// Its nodes, the reference node and the centre among them.
+    /// Nodes of the body, including the reference node and the centre.
     pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
         self.arms.iter().map(|arm| arm.0)
     }
 
-    /// Angle at displacements `u` (rad).
+    /// Angle of the body at displacements `u` (rad).
     fn angle(&self, u: &[f64]) -> f64 {
         u[self.spin] / self.length
     }
 
-    /// Its other nodes with their arms from the pole, at an angle.
+    /// All nodes of the body except its pole, with their arms from the pole, at an angle.
     fn arms_from(
         &self,
         pole: usize,
@@ -172,18 +175,18 @@ pub fn rigid_inertia(model: &Model) -> Vec<[f64; 2]> {
 /// The rigid bodies in a step.
 pub(crate) struct Turning<'m> {
     pub bodies: &'m [TurningBody],
-    /// The pole of every body: its reference node where that is held, else its centre of mass.
+    /// The pole of every body: its reference node if that is held, else its centre of mass.
     poles: Vec<usize>,
     /// Whether both translations and the angle of a body are prescribed.
     driven: Vec<bool>,
-    /// Body of every node that moves with one, by the index of the node.
+    /// For every node the rigid body that moves it, if any.
     body_of: Vec<Option<usize>>,
-    /// Whether forces are those at the end of an increment, in a static step, and act there.
+    /// Whether forces act at the end of an increment, as in a static step.
     acts_at_end: bool,
 }
 
 impl<'m> Turning<'m> {
-    /// The bodies of a step in which some dofs are prescribed.
+    /// The rigid bodies in a step with some prescribed dofs.
     pub fn new(
         bodies: &'m [TurningBody],
         acts_at_end: bool,
@@ -209,17 +212,17 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no rigid bodies.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 
-    /// Whether supports prescribe the motion of all of them.
+    /// Whether supports prescribe the motion of all rigid bodies.
     pub fn are_driven(&self) -> bool {
         self.driven.iter().all(|driven| *driven)
     }
 
-    /// L of the body whose angle this dof is: a force on it is a moment over L.
+    /// Length L of the body whose angle is this dof; the force on the dof is a moment divided by L.
     pub fn length_of(&self, dof: usize) -> Option<f64> {
         let body = self.bodies.iter().find(|body| body.spin == dof);
         body.map(|body| body.length)
@@ -232,8 +235,8 @@ impl<'m> Turning<'m> {
         first.is_some() && nodes.iter().all(|node| body(node) == first)
     }
 
-    /// Whether the mass matrix over the unknowns changes as they turn: a centre of mass follows a reference node, or
-    /// nodes with mass of elements that deform follow a pole.
+    /// Whether the mass matrix over the unknowns changes as bodies turn. The mass matrix changes if a centre of mass
+    /// follows a reference node, or if nodes with mass of deformable elements follow a pole.
     pub fn turn_mass(&self) -> bool {
         let mut all = self.with_poles().zip(&self.driven);
         all.any(|((body, pole), driven)| {
@@ -242,8 +245,8 @@ impl<'m> Turning<'m> {
         })
     }
 
-    /// Whether nodes of a body that is not driven carry mass of elements that deform: their velocities would leave its
-    /// rigid motion.
+    /// Whether nodes of a body that is not driven carry mass of deformable elements: their velocities would not follow
+    /// the rigid motion.
     pub fn carry_elements(&self) -> bool {
         let mut all = self.bodies.iter().zip(&self.driven);
         all.any(|(body, driven)| !driven && !body.loaded.is_empty())
@@ -255,7 +258,7 @@ impl<'m> Turning<'m> {
         body.is_some_and(|body| !self.driven[body])
     }
 
-    /// The bodies with their poles.
+    /// The bodies, each with its pole.
     fn with_poles(&self) -> impl Iterator<Item = (&'m TurningBody, usize)> + '_ {
         self.bodies.iter().zip(self.poles.iter().copied())
     }
@@ -266,7 +269,8 @@ impl<'m> Turning<'m> {
         all.filter(|(_, driven)| **driven).map(|(body, _)| body)
     }
 
-    /// Dofs that follow the pole and the angle of their body: the dof, that of the pole, and that of the angle.
+    /// Dofs that follow the pole and the angle of their body: the dof itself, the dof of the pole, and that of the
+    /// angle.
     pub fn followers(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         self.with_poles().flat_map(|(body, pole)| {
             let nodes = body.nodes().filter(move |&node| node != pole);
@@ -288,14 +292,14 @@ impl<'m> Turning<'m> {
         })
     }
 
-    /// Sets the rows of T of the nodes of all bodies in the increment `d` from `u0`: a force acts by the
-    /// difference quotient of the motion, a change of the iterate by its derivative,
+    /// Sets the rows of T of the nodes of all bodies in the increment `d` from `u0`. Force rows are the difference
+    /// quotient of the motion, derivative rows its derivative with respect to the iterate,
     ///
     /// ```text
     /// force rows  (f, r_m x f),   derivative rows  (f, (r_1 x f)/(1 + c²/4))      eq. (11.3)
     /// ```
     ///
-    /// In a static step forces act at the end, (f, r_1 x f).
+    /// In a static step forces act at the end, so their rows are (f, r_1 x f).
     pub fn write_rows(&self, [u0, d]: [&[f64]; 2], map: &mut Transformation) {
         for (body, pole) in self.with_poles() {
             if map.row(body.spin).is_empty() {
@@ -314,7 +318,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Makes the increment `d` from `u0` a rigid motion of every body:
+    /// Changes the increment `d` from `u0` into a rigid motion of every body:
     ///
     /// ```text
     /// d = d_pole + c J r_m      eq. (11.1)
@@ -329,7 +333,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Makes the displacements of the angles those after the increment `d` from `u0`: theta = theta_0 + 2 atan(c/2).
+    /// Sets the displacements of the angles to those after the increment `d` from `u0`: theta = theta_0 + 2 atan(c/2).
     pub fn turn(&self, [u0, d]: [&[f64]; 2], u: &mut [f64]) {
         for body in self.bodies {
             let c = d[body.spin] / body.length;
@@ -337,7 +341,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Makes displacements of the angles with a part of the increment s = L c those with this part of their differences.
+    /// Corrects displacements `u` of the angles that contain a part of the increment s = L c, so that they contain this
+    /// part of the difference L (theta_1 - theta_0).
     pub fn correct_angles(&self, d: &[f64], part: f64, u: &mut [f64]) {
         for body in self.bodies {
             let half = d[body.spin] / body.length / 2.0;
@@ -345,7 +350,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// The increment `d` with the differences L (theta_1 - theta_0) of the angles in place of s = L c.
+    /// The increment `d`, in which the angles have the differences L (theta_1 - theta_0) in place of s = L c.
     pub fn travel(&self, d: &[f64]) -> Vec<f64> {
         let mut travel = d.to_vec();
         for body in self.bodies {
@@ -355,20 +360,22 @@ impl<'m> Turning<'m> {
         travel
     }
 
-    /// Increments s = L c of the angles in place of their differences L (theta_1 - theta_0): c = 2 tan(dtheta/2).
+    /// Replaces the differences L (theta_1 - theta_0) of the angles by the increments s = L c, with c = 2
+    /// tan(dtheta/2).
     pub fn rotations(&self, d: &mut [f64]) {
         for body in self.bodies {
             d[body.spin] = body.length * 2.0 * (d[body.spin] / body.length / 2.0).tan();
         }
     }
 
-    /// Makes increments s = L c from the iterate `u` those by which the increment from `u0` to `u` goes on to the same angles:
+    /// Changes increments s = L c of the angles from the iterate `u` into the continuation of the increment from `u0`
+    /// to `u` that leads to the same angles:
     ///
     /// ```text
     /// tan(a + b) - tan a = tan b (1 + tan² a)/(1 - tan a tan b)
     /// ```
     ///
-    /// a and b being half the rotations before and after the iterate.
+    /// Here a and b are half the rotations before and after the iterate.
     pub fn go_on(&self, [u0, u]: [&[f64]; 2], d: &mut [f64]) {
         for body in self.bodies {
             let before = ((body.angle(u) - body.angle(u0)) / 2.0).tan();
@@ -377,7 +384,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the displacements of all nodes to those of the poles and angles.
+    /// Sets the displacements of all nodes of the bodies to those of the poles and angles.
     pub fn place(&self, u: &mut [f64]) {
         for (body, pole) in self.with_poles() {
             let (of_pole, turn) = ([u[2 * pole], u[2 * pole + 1]], body.angle(u).sin_cos());
@@ -388,9 +395,10 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the velocities of all nodes to those of the centre of mass and the angle, of bodies that are driven, or
-    /// have no mass, of the reference node and the angle; `u` are the displacements. What is prescribed is left, and
-    /// in a body that is not driven what carries mass of elements that deform.
+    /// Sets the velocities of all nodes of the bodies to the motion of the centre of mass and the angle; `u` are the
+    /// displacements. For bodies that are driven or have no mass the velocities are those of the motion of the
+    /// reference node and the angle. Prescribed dofs keep their velocities, and so do nodes with mass of deformable
+    /// elements in a body that is not driven.
     pub fn move_with(&self, u: &[f64], v: &mut [f64], is_prescribed: impl Fn(usize) -> bool) {
         for (body, &driven) in self.bodies.iter().zip(&self.driven) {
             let carrier = match driven || body.mass == 0.0 {
@@ -412,7 +420,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the velocities of the nodes of all bodies to those of the pole and the angle, `u` being the displacements.
+    /// Sets the velocities of the nodes of all bodies to those of the pole and the angle; `u` are the displacements.
     pub fn move_with_poles(&self, u: &[f64], v: &mut [f64]) {
         for (body, pole) in self.with_poles() {
             let (omega, own) = (v[body.spin] / body.length, [v[2 * pole], v[2 * pole + 1]]);
@@ -423,7 +431,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Writes the increment of free poles and angles that goes on with the velocities `v`.
+    /// Writes the increment of free poles and angles if they go on with the velocities `v`.
     pub fn predict(
         &self,
         v: &[f64],
@@ -436,8 +444,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Gives the nodes of driven bodies the acceleration (V1 - V0)/dt in an increment `d` from `u0`, those of
-    /// their reference nodes and angles being `a` already.
+    /// Sets the accelerations of the nodes of driven bodies to (V1 - V0)/dt in an increment `d` from `u0`; in `a` the
+    /// reference nodes and angles must have theirs already.
     pub fn drive(&self, [u0, d]: [&[f64]; 2], v0: &[f64], dt: f64, a: &mut [f64]) {
         for body in self.driven() {
             let reference = 2 * body.reference;
@@ -453,8 +461,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Adds to the accelerations of the nodes of the other bodies what those of prescribed poles and angles are more than
-    /// `own`, those of eq. (4.1), in an increment `d` from `u0`:
+    /// Corrects the accelerations of the nodes of bodies that are not driven, in an increment `d` from `u0`. The
+    /// correction adds the motion of the prescribed poles and angles beyond `own`, the accelerations of eq. (4.1):
     ///
     /// ```text
     /// A += A_p + (A_s/L) J r_m      eq. (11.4)
@@ -483,7 +491,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Gives all nodes the velocities that go with those of their reference nodes and angles.
+    /// Sets the velocities of all nodes of the bodies to the motion of their reference nodes and
+    /// angles.
     pub fn start(&self, u: &[f64], v: &mut [f64]) {
         for body in self.bodies {
             let own = [v[2 * body.reference], v[2 * body.reference + 1]];
@@ -495,8 +504,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Hands forces on all dofs over from the nodes of every body to its pole and its angle, where they do the same
-    /// work in the increment `d` that ends with the displacements `u1`, or act at its end; those of driven bodies stay where they are if
+    /// Hands forces at the nodes of every body over to its pole and angle, where they do the same work in the increment
+    /// `d` to the displacements `u1`, or act at its end. The forces of driven bodies stay at the nodes if
     /// `keeps_driven`.
     pub fn hand_over(&self, [u1, d]: [&[f64]; 2], keeps_driven: bool, force: &mut [f64]) {
         let all = self.with_poles().zip(&self.driven);
@@ -513,8 +522,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// What forces over all dofs that turn no more than their nodes add to the stiffness of the angles from
-    /// displacements `u0` to `u`, by the dof of the angle:
+    /// Stiffness of the angles from forces over all dofs that do not turn with the bodies, from displacements `u0` to
+    /// `u`, by the dof of the angle:
     ///
     /// ```text
     /// K_ss += sum f.r_1/(L² (1 + c²/4))      eq. (11.12)
@@ -534,8 +543,8 @@ impl<'m> Turning<'m> {
         })
     }
 
-    /// Makes moments M on the angles the forces on s = L c that do the work M dtheta in the increment `d`:
-    /// (M/L) dtheta/c, eq. (11.6); in a static step M/L.
+    /// Changes moments M on the angles into forces on s = L c that do the work M dtheta in the increment `d`: (M/L)
+    /// dtheta/c, eq. (11.6); in a static step M/L.
     pub fn scale_moments(&self, d: &[f64], force: &mut [f64]) {
         for body in self.bodies {
             let half = d[body.spin] / body.length / 2.0;
@@ -550,10 +559,10 @@ impl<'m> Turning<'m> {
 mod tests {
     use super::*;
 
-    /// Dofs of three nodes and of a body: the centre of mass is node 3.
+    /// Number of dofs of three nodes and of a body, whose centre of mass is node 3.
     const DOFS: usize = 10;
 
-    /// A body of three nodes, the first of which is the reference node, with two masses.
+    /// A rigid body of three nodes with two masses; its first node is the reference node.
     fn body() -> Vec<TurningBody> {
         let mut model = Model::default();
         model.mesh.coordinates = vec![[0.3, -0.2], [1.5, 0.4], [-0.1, 2.2]];
@@ -569,7 +578,7 @@ mod tests {
         TurningBody::all(&model, &Elements::new(&model))
     }
 
-    /// T of a free pole and angle.
+    /// Matrix T of a free pole and angle.
     fn map(turning: &Turning) -> Transformation {
         let mut leading: Vec<usize> = turning.leading().collect();
         leading.sort_unstable();
@@ -583,7 +592,7 @@ mod tests {
         Transformation::new(3, rows)
     }
 
-    /// Displacements in which the body has turned by some angle already.
+    /// Displacements in which the body has already turned by an angle.
     fn start(turning: &Turning) -> Vec<f64> {
         let mut u = vec![0.0; DOFS];
         let leading = turning.leading().zip([0.4, -0.3, 1.1]);

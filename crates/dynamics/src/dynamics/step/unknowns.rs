@@ -1,8 +1,8 @@
-//! Unknowns q of a step and the displacements that follow from them, u = T q + g(t): free dofs,
+//! Unknowns q of a step and the displacements that depend on them, u = T q + g(t): free dofs,
 //! supports, and dofs that follow others by equations. See docs/theory/contact.md.
 //!
-//! Prescribed motion of a step: displacements by ramps and amplitudes, velocities and accelerations
-//! integrated. See docs/theory/time.md.
+//! Prescribed motion of a step: displacements from ramps and amplitudes, and integrated velocities
+//! and accelerations. See docs/theory/time.md.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -17,11 +17,11 @@ use crate::model::{Equation, Model, Procedure, Rate, Step, SupportMotion};
 
 /// The unknowns q of a step, U = T q + g(t), eq. (3.7): the displacements of the free dofs.
 ///
-/// A free dof has a row of the identity in T, a support an empty one and its prescribed motion in
-/// g, and a dof of an equation the sum of the rows, and of the g, that it follows. A node of a body that turns
-/// follows the pole and the angle of the body, by rows that change with the iterate.
+/// In T a free dof has a row of the identity, a support an empty row and its prescribed motion in g. A dof of an
+/// equation has the sum of the rows, and of the g, of the dofs that it follows. A node of a body that turns follows the
+/// pole and the angle of the body, by rows that change with the iterate.
 pub(crate) struct Unknowns<'m> {
-    /// T, with the rows of bodies that turn those of the start of the analysis.
+    /// T; its rows of bodies that turn are those at the start of the analysis.
     pub map: Transformation,
     /// Bodies that turn.
     pub turning: Turning<'m>,
@@ -29,12 +29,12 @@ pub(crate) struct Unknowns<'m> {
     pub dof: Vec<usize>,
     supports: Supports<'m>,
     equations: &'m [Equation],
-    /// Supports, dofs of equations and nodes of bodies that turn: where forces of constraints act; increasing.
+    /// Supports, dofs of equations and nodes of bodies that turn, on which forces of constraints act; increasing.
     constrained: Vec<usize>,
 }
 
 impl<'m> Unknowns<'m> {
-    /// Unknowns of a step that starts with the displacements `u` and velocities `v`.
+    /// Unknowns of a step with the displacements `u` and velocities `v` at its start.
     pub fn new(
         model: &'m Model,
         (elements, bodies): (&Elements, &'m [TurningBody]),
@@ -63,7 +63,7 @@ impl<'m> Unknowns<'m> {
         }
     }
 
-    /// Whether one of the nodes depends on an unknown.
+    /// Whether any of the nodes depends on an unknown.
     pub fn moves(&self, nodes: &[usize]) -> bool {
         let mut dofs = nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]);
         dofs.any(|dof| self.depends(dof))
@@ -74,8 +74,8 @@ impl<'m> Unknowns<'m> {
         !self.map.row(dof).is_empty()
     }
 
-    /// Whether the gap of a constraint can change. Where equations tie the node to the segment it
-    /// cannot: Gn T is zero but for round-off.
+    /// Whether the gap of a constraint can change. The gap cannot change if equations tie the node
+    /// to the segment: then Gn T is zero but for round-off.
     pub fn opens(&self, constraint: &Constraint) -> bool {
         if !self.turning.is_empty() {
             let nodes: PerDof<usize> = constraint.nodes().collect();
@@ -106,18 +106,18 @@ impl<'m> Unknowns<'m> {
         self.supports.step.motion_of(dof).is_some()
     }
 
-    /// Whether a dof stays where it is.
+    /// Whether a dof is prescribed to stay where it is.
     pub fn is_held(&self, dof: usize) -> bool {
         let motion = self.supports.step.motion_of(dof);
         motion.is_some_and(SupportMotion::is_still)
     }
 
-    /// Supports, dofs of equations and nodes of bodies that turn, increasing: where forces of constraints act.
+    /// Supports, dofs of equations and nodes of bodies that turn, on which forces of constraints act; increasing.
     pub fn constrained(&self) -> &[usize] {
         &self.constrained
     }
 
-    /// Displacement g(t) - u that is left of the motion of the supports in the iterate `u` of an increment from `u0`; zero
+    /// Rest g(t) - u of the prescribed displacement of the supports in the iterate `u` of an increment from `u0`; zero
     /// at free dofs.
     pub fn prescribed_increment(&self, [u0, u]: [&[f64]; 2], end: TimePoint) -> Vec<f64> {
         let mut d = vec![0.0; u.len()];
@@ -131,7 +131,8 @@ impl<'m> Unknowns<'m> {
         d
     }
 
-    /// Gives supports their displacement and velocity, and the dofs of equations those that follow.
+    /// Sets displacement and velocity of the supports, and of the dofs of equations that follow
+    /// them.
     pub fn prescribe(&self, at: TimePoint, u: &mut [f64], v: &mut [f64]) {
         for (dof, u1, v1) in self.supports.motion(at) {
             (u[dof], v[dof]) = (u1, v1);
@@ -142,20 +143,21 @@ impl<'m> Unknowns<'m> {
         self.follow(v);
     }
 
-    /// Gives the nodes of bodies that turn the velocities of their bodies at displacements `u`.
+    /// Sets the velocities of the nodes of bodies that turn to those of their bodies at
+    /// displacements `u`.
     pub fn move_bodies(&self, u: &[f64], v: &mut [f64]) {
         self.turning.move_with(u, v, |dof| self.is_prescribed(dof));
     }
 
-    /// Gives all nodes of bodies that turn the velocities of their poles at displacements `u`, and the dofs of equations those
-    /// that follow.
+    /// Sets the velocities of all nodes of bodies that turn to those of their poles at displacements `u`, and then
+    /// those of the dofs of equations.
     pub fn move_with_poles(&self, u: &[f64], v: &mut [f64]) {
         self.turning.move_with_poles(u, v);
         self.follow(v);
     }
 
-    /// Gives supports their velocity at the start of the analysis, and bodies that turn and the dofs of equations the
-    /// one that follows.
+    /// Sets the velocity of the supports at the start of the analysis, and then those of bodies that turn and of the
+    /// dofs of equations.
     pub fn prescribe_velocity(&self, at: TimePoint, u: &[f64], v: &mut [f64]) {
         for (dof, _, v1) in self.supports.motion(at) {
             v[dof] = v1;
@@ -164,7 +166,7 @@ impl<'m> Unknowns<'m> {
         self.follow(v);
     }
 
-    /// Gives supports the acceleration (V1 - V0)/dt.
+    /// Sets the acceleration of the supports to (V1 - V0)/dt.
     pub fn prescribe_acceleration(&self, at: TimePoint, v0: &[f64], dt: f64, a: &mut [f64]) {
         for (dof, _, v1) in self.supports.motion(at) {
             a[dof] = (v1 - v0[dof]) / dt;
@@ -178,8 +180,8 @@ impl<'m> Unknowns<'m> {
         }
     }
 
-    /// Forces on all dofs with those on the dofs of equations passed on to the dofs that they follow,
-    /// free or prescribed. What it leaves on a free dof is T^T v.
+    /// Forces on all dofs, with those on dofs of equations passed on to the dofs, free or prescribed, that they follow.
+    /// On the free dofs the result is T^T v.
     pub fn passed_on<'v>(&self, v: &'v [f64]) -> Cow<'v, [f64]> {
         self.pass_on(v, |force| force)
     }
@@ -203,8 +205,8 @@ impl<'m> Unknowns<'m> {
     }
 }
 
-/// Which dofs are free: those of nodes with elements, and those that such a dof follows, except
-/// supports and dofs that follow others.
+/// For every dof whether it is free: dofs of nodes with elements, and dofs that those dofs follow,
+/// except supports and dofs that follow others.
 fn free_dofs(
     elements: &Elements,
     equations: &[Equation],
@@ -233,10 +235,11 @@ fn free_dofs(
     free
 }
 
-/// Coefficient of an angle until an iterate sets it: any but the 1 of a row of the identity.
+/// Coefficient of an angle until an iterate sets it; it must differ from the 1 in a row of the
+/// identity.
 const UNSET: f64 = 2.0;
 
-/// T for unknowns with the given dofs; the last terms of the nodes of bodies that turn are those of the angles.
+/// T for unknowns with the given dofs; the last term in the row of a node of a body that turns belongs to the angle.
 fn transformation(
     dof_of: &[usize],
     equations: &[Equation],
@@ -267,12 +270,12 @@ pub(super) struct Supports<'m> {
     step: &'m Step,
     /// Displacement and velocity of every support at the start of the step.
     from: Vec<[f64; 2]>,
-    /// What the motion of every support is multiplied by: 1, at an angle the length of its body.
+    /// Factor on the motion of every support: 1, or for an angle the length of its body.
     units: Vec<f64>,
 }
 
 impl<'m> Supports<'m> {
-    /// Supports of a step that starts with the displacements `u` and velocities `v`.
+    /// Supports of a step with the displacements `u` and velocities `v` at its start.
     pub fn new(
         model: &'m Model,
         bodies: &[TurningBody],
@@ -301,8 +304,7 @@ impl<'m> Supports<'m> {
         self.step.supports.iter().map(|support| support.dof)
     }
 
-    /// Dof, displacement and velocity of every support: from the amplitude and its derivative or its
-    /// integrals.
+    /// Dof, displacement and velocity of every support, from the amplitude and its derivative or its integrals.
     pub fn motion(&self, at: TimePoint) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
         let supports = self.step.supports.iter().zip(&self.from).zip(&self.units);
         supports.map(move |((support, &from), unit)| {
@@ -311,7 +313,8 @@ impl<'m> Supports<'m> {
         })
     }
 
-    /// Of one support that starts with the displacement `from` and the velocity `v0`.
+    /// Displacement and velocity of one support with the displacement `from` and the velocity `v0`
+    /// at the start.
     fn displacement_and_velocity(
         &self,
         motion: SupportMotion,

@@ -1,55 +1,56 @@
-//! How kept factors of K* wear over the increments of a dynamic step, when new ones pay, and what K* they are of.
-//! docs/numerics.md, Kept factors of the stiffness.
+//! Wear of kept factors of K* over the increments of a dynamic step: when new factors pay, and in which state K* is
+//! then assembled. See docs/numerics.md, Kept factors of the stiffness.
 
 use serde::{Deserialize, Serialize};
 
-/// Increments whose mean number of passes is that of new factors.
+/// Number of increments over which the mean number of passes of new factors is measured.
 const NEW: u32 = 5;
-/// Part of the least such mean that passes may have beyond it.
+/// Part of the least mean number of passes by which passes may exceed it.
 const SLACK: f64 = 0.05;
-/// Cost of a factorisation, with the compliance of the contacts, in passes.
+/// Cost of a factorisation, including the compliance of the contacts, in passes.
 const COST: f64 = 10.0;
-/// Part by which new factors must lower the passes to have paid.
+/// Part by which new factors must reduce the passes to have paid.
 const GAIN: f64 = 0.1;
-/// Part of the last number in the mean of the latest ones.
+/// Weight of the last number of passes in the running mean.
 const LATEST: f64 = 0.2;
-/// Multiple of its cost from which on the next factorisation pays, beside that of one that has not.
+/// Factor by which the number of excess passes that pays for the next factorisation grows after one
+/// that has not paid.
 const RARER: f64 = 4.0;
-/// Largest such multiple.
+/// Largest multiple of the cost of a factorisation that excess passes must reach.
 const MOST: f64 = 256.0;
 
-/// What K* new factors are of.
+/// State for which new factors of K* are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FactoredState {
-    /// That of the iterate.
+    /// The state of the iterate.
     Iterate,
-    /// That of the bodies as they are without displacements, turned.
+    /// The bodies without displacements, and then turned.
     Unstrained,
 }
 
-/// Passes of the increments with the factors at hand.
+/// Passes of the increments with the present factors.
 ///
-/// The choice between old and new factors of K* is that between rent and purchase. Every pass beyond the number that new
-/// factors have needed is rent; when the rent reaches the cost of a factorisation, K* is factorised. If passes grow evenly
-/// with the age of the factors, this age is the best one. New factors are on trial: if strains change in the next
-/// increments, they can be worse than those of the unstrained bodies.
+/// The choice between old and new factors of K* is that between renting and buying. Every pass beyond the number with
+/// new factors is rent; when the rent reaches the cost of a factorisation, K* is factorised. If passes grow evenly with
+/// the age of the factors, the age at which the rent reaches this cost is the best one. New factors are on trial: if
+/// strains change in the next increments, they can be worse than those of the unstrained bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wear {
-    /// Increments since the last factorisation.
+    /// Number of increments since the last factorisation.
     increments: u32,
-    /// Mean number of passes of the first of them.
+    /// Mean number of passes in the first increments since the last factorisation.
     new: f64,
-    /// Least such mean of the step.
+    /// Least mean of this kind since the start of the step.
     least: f64,
-    /// Mean number of passes of the latest.
+    /// Running mean of the number of passes.
     latest: f64,
-    /// The same before the factors on trial were bought.
+    /// Running mean before the factors on trial were bought.
     before: Option<f64>,
     /// Whether factors on trial have not paid.
     has_failed: bool,
-    /// Passes beyond the least mean.
+    /// Sum of the passes beyond the least mean (the rent).
     excess: f64,
-    /// Multiple of its cost from which on a factorisation pays.
+    /// Multiple of the cost of a factorisation that the excess passes must reach.
     bound: f64,
 }
 
@@ -69,12 +70,13 @@ impl Default for Wear {
 }
 
 impl Wear {
-    /// Whether new factors pay from the start of an increment on.
+    /// Whether new factors pay at the start of an increment.
     pub fn is_due(&self) -> bool {
         self.has_failed || self.excess > self.bound * COST
     }
 
-    /// K* is factorised for other increments, or for one pass; gives what it is of.
+    /// Notes that K* is factorised for other increments, or for one pass; returns the state for
+    /// which it is made.
     pub fn begin(&mut self) -> FactoredState {
         *self = Wear {
             bound: self.bound,
@@ -83,7 +85,8 @@ impl Wear {
         FactoredState::Iterate
     }
 
-    /// K* is factorised: at the `start` of an increment, or since the factors have worn in its passes; gives what it is of.
+    /// Notes that K* is factorised: at the `start` of an increment, or because the factors have worn in its passes.
+    /// Returns the state for which the factors are made.
     pub fn renew(&mut self, at_start: bool) -> FactoredState {
         if !at_start && self.before.is_some() {
             self.fail();
@@ -102,13 +105,13 @@ impl Wear {
         state
     }
 
-    /// The factors on trial have not paid.
+    /// Notes that the factors on trial have not paid.
     fn fail(&mut self) {
         self.has_failed = true;
         self.bound = (RARER * self.bound).min(MOST);
     }
 
-    /// Sees what the passes of new factors are, and whether these have paid.
+    /// Measures the passes of new factors, and decides whether these factors have paid.
     fn judge(&mut self) {
         if let Some(before) = self.before.take() {
             match self.new < (1.0 - GAIN) * before {
@@ -119,7 +122,7 @@ impl Wear {
         self.least = self.least.min(self.new);
     }
 
-    /// Takes in the passes of an increment with the factors at hand.
+    /// Enters the passes of an increment with the present factors.
     pub fn take_in(&mut self, passes: usize) {
         let passes = passes as f64;
         self.increments += 1;
@@ -140,7 +143,8 @@ impl Wear {
 mod tests {
     use super::*;
 
-    /// Ages at which factors are renewed, in so many increments with the passes of an age.
+    /// Ages at which factors are renewed within a number of increments; `passes` gives the passes
+    /// at an age.
     fn ages(increments: u32, passes: impl Fn(u32) -> usize) -> Vec<u32> {
         let mut wear = Wear::default();
         let (mut age, mut ages) = (0, Vec::new());

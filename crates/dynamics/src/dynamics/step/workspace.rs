@@ -1,5 +1,6 @@
 //! Workspace of the increments of a step: effective stiffness with its factors, contact search,
-//! times and counts. Each operation measures its own time. See docs/theory/time.md.
+//! times and counts. Each operation on the workspace measures its own time. See
+//! docs/theory/time.md.
 
 use super::held_motions::HeldMotions;
 use super::loads::TimePoint;
@@ -24,11 +25,11 @@ pub(crate) struct Workspace<'m> {
     pub stiffness: EffectiveStiffness,
     pub search: Search<'m>,
     pub meter: Meter,
-    /// What holds rigid motions in K*.
+    /// Pins that hold rigid motions in K*.
     pub pins: Pins,
-    /// Largest displacements and forces of the run so far, the base of tolerances.
+    /// Largest displacements and forces of the run so far, on which tolerances are based.
     pub seen: Seen,
-    /// How the factors of K* wear in dynamic increments.
+    /// Wear of the factors of K* in dynamic increments.
     pub wear: Wear,
     /// The pairs of the last pass.
     pairs: Vec<PairTarget>,
@@ -56,7 +57,7 @@ impl<'m> Workspace<'m> {
         }
     }
 
-    /// Transfers what the increments of the step hand on.
+    /// Transfers the data that the increments of the step hand on to or from an archive.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Self { [stiffness, search, seen] wear; meter, pins, pairs })
     }
@@ -66,8 +67,8 @@ impl<'m> Workspace<'m> {
         System::new(&mut self.stiffness.k, &mut self.meter)
     }
 
-    /// Makes the motions of the pins at the displacements `u` free unknowns of the complementarity problems, with forces that
-    /// are not balanced there, N being the changes of forces that K* leaves out.
+    /// Makes the motions of the pins at the displacements `u` free unknowns of the complementarity problems;
+    /// `unbalanced` are the forces there, and `skew` gives N x, the changes of forces that K* omits.
     pub fn free_pins(
         &mut self,
         problem: &StepProblem,
@@ -84,7 +85,7 @@ impl<'m> Workspace<'m> {
         } = self;
         let EffectiveStiffness { k, pins: a, .. } = stiffness;
         let reach = search.reach();
-        // what equations and rigid bodies hand on is balanced within them
+        // forces that equations and rigid bodies hand on are balanced within them
         let mut at_unknowns = vec![0.0; unbalanced.len()];
         let restricted = k.map().restrict(unbalanced);
         let both = problem.unknowns.dof.iter().zip(restricted);
@@ -103,11 +104,12 @@ impl<'m> Workspace<'m> {
         System::new(&mut self.stiffness.m, &mut self.meter)
     }
 
-    /// Assembles and factorises K* for increments of length `dt` in the configuration of a motion with
-    /// the given closed constraints, in the first form in which it is positive definite.
+    /// Assembles and factorises K* for increments of length `dt`, in the configuration of a motion and with the given
+    /// closed constraints. The factorised form is the first one that is positive definite.
     ///
     /// # Errors
-    /// That of the last form, or another than that K* is not positive definite.
+    /// Returns the error of the last form, or the first error other than a matrix that is not
+    /// positive definite.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
@@ -125,8 +127,8 @@ impl<'m> Workspace<'m> {
         result
     }
 
-    /// Assembles and factorises K* of the bodies as they are without displacements and internal variables, and turns the
-    /// factors with the bodies to the configuration of a motion.
+    /// Assembles and factorises K* for the bodies without displacements and internal variables, and turns the factors
+    /// with the bodies to the configuration of a motion.
     pub fn factorize_unstrained(
         &mut self,
         problem: &StepProblem,
@@ -146,11 +148,11 @@ impl<'m> Workspace<'m> {
         Ok(())
     }
 
-    /// Checks that an equilibrium is stable, unless the last factors are near to it and tell: with pins, which the last
-    /// complementarity problem has freed, and not stiffened by closed pairs.
+    /// Checks that an equilibrium is stable. The check does nothing if the last factors belong to a state near the
+    /// equilibrium, were not stiffened by closed pairs, and the last complementarity problem with free pins was stable.
     ///
     /// # Errors
-    /// That K* is not positive definite.
+    /// Returns an error if K* is not positive definite.
     pub fn check_stability(
         &mut self,
         problem: &StepProblem,
@@ -202,8 +204,8 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.solve, || stiffness.turn(problem, motion));
     }
 
-    /// (K + Cd/(theta2 dt)) x in the configuration of a motion, K being the tangent, Cd the damping matrix
-    /// and dt that of K*.
+    /// (K + Cd/(theta2 dt)) x in the configuration of a motion, where K is the tangent, Cd the damping matrix and dt
+    /// the increment of K*.
     pub fn tangent_product(
         &mut self,
         problem: &StepProblem,
@@ -223,9 +225,9 @@ impl<'m> Workspace<'m> {
         self.meter.time(|t| &mut t.assembly, product)
     }
 
-    /// Writes the constraints of the chosen slave nodes between the displacements `u0` and `u` of an increment, `before` being those of
-    /// the last pass and `closed_at_start` the pairs closed at the start. With `kept`, slave
-    /// nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the chosen slave nodes between the displacements `u0` and `u` of an increment.
+    /// `before` are the constraints of the last pass, and `closed_at_start` the pairs closed at the start. With `kept`,
+    /// slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
@@ -257,7 +259,7 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.contact, write);
     }
 
-    /// The constraints from surface to surface between the same displacements.
+    /// The constraints from surface to surface between the displacements `u0` and `u`.
     pub fn means(&mut self, problem: &StepProblem, increment: [&[f64]; 2]) -> Vec<Constraint> {
         let Workspace {
             search,
@@ -275,14 +277,15 @@ impl<'m> Workspace<'m> {
         means
     }
 
-    /// Makes the velocities at the start of a motion those of bodies with hinges: impulses of the hinges act there once.
+    /// Corrects the velocities at the start of a motion by impulses of the hinges, so that hinges keep their nodes
+    /// together:
     ///
     /// ```text
     /// V <- V - M^-1 C^T (C M^-1 C^T)^-1 C V      eq. (11.11)
     /// ```
     ///
     /// # Errors
-    /// [`LinearError::Dependent`] with a hinge that other ones make superfluous.
+    /// Returns [`LinearError::Dependent`] with a hinge that is redundant because of others.
     pub fn start_hinges(
         &mut self,
         problem: &StepProblem,
@@ -299,8 +302,8 @@ impl<'m> Workspace<'m> {
         Ok(())
     }
 
-    /// Acceleration at the start of a motion, M A = R + B^T P - F, the supports being at rest; forces on nodes
-    /// without mass go to those that carry it.
+    /// Acceleration at the start of a motion from M A = R + B^T P - F, with supports at rest; forces on nodes without
+    /// mass go to the nodes that carry their mass.
     pub fn start_acceleration(
         &mut self,
         problem: &StepProblem,
@@ -329,7 +332,7 @@ impl<'m> Workspace<'m> {
         a
     }
 
-    /// A node that has entered a body between `u0` and `u1`, see [`find_penetration`].
+    /// A node that has entered a body between `u0` and `u1`; see [`find_penetration`].
     pub fn find_penetration(
         &mut self,
         [u0, u1]: [&[f64]; 2],
