@@ -1,8 +1,8 @@
 //! From text to cards: files, logical lines, keyword lines and data fields.
 //!
-//! A *card* is a keyword line with the data lines under it. [`read`] turns a file and its includes
-//! into a [`Deck`] of cards whose keywords and parameters are known ones, see [`keywords`], with the
-//! cards of parts in the places of their instances; what they mean is left to the reader.
+//! A *card* is a keyword line with the data lines under it. [`read`] turns a file and its includes into a [`Deck`] of
+//! cards with known keywords and parameters (see [`keywords`]). The cards of parts stand in the places of their
+//! instances. The reader finds the meaning of the cards.
 
 mod assembly;
 mod card;
