@@ -22,7 +22,7 @@ pub(crate) struct Targets<'a> {
     pub sets: &'a Sets,
     /// All amplitudes with their names.
     pub amplitudes: &'a Amplitudes,
-    /// Masses of the point elements by nodes, 0 for nodes without a point element (mass).
+    /// Masses of the point elements, 0 for those without a mass (mass).
     pub masses: &'a [f64],
     /// The rigid bodies; their nodes move with reference nodes.
     pub rigid_bodies: &'a [Rigid],
