@@ -214,7 +214,7 @@ class Frames(Sequence[Frame]):
         return self[int(np.abs(self.times - time).argmin())]
 
     def at(self, time: float) -> Frame:
-        """The frame nearest to a time of the run; a time after the last frame raises a Fault."""
+        """The frame nearest to a time of the run; a time before or after all frames raises a Fault."""
         first, last = float(self.times[0]), float(self.times[-1])
         margin = ROUND_OFF * max(last - first, abs(last))
         if not first - margin <= time <= last + margin:
