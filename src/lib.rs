@@ -1,28 +1,27 @@
 //! **stickslip**: large-displacement dynamics of plane deformable bodies with exact contact and
 //! Coulomb friction.
 //!
-//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in
-//! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`],
-//! node to surface or surface to surface [`contact`] posed as a linear complementarity problem ([`lcp`]) at every pass, and
-//! sparse factorisations ([`linear`]); [`output`] observes the run and writes the result file.
+//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]. The bodies of the model are integrated in time
+//! ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`]. Every pass solves
+//! [`contact`] (node to surface or surface to surface) as a linear complementarity problem ([`lcp`]), with sparse
+//! factorisations ([`linear`]). [`output`] observes the run and writes the result file.
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list: `system`, `archive`, `linear`, `lcp`, `vectors`, `diagnostics`,
-//! `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `editor`, `contact`, `prepare`, `dynamics`, `output`,
-//! `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//! A module imports only from modules before it in this list: `system`, `archive`, `linear`, `lcp`, `vectors`,
+//! `diagnostics`, `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `editor`, `contact`, `prepare`,
+//! `dynamics`, `output`, `cli`. The sub-folders of a layer also import in one direction only.
 //!
 //! # Packages
 //!
-//! All layers but `output` and `cli` are in packages of their own (`crates`), so that a change of a file compiles
-//! little anew: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`, `stickslip_editor` and
-//! `stickslip_dynamics`. They stand
-//! here under the names of their modules.
+//! All layers except `output` and `cli` are in separate packages (`crates`), so that after a change of a file little
+//! has to be compiled again: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`,
+//! `stickslip_editor` and `stickslip_dynamics`. This crate re-exports their modules under the same names.
 //!
 //! # Equations
 //!
-//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation in docs/theory,
-//! `paper eq. 21` one of Sung & Kwak. A test reads both sides.
+//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation in docs/theory, `paper eq. 21` one of
+//! Sung & Kwak. A test compares both sides.
 //!
 //! # Vocabulary
 //!

@@ -20,7 +20,7 @@ use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
 use super::scaled::Scaled;
 
-/// Numbers of Gauss-Seidel sweeps before the second, third and fourth call of the active set.
+/// Numbers of Gauss-Seidel sweeps before the first, second and third restart of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];
 
 /// Size of the largest arena that is kept for the next problem (bytes): with a larger one, allocating memory costs
