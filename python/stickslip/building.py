@@ -227,8 +227,8 @@ class Building(ABC):
         """Couples the nodes of a surface to a reference node (see `node`): they ride on it as a rigid body, which turns
         and can carry moments.
 
-        With `distributing`, the displacement of the reference node is the mean of theirs, and forces on it are
-        distributed to them in equal parts.
+        With `distributing`, the displacement of the reference node is the mean of those of the surface nodes, and
+        forces on the reference node are distributed to these nodes in equal parts.
         """
         head = f"COUPLING, CONSTRAINT NAME={name}, REF NODE={reference}, SURFACE={surface}"
         return self.add(head).add("DISTRIBUTING" if distributing else "KINEMATIC")

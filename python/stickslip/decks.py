@@ -202,8 +202,8 @@ def outline(*names: str) -> str:
 
 
 def facing_blocks(elements: int, left: float) -> tuple[Grid, Grid]:
-    """Two blocks of 1 x 0.5 with `elements` elements along each: UPPER lies 1e-4 above LOWER, and `left` to the right
-    of it."""
+    """Two blocks of 1 x 0.5 with `elements` elements along each: UPPER lies 1e-4 above LOWER, shifted to the right by
+    `left`."""
     size = 1.0 / elements
     count = elements, elements // 2
     upper = Grid("UPPER", *count, lambda i, j: (left + i * size, 0.5001 + j * size))

@@ -129,7 +129,7 @@ class Frame(Mapping[str, Any]):
     def to_pyvista(self) -> "pyvista.UnstructuredGrid":
         """The frame as a grid of PyVista, in the reference configuration, with all fields.
 
-        `grid.warp_by_vector("U")` is the deformed shape. It needs the package pyvista.
+        `grid.warp_by_vector("U")` is the deformed shape. The function needs the package pyvista.
         """
         datasets = dict.fromkeys(stored for stored, _ in self.frames.stored.values())
         fields = {name: (self.frames.fields[name], self.rows(name)) for name in datasets}

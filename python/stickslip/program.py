@@ -154,7 +154,7 @@ def run(
     and oldjob have a value; strict, lenient, verbose and resume are True. `words` holds options as they are typed on
     the command line. `parameters` gives values of parameters of the deck, which replace those of its `*PARAMETER`
     cards. `progress` is True to show the progress of the run (as a bar in a notebook), or a function that is called
-    with a `Progress` several times a second. It raises DeckRejected, RunStopped or RunFailed.
+    with a `Progress` several times a second. A failed run raises DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
     values = dict(parameters or {})

@@ -45,17 +45,18 @@ class Result(ResultFile, Paged):
     def quantity(self, name: str) -> Array:
         """The history with a name as in plots and sweeps, such as `nodes/TIP/U:2` (see `quantity`).
 
-        Its shape is [I], or [I, components] for a vector.
+        The shape of the history is [I], or [I, components] for a vector.
         """
         parts = list(find(self, name).parts.values())
         return parts[0] if len(parts) == 1 else np.column_stack(parts)
 
     def to_dataframe(self) -> "pandas.DataFrame":
-        """All histories as a table, one row per increment. It needs the package pandas."""
+        """All histories as a table, one row per increment. The table needs the package pandas."""
         return convert.to_dataframe(self)
 
     def to_xarray(self, *fields: str) -> "xarray.Dataset":
-        """All histories and the named fields of all frames, as a dataset of xarray. It needs the package xarray."""
+        """All histories and the named fields of all frames, as a dataset of xarray. The dataset needs the package
+        xarray."""
         times = self.frames.times if fields else None
         return convert.to_xarray(self, times, {name: self.frames.field(name) for name in fields})
 

@@ -48,7 +48,7 @@ pub(super) enum Command {
     Info(InfoArgs),
     /// Serve an editor with diagnostics while typing, completion, explanations and names of decks (docs/editor.md)
     ///
-    /// It speaks the Language Server Protocol on standard input and output.
+    /// The server speaks the Language Server Protocol on standard input and output.
     Lsp(LspArgs),
     /// Solve a complementarity problem, such as one that a stopped run has left behind
     ///
@@ -60,7 +60,7 @@ pub(super) enum Command {
     Package(PackageCommand),
     /// Print a script with which a shell completes the words of this program
     ///
-    /// In bash, this command enables it for the current shell: source <(stickslip completion bash)
+    /// In bash, this command enables the completion for the current shell: source <(stickslip completion bash)
     Completion(CompletionArgs),
     /// Print the manual page (to read it: stickslip manual | man -l -)
     Manual,
@@ -75,7 +75,7 @@ pub(super) enum PackageCommand {
     /// Draw results
     #[command(subcommand)]
     Plot(PlotCommand),
-    /// Check what a result claims, from the file alone
+    /// Check the claims of a result, from its file alone
     #[command(disable_help_flag = true)]
     Certify(Words),
     /// Run a deck at many values of its parameters

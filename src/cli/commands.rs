@@ -152,8 +152,8 @@ fn example(code: Code) -> Option<String> {
     Some(lines.map(|line| format!("  {line}\n")).collect())
 }
 
-/// The error for words that begin with neither a keyword nor a code. It names as many of them as resemble a keyword or
-/// a code, else the first one.
+/// The error for words that begin with neither a keyword nor a code. The error names as many of the words as resemble a
+/// keyword or a code, else the first word.
 fn unknown(words: &[String]) -> CliError {
     let known = || {
         let codes = Code::ALL.iter().map(|code| code.id());

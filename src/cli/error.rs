@@ -130,7 +130,7 @@ pub(super) enum CliError {
     /// Python cannot be started.
     #[error("cannot start {}: {source}", path.display())]
     Python {
-        /// Its path.
+        /// Path of the Python interpreter.
         path: PathBuf,
         /// Reason that the system gives.
         source: io::Error,

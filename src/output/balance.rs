@@ -34,8 +34,8 @@ pub(crate) struct Balance {
     free: bool,
 }
 
-/// Increments in which the normal contact forces did positive work. With energy-momentum contact these are increments
-/// that a pair enters with a negative gap.
+/// Increments in which the normal contact forces did positive work. With energy-momentum contact, contact does positive
+/// work in increments that a pair enters with a negative gap.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactEnergy {
     /// Number of these increments.

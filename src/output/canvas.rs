@@ -1,5 +1,5 @@
-//! The canvas of an SVG picture. It maps places of the model to points of the picture (y points upwards in the model),
-//! and draws marks and a legend with a symbol and a text for everything that is drawn.
+//! The canvas of an SVG picture. The canvas maps places of the model to points of the picture (y points upwards in the
+//! model), and draws marks and a legend with a symbol and a text for everything that is drawn.
 
 use std::collections::HashMap;
 use std::fmt::Write;

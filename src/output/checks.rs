@@ -15,7 +15,7 @@ use crate::model::Model;
 /// A quantity that is zero up to round-off and the residuals of the passes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Check {
-    /// Its dataset.
+    /// Name of the dataset of the check.
     pub name: &'static str,
     text: &'static str,
     /// Largest value that counts as zero; NaN for a quantity without a bound.

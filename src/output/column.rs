@@ -9,7 +9,7 @@ use hdf5::{
 use ndarray::{ArrayD, ArrayView, IxDyn};
 
 /// Meaning of a dataset: the dimension of its values, such as "length/time" ("1" for a pure number), and a sentence.
-/// Both become its attributes `dimension` and `description`.
+/// Dimension and sentence become the attributes `dimension` and `description` of the dataset.
 pub(crate) type Meaning = (&'static str, &'static str);
 
 /// The attribute of `/history`, and of its groups of events, that counts their complete rows.
@@ -234,7 +234,7 @@ fn rows_of(rows: usize, row: &[usize]) -> Vec<usize> {
     [&[rows], row].concat()
 }
 
-/// Function that appends the rows of a report to a list of values. It is a boxed function, not a type parameter of
+/// Function that appends the rows of a report to a list of values. The function is boxed and not a type parameter of
 /// [`Column`], because otherwise the same code would be compiled for each of about 160 datasets.
 type Values<'m, R, T> = Box<dyn FnMut(&R, &mut Vec<T>) + 'm>;
 

@@ -16,7 +16,7 @@ use super::format::{scientific, signed};
 use crate::dynamics::{IncrementReport, PassReport};
 use crate::model::Model;
 
-/// How much is printed.
+/// Amount of output on the screen and in the log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Verbosity {
     /// The standard output stays empty; errors and the report of a stop go to the standard error.
@@ -339,7 +339,7 @@ impl Log {
             .map_err(at(&self.path))
     }
 
-    /// Puts a file with the buffered lines in place of the old one; the lock of this file holds the job.
+    /// Puts a file with the buffered lines in place of the old one; whoever has the lock of this file has the job.
     pub fn begin(&mut self) -> io::Result<()> {
         let waiting = self.waiting.take().unwrap_or_default();
         let begun = || {

@@ -230,8 +230,8 @@ fn unbalanced_text(unbalanced: &Unbalanced, model: &Model) -> String {
     )
 }
 
-/// Name of the body of a node in the words of the deck: a rigid body has its name, a deformable one the name of the
-/// smallest element set that holds all of it, or else it is named by the node.
+/// Name of the body of a node in the words of the deck: a rigid body has its name, a deformable body has the name of
+/// the smallest element set that holds all of it, or else it is named by the node.
 fn body_name(node: usize, model: &Model) -> String {
     let name = model.node_name(node);
     let node = model.node_of(node);

@@ -48,7 +48,7 @@ pub(crate) struct Monitor {
 pub(crate) struct Remarks {
     /// Energy that contact put in.
     pub contact_energy: Option<f64>,
-    /// Its checks.
+    /// Values of the checks in the increment.
     pub checks: Checks,
     /// The most strained element, when it exceeds the range of its material for the first time.
     pub strained: Option<Strained>,

@@ -266,7 +266,7 @@ impl<'m> ResultFile<'m> {
     }
 }
 
-/// Longest time for which results wait in memory while a run goes on.
+/// Longest time for which results wait in memory while a run continues.
 const LONGEST: Duration = Duration::from_secs(1);
 
 /// Smallest ratio of the time of a run to the time of its writes.

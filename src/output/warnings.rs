@@ -1,5 +1,5 @@
-//! Losses of energy of a run, and warnings about a whole run. Both are printed at the end of the run, and by `info`
-//! from the result file.
+//! Losses of energy of a run, and warnings about a whole run. Losses and warnings are printed at the end of the run,
+//! and by `info` from the result file.
 
 use super::format::{counted, general, scientific, wrap, wrap_words};
 use super::model_group::BodyTimes;
@@ -166,9 +166,9 @@ impl Findings {
     }
 }
 
-/// Sorted names of the contacts that never closed, from the names of all contacts and whether each has closed. Of two
-/// contacts with slave and master exchanged, it is enough if one has closed; the same holds for the contacts of general
-/// contact.
+/// Sorted names of the contacts that never closed, from the names of all contacts and whether each has closed. Two
+/// contacts with slave and master exchanged count as closed if one of them has closed, and so do all contacts of
+/// general contact.
 pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     let has_closed = |wanted: &str| {
         contacts
@@ -352,7 +352,7 @@ pub(crate) struct Touches {
     narrow: WorstTouch,
 }
 
-/// Number of touches that are not resolved, and the worst of them.
+/// Number of touches that are not resolved, and the worst touch.
 type WorstTouch = Option<(usize, Touch)>;
 
 impl Touches {

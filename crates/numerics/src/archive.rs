@@ -1,6 +1,6 @@
 //! Archive of the values that a run hands on from increment to increment, one after the other and exact to the bit. One
-//! function `transfer` of each structure lists these values, both to write and to read them, so that the two orders
-//! cannot differ. See docs/restart.md.
+//! function `transfer` of each structure lists the values of the archive, both to write and to read them, so that the
+//! two orders cannot differ. See docs/restart.md.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -13,7 +13,7 @@ pub enum Archive<'a> {
     Reading(&'a [u8]),
 }
 
-/// Why an archive cannot be read.
+/// Reason why an archive cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum ArchiveError {
     /// The archive ends early, or a value does not have its type.

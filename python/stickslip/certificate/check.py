@@ -62,7 +62,7 @@ class Check:
     _ratio: float = 0.0
 
     def shown(self, digits: int = 2) -> tuple[float, float]:
-        """Worst value and bound relative to the scale; the value is rounded up to so many digits."""
+        """Worst value and bound relative to the scale; the value is rounded up to `digits` digits."""
         scale = self.scale or 1.0
         value = np.nextafter(self.value / scale, np.inf) if self.value > 0.0 else 0.0
         up = Context(prec=digits, rounding=ROUND_UP)

@@ -309,7 +309,7 @@ def corner_error(
 
     The node must be in front of neither segment, or in front of one by no more than its way. If the normal lies between
     those of the segments i and j, the gap lies between g_i and g_j, or reaches up to the distance from the corner if
-    the node is in front of neither segment. It also returns the nodes of both segments.
+    the node is in front of neither segment. The second value holds the nodes of both segments.
     """
     before, after = contact.segments[:, 1], contact.segments[:, 0]
     corners = np.setdiff1d(np.intersect1d(before, after), [node])

@@ -214,7 +214,7 @@ def crossings(
 def _heights(a: Array, b: Array, c: Array, d: Array, bulges: Bulges) -> Array:
     """Distance of the nearer of c and d from the line a, b, relative to the length of a, b.
 
-    It is zero if c and d are on the same side.
+    The distance is zero if c and d are on the same side.
     """
     along = b - a
     square = np.einsum("ei,ei->e", along, along)

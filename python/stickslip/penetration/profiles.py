@@ -40,7 +40,7 @@ class Profile:
     def turns(self, position: Array) -> Integers:
         """Sign of the turn at the first node of each segment; 1 where the obstacle is convex.
 
-        It is 1 at the first node of an open profile, where the first segment alone decides.
+        The sign is 1 at the first node of an open profile, where the first segment alone decides.
         """
         place = position[self.nodes]
         turn = side(np.roll(place, 1, axis=0), place, position[self.after])

@@ -1,9 +1,9 @@
 """Draws the histories of results.
 
-Without names it draws the energy accounts, the energy balance, momentum and contact forces, and force
-against displacement if a force moves something; results stand side by side or, with --overlay, on top
-of each other. With --y it draws any histories, against the time or against the history of --x. All
-results are then in the same axes, and every --y has axes of its own:
+Without names the command draws the energy accounts, the energy balance, momentum and contact forces, and force against
+displacement if a force moves something; results stand side by side or, with --overlay, on top of each other. With --y
+the command draws any histories, against the time or against the history of --x. All results are then in the same axes,
+and every --y has axes of its own:
 
     stickslip plot history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
 

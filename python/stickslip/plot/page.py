@@ -49,7 +49,7 @@ class Grid:
     def fitted(cls, rows: int, columns: int, ratio: float, beside: float) -> "Grid":
         """The largest panels with a given ratio of height to width that fit on a page.
 
-        `beside` is the width of the space on their left and right.
+        `beside` is the width of the space on the left and right of the panels.
         """
         across = WIDTH - beside - COLUMN_GAP * (columns - 1)
         up = HEIGHT - TOP - BOTTOM - TITLE * rows - ROW_GAP * (rows - 1)

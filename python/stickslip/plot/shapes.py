@@ -74,7 +74,7 @@ class Arrows:
         )
 
     def tips(self, results: Result, frame: int) -> Array:
-        """Where the arrows end [nodes, 2]."""
+        """Ends of the arrows [nodes, 2]."""
         vector = results.frames[frame][self.name][results.drawn]
         return results.frames[frame].positions[results.drawn] + vector / self.per_length
 

@@ -71,7 +71,7 @@ def against(
     """A picture of a number against a parameter, with one line for each combination of the other parameters, coloured
     by one of them.
 
-    Points that do not lie on a lattice are not joined by lines. It is None if no point has the number.
+    Points that do not lie on a lattice are not joined by lines. The picture is None if no point has the number.
     """
     if np.isnan(table.column(str(quantity))).all():
         return None

@@ -109,7 +109,7 @@ impl Card {
         self.value(name).and_then(|value| value.integer(d))
     }
 
-    /// Marks all parameters and data lines as read: another message tells that the card is left out.
+    /// Marks all parameters and data lines as read: another message says that the card is left out.
     pub fn leave_out(&self) {
         self.params.iter().for_each(|param| param.used.set(true));
         self.rows.read.set(ALL_ROWS);
@@ -144,8 +144,8 @@ impl Card {
     }
 }
 
-/// Data lines of a card: blocks of the texts of its files, cut into lines and fields on demand. They count the rows
-/// that the reader has asked for.
+/// Data lines of a card: blocks of the texts of its files, cut into lines and fields on demand. The rows that the
+/// reader has asked for are counted.
 #[derive(Debug, Clone, Default)]
 pub struct DataLines {
     blocks: Vec<LineBlock>,
@@ -229,9 +229,9 @@ impl DataLines {
 /// An instance of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instance {
-    /// Its name.
+    /// Name of the instance.
     pub name: Name,
-    /// Where its nodes are.
+    /// Placement of the nodes of the instance.
     pub placement: Placement,
 }
 
@@ -245,7 +245,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Where a point of the part is (length): `c + R (x + t - c)`.
+    /// Place of a point of the part in the instance (length): `c + R (x + t - c)`.
     pub fn of(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = [x + self.translation[0], y + self.translation[1]];
         let Some(([a, b], [cosine, sine])) = self.rotation else {
@@ -255,7 +255,7 @@ impl Placement {
         [a + cosine * x - sine * y, b + sine * x + cosine * y]
     }
 
-    /// Where a direction of the part points: `R n`.
+    /// Direction of the part in the instance: `R n`.
     pub fn turn(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         match self.rotation {
             Some((_, [cosine, sine])) => [cosine * x - sine * y, sine * x + cosine * y],

@@ -147,7 +147,7 @@ fn collect(
 struct OpenFile {
     /// Canonical path of the file: all paths to a file have the same one.
     identity: PathBuf,
-    /// Its folder.
+    /// Folder of the file.
     folder: PathBuf,
 }
 

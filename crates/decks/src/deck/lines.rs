@@ -274,7 +274,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The same lines with another text; the numbers of the lines go on.
+    /// The same lines with another text; the numbers of the lines stay the same.
     pub fn at<'t>(self, text: &'t str) -> Lines<'t> {
         Lines {
             file: self.file,

@@ -6,13 +6,13 @@ pub(super) const LONGEST_NUMBER: usize = 20;
 /// A real number, and whether its exponent has a letter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Real {
-    /// Its value.
+    /// Value of the number.
     pub value: f64,
     /// Whether the exponent lacks its letter, as in `1.5-5`.
     pub letterless: bool,
 }
 
-/// Why a field is not a number.
+/// Reason why a field is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotANumber {
     /// A character, the given one, does not belong to a number.

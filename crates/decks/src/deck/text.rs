@@ -272,8 +272,8 @@ const SHORTEST: usize = 4;
 pub(crate) enum Match {
     /// The word is this known word.
     Exact(&'static str),
-    /// The word is the beginning of this known word. It may also begin longer words that begin with this one: FREQ is
-    /// FREQUENCY although FREQUENCYF exists.
+    /// The word is the beginning of this known word. The typed word may also begin longer known words that begin with
+    /// this one: FREQ is FREQUENCY although FREQUENCYF exists.
     Abbreviation(&'static str),
     /// The word is not known; this known word is probably meant.
     Unknown(Option<&'static str>),

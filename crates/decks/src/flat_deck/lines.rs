@@ -5,7 +5,7 @@ use crate::diagnostics::WIDTH;
 /// Length up to which a number needs no exponent.
 const SHORT: usize = 12;
 
-/// Most entries of a data line that lists numbers.
+/// Largest number of entries of a data line that lists numbers.
 const MOST_ENTRIES: usize = 16;
 
 /// A deck being written.

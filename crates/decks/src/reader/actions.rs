@@ -1,9 +1,9 @@
-//! Loads, motions and velocities of nodes without element. They are kept with their places until all cards are read,
-//! because the card that gives such a node a displacement may stand behind them.
+//! Loads, motions and velocities of nodes without element. Such actions are kept with their places until all cards are
+//! read, because the card that gives such a node a displacement may stand behind them.
 
 use crate::diagnostics::Span;
 
-/// What acts on a displacement of a node.
+/// An action on a displacement of a node: load, motion or velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Action {
     Load,

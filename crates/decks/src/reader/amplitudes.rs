@@ -10,7 +10,7 @@ use crate::model::{Amplitude, Curve, Signal, TimeBase};
 pub(crate) struct Amplitudes {
     /// The amplitudes by their names.
     pub named: Named<Amplitude>,
-    /// Their places.
+    /// Places of the amplitudes.
     pub spans: Vec<Span>,
 }
 

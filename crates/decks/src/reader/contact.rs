@@ -714,7 +714,7 @@ fn initializations(
     all
 }
 
-/// What general contact does before the start.
+/// Initialization of general contact before the start.
 #[derive(Debug, Clone, Copy)]
 struct Initialization {
     /// Which nodes are moved.

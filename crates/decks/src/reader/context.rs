@@ -7,7 +7,7 @@ use crate::diagnostics::{Added, Code, Diagnostic, Diagnostics, Span, closest, li
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-/// What every reader function needs: the deck as a whole and a place for messages.
+/// Context of every reader function: the deck as a whole, and the list of messages.
 pub(super) struct Context<'a> {
     /// All cards.
     pub deck: &'a Deck,

@@ -20,7 +20,7 @@ pub(super) fn instance_of(label: u64) -> u32 {
     (label >> NUMBER_BITS) as u32
 }
 
-/// A map from labels. It is small and fast for consecutive labels, which most meshes have.
+/// A map from labels. The map is small and fast for consecutive labels, which most meshes have.
 #[derive(Debug, Clone)]
 pub(super) struct LabelMap<T> {
     /// Runs of consecutive labels in increasing order: the first label, and the index of its value.

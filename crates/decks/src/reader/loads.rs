@@ -743,8 +743,8 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Adds a load that falls from a magnitude to zero over the step. It replaces the loads of earlier steps under the
-    /// same key.
+    /// Adds a load that falls from a magnitude to zero over the step. This load replaces the loads of earlier steps
+    /// under the same key.
     pub fn add_falling(&mut self, key: K, at: T, from: f64, step: usize) {
         let context = StepContext { step, ramp: true };
         (self.earlier(key, context)).for_each(|part| part.replaced = true);
@@ -804,8 +804,8 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     }
 }
 
-/// Loads on faces in the order of their places. At each place loads without amplitude come first; those with the same
-/// direction are joined to one load.
+/// Loads on faces in the order of their places. At each place loads without amplitude come first; such loads in the
+/// same direction are joined to one load.
 pub(super) fn joined<T: Copy + PartialEq, K: Ord>(
     mut loads: Vec<Load<T>>,
     place: fn(&Load<T>) -> K,

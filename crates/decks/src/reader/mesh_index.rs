@@ -47,7 +47,7 @@ pub(crate) struct MeshIndex {
 pub(crate) struct PointElement {
     /// Property of the element.
     pub kind: PointKind,
-    /// Its node.
+    /// Node of the element.
     pub node: usize,
     /// Place of the row that defines the element.
     pub span: Span,
@@ -66,11 +66,11 @@ pub(crate) enum PointKind {
 pub(crate) struct ConnectorElement {
     /// Label of the element.
     pub label: u64,
-    /// Its type.
+    /// Type of the element.
     pub kind: ConnectorKind,
     /// Nodes of the element (indices).
     pub nodes: Vec<usize>,
-    /// Its place.
+    /// Place of the element.
     pub span: Span,
 }
 
@@ -81,7 +81,7 @@ pub(crate) struct RigidLine {
     pub label: u64,
     /// Nodes of the line (indices).
     pub nodes: [usize; 2],
-    /// Its place.
+    /// Place of the line.
     pub span: Span,
 }
 
@@ -120,7 +120,7 @@ impl ConnectorKind {
 
 /// A set that is named on the card that defines its members.
 pub(crate) struct Group {
-    /// Its name.
+    /// Name of the set.
     pub name: Name,
     /// Place of the name.
     pub span: Span,

@@ -644,8 +644,8 @@ pub(super) fn add_lines(
     }
 }
 
-/// The face of every side by the nodes of the side, in increasing order; a side of two elements belongs to the first of
-/// them.
+/// The face of every side by the nodes of the side, in increasing order; the face of a side between two elements
+/// belongs to the first element.
 fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     let mut faces = HashMap::new();
     for (element, e) in mesh.elements.iter().enumerate() {

@@ -207,7 +207,7 @@ const WHEN: [&str; 4] = [
     "TIME POINTS",
 ];
 
-/// Frames every so many increments; 0 means only at the end of the step.
+/// Reads FREQUENCY: frames after every so many increments; 0 means only at the end of the step.
 fn frequency(card: &Card, cx: &mut Context) -> Option<Frames> {
     match count(card, "FREQUENCY", 0, cx)? {
         0 => Some(Frames::Count(1)),

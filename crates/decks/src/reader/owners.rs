@@ -1,6 +1,6 @@
-//! Which card decides where a node goes: a table of all cards that make nodes and displacements follow others. It is an
-//! error, which names both cards, if two cards decide the same displacement, or if a load, support or velocity acts on
-//! a displacement that does not exist.
+//! Which card decides where a node goes: a table of all cards that make nodes and displacements follow others. If two
+//! cards decide the same displacement, or if a load, support or velocity acts on a displacement that does not exist, an
+//! error names both cards.
 
 use super::actions::{Action, Actions};
 use super::boundary::Targets;

@@ -116,8 +116,8 @@ fn faces(
     Some(found)
 }
 
-/// Smallest cosine of the angle between the normal of the data line and that of the faces; below it the two sides would
-/// slip on each other.
+/// Smallest cosine of the angle between the normal of the data line and that of the faces; with a smaller cosine the
+/// two sides would slip on each other.
 const TANGENT: f64 = 0.01;
 
 /// The normal of a section, out of the elements of its faces: the normal of the data line, with either sign, or else

@@ -1,5 +1,5 @@
-//! `*RIGID BODY`: rigid surfaces, rigid elements and nodes move with their reference nodes. They turn by an angle if it
-//! is prescribed or the body has mass.
+//! `*RIGID BODY`: rigid surfaces, rigid elements and nodes move with their reference nodes. Rigid bodies turn by an
+//! angle if the angle is prescribed or the body has mass.
 
 use super::context::Context;
 use super::mesh_index::{MeshIndex, PointElement, PointKind, RigidLine};

@@ -16,7 +16,7 @@ use crate::model::{Element, ElementType, Formulation, Material, NO_SECTION, Sect
 pub(crate) struct Properties {
     /// Materials in the order of their names.
     pub materials: Vec<Material>,
-    /// Their places.
+    /// Places of the materials.
     pub places: Vec<MaterialPlaces>,
     /// Sections.
     pub sections: Vec<Section>,

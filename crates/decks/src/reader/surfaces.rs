@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// All surfaces.
 pub(crate) struct Surfaces {
-    /// Their names.
+    /// Names of the surfaces.
     pub names: Names,
     /// Surfaces in the order of their names.
     pub all: Vec<Surface>,

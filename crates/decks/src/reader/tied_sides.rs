@@ -6,8 +6,8 @@ use crate::model::{Follows, Mesh, SideNodes, Surface, SurfaceKind, TiedLine, Tie
 use crate::vectors::{difference, distance, dot};
 use smallvec::SmallVec;
 
-/// Gauss points of a cell, -1 <= r <= 1, of weight 1. They integrate products of two linear functions and the radius
-/// exactly.
+/// Gauss points of a cell, -1 <= r <= 1, of weight 1. These points integrate products of two linear functions and the
+/// radius exactly.
 const GAUSS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
 /// Distance of two ends of cells, relative to the length of the line, below which they are one end.

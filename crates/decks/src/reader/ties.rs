@@ -1,6 +1,6 @@
 //! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place beside
-//! them. They follow these segments, or the master below the slave faces, at all times. See docs/theory/contact.md,
-//! Ties.
+//! them. Tied nodes follow these segments, or the master below the slave faces, at all times. See
+//! docs/theory/contact.md, Ties.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;

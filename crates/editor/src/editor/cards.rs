@@ -169,7 +169,7 @@ pub(super) struct DeckFile {
 /// An instance of a part.
 #[derive(Debug, Clone)]
 pub(super) struct Instance {
-    /// Its name.
+    /// Name of the instance.
     pub name: Name,
     /// Key of the name of the part.
     pub part: Arc<str>,

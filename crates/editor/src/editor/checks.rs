@@ -36,7 +36,7 @@ pub(super) struct Job {
     pub interrupt: Interrupt,
 }
 
-/// What a check has found.
+/// Outcome of a check.
 pub(super) struct Outcome {
     /// Main file of the deck.
     pub root: PathBuf,

@@ -23,7 +23,7 @@ const FOLDERS_ABOVE: usize = 2;
 /// A file.
 #[derive(Debug)]
 pub(super) struct File {
-    /// Its text.
+    /// Text of the file.
     pub document: Document,
     /// Address (URI) of the file in the editor, if it is open there.
     pub open: Option<Url>,

@@ -38,7 +38,7 @@ pub struct Program {
     pub check: Check,
     /// Function that returns the text of `stickslip explain` about a code.
     pub explain: fn(Code) -> String,
-    /// Its version.
+    /// Version of the program.
     pub version: &'static str,
 }
 

@@ -56,7 +56,7 @@ fn opened(deck: &Path) -> Workspace {
     workspace
 }
 
-/// Names of surfaces that the reader makes, and words that stand in place of names.
+/// Names of surfaces that the reader makes, and words that replace names.
 const MADE: [&str; 3] = ["ALL_EXTERIOR", "CURVED", "NONE"];
 
 fn is_unknown(one: &&Occurrence) -> bool {

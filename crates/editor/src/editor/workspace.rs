@@ -15,9 +15,9 @@ const DEEPEST: usize = 20;
 /// Cards and names of a deck.
 #[derive(Debug)]
 pub(super) struct View {
-    /// Its cards.
+    /// Cards of the deck.
     pub cards: Cards,
-    /// Its names.
+    /// Names of the deck.
     pub symbols: Symbols,
 }
 

@@ -55,8 +55,8 @@ impl<const N: usize> Acceleration<N> {
         self.changes.clear();
     }
 
-    /// Images from which the next step is made. They are the combination of this step and earlier ones, with weights
-    /// that add up to 1, that has the smallest residual:
+    /// Images from which the next step is made. The images are those of the combination of this step and earlier ones,
+    /// with weights that add up to 1, that has the smallest residual:
     ///
     /// ```text
     /// f - sum (e_j.r) f_j,   e_j = r_j the orthonormal changes of the residual, f_j those of f

@@ -148,9 +148,9 @@ mod tests {
 
     const WEIGHT: f64 = 3.0;
 
-    /// A block on two elastic points at -1 and 1 from its middle, which may move up, along the ground, and turn. Its
-    /// weight acts at `x`; a part of it, `slope`, acts along the ground. Each point yields by 1 under a force of 1; its
-    /// initial gap is `gap`.
+    /// A block on two elastic points at -1 and 1 from its middle, which may move up, along the ground, and turn. The
+    /// weight of the block acts at `x`; the part `slope` of the weight acts along the ground. Each point yields by 1
+    /// under a force of 1; its initial gap is `gap`.
     fn block(x: f64, slope: f64, gap: f64, mu: f64) -> FrictionalLcp {
         // gaps: y - x_i turn; slips: those of the motion along the ground
         let motions = DMatrix::from_row_slice(

@@ -17,7 +17,7 @@ const STEPS: usize = 30;
 /// Largest number of contacts to which an unstable body tips over, one after the other.
 const TIPS: usize = 4;
 
-/// Function that solves a problem without free unknowns, from what is known of it.
+/// Function that solves a problem without free unknowns, from data known about it.
 type SolveResisted = fn(&FrictionalLcp, Option<Known>) -> Result<FrictionalSolution, LcpError>;
 
 /// Function that returns the answer of the active set from some states.

@@ -8,8 +8,8 @@ pub struct Known<'k> {
     /// States of a similar problem, with which the search begins.
     pub states: &'k [ContactState],
     /// Function that returns the number of the joint of every contact (contacts between the same bodies change their
-    /// states together), or an empty list if there are no joints. It is called only if changing single contacts does
-    /// not end.
+    /// states together), or an empty list if there are no joints. The function is called only if changing single
+    /// contacts does not end.
     pub joints: &'k dyn Fn() -> Vec<usize>,
 }
 

@@ -1,7 +1,7 @@
 //! Linear complementarity problems, general and frictional. This module knows no mechanics.
 //!
-//! The general problem ([`Lcp`]) is to find z >= 0 with w = M z + q >= 0 and z.w = 0. It is solved by [`lemke()`],
-//! Lemke's method with a lexicographic ratio test on a revised basis.
+//! The general problem ([`Lcp`]) is to find z >= 0 with w = M z + q >= 0 and z.w = 0. [`lemke()`] solves the general
+//! problem by Lemke's method, with a lexicographic ratio test on a revised basis.
 //!
 //! The frictional problem ([`FrictionalLcp`]) has unilateral contacts with Coulomb friction, coupled by a symmetric
 //! matrix Q. [`solve_frictional`] finds the states open, stick, slip+ and slip- of the contacts: with a warm active set

@@ -31,7 +31,7 @@ pub struct LcpSolution {
     pub pivots: usize,
 }
 
-/// Why a problem was not solved.
+/// Reason why a problem was not solved.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LcpError {
     /// The path of Lemke's method ends on a secondary ray.
@@ -75,9 +75,9 @@ pub enum LcpError {
     Range {
         /// Name of the item that is out of range.
         what: &'static str,
-        /// Its position.
+        /// Position of the number.
         index: usize,
-        /// Its value.
+        /// Value of the number.
         value: f64,
     },
 }
@@ -193,7 +193,7 @@ pub struct FreeUnknowns {
 }
 
 impl Default for FreeUnknowns {
-    /// None.
+    /// A problem without free unknowns.
     fn default() -> Self {
         let none = || DMatrix::zeros(0, 0);
         FreeUnknowns {

@@ -1,5 +1,5 @@
-//! Forces of given contact states. They follow from a linear system, which is solved directly or with kept factors,
-//! which belong to the same states with another Q.
+//! Forces of given contact states. The forces follow from a linear system, which is solved directly or with kept
+//! factors of the same states with another Q.
 
 use super::dense::{Factors, List, copy, filled, list, max_abs};
 use super::kept::KeptFactors;
@@ -179,7 +179,7 @@ fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
     matrix
 }
 
-/// Computes p and v from solves with some factors. They are corrected by the residual of the system itself, as long as
+/// Computes p and v from solves with some factors. Both are corrected by the residual of the system itself, as long as
 /// this residual falls and is not yet round-off. The last value is the largest residual.
 fn refine<'a>(
     scaled: &Scaled<'a>,

@@ -77,7 +77,7 @@ pub(crate) fn frictional_residual<'a>(
 }
 
 /// Residual of the contact law, eq. (3.6), for the gap and slip, Pn and Pt, and mu of every contact. The unit of length
-/// is `length`, that of force is `length` over `compliance`.
+/// is `length`, and the unit of force is `length` over `compliance`.
 pub(crate) fn law_residual(
     contacts: impl Iterator<Item = ([f64; 2], [f64; 2], f64)>,
     compliance: f64,

@@ -15,12 +15,12 @@ pub(crate) type Found<'s, 'a> = (&'s [ContactState], [List<'a, f64>; 2], List<'a
 /// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0, the f free unknowns x); the last rows
 /// of v are the residual of the balance of the free unknowns, (S + E) x - L^T P - h.
 ///
-/// The weight w_i of contact i is the square root of Qnn_ii over the mean of these values. Its unit of length is w_i
-/// times the deepest penetration, each measured over its weight; its unit of force is that length over Qnn_ii. All
-/// units are rounded to powers of two. Normal and tangent of a contact have the same weight, so the friction law does
-/// not change. Units follow the penetration, because it drives the forces: a much larger gap or slip must not make a
-/// closed contact inaccurate. Free unknowns have the unit of length; a displacement by forces without contact counts as
-/// a penetration.
+/// The weight w_i of contact i is the square root of Qnn_ii over the mean of these values. The unit of length of
+/// contact i is w_i times the deepest penetration, each measured over its weight; the unit of force is this length over
+/// Qnn_ii. All units are rounded to powers of two. Normal and tangent of a contact have the same weight, so the
+/// friction law does not change. Units follow the penetration, because it drives the forces: a much larger gap or slip
+/// must not make a closed contact inaccurate. Free unknowns have the unit of length; a displacement by forces without
+/// contact counts as a penetration.
 pub(crate) struct Scaled<'a> {
     /// Arena in which the lists of the problem and of its solution lie.
     pub arena: &'a Bump,

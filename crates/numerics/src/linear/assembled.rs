@@ -412,8 +412,8 @@ impl AddedBlocks {
     }
 }
 
-/// The sum of a matrix and added blocks, with the union of their patterns, stored by columns. It can be filled with new
-/// values as long as the pattern of the matrix and the places of the blocks stay the same.
+/// The sum of a matrix and added blocks, with the union of their patterns, stored by columns. The sum can be filled
+/// with new values as long as the pattern of the matrix and the places of the blocks stay the same.
 #[derive(Debug)]
 pub(super) struct BlockSum {
     sum: SymmetricMatrix,

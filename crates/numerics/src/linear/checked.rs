@@ -25,7 +25,7 @@ pub struct CheckedSolver {
     b: Vec<f64>,
     /// Additions to this right-hand side (unknown, value).
     added: Vec<(usize, f64)>,
-    /// Its solution.
+    /// Solution of the last solve.
     x: Vec<f64>,
     is_under_way: bool,
 }
@@ -52,7 +52,7 @@ impl CheckedSolver {
         &mut self.matrix
     }
 
-    /// Adds blocks to the matrix in place of earlier blocks; they stay until the matrix gets new values.
+    /// Adds blocks to the matrix in place of earlier blocks; the blocks stay until the matrix gets new values.
     pub fn add_blocks(&mut self, blocks: AddedBlocks) {
         (self.factorized, self.has_blocks) = (false, !blocks.is_empty());
         let sum = self.sum.take().filter(|_| self.has_blocks);

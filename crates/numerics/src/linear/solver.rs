@@ -25,7 +25,7 @@ pub enum LinearError {
     /// A bilateral constraint follows from others.
     #[error("the hinges ask for more than the bodies between them can do")]
     Dependent {
-        /// Its number.
+        /// Number of the constraint.
         number: usize,
     },
     /// A solve was asked for without factors.
@@ -52,7 +52,7 @@ pub trait LinearSolver: Send {
     /// Frees the factors and their memory.
     fn give_up_factors(&mut self);
 
-    /// Begins a solve with the right-hand side `b`. It must follow a successful `factorize`.
+    /// Begins a solve with the right-hand side `b`. A successful `factorize` must come before a solve.
     fn begin(&mut self, b: &[f64]);
 
     /// Sets the watched unknowns for `watched` and `add`, until the next factorisation.
@@ -74,8 +74,8 @@ pub trait LinearSolver: Send {
         self.end(b);
     }
 
-    /// The inverse at the rows and columns of each list of `unknowns` (distinct), as m x m matrices by columns. It must
-    /// follow a successful `factorize` of a matrix of size `n`.
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct), as m x m matrices by columns. A
+    /// successful `factorize` of a matrix of size `n` must come before.
     fn inverse_at(&mut self, unknowns: &[&[usize]], n: usize) -> Vec<Vec<f64>> {
         let mut column = |&column: &usize| {
             let mut x = vec![0.0; n];

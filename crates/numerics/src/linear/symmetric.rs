@@ -1,6 +1,6 @@
-//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. They are own code
-//! because `sprs` stores indices of 8 bytes and does not share the storage of its pattern, so each solver would need a
-//! copy.
+//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. These matrices are own
+//! code, because `sprs` stores indices of 8 bytes and does not share the storage of its pattern, so each solver would
+//! need a copy.
 
 use std::ops::Range;
 use std::sync::Arc;

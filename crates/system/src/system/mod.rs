@@ -1,4 +1,4 @@
-//! Functions that differ between operating systems. Everything above this module is the same on all of them.
+//! Functions that differ between operating systems. Everything above this module is the same on all operating systems.
 //!
 //! | functions | Linux | other Unix, macOS | others |
 //! |---|---|---|---|
@@ -89,7 +89,7 @@ pub fn in_large_pages(memory: MmapMut) -> MmapMut {
     memory
 }
 
-/// Runs another program in place of this one. It returns only if the other program cannot be started.
+/// Runs another program in place of this one. The function returns only if the other program cannot be started.
 pub fn hand_over(command: &mut Command) -> io::Error {
     here::hand_over(command)
 }

@@ -1,5 +1,4 @@
-//! The keyword table from its texts, `mesh.txt` and the others beside this file, one for each family of
-//! keywords:
+//! The keyword table from its texts, `mesh.txt` and further files in this folder, one for each family of keywords:
 //!
 //! ```text
 //! *AMPLITUDE @ model step, required           its levels, and its data lines

@@ -215,7 +215,7 @@ pub struct Keyword {
     pub levels: Levels,
     /// Data lines of the keyword.
     pub data: Data,
-    /// Its parameters.
+    /// Parameters of the keyword.
     pub parameters: &'static [Parameter],
     /// Sentences that say what the keyword does.
     pub text: &'static str,
@@ -266,13 +266,13 @@ impl Keyword {
 /// What the program does with a keyword, a parameter or a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// It is read and obeyed.
+    /// The program reads and obeys the keyword, parameter or value.
     Read,
-    /// It is left out silently because it does not affect the results.
+    /// The program leaves it out silently, because it does not affect the results.
     Ignored,
-    /// It is left out or replaced, with a warning.
+    /// The program leaves it out or replaces it, with a warning.
     Warned,
-    /// It is an error, because leaving it out would change the results.
+    /// The program stops with an error, because leaving it out would change the results.
     Refused,
 }
 
@@ -316,7 +316,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// A second name of the parameter; empty if there is none.
     pub other: &'static str,
-    /// Its values.
+    /// Values of the parameter.
     pub takes: Takes,
     /// Quantity that a value of the parameter holds.
     pub holds: Quantity,

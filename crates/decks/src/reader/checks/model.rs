@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 const MOST_SIDES: f64 = 1e6;
 
 /// Warns about steps that end before a wave has crossed the shortest side of an element, and about increments in which
-/// it crosses more than a million of them; `guide` is the shortest time in which a wave crosses a side.
+/// a wave crosses more than a million sides; `guide` is the shortest time in which a wave crosses a side.
 pub(crate) fn proportion(
     steps: &[Step],
     cards: &[StepCards],
@@ -97,8 +97,8 @@ fn acts<T>(loads: &[Load<T>]) -> bool {
     loads.iter().any(|load| load.magnitude != 0.0)
 }
 
-/// Reports materials in use without density. It is an error if a step moves or weighs masses, and a note in static
-/// steps.
+/// Reports materials in use without density. A missing density is an error if a step moves or weighs masses, and a note
+/// in static steps.
 pub(crate) fn density(properties: &Properties, mesh: &Mesh, steps: &[Step], cx: &mut Context) {
     if cx.may_lack_cards() {
         return;

@@ -1,10 +1,10 @@
 //! Finds elements that lie over each other, within one body or of two bodies. See docs/theory/geometry.md, Overlap of
 //! elements.
 //!
-//! Where elements lie over each other, the boundary of a body meets that of another or its own, or a body lies wholly
-//! inside. Where two boundaries meet, an element with an exterior side at this place overlaps an element with an
-//! exterior node. A loop of the boundary that meets no other loop lies inside as many elements as there are turns of
-//! other loops around it.
+//! Where elements lie over each other, the boundary of a body meets the boundary of another body or itself, or one body
+//! lies completely inside another. Where two boundaries meet, an element with an exterior side at this place overlaps
+//! an element with an exterior node. A loop of the boundary that meets no other loop lies inside as many elements as
+//! there are turns of other loops around it.
 
 use crate::diagnostics::{Code, Span};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
@@ -16,8 +16,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// over each other. Smaller overlaps come from meshing curved surfaces.
 const OVERLAP: f64 = 0.05;
 
-/// Reports elements that lie over each other. In one body this is an error; between two bodies it is an error in
-/// general contact, else a warning, because the deck may mean it. Contact that moves nodes before the start resolves
+/// Reports elements that lie over each other. Overlap within one body is an error; overlap of two bodies is an error in
+/// general contact, else a warning, because the deck may intend it. Contact that moves nodes before the start resolves
 /// the overlap of its bodies.
 pub(crate) fn overlap(model: &Model, places: &[Span], cx: &mut Context) {
     let mesh = &model.mesh;

@@ -80,7 +80,7 @@ pub(crate) fn axis(model: &Model, places: &[Span], cx: &mut Context) {
     }
 }
 
-/// Nodes on the axis that are not among `held`, each with an element that has it.
+/// Nodes on the axis that are not among `held`, each with an element that has the node.
 fn free_on_axis(mesh: &Mesh, held: &BTreeSet<usize>) -> Vec<(usize, usize)> {
     let mut seen = BTreeSet::new();
     let elements = mesh.elements.iter().enumerate();

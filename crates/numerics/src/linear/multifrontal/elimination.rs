@@ -219,8 +219,8 @@ pub struct Assembly {
     stack: UpdateStack,
 }
 
-/// Places of the update matrices (contribution blocks) of the supernodes of a limb in postorder. They form a stack: a
-/// supernode removes the matrices of its children before it adds its own.
+/// Places of the update matrices (contribution blocks) of the supernodes of a limb in postorder. The update matrices
+/// form a stack: a supernode removes those of its children before it adds its own.
 #[derive(Debug, Default, Clone)]
 pub struct UpdateStack {
     /// First entry of the update matrix of every supernode.

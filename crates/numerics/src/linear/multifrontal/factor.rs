@@ -19,9 +19,9 @@ const SUBSTITUTION: usize = 800_000;
 /// Place of the unknown of a pivot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PivotPlace {
-    /// Its limb.
+    /// Limb (branch or trunk) of the pivot.
     pub limb: usize,
-    /// Its row in the limb.
+    /// Row of the pivot in the limb.
     pub row: usize,
 }
 
@@ -37,8 +37,8 @@ struct Spot {
     entries: usize,
 }
 
-/// Columns of L and D of a branch or a trunk. Its rows are first its own rows, then those of the trunk that it stands
-/// on.
+/// Columns of L and D of a branch or a trunk. The rows of a branch are its own rows, followed by those of the trunk
+/// that it stands on.
 #[derive(Debug, Default)]
 pub struct LimbFactor {
     /// Unknowns of the own rows.
@@ -126,7 +126,7 @@ impl Factor {
         std::mem::take(&mut self.values)
     }
 
-    /// L of all limbs; supernodes refer to ranges of it.
+    /// L of all limbs; supernodes refer to ranges of its entries.
     pub fn values(&self) -> &[f64] {
         &self.values
     }

@@ -19,7 +19,7 @@ const SIDE: usize = 4;
 const PIECE: usize = 8 * SIDE;
 const OPERATIONS: usize = 500_000;
 
-/// Dense matrix over the rows of a supernode: its own and those below it. It holds the lower triangle, column by
+/// Dense matrix over the rows of a supernode: its own and those below it. Only the lower triangle is stored, column by
 /// column. Behind the rows and columns there is room for whole vector registers.
 #[derive(Debug, Default)]
 pub struct Front {

@@ -3,8 +3,8 @@
 //! from faer, once for each pattern. docs/numerics.md, Factorisation.
 //!
 //! The numerical part is own code for its speed. For the matrix of two blocks with 132 612 dofs a factorisation needs
-//! 86 ms (faer: 152 ms), and 45 ms on two threads, which do not make that of faer faster; a solve needs 6.9 ms (faer:
-//! 20 ms) (docs/numerics.md).
+//! 86 ms (faer: 152 ms), and 45 ms on two threads (faer: no gain); a solve needs 6.9 ms (faer: 20 ms)
+//! (docs/numerics.md).
 
 mod elimination;
 mod factor;
@@ -69,8 +69,8 @@ fn library(error: impl std::fmt::Debug) -> LinearError {
 }
 
 /// Rule for merging a supernode with its parent: if both have at most this many groups of unknowns, they are merged if
-/// less than this part of their entries is zero. The rule is that of faer, with one group (mostly a node) in place of
-/// two unknowns.
+/// less than this part of their entries is zero. The rule for merging supernodes is that of faer, with one group
+/// (mostly a node) in place of two unknowns.
 const MERGED: [(usize, f64); 4] = [(2, 1.0), (8, 0.8), (24, 0.1), (usize::MAX, 0.05)];
 
 /// Supernodes of the factors of a matrix, and the unknown of every pivot. Unknowns with the same entries, such as those

@@ -38,7 +38,7 @@ impl Supernodes {
         supernodes
     }
 
-    /// Their number.
+    /// Number of supernodes.
     pub fn count(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
@@ -155,7 +155,7 @@ impl WithSimd for OfProcessor {
 }
 
 impl Supernode<'_> {
-    /// Its columns.
+    /// Columns of the supernode.
     #[inline(always)]
     pub fn columns(self) -> Range<usize> {
         self.start..self.start + self.size
