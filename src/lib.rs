@@ -42,7 +42,7 @@
 //! | pair | one slave node with one contact target; a CONTACT PAIR of the deck is a *contact* |
 //! | constraint | g >= 0 with friction, of one pair, linearised at the iterate |
 //! | force rows Bn, Bt | nodal forces at the dofs of a constraint for a unit force Pn or Pt |
-//! | derivative rows Gn, Gt | change of gap and slip of a constraint with its dofs; for pairs equal to the force rows |
+//! | derivative rows Gn, Gt | change of gap and slip of a constraint with its dofs |
 //! | closed pair | a pair that carries a force |
 //! | territory | circle that an entity does not leave as long as lists of candidates are valid |
 //! | gap g | distance of the slave node from its segment, positive when open |
@@ -53,8 +53,8 @@
 //! | Pn, Pt | normal (>= 0) and tangential contact force of a pair |
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
 //! | internal force F | nodal forces of the stresses; R is the external load, M the mass matrix, K the tangent |
-//! | chunk, block, lane | elements swept by one thread; elements of a chunk that are computed together; one element of a block |
-//! | damping force F_d | force of viscosity (BETA) and force in proportion to the mass (ALPHA); Cd is the matrix of both |
+//! | chunk, block, lane | elements swept by one thread; elements of it that are computed together; one of these |
+//! | damping force F_d | force of viscosity (BETA) and of mass-proportional damping (ALPHA); Cd is its matrix |
 //! | K* | effective matrix theta2 K + Cd/dt + 2/dt^2 M; Q = G K*^-1 B^T is its Delassus matrix |
 //! | compliance W | K*^-1 at the dofs in contact |
 //! | scope | constraints between the same bodies, or all: those whose compliance is computed together |
