@@ -16,7 +16,7 @@
 //!
 //! All layers except `output` and `cli` are in separate packages (`crates`), so that after a change of a file little
 //! has to be compiled again: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`,
-//! `stickslip_editor` and `stickslip_dynamics`. This crate re-exports their modules under the same names.
+//! `stickslip_editor` and `stickslip_dynamics`. This crate re-exports the modules of these packages under their names.
 //!
 //! # Equations
 //!

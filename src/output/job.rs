@@ -54,8 +54,8 @@ impl JobFiles {
         self.log.with_file_name(name)
     }
 
-    /// `JOB.restart-STEP-INC`, for a checkpoint that is kept along with later ones. No other job has a file with this
-    /// name: its end gives the kind of file, and its beginning the job.
+    /// `JOB.restart-STEP-INC`, for a checkpoint that is kept along with later ones. The name is unique among all jobs:
+    /// the end of a name gives the kind of file, and its beginning the job.
     pub(super) fn kept_checkpoint(&self, [step, increment]: [usize; 2]) -> PathBuf {
         let name = format!("{}.restart-{step}-{increment}", self.name);
         self.restart.with_file_name(name)

@@ -15,7 +15,7 @@ enum ResultPlaces {
     Nodes(ElementNodes),
 }
 
-/// Results at places of elements.
+/// Results at the integration points or nodes of elements.
 pub(super) struct Local {
     elements: Arc<Elements>,
     places: ResultPlaces,

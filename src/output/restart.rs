@@ -17,7 +17,7 @@ use crate::diagnostics::EarlierDeck;
 /// First bytes of the file.
 const MAGIC: &[u8] = b"stickslip restart 2\n";
 
-/// Number of bytes of the check sum behind them.
+/// Number of bytes of the check sum, which follows the first bytes.
 const SUM: usize = 32;
 
 /// A checkpoint, with a description of its run and its place.

@@ -127,7 +127,7 @@ fn undefined<'n>(
     };
 }
 
-/// The card with its rows in the instance that its parameter names.
+/// The card with its rows read in the instance that its parameter INSTANCE names.
 fn scoped(card: Card, flat: &Deck, d: &mut Diagnostics) -> Card {
     let Some(text) = card.value("INSTANCE") else {
         return card;
@@ -173,7 +173,7 @@ pub(super) enum Item {
     Instance(Card, Vec<Card>),
 }
 
-/// The cards of a deck by where they stand.
+/// The cards of a deck, sorted by the part, the instance or the assembly in which they stand.
 pub(super) struct Structure {
     pub parts: Vec<Part>,
     pub items: Vec<Item>,
@@ -336,7 +336,7 @@ fn advice(levels: Levels) -> &'static str {
     }
 }
 
-/// Reports a card that cannot stand here.
+/// Reports a card that cannot stand at its level.
 fn report(level: Level, card: &Card, d: &mut Diagnostics) {
     let place = match level {
         Level::Part => "in a part",

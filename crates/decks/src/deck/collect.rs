@@ -91,7 +91,7 @@ pub(super) fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> D
     }
 }
 
-/// Reads a deck from text; it cannot include files.
+/// Reads a deck from text, which cannot include files.
 pub(super) fn parse_str(
     name: &str,
     text: &str,
@@ -145,7 +145,7 @@ fn collect(
 
 /// A file being read.
 struct OpenFile {
-    /// Canonical path of the file: all paths to a file have the same one.
+    /// Canonical path of the file, which is the same for all paths to it.
     identity: PathBuf,
     /// Folder of the file.
     folder: PathBuf,

@@ -103,7 +103,7 @@ impl<'a> Line<'a> {
         self.get(index).map_or(self.span(), |field| field.span)
     }
 
-    /// Field `index`; reports that `what` is missing where it is blank.
+    /// Field `index`; a blank field is reported as missing, under the name `what`.
     pub fn required(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<Text<'a>> {
         let field = self.get(index);
         if field.is_none() {

@@ -39,7 +39,7 @@ pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     assembly::flatten(deck, sources, d)
 }
 
-/// Reads a deck from text; it cannot include files.
+/// Reads a deck from text, which cannot include files.
 pub fn parse_str(name: &str, text: &str, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     let deck = collect::parse_str(name, text, sources, d);
     assembly::flatten(deck, sources, d)

@@ -31,7 +31,7 @@ pub(crate) struct Targets<'a> {
 }
 
 impl Targets<'_> {
-    /// Dof of the angle of the rigid body whose reference node this is.
+    /// Dof of the angle of the rigid body whose reference node is `node`.
     pub fn angle_at(&self, node: usize) -> Option<usize> {
         rigid_bodies::angle_at(node, self.rigid_bodies, &self.mesh_index.mesh)
     }

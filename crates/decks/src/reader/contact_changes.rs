@@ -268,7 +268,7 @@ impl<'a> ContactHistory<'a> {
     }
 }
 
-/// Reports an amplitude whose values are not parts of a change, from 0 to 1.
+/// Reports an amplitude whose values lie outside the range from 0 to 1: they are parts of a change of friction.
 fn check_parts(curve: &Amplitude, span: Span, cx: &mut Context) {
     let [least, most] = curve.bounds();
     if least < 0.0 || most > 1.0 {

@@ -185,7 +185,7 @@ impl Labelled {
         Labelled(index as u32)
     }
 
-    /// The index, unless the node or element is left out.
+    /// The index of the node or element; `None` if it is left out.
     pub fn index(self) -> Option<usize> {
         (self != Labelled::LEFT_OUT).then_some(self.0 as usize)
     }

@@ -298,8 +298,8 @@ const STILL: SupportMotion = SupportMotion::Rate {
     amplitude: None,
 };
 
-/// Adds the supports of the nodes and angles of rigid bodies that do not turn to a step: the nodes move as their
-/// reference nodes. Step and bodies are given with their numbers.
+/// Adds supports to a step for rigid bodies that do not turn: their nodes move like the reference nodes, and their
+/// angles stay. Step and bodies are given with their numbers.
 fn follow(
     held: &[(usize, &Rigid)],
     (mesh_index, places): (&MeshIndex, &Supports),

@@ -80,7 +80,7 @@ impl Files {
         path
     }
 
-    /// Forgets a file that the editor has closed; the file on the disk holds from here on.
+    /// Forgets a file that the editor has closed; afterwards the text on the disk is used.
     pub fn close(&mut self, path: &Path) {
         self.all.remove(path);
     }

@@ -66,7 +66,7 @@ impl Workspace {
         path
     }
 
-    /// Forgets a file that the editor has closed; the file on the disk holds from here on.
+    /// Forgets a file that the editor has closed; afterwards the text on the disk is used.
     pub fn close(&mut self, path: &Path) {
         self.files.close(path);
         self.views.remove(path);

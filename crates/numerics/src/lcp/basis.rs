@@ -221,8 +221,8 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         self.columns.iter().map(|j| -entry(j)).collect()
     }
 
-    /// Adds column j and row r. With u = k_r K^-1 and the pivot p = a_r - u a:
-    /// K^-1 becomes [K^-1 + y u / p, -y / p; -u / p, 1 / p].
+    /// Adds column j and row r. With u = k_r K^-1 and the pivot p = a_r - u a, the inverse K^-1 becomes [K^-1 + y u /
+    /// p, -y / p; -u / p, 1 / p].
     fn grow(&mut self, j: usize, r: usize, y: &[f64], pivot: f64) {
         let row = self.kernel_row(r);
         for column in &mut self.inverse {

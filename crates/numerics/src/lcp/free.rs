@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, FrictionalSolution};
 use crate::linear::largest;
 
-/// Shift of the diagonal, relative to its largest entry, that shares the load among contacts with identical conditions.
+/// Increase of the diagonal, relative to its largest entry, which makes the matrix regular if contacts have identical
+/// conditions; these then share the load.
 const SHIFT: f64 = 1e-10;
 
 /// Negative stiffness, in units of E, that counts as none.

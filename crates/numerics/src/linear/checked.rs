@@ -292,7 +292,7 @@ fn sum(columns: &[f64], n: usize) -> Vec<f64> {
 const ROWS: usize = 16_384;
 
 /// The ratio max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, where b0 is the right-hand side at the start of the solve; 0
-/// if the numbers are so small that they have lost digits. The rows of the symmetric A are its columns.
+/// if the numbers are so small that they have lost digits. The matrix A is symmetric, so its columns are used as rows.
 fn relative_residual(a: &SymmetricMatrix, x: &[f64], [b, b0]: [&[f64]; 2]) -> f64 {
     let of_rows =
         |(k, (b, b0)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, b0));

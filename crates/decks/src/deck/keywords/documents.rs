@@ -345,7 +345,7 @@ pub(super) fn status(status: Status) -> &'static str {
     }
 }
 
-/// A parameter as it is written.
+/// A parameter in the spelling of decks.
 pub(super) fn written(parameter: &Parameter) -> String {
     let name = match parameter.other {
         "" => parameter.name.to_string(),

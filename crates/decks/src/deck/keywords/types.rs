@@ -44,7 +44,7 @@ impl Levels {
         Levels(bits.fold(0, |all, bit| all | bit))
     }
 
-    /// The levels of both arguments together.
+    /// The union of these levels and `other`.
     pub fn and(self, other: Levels) -> Levels {
         Levels(self.0 | other.0)
     }
@@ -440,7 +440,7 @@ pub struct DataLineForm {
     /// Parameter and value of the keyword line that these lines belong to; an empty value stands
     /// for a parameter without value.
     pub parameter: Option<(&'static str, &'static str)>,
-    /// Number of a field, from 0, and the words that it says on these lines.
+    /// Number of a field, from 0, and the words that may stand in this field in lines of this form.
     pub word: Option<(usize, &'static [&'static str])>,
     /// Whether only the first data line has this form.
     pub first: bool,

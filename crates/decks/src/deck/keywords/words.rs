@@ -22,7 +22,7 @@ pub struct Word {
     pub names: Vec<&'static str>,
     /// Sentence that says whether the program does it, and which cards to use.
     pub text: &'static str,
-    /// Lines of a deck that do it; empty if there are none.
+    /// Lines of a deck that do the thing; empty if there are none.
     pub example: String,
 }
 

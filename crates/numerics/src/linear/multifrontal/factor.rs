@@ -1,6 +1,6 @@
-//! LDL^T factors limb by limb, packed in the order in which substitutions read them. The memory has large pages if the
-//! system has them, because substitutions read the entries from one end to the other, and a processor reads ahead only
-//! within a page. See docs/numerics.md, Order in memory.
+//! LDL^T factors by limbs (branches and trunks of the elimination forest), packed in the order in which substitutions
+//! read them. The memory has large pages if the system has them, because substitutions read the entries from one end to
+//! the other, and a processor reads ahead only within a page. See docs/numerics.md, Order in memory.
 
 use std::ops::{Deref, DerefMut};
 

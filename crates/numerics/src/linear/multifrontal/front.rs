@@ -41,7 +41,7 @@ struct Panel<'a> {
     l: &'a [f64],
     /// First row below the columns of the panel.
     below: usize,
-    /// For each of the changing columns, the entries of -L D from its first factor on.
+    /// Entries of -L D for each of the changing columns, from the first factor of this column on.
     scaled: [&'a [f64]; SIDE],
 }
 

@@ -235,7 +235,7 @@ impl LimbVectors {
         });
     }
 
-    /// Computes x = L^-T D^-1 z on the path.
+    /// Computes x = L^-T D^-1 z for the supernodes on the path.
     fn backward_on_path(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self {
             z, x, work, path, ..
