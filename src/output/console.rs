@@ -267,7 +267,7 @@ impl ProgressLine {
         }
     }
 
-    /// Removes the line.
+    /// Removes the live line from the terminal.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

@@ -372,7 +372,7 @@ const LOGARITHMIC_STRAIN: Meaning = (
     "logarithmic strain xx yy zz xy yz xz (tensor components) of the element's mean deformation gradient",
 );
 
-/// Datasets of `Steps` with the same number for all frames: name, shape of a row, meaning, number.
+/// Datasets of `Steps` whose number is the same in all frames, given by name, shape of a row, meaning, and number.
 #[rustfmt::skip]
 const STEPS: [(&str, &[usize], &str, i64); 5] = [
     ("NumberOfParts", &[], "grids of the frame", 1),

@@ -117,8 +117,8 @@ impl<'m> ResultFile<'m> {
         }
     }
 
-    /// Transfers the numbers of rows that the file has, after [`Self::write_through`]. When a checkpoint is read, these rows
-    /// are copied from `earlier`: the file of the stopped run, and its id.
+    /// Transfers the numbers of rows in the file; it must follow [`Self::write_through`] when a checkpoint is written.
+    /// When a checkpoint is read, these rows are copied from `earlier`: the file of the stopped run, and its id.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,

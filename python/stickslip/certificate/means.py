@@ -374,7 +374,7 @@ class Means:
         return cells
 
     def _over(self, face: int, cells: list[tuple[float, float, int]], eta: float, k: int) -> int | None:
-        """The nearest segment below a place of a face."""
+        """The nearest segment that faces a given place of a slave face."""
         x, a, _, t = self.at[k]
         p, q = (self._place(node, x) for node in self.faces[face])
         at = (1.0 - eta) * p + eta * q

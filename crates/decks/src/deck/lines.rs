@@ -114,7 +114,7 @@ impl<'a> Line<'a> {
         field
     }
 
-    /// The number in field `index`; reports that `what` is missing where it is blank.
+    /// The number in field `index`; a blank field is reported as missing, under the name `what`.
     pub fn real(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<f64> {
         self.required(index, what, d)?.real(d)
     }

@@ -444,7 +444,7 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
 struct LoadLine {
     /// Loaded element, for body forces.
     element: Option<usize>,
-    /// Node, unless an element is loaded.
+    /// Label of the loaded node, or of the element of a loaded face; empty for body forces.
     target: String,
     /// Fields of the loaded dof or face.
     kind: String,

@@ -704,7 +704,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         }
     }
 
-    /// Removes the loads under some keys; if loads ramp, these loads fade out over the step.
+    /// Removes the loads whose keys fulfil `is_meant`; if loads ramp, the removed loads fade out over the step.
     pub fn clear(&mut self, context: StepContext, is_meant: impl Fn(&K) -> bool) {
         if !context.ramp {
             self.parts.retain(|(key, _)| !is_meant(key));

@@ -65,7 +65,7 @@ impl Names {
         }
     }
 
-    /// Whether the name has a number.
+    /// Whether the name is defined without an error.
     pub fn is_defined(&self, name: &Name) -> bool {
         matches!(self.index.get(&name.key), Some(Some(_)))
     }

@@ -604,7 +604,7 @@ impl<T: Copy + PartialEq> Choice<T> {
         }
     }
 
-    /// The parameter with the word for a setting.
+    /// The parameter of `*STICKSLIP` with the word that means this setting.
     pub fn written(&self, setting: T) -> String {
         let word = self.1.iter().find(|(_, known)| *known == setting);
         format!("{}={}", self.0, word.map_or("", |(word, _)| word))

@@ -7,8 +7,8 @@
 //! exchange changes K by a column, a row, or both, and its inverse by one outer product.
 //!
 //! The right-hand side is perturbed to q + eps p + eps^2 e_1 + eps^3 e_2 + ..., p > 0, with an infinitesimal eps:
-//! ratios that tie on q are compared on p, then on the columns of the inverse basis. The entries of p follow the golden
-//! ratio, so that the second comparison almost always decides.
+//! ratios that tie on q are compared on p, then on the columns of the inverse basis. The entries of p are made with the
+//! golden ratio, so the comparison on p almost always decides.
 
 use super::dense::{Factors, axpy, dot, max_abs};
 

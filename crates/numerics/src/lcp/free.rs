@@ -6,8 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, FrictionalSolution};
 use crate::linear::largest;
 
-/// Increase of the diagonal, relative to its largest entry, which makes the matrix regular if contacts have identical
-/// conditions; these then share the load.
+/// Increase of the diagonal, relative to its largest entry: contacts with identical conditions then share the load.
 const SHIFT: f64 = 1e-10;
 
 /// Negative stiffness, in units of E, that counts as none.

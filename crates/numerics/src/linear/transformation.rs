@@ -12,9 +12,9 @@ use crate::archive::{Archive, ArchiveError};
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
 /// A free dof has a row of the identity, a prescribed dof an empty row, and a dof that follows others by an equation
-/// has a row with their coefficients. A dof of a body that turns follows the angle of the body, too, by two
-/// coefficients that change with the iterate: forces act by the first one, which represents the difference between
-/// start and iterate exactly; the second is the derivative at the iterate (docs/theory/bodies.md).
+/// has a row with their coefficients. A dof of a body that turns also follows the angle of the body, by two
+/// coefficients that change with the iterate. Forces act by the first coefficient, which represents the difference
+/// between start and iterate exactly. The second coefficient is the derivative at the iterate (docs/theory/bodies.md).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,

@@ -94,7 +94,7 @@ pub enum Data {
     None,
     /// Any number of rows is allowed; of the forms, the first one that fits a row holds.
     Rows(&'static [DataLineForm]),
-    /// At least one row is needed.
+    /// The keyword needs at least one row; of the forms, the first one that fits a row holds.
     Required(&'static [DataLineForm]),
     /// Free text.
     Text,

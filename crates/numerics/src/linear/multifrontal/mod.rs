@@ -255,7 +255,8 @@ struct Quotient {
 }
 
 impl Quotient {
-    /// The pattern between groups, which are given by the first unknown of each group and the number of unknowns.
+    /// The pattern between groups; `groups` holds the first unknown of each group, and the number of unknowns at the
+    /// end.
     fn new(pattern: &Pattern, groups: &[usize]) -> Self {
         let mut group_of = vec![0; pattern.size()];
         for (group, ends) in groups.windows(2).enumerate() {

@@ -175,7 +175,7 @@ impl Supernode<'_> {
         rows.flat_map(move |row| row..row + of_each)
     }
 
-    /// x_i <- x_i + w_i in the rows below.
+    /// Adds w to x in the rows below the supernode: x_i <- x_i + w_i.
     #[inline(always)]
     pub fn scatter(self, below: &[f64], x: &mut [f64]) {
         if self.is_of_twos {
@@ -191,7 +191,7 @@ impl Supernode<'_> {
         }
     }
 
-    /// w_i <- x_i in the rows below.
+    /// Copies x in the rows below the supernode to w: w_i <- x_i.
     #[inline(always)]
     pub fn gather(self, x: &[f64], below: &mut [f64]) {
         if self.is_of_twos {
