@@ -1,28 +1,27 @@
 //! **stickslip**: large-displacement dynamics of plane deformable bodies with exact contact and
 //! Coulomb friction.
 //!
-//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]; its bodies are integrated in
-//! time ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`],
-//! node to surface or surface to surface [`contact`] posed as a linear complementarity problem ([`lcp`]) at every pass, and
-//! sparse factorisations ([`linear`]); [`output`] observes the run and writes the result file.
+//! A keyword deck is read ([`deck`], [`reader`]) into a [`model`]. The bodies of the model are integrated in time
+//! ([`dynamics`]) with total-Lagrangian elements ([`elements`]) of hyperelastic [`materials`]. Every pass solves
+//! [`contact`] (node to surface or surface to surface) as a linear complementarity problem ([`lcp`]), with sparse
+//! factorisations ([`linear`]). [`output`] observes the run and writes the result file.
 //!
 //! # Layers
 //!
-//! A module imports only from modules before it in this list: `system`, `archive`, `linear`, `lcp`, `vectors`, `diagnostics`,
-//! `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `editor`, `contact`, `prepare`, `dynamics`, `output`,
-//! `cli`. The rooms of a layer (its sub-folders) import one way as well.
+//! A module imports only from modules before it in this list: `system`, `archive`, `linear`, `lcp`, `vectors`,
+//! `diagnostics`, `materials`, `model`, `elements`, `deck`, `reader`, `flat_deck`, `editor`, `contact`, `prepare`,
+//! `dynamics`, `output`, `cli`. The sub-folders of a layer also import in one direction only.
 //!
 //! # Packages
 //!
-//! All layers but `output` and `cli` are in packages of their own (`crates`), so that a change of a file compiles
-//! little anew: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`, `stickslip_editor` and
-//! `stickslip_dynamics`. They stand
-//! here under the names of their modules.
+//! All layers except `output` and `cli` are in separate packages (`crates`), so that after a change of a file little
+//! has to be compiled again: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`,
+//! `stickslip_editor` and `stickslip_dynamics`. This crate re-exports the modules of these packages under their names.
 //!
 //! # Equations
 //!
-//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation in docs/theory,
-//! `paper eq. 21` one of Sung & Kwak. A test reads both sides.
+//! A formula stands above the code that evaluates it. `eq. (3.2)` is an equation in docs/theory, `paper eq. 21` one of
+//! Sung & Kwak. A test compares both sides.
 //!
 //! # Vocabulary
 //!
@@ -35,17 +34,17 @@
 //! | segment | an edge of the master surface from node a to node b, the body on its left |
 //! | candidate | a segment that the search lists for a slave node |
 //! | projection, xi | foot of the perpendicular from a node to a segment; xi is 0 at a and 1 at b |
-//! | contact target | what a slave node must not penetrate: a segment, or the convex corner between two |
+//! | contact target | a segment, or the convex corner between two segments, that a slave node must not penetrate |
 //! | corner | a node between two segments of a surface: convex or concave; sharp below 120 degrees |
 //! | common normal | normal of node-to-corner contact, from the normal cones of both corners |
 //! | interior | the inside of the bodies, followed from element to element behind a segment |
 //! | slave index | number of a slave node among those of all contacts |
 //! | pair | one slave node with one contact target; a CONTACT PAIR of the deck is a *contact* |
 //! | constraint | g >= 0 with friction, of one pair, linearised at the iterate |
-//! | force rows Bn, Bt | what a unit force Pn or Pt of a constraint exerts on its dofs |
-//! | derivative rows Gn, Gt | change of gap and slip with its dofs; as the force rows for pairs |
+//! | force rows Bn, Bt | nodal forces at the dofs of a constraint for a unit force Pn or Pt |
+//! | derivative rows Gn, Gt | change of gap and slip of a constraint with its dofs |
 //! | closed pair | a pair that carries a force |
-//! | territory | circle about an entity that it does not leave while lists of candidates hold |
+//! | territory | circle that an entity does not leave as long as lists of candidates are valid |
 //! | gap g | distance of the slave node from its segment, positive when open |
 //! | normal e_n | unit vector out of the master body; tangent e_t points from a to b |
 //! | crossing | a node on the moving line of a segment: entering, leaving or touching |
@@ -53,24 +52,24 @@
 //! | slip Dt | tangential motion of the slave node relative to its segment within the increment |
 //! | Pn, Pt | normal (>= 0) and tangential contact force of a pair |
 //! | Phi, Psi | normal and tangential impact impulse of a pair |
-//! | internal force F | nodal forces of the stresses; R external load, M mass, K tangent |
-//! | chunk, block, lane | elements swept by one thread; those side by side in it; one of these |
-//! | damping force F_d | of viscosity (BETA) and in proportion to the mass (ALPHA); Cd its matrix |
-//! | K* | effective matrix theta2 K + Cd/dt + 2/dt^2 M; Q = G K*^-1 B^T its Delassus matrix |
+//! | internal force F | nodal forces of the stresses; R is the external load, M the mass matrix, K the tangent |
+//! | chunk, block, lane | elements swept by one thread; elements of it that are computed together; one of these |
+//! | damping force F_d | force of viscosity (BETA) and of mass-proportional damping (ALPHA); Cd is its matrix |
+//! | K* | effective matrix theta2 K + Cd/dt + 2/dt^2 M; Q = G K*^-1 B^T is its Delassus matrix |
 //! | compliance W | K*^-1 at the dofs in contact |
 //! | scope | constraints between the same bodies, or all: those whose compliance is computed together |
-//! | residual, correction | errors of a pass: out-of-balance force, last change of displacement |
-//! | acceptance | checks that a converged increment passes before it is entered in the ledger |
+//! | residual, correction | the two errors of a pass: out-of-balance force and last change of displacement |
+//! | acceptance | checks of a converged increment before it is entered in the ledger |
 //! | ledger | energies, impulses and works summed over the run, and their balance |
-//! | redistributed mass M_r | consistent mass with nodes of contact surfaces whose mass others carry |
-//! | donor | a node with mass that carries that of a node without, with a weight w_ij of P |
+//! | redistributed mass M_r | consistent mass, in which other nodes carry the mass of nodes of contact surfaces |
+//! | donor | a node with mass that carries the mass of a node without its own, with a weight w_ij of the matrix P |
 //! | release | a pair opens; nodes without mass come to rest and lose the energy R |
 //! | landing | a node that closes its gap within an increment |
-//! | landing return | energy D that the force of a landing takes, given back as kinetic energy |
-//! | pattern w, share y | velocities along which it is given back, V1 <- V1 + sum y w |
+//! | landing return | the energy D lost to landing forces is given back as kinetic energy |
+//! | pattern w, share y | velocities along which landing energy is given back, and their factors: V1 <- V1 + sum y w |
 //! | cutback | a failed attempt at an increment, repeated with a shorter one |
 //! | subincrement | part of a nominal increment, from a cutback or up to an impact |
-//! | frame, history | fields at some times; scalars of every increment, in the result file |
+//! | frame, history | all fields at one time; numbers of every increment (both in the result file) |
 //! | event | an impact that ends a subincrement (`IMPACT TIME=EVENT`) |
 //! | nominal increment | an increment of the step's fixed grid; cutbacks and events divide it |
 //! | d | displacement increment U1 - U0 |

@@ -1,6 +1,6 @@
 """Commands of the package: `stickslip report ...`, which the program hands over to `python -m stickslip report ...`.
 
-Each is a function without arguments that reads the words of the command line from `sys.argv`.
+Each command is a function without arguments, which reads the words of the command line from `sys.argv`.
 """
 
 import sys
@@ -24,7 +24,7 @@ COMMANDS = {
 
 
 def chosen(words: list[str]) -> tuple[str, list[str]]:
-    """The command that words begin with, and the other words."""
+    """Splits words into the command that they begin with and the other words."""
     for count in (1, 2):
         name = " ".join(words[:count])
         if name in COMMANDS:
@@ -41,7 +41,7 @@ def run() -> int | None:
 
 
 def main() -> None:
-    """Runs it; errors that the user can correct are one line."""
+    """Runs a command; an error that the user can correct is written as one line."""
     sys.argv[0] = "stickslip"
     command.finish(run)
 

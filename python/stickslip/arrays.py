@@ -1,4 +1,4 @@
-"""Arrays of numpy by what they hold, as annotations name them."""
+"""Names for annotations of numpy arrays, by the type of their numbers."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,6 +1,7 @@
 """Cards of a deck from numbers and names: meshes, materials, contacts, rigid bodies, springs, steps, loads.
 
-Every method appends cards. What cannot be is told as a `Fault`; the program checks the rest (`stickslip.check`).
+Every method appends cards. Impossible arguments raise a `Fault`; everything else is checked by the program
+(`stickslip.check`).
 """
 
 from abc import ABC, abstractmethod
@@ -40,13 +41,13 @@ Discretisation = Literal["", "node to surface", "surface to surface"]
 
 
 class Building(ABC):
-    """What appends cards to a deck."""
+    """Base class of objects that append cards to a deck."""
 
     cards: list[Card]
 
     @abstractmethod
     def add(self, head: str, *rows: Sequence[object]) -> Self:
-        """Appends a card: its keyword line without the star, and its data lines."""
+        """Appends a card, given by its keyword line without the star and its data lines."""
 
     @abstractmethod
     def extend(self, text: str) -> Self:
@@ -61,10 +62,10 @@ class Building(ABC):
     def add_mesh(self, mesh: Mesh, plane: Plane = "strain", formulation: str = "") -> int:
         """Appends the mesh: nodes, elements, sets, and its sides as surfaces.
 
-        In bodies of revolution x is the radius and y goes along the axis. `formulation` is a word of FORMULATIONS; elements
-        of a shape that has no such type get the plain one, triangles for example. The nodes of an element set are a node
-        set of the same name. Returns the number of its first node: index i of the mesh has that number plus i. A second
-        mesh goes on with the numbers of the first.
+        In bodies of revolution x is the radius and y goes along the axis. `formulation` is a word of FORMULATIONS;
+        elements of a shape without such a type, for example triangles, get the type without it. The nodes of an element
+        set become a node set of the same name. Returns the number of its first node; the node with index i of the mesh
+        has this number plus i. A second mesh continues the numbers of the first one.
         """
         ends = element_types(plane, formulation)
         node, element = self._next_number("NODE"), self._next_number("ELEMENT")
@@ -90,28 +91,32 @@ class Building(ABC):
         return max(numbers, default=0) + 1
 
     def surface(self, name: str, *sets: str) -> Self:
-        """A surface of all free sides of element sets."""
+        """Appends a surface of all free sides of element sets."""
         return self.add(f"SURFACE, NAME={name}", *((one,) for one in sets))
 
     def node(self, name: str, x: float, y: float) -> int:
-        """A node of its own, such as the reference node of a rigid body, and a set of its name; returns its number."""
+        """Appends a single node, such as the reference node of a rigid body, and a node set with its name; returns its
+        number."""
         number = self._next_number("NODE")
         self.add(f"NODE, NSET={name}", (number, float(x), float(y)))
         return number
 
     def section(self, elements: str, material: str, thickness: float | None = 1.0) -> Self:
-        """Gives a set of elements its material and thickness; None in bodies of revolution, which have none."""
+        """Gives a set of elements its material and thickness (None in bodies of revolution, which have no
+        thickness)."""
         rows = [] if thickness is None else [(thickness,)]
         return self.add(f"SOLID SECTION, ELSET={elements}, MATERIAL={material}", *rows)
 
     # Materials.
 
     def elastic(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
-        """A St. Venant-Kirchhoff material, for strains below some 20 %; damping as `alpha`, `beta`."""
+        """Appends a St. Venant-Kirchhoff material, for strains below about 20 %, with the damping `alpha` and
+        `beta`."""
         return self.extend(material(name, young, poisson, density, "", **damping))
 
     def hencky(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
-        """Hencky's material, for large strains: Kirchhoff stress over logarithmic strain; damping as `alpha`, `beta`."""
+        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; damping
+        `alpha`, `beta`."""
         return self.extend(material(name, young, poisson, density, "HENCKY", **damping))
 
     def plastic(
@@ -124,41 +129,42 @@ class Building(ABC):
         kinematic: bool = False,
         **damping: float,
     ) -> Self:
-        """A metal: pairs of yield stress and plastic strain, the first at 0; `kinematic` hardening has two."""
+        """Appends a metal with pairs of yield stress and plastic strain, the first at strain 0; with `kinematic`
+        hardening there are two pairs."""
         if not yield_stresses or yield_stresses[0][1] != 0.0:
             raise Fault(f"{name}: the first yield stress is that of the plastic strain 0")
         head = "PLASTIC, HARDENING=KINEMATIC" if kinematic else "PLASTIC"
         return self.elastic(name, young, poisson, density, **damping).add(head, *yield_stresses)
 
     def neo_hooke(self, name: str, c10: float, d1: float, density: float) -> Self:
-        """A neo-Hookean material, for large strains."""
+        """Appends a neo-Hookean material, for large strains."""
         return self.hyperelastic(name, "NEO HOOKE", (c10, d1), density)
 
     def mooney_rivlin(self, name: str, c10: float, c01: float, d1: float, density: float) -> Self:
-        """A material of Mooney and Rivlin."""
+        """Appends a Mooney-Rivlin material."""
         return self.hyperelastic(name, "MOONEY-RIVLIN", (c10, c01, d1), density)
 
     def yeoh(self, name: str, c: Sequence[float], d: Sequence[float], density: float) -> Self:
-        """A material of Yeoh: C10, C20, C30 and D1, D2, D3."""
+        """Appends a Yeoh material with C10, C20, C30 and D1, D2, D3."""
         if len(c) != 3 or len(d) != 3:
             raise Fault(f"{name}: YEOH has three C and three D")
         return self.hyperelastic(name, "YEOH", (*c, *d), density)
 
     def ogden(self, name: str, terms: Sequence[tuple[float, float]], d: Sequence[float], density: float) -> Self:
-        """A material of Ogden: mu and alpha of each of its one to three terms, and as many D."""
+        """Appends an Ogden material with mu and alpha of each of its one to three terms, and as many D."""
         if not 1 <= len(terms) <= 3 or len(d) != len(terms):
             raise Fault(f"{name}: OGDEN has one to three terms and as many D")
         return self.hyperelastic(name, f"OGDEN, N={len(terms)}", (*(x for term in terms for x in term), *d), density)
 
     def hyperelastic(self, name: str, law: str, constants: Sequence[float], density: float) -> Self:
-        """A material for large strains with the constants of its law in their order."""
+        """Appends a material for large strains with the constants of its law in their order."""
         rows = [constants[at : at + 8] for at in range(0, len(constants), 8)]
         self.add(f"MATERIAL, NAME={name}").add(f"HYPERELASTIC, {law}", *rows)
         return self.add("DENSITY", (density,))
 
     def expansion(self, coefficient: Number | Sequence[tuple[float, float]], zero: float = 0.0) -> Self:
-        """Thermal expansion of the material before it: a coefficient, or pairs of coefficient and temperature; `zero` is the
-        temperature that the coefficient counts from."""
+        """Appends the thermal expansion of the last material: a coefficient, or pairs of coefficient and temperature;
+        `zero` is the reference temperature of the coefficient."""
         if not self.cards or self.cards[-1].keyword not in MATERIAL_CARDS:
             raise Fault("expansion stands right behind the material that expands")
         rows = [(coefficient,)] if isinstance(coefficient, (float, int, str)) else coefficient
@@ -167,12 +173,12 @@ class Building(ABC):
     # Contact.
 
     def contact(self, slave: str, master: str, friction: Number = 0.0, discretisation: Discretisation = "") -> Self:
-        """Contact of two surfaces; the friction may be a parameter, `<mu>`, or ROUGH."""
+        """Appends contact of two surfaces; the friction may be a number, a parameter `<mu>`, or ROUGH."""
         kind = f", TYPE={discretisation.upper()}" if discretisation else ""
         return self.add(f"CONTACT PAIR, INTERACTION={self._interaction(friction)}{kind}", (slave, master))
 
     def general_contact(self, friction: Number = 0.0, discretisation: Discretisation = "") -> Self:
-        """Contact of everything with everything."""
+        """Appends general contact: every exterior face against every other."""
         name = self._interaction(friction)
         self.add("CONTACT").add("CONTACT INCLUSIONS, ALL EXTERIOR")
         if discretisation:
@@ -180,11 +186,11 @@ class Building(ABC):
         return self.add("CONTACT PROPERTY ASSIGNMENT", ("", "", name))
 
     def tie(self, slave: str, master: str) -> Self:
-        """Ties two surfaces as if they were parts of one body."""
+        """Appends a tie, which joins two surfaces as if they were parts of one body."""
         return self.add(f"TIE, NAME=TIE{len(self.find('TIE')) + 1}", (slave, master))
 
     def _interaction(self, friction: Number) -> str:
-        """A new interaction; returns its name."""
+        """Appends a new interaction; returns its name."""
         name = f"INTERACTION{len(self.find('SURFACE INTERACTION')) + 1}"
         rows = [] if friction == ROUGH else [(friction,)]
         self.add(f"SURFACE INTERACTION, NAME={name}").add("FRICTION" if rows else "FRICTION, ROUGH", *rows)
@@ -193,7 +199,8 @@ class Building(ABC):
     # Rigid bodies, springs, dashpots.
 
     def rigid_line(self, name: str, points: Iterable[tuple[float, float]], reference: str) -> Self:
-        """A rigid surface along points, the obstacle on the left of the way, moved by its reference node (`node`)."""
+        """Appends a rigid surface along points, with the obstacle on its left, which moves with its reference node (see
+        `node`)."""
         first, *others = points
         if not others:
             raise Fault(f"{name}: a line has two points or more")
@@ -202,23 +209,26 @@ class Building(ABC):
         return self.add(f"RIGID BODY, ANALYTICAL SURFACE={name}, REF NODE={reference}")
 
     def rigid_body(self, elements: str, reference: str) -> Self:
-        """Elements that do not deform and have mass, with their reference node (`node`)."""
+        """Appends a rigid body of elements, which have mass, with its reference node (see `node`)."""
         return self.add(f"RIGID BODY, ELSET={elements}, REF NODE={reference}")
 
     def point_mass(self, node: int, mass: float) -> Self:
-        """A mass at a node of a rigid body."""
+        """Appends a mass at a node of a rigid body."""
         return self._connect("MASS", "MASS", (node,), mass)
 
     def hinge(self, first: int, second: int) -> Self:
-        """A hinge between nodes at one place: of two rigid bodies, or of bodies that ride on reference nodes."""
+        """Appends a hinge between two nodes at one place, of two rigid bodies or of nodes that ride on reference
+        nodes."""
         if first == second:
             raise Fault(f"a hinge has two nodes, not node {first} twice")
         return self.add("MPC", ("PIN", first, second))
 
     def coupling(self, name: str, surface: str, reference: str, distributing: bool = False) -> Self:
-        """The nodes of a surface ride on a reference node (`node`) as a rigid body, which turns and takes moments.
+        """Couples the nodes of a surface to a reference node (see `node`): they ride on it as a rigid body, which turns
+        and can carry moments.
 
-        `distributing`: its displacement is the mean of theirs, and forces on it go to them in equal parts.
+        With `distributing`, the displacement of the reference node is the mean of those of the surface nodes, and
+        forces on the reference node are distributed to these nodes in equal parts.
         """
         head = f"COUPLING, CONSTRAINT NAME={name}, REF NODE={reference}, SURFACE={surface}"
         return self.add(head).add("DISTRIBUTING" if distributing else "KINEMATIC")
@@ -226,8 +236,9 @@ class Building(ABC):
     def pre_tension(self, surface: str, node: str, normal: tuple[float, float] | None = None) -> Self:
         """Cuts a body, such as a bolt, along faces between its elements, for its preload.
 
-        In steps direction 1 of the node (`node`) is the overlap of the sides: `load` is the force of the bolt, tension being
-        positive, and `support` prescribes the overlap. `normal` is that of the section, if not the mean one of the faces.
+        In steps, direction 1 of the node (see `node`) is the overlap of the two sides: `load` gives the force of the
+        bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the section; the
+        default is the mean normal of the faces.
         """
         if normal == (0.0, 0.0):
             raise Fault(f"{surface}: the normal of the section has no length")
@@ -235,9 +246,10 @@ class Building(ABC):
         return self.add(f"PRE-TENSION SECTION, NODE={node}, SURFACE={surface}", *rows)
 
     def equation(self, *terms: tuple[int | str, int, float]) -> Self:
-        """A linear equation a1 u1 + a2 u2 + ... = 0: of each term the node or node set, the direction and the factor.
+        """Appends a linear equation a1 u1 + a2 u2 + ... = 0; each term is given by its node or node set, direction and
+        factor.
 
-        The first term follows from the others. Sets give an equation for every node.
+        The displacement of the first term follows from the others. Node sets give an equation for every node.
         """
         if len(terms) < 2:
             raise Fault("an equation has two terms or more")
@@ -250,23 +262,24 @@ class Building(ABC):
         return self.add("EQUATION", (len(terms),), *([x for term in line for x in term] for line in lines))
 
     def spring(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
-        """A spring between two nodes, by their numbers, along their line.
+        """Appends a spring between two nodes, given by their numbers, along the line between them.
 
-        `law` is its stiffness, or pairs of force and elongation, which increases; beyond them the force stays.
+        `law` is its stiffness, or pairs of force and elongation with increasing elongation; beyond the pairs the force
+        is constant.
         """
         return self._connect("SPRINGA", "SPRING", (first, second), law)
 
     def dashpot(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
-        """A dashpot between two nodes, by their numbers, along their line.
+        """Appends a dashpot between two nodes, given by their numbers, along the line between them.
 
-        `law` is its coefficient, or pairs of force and rate of the elongation, which increases.
+        `law` is its coefficient, or pairs of force and rate of elongation with increasing rate.
         """
         return self._connect("DASHPOTA", "DASHPOT", (first, second), law)
 
     def _connect(
         self, kind: str, keyword: str, nodes: tuple[int, ...], law: Number | Sequence[tuple[float, float]]
     ) -> Self:
-        """An element of its own set between nodes, with its constant or its table."""
+        """Appends an element between nodes, in a set of its own, with its constant or its table."""
         number = self._next_number("ELEMENT")
         name = f"{keyword}{number}"
         head = f"{keyword}, ELSET={name}"
@@ -280,14 +293,15 @@ class Building(ABC):
     # Steps, supports, loads, output.
 
     def amplitude(self, name: str, points: Iterable[tuple[float, float]]) -> Self:
-        """A course over the time of the step: pairs of time and factor."""
+        """Appends an amplitude over the time of a step: pairs of time and factor."""
         return self.add(f"AMPLITUDE, NAME={name}", *points)
 
     @contextmanager
     def step(self, dt: Number, duration: Number, automatic: bool = False, **settings: object) -> Iterator[Self]:
-        """A dynamic step of equal increments, or of such that follow their error; what is added within belongs to it.
+        """Begins a dynamic step of equal increments, or of automatic ones that follow their truncation error; cards
+        that are added inside the `with` block belong to it.
 
-        `settings` are those of *STICKSLIP: `scheme="SS22"`, `impact_time="EVENT"`.
+        `settings` are parameters of *STICKSLIP: `scheme="SS22"`, `impact_time="EVENT"`.
         """
         with self._step("DYNAMIC", dt, duration, automatic, settings):
             yield self
@@ -296,7 +310,8 @@ class Building(ABC):
     def static_step(
         self, dt: Number = 1.0, duration: Number = 1.0, automatic: bool = True, **settings: object
     ) -> Iterator[Self]:
-        """A static step whose increments follow their passes, or of equal increments; what is added within belongs to it."""
+        """Begins a static step whose increments follow their number of passes, or one of equal increments; cards that
+        are added inside the `with` block belong to it."""
         with self._step("STATIC", dt, duration, automatic, settings):
             yield self
 
@@ -304,7 +319,7 @@ class Building(ABC):
     def _step(
         self, procedure: str, dt: Number, duration: Number, automatic: bool, settings: Mapping[str, object]
     ) -> Iterator[None]:
-        """A step of a procedure."""
+        """Begins a step of a procedure."""
         self.add("STEP, NLGEOM")
         if settings:
             text = "".join(f", {key.replace('_', ' ')}={value}" for key, value in settings.items())
@@ -314,33 +329,34 @@ class Building(ABC):
         self.add("END STEP")
 
     def velocity(self, nodes: str, x: float, y: float) -> Self:
-        """Initial velocity of a node set; one of `add_mesh` may be that of an element set."""
+        """Appends the initial velocity of a node set, which `add_mesh` also makes of each element set."""
         return self.add("INITIAL CONDITIONS, TYPE=VELOCITY", (nodes, 1, x), (nodes, 2, y))
 
     def initial_temperature(self, nodes: str, value: Number) -> Self:
-        """Temperature of a node set at the start, at which it is free of stress; without any it is 0."""
+        """Appends the initial temperature of a node set, at which it is free of thermal stress; the default is 0."""
         return self.add("INITIAL CONDITIONS, TYPE=TEMPERATURE", (nodes, value))
 
     def temperature(self, nodes: str, value: Number, amplitude: str = "") -> Self:
-        """Temperature of a node set, in a step."""
+        """Appends the temperature of a node set, in a step."""
         return self.add(_with_amplitude("TEMPERATURE", amplitude), (nodes, value))
 
     def support(self, nodes: str, *directions: int, value: Number = 0.0, amplitude: str = "") -> Self:
-        """Holds a node set in directions (1, 2; both when none is given; 6 turns a rigid body) or, in a step, moves it."""
+        """Holds a node set in directions 1 or 2 (the default is both) or 6, the angle of a rigid body; in a step it may
+        also move the set."""
         rows = [(nodes, one, one, value) for one in directions or (1, 2)]
         return self.add(_with_amplitude("BOUNDARY", amplitude), *rows)
 
     def load(self, nodes: str, x: Number = 0.0, y: Number = 0.0, amplitude: str = "") -> Self:
-        """A force on each node of a set, in a step."""
+        """Appends a force on each node of a set, in a step."""
         rows = ((nodes, i, f) for i, f in ((1, x), (2, y)) if f != 0.0)
         return self.add(_with_amplitude("CLOAD", amplitude), *rows)
 
     def gravity(self, elements: str, size: Number, x: float = 0.0, y: float = -1.0) -> Self:
-        """An acceleration on an element set, in a step; (x, y) is its direction."""
+        """Appends an acceleration of an element set, in a step; (x, y) is its direction."""
         return self.add("DLOAD", (elements, "GRAV", size, x, y))
 
     def pressure(self, surface: str, size: Number, amplitude: str = "") -> Self:
-        """A pressure on a surface, in a step; positive presses on the body."""
+        """Appends a pressure on a surface, in a step; a positive one presses on the body."""
         return self.add(_with_amplitude("DSLOAD", amplitude), (surface, "P", size))
 
     def history(self, nodes: str) -> Self:
@@ -349,7 +365,7 @@ class Building(ABC):
 
 
 def element_types(plane: Plane, formulation: str = "") -> dict[int, str]:
-    """Types of elements by their numbers of nodes; a Fault where a formulation does not exist in the plane."""
+    """Types of elements by their number of nodes; a formulation that does not exist in this plane raises a Fault."""
     starts = {"strain": "CPE", "stress": "CPS", "axisymmetric": "CAX"}
     if plane not in starts:
         raise Fault(f"{plane} is no plane: choose from {', '.join(starts)}")
@@ -366,7 +382,7 @@ def _with_amplitude(head: str, amplitude: str) -> str:
 
 
 def _table(name: str, law: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The rows of a table whose second column increases."""
+    """The rows of a table; its second column must increase."""
     rows = [(float(force), float(along)) for force, along in law]
     if len(rows) < 2 or any(a >= b for (_, a), (_, b) in zip(rows, rows[1:])):
         raise Fault(f"the table of {name} has two rows or more, and its second column increases")
@@ -374,6 +390,6 @@ def _table(name: str, law: Sequence[tuple[float, float]]) -> list[tuple[float, f
 
 
 def _in_lines(numbers: Iterable[int]) -> list[list[int]]:
-    """Numbers as data lines of eight."""
+    """Splits numbers into data lines of eight."""
     flat = [int(number) for number in numbers]
     return [flat[at : at + 8] for at in range(0, len(flat), 8)]

@@ -1,4 +1,4 @@
-"""Bulges of curved faces: how far a face is outside of the chords of its segments, eqs (3.26) to (3.32)."""
+"""Bulges of curved faces: distances of a face from the chords of its segments, eqs (3.26) to (3.32)."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from stickslip.result import Result
 
 @dataclass(frozen=True)
 class Bulges:
-    """Those of the segments of a surface."""
+    """Bulges of the segments of a surface."""
 
     coefficients: Array
     """c0 to c3 of each [S, 4]."""
@@ -28,7 +28,7 @@ class Bulges:
         return float(self._slope(self.coefficients[segment], self._end(xi)))
 
     def secant(self, segment: int, before: float, now: float) -> float:
-        """D = (b(y) - b(x))/(y - x), eq. (3.29)."""
+        """Slope D = (b(y) - b(x))/(y - x) of the bulge, eq. (3.29)."""
         if abs(now - before) > 1e-4:
             change = self.height(segment, now) - self.height(segment, before)
             return float(change / (now - before))
@@ -39,11 +39,12 @@ class Bulges:
         return self.slope(segment, (before + now) / 2.0)
 
     def of(self, rows: Integers) -> "Bulges":
-        """Those of some segments."""
+        """Bulges of a selection of segments."""
         return Bulges(self.coefficients[rows], self.goes_straight_on)
 
     def of_points(self, pairs: Integers, middles: dict[int, tuple[int, int]]) -> "Bulges":
-        """The same for points of faces: over the lines to the vertices x_v of eq. (3.21) where a side has a node between."""
+        """Bulges for points of faces; on a side with a node between its corners they count from the lines to the vertex
+        x_v of eq. (3.21)."""
         found = self.coefficients.copy()
         for row, (a, b) in enumerate(pairs.tolist()):
             rise = found[row, 1]
@@ -60,7 +61,7 @@ class Bulges:
 
 
 def straight(count: int) -> Bulges:
-    """Those of straight faces."""
+    """Bulges of straight faces, which are zero."""
     return Bulges(np.zeros((count, 4)))
 
 
@@ -69,7 +70,7 @@ Curves = dict[tuple[int, int], Array]
 
 
 def curves(result: Result) -> Curves:
-    """All curved faces of the contacts of a result."""
+    """Coefficients of the bulges of all curved faces of the contacts of a result, by the nodes of the faces."""
     found: Curves = {}
     for name in result.file.get("model/contacts", ()):
         at = f"model/contacts/{name}"
@@ -82,7 +83,7 @@ def curves(result: Result) -> Curves:
 
 
 def of_edges(starts: Integers, ends: Integers, found: Curves) -> Bulges:
-    """Bulges of edges that are given by their nodes."""
+    """Bulges of edges, which are given by their nodes."""
     none = np.zeros(4)
     rows = [found.get((int(a), int(b)), none) for a, b in zip(starts, ends)]
     return Bulges(np.array(rows).reshape(-1, 4))

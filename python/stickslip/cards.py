@@ -16,17 +16,17 @@ class Card:
 
     @property
     def parameters(self) -> dict[str, str]:
-        """Parameters of the keyword line, names in capitals without blanks."""
+        """Parameters of the keyword line; their names are in capitals without blanks."""
         pairs = (part.partition("=") for part in fields(self.head)[1:])
         return {fold(name): value.strip() for name, _, value in pairs if name.strip()}
 
     def text(self) -> str:
-        """The card as deck lines."""
+        """The card as text of a deck."""
         return "\n".join([self.head, *(", ".join(row) for row in self.rows)]) + "\n"
 
 
 def fields(line: str) -> list[str]:
-    """Fields of a line between its commas; commas between quotation marks do not count."""
+    """Fields of a line; commas separate them, except commas between quotation marks."""
     if '"' not in line:
         return [part.strip() for part in line.split(",")]
     parts = [""]
@@ -41,5 +41,5 @@ def fields(line: str) -> list[str]:
 
 
 def fold(text: str) -> str:
-    """A word as it is compared: in capitals, without blanks."""
+    """The form in which words are compared: capitals without blanks."""
     return "".join(text.split()).upper()

@@ -1,4 +1,4 @@
-"""Command lines of the scripts: errors that the user can correct are one line, without a traceback."""
+"""Command lines of the scripts: an error that the user can correct is written as one line, without a traceback."""
 
 import argparse
 import math
@@ -14,7 +14,7 @@ FAULT = 2
 
 
 def finish(main: Callable[[], int | None]) -> NoReturn:
-    """Runs a script's `main` and exits with its code, or with FAULT and one line."""
+    """Runs the `main` of a script and exits with its code; after an error, writes one line and exits with FAULT."""
     try:
         code = main() or 0
         sys.stdout.flush()
@@ -69,7 +69,7 @@ def positive_integer(text: str) -> int:
 
 
 def numbers(count: int) -> Callable[[str], tuple[float, ...]]:
-    """So many finite numbers between commas, as a type of argparse."""
+    """`count` finite numbers between commas, as a type of argparse."""
 
     def parse(text: str) -> tuple[float, ...]:
         values = tuple(finite(part) for part in text.split(","))

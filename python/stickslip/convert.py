@@ -1,4 +1,5 @@
-"""Results in the containers of other packages, which are imported only when they are asked for."""
+"""Results in the data types of other packages (pandas, xarray, pyvista), which are imported only when they are
+needed."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -23,10 +24,10 @@ COMPONENTS = {2: ("1", "2"), 3: ("11", "22", "12")}
 
 
 def to_dataframe(result: ResultFile) -> "pandas.DataFrame":
-    """All histories, one row per increment with the time as index.
+    """All histories as a table with one row per increment and the time as index.
 
-    Columns bear the names of `Result.quantity`: `energy/kinetic`, `contact/A_B/force:1`,
-    `nodes/TIP[12]/U:2`, `elements/E/points[7.2]/S:1`, `connectors[9]/force`, `bodies/velocity[0]:1`.
+    Columns have the names of `Result.quantity`: `energy/kinetic`, `contact/A_B/force:1`, `nodes/TIP[12]/U:2`,
+    `elements/E/points[7.2]/S:1`, `connectors[9]/force`, `bodies/velocity[0]:1`.
     """
     pandas = _package("pandas")
     columns = columns_of(result)
@@ -35,7 +36,7 @@ def to_dataframe(result: ResultFile) -> "pandas.DataFrame":
 
 
 def columns_of(result: ResultFile) -> dict[str, Array]:
-    """The columns of that table by their names, `time` among them."""
+    """The columns of the table of all histories by their names; `time` is one of them."""
     return {name: values for path in result.histories for name, values in _columns(result, path)}
 
 
@@ -59,8 +60,8 @@ def to_xarray(
 ) -> "xarray.Dataset":
     """All histories along `time`, named by their paths with dots, and some fields along `frame`.
 
-    A name with a `/` could not be written with `to_netcdf`. `times` are those of the frames. Of each field are given the
-    path of its dataset, and its values in all frames [F, N or E, ...].
+    Dots are used because `to_netcdf` cannot write names with a `/`. `times` holds the times of the frames. Each field
+    is given by the path of its dataset and its values in all frames [F, N or E, ...].
 
     Every variable has the attributes `description` and `dimension` of the result file.
     """
@@ -95,7 +96,8 @@ def dotted(path: str) -> str:
 def _variable(
     axes: list[str], data: Array, attributes: Any, coordinates: dict[str, Any]
 ) -> tuple[list[str], Array, dict[str, str]]:
-    """Axes, values and attributes; the last axis of vectors and tensors has the names of components."""
+    """Axes, values and attributes; the last axis of vectors and tensors is labelled with the names of the
+    components."""
     if data.ndim > len(axes):
         components = COMPONENTS[data.shape[-1]]
         axis = "component" if len(components) == 2 else "tensor"
@@ -109,7 +111,7 @@ def to_pyvista(
 ) -> "pyvista.UnstructuredGrid":
     """A frame as an unstructured grid with all its fields, rigid segments included.
 
-    Of each field are given whether it is PointData or CellData, and its rows as they stand in the file.
+    Each field is given by its group, PointData or CellData, and its rows as in the file.
     """
     pyvista = _package("pyvista")
     ends = result.read("VTKHDF/Offsets")
@@ -129,7 +131,7 @@ def to_pyvista(
 
 
 def _package(name: str) -> Any:
-    """A package that the user has installed or not."""
+    """Imports a package that may not be installed."""
     import importlib
 
     try:

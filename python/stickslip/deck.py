@@ -1,6 +1,7 @@
-"""Decks as cards: read with the files they name, made from meshes, changed, written as one file.
+"""Decks as lists of cards, which can be read with the files that they name, made from meshes, changed, and written as
+one file.
 
-Whatever a method does not offer is a card: `deck.add("KEYWORD, PARAMETER=VALUE", row, row)`.
+Cards without a method of their own are added by text: `deck.add("KEYWORD, PARAMETER=VALUE", row, row)`.
 """
 
 import re
@@ -32,7 +33,7 @@ PLAIN_TEXT = re.compile(r"\s*(?P<name>[A-Za-z]\w*)\s*=\s*(?P<quote>['\"])(?P<tex
 
 
 class Deck(Building, Shown):
-    """A deck's cards in order, includes in place."""
+    """The cards of a deck in order; included cards stand in the place of their file."""
 
     def __init__(self, cards: Iterable[Card] = (), folder: Path | str = ".") -> None:
         self.cards = list(cards)
@@ -52,7 +53,7 @@ class Deck(Building, Shown):
 
     @classmethod
     def parse(cls, text: str, folder: Path | str = ".") -> "Deck":
-        """A deck from its text; files that it names are looked for in a folder."""
+        """A deck made from text; files that it names are searched in `folder`."""
         return cls._of(_lines(text, Path(folder), Path(folder)), "the deck", folder)
 
     @classmethod
@@ -71,7 +72,7 @@ class Deck(Building, Shown):
         return cls(cards, folder)
 
     def text(self) -> str:
-        """The whole deck."""
+        """The whole deck as text."""
         return "".join(card.text() for card in self.cards)
 
     def write(self, path: Path | str) -> Path:
@@ -80,9 +81,10 @@ class Deck(Building, Shown):
         return Path(path)
 
     def filled(self, values: Mapping[str, Value]) -> "tuple[Deck, dict[str, Value]]":
-        """The deck with the files in place whose names are parameters, and the values that it still needs.
+        """The deck with the contents of files whose names are parameters, and the values of parameters that it still
+        needs.
 
-        The values of parameters without one are those of `*PARAMETER`, where these are plain texts.
+        A parameter that is not given has the value of `*PARAMETER`, if this value is a plain text.
         """
         named = {name for head in map(_input_of, self.cards) for name in PARAMETER.findall(head)}
         if not named:
@@ -106,7 +108,7 @@ class Deck(Building, Shown):
         return [card for card in self.cards if card.keyword == fold(keyword)]
 
     def one(self, keyword: str) -> Card:
-        """The only card with this keyword."""
+        """The card with this keyword, of which there must be one."""
         found = self.find(keyword)
         if len(found) != 1:
             raise ValueError(f"the deck has {len(found)} cards *{keyword}, not one")
@@ -114,17 +116,17 @@ class Deck(Building, Shown):
 
     @property
     def dt(self) -> float:
-        """Increment of the only step."""
+        """Increment of the step, of which there must be one."""
         return float(self.one("DYNAMIC").rows[0][0])
 
     @property
     def period(self) -> float:
-        """Duration of the only step."""
+        """Duration of the step, of which there must be one."""
         return float(self.one("DYNAMIC").rows[0][1])
 
     @property
     def duration(self) -> float | None:
-        """Time of all steps; None where it is no plain number."""
+        """Sum of the durations of all steps; None if a duration is not a plain number."""
         try:
             return sum(float(card.rows[0][1]) for card in self.cards if card.keyword in PROCEDURES)
         except (IndexError, ValueError):
@@ -133,7 +135,7 @@ class Deck(Building, Shown):
     # Building.
 
     def add(self, head: str, *rows: Sequence[object]) -> "Deck":
-        """Appends a card: its keyword line without the star, and its data lines."""
+        """Appends a card, given by its keyword line without the star and its data lines."""
         return self.extend(card(head, *rows))
 
     def extend(self, text: str) -> "Deck":
@@ -144,14 +146,14 @@ class Deck(Building, Shown):
     # Changing.
 
     def set_increments(self, dt: float, count: int) -> None:
-        """Gives the only step `count` increments of `dt`."""
+        """Gives the step, of which there must be one, `count` increments of `dt`."""
         self.one("DYNAMIC").rows = [[repr(dt), repr(count * dt)]]
         step = self.one("STEP")
         parts = [part for part in step.head.split(",") if not fold(part).startswith("INC=")]
         step.head = ",".join(parts) + f", INC={count}"
 
     def set_settings(self, **settings: object) -> None:
-        """Replaces the STICKSLIP cards of all steps; without settings they are removed."""
+        """Replaces the STICKSLIP cards of all steps; without settings the cards are removed."""
         self.cards = [card for card in self.cards if card.keyword != "STICKSLIP"]
         if settings:
             text = "".join(f", {key.replace('_', ' ')}={value}" for key, value in settings.items())
@@ -178,9 +180,9 @@ def _text(path: Path) -> str:
 def _lines(
     text: str, folder: Path, main: Path, values: Mapping[str, str] = {}, depth: int = 0
 ) -> list[str]:
-    """Logical lines of a file without comments and empty lines, with those of included files.
+    """Logical lines of a file and of the files that it includes, without comments and empty lines.
 
-    `values` are those of parameters in the names of files.
+    `values` holds the values of parameters in names of files.
     """
     if depth > 9:
         raise Fault(f"{folder}: includes are nested too deep")
@@ -202,16 +204,16 @@ def _lines(
 
 
 def _input_of(card: Card) -> str:
-    """The name of a file that is still to be read; empty where there is none."""
+    """The name of a file that a line still needs; empty if there is none."""
     return "" if card.keyword in FREE_TEXT else card.parameters.get("INPUT", "")
 
 
 def _read_input(
     lines: list[str], folder: Path, main: Path, values: Mapping[str, str], depth: int
 ) -> None:
-    """Puts the lines of a file in the place of the INPUT= of the last line, a keyword line.
+    """Replaces INPUT= of the last line, a keyword line, by the lines of the file that it names.
 
-    A name with a parameter that has no value stays as it is.
+    A file name with a parameter without value stays as it is.
     """
     if not lines or not lines[-1].startswith("*"):
         return

@@ -1,4 +1,4 @@
-"""Texts that programs write decks of: cards, and grids of four-node quadrilaterals.
+"""Text for decks that are written by programs: cards, and grids of four-node quadrilaterals.
 
 `deck.Deck` reads and changes whole decks, and appends cards with the same `card`.
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def card(keyword: str, *rows: Sequence[object]) -> str:
-    """Text of one card: its keyword line and data lines; floats are written with repr."""
+    """Text of a card with its keyword line and data lines; floats are written with repr."""
     lines = ["*" + keyword]
     lines += [
         ", ".join(repr(float(x)) if isinstance(x, float) else str(x) for x in row) for row in rows
@@ -21,7 +21,7 @@ def card(keyword: str, *rows: Sequence[object]) -> str:
 def material(
     name: str, young: float, poisson: float, density: float, law: str = "", **damping: float
 ) -> str:
-    """A material of `*ELASTIC`, with the `TYPE` that is its law; zero parameters of its damping are left out."""
+    """Text of a material with `*ELASTIC`, whose `TYPE` is the law; zero damping parameters are left out."""
     kind = f", TYPE={law}" if law else ""
     parameters = "".join(f", {key.upper()}={value!r}" for key, value in damping.items() if value)
     return "".join(
@@ -42,7 +42,7 @@ def elastic(
     thickness: float = 1.0,
     **damping: float,
 ) -> str:
-    """A material and the sections of element sets that are made of it."""
+    """Text of a material, and of the sections of element sets made of it."""
     return "".join(
         [
             material("ELASTIC", young, poisson, density, "", **damping),
@@ -55,12 +55,12 @@ def elastic(
 
 
 def dry(friction: float) -> str:
-    """The interaction DRY with a coefficient of friction."""
+    """Text of the interaction DRY with a coefficient of friction."""
     return card("SURFACE INTERACTION, NAME=DRY") + card("FRICTION", (friction,))
 
 
 def step(dt: float, increments: int, *cards: str) -> str:
-    """A step of equal increments with its cards."""
+    """Text of a step of equal increments with its cards."""
     head = card(f"STEP, NLGEOM, INC={increments}")
     return "".join([head, card("DYNAMIC, DIRECT", (dt, increments * dt)), *cards, card("END STEP")])
 
@@ -88,18 +88,18 @@ class Grid:
         first_node: int = 1,
         first_element: int = 1,
     ) -> None:
-        """`place(i, j)` gives the coordinates of a node, turning counter-clockwise with (i, j)."""
+        """`place(i, j)` gives the coordinates of a node; (i, j) must be a right-handed system."""
         self.name, self.nx, self.ny, self.place = name, nx, ny, place
         self.first_node, self.first_element = first_node, first_element
 
     @property
     def next_node(self) -> int:
-        """First label behind those of the nodes."""
+        """First label behind the labels of the nodes."""
         return self.first_node + (self.nx + 1) * (self.ny + 1)
 
     @property
     def next_element(self) -> int:
-        """First label behind those of the elements."""
+        """First label behind the labels of the elements."""
         return self.first_element + self.nx * self.ny
 
     def node(self, i: int, j: int) -> int:
@@ -111,7 +111,7 @@ class Grid:
         return self.first_element + i + j * self.nx
 
     def mesh(self, element_type: str) -> str:
-        """Cards NODE and ELEMENT; both sets bear the name of the grid."""
+        """Cards NODE and ELEMENT; both sets have the name of the grid."""
         nodes = [
             (self.node(i, j), *self.place(i, j))
             for j in range(self.ny + 1)
@@ -157,9 +157,10 @@ class Grid:
 
 
 class GridMesh:
-    """Any quadrilaterals: nodes and elements by their indices, labels in order.
+    """Any quadrilaterals, with nodes and elements by their indices; labels are consecutive.
 
-    `mesh.Mesh` is for decks that are made of arrays; this one writes its cards itself, with the labels of a first node and element.
+    `mesh.Mesh` is for decks that are made of arrays; this class writes its cards itself, with labels from a first node
+    and element on.
     """
 
     def __init__(
@@ -175,16 +176,16 @@ class GridMesh:
 
     @property
     def next_node(self) -> int:
-        """First label behind those of the nodes."""
+        """First label behind the labels of the nodes."""
         return self.first_node + len(self.nodes)
 
     @property
     def next_element(self) -> int:
-        """First label behind those of the elements."""
+        """First label behind the labels of the elements."""
         return self.first_element + len(self.elements)
 
     def mesh(self, element_type: str) -> str:
-        """Cards NODE and ELEMENT; both sets bear the name of the mesh."""
+        """Cards NODE and ELEMENT; both sets have the name of the mesh."""
         nodes = [(self.first_node + k, *place) for k, place in enumerate(self.nodes)]
         elements = [
             (self.first_element + k, *(self.first_node + node for node in corners))
@@ -196,12 +197,13 @@ class GridMesh:
 
 
 def outline(*names: str) -> str:
-    """Cards SURFACE with all free sides of element sets; surfaces bear the names of the sets."""
+    """Cards SURFACE with all free sides of element sets; surfaces have the names of the sets."""
     return "".join(card(f"SURFACE, NAME={name}", (name,)) for name in names)
 
 
 def facing_blocks(elements: int, left: float) -> tuple[Grid, Grid]:
-    """UPPER, 1e-4 above LOWER and `left` to the right of it: blocks 1 x 0.5, `elements` along each."""
+    """Two blocks of 1 x 0.5 with `elements` elements along each: UPPER lies 1e-4 above LOWER, shifted to the right by
+    `left`."""
     size = 1.0 / elements
     count = elements, elements // 2
     upper = Grid("UPPER", *count, lambda i, j: (left + i * size, 0.5001 + j * size))
@@ -218,7 +220,7 @@ def ring(
     first_node: int = 1,
     first_element: int = 1,
 ) -> GridMesh:
-    """A ring between two radii; node (k, j) is the k-th around and the j-th from the inside."""
+    """A ring between two radii; node (k, j) is the k-th around the ring and the j-th from the inside."""
     nodes = []
     for j in range(across + 1):
         radius = radii[0] + (radii[1] - radii[0]) * j / across
@@ -248,9 +250,9 @@ def disc(
     first_node: int = 1,
     first_element: int = 1,
 ) -> GridMesh:
-    """A disc turned by an angle: a square of side x side elements, bulging, with rings around.
+    """A disc, turned by an angle: a bulging square of side x side elements, with rings around it.
 
-    It has 4 side nodes on its rim.
+    There are 4 `side` nodes on its rim.
     """
     core = 0.55 * radius
     flat = [(2 * i / side - 1, 2 * j / side - 1) for j in range(side + 1) for i in range(side + 1)]
@@ -285,7 +287,7 @@ def disc(
 
 
 def write_to_folder(about: str | None, folder: Path, write: Callable[[Path], None]) -> None:
-    """Command line of a script that writes decks: into `folder`, or that of the option `-o`."""
+    """Command line of a script that writes decks, into `folder` or the folder of the option `-o`."""
     parser = argparse.ArgumentParser(description=about)
     parser.add_argument("-o", "--output", type=Path, default=folder, help="folder of the decks")
     write(parser.parse_args().output)

@@ -20,17 +20,17 @@ class Fault(Exception):
 
 
 class Missing(Fault, KeyError):
-    """A result has nothing of this name; the text says what there is."""
+    """A result has nothing with this name; the text lists the names that exist."""
 
     __str__ = Exception.__str__
 
 
 def one_line(error: BaseException) -> str:
-    """The text of an error without line ends."""
+    """The text of an error as one line."""
     return " ".join(str(error).split()) or type(error).__name__
 
 
 def not_installed(name: str) -> Fault:
-    """The error of a package that is not installed: what to install."""
+    """The error for a package that is not installed; it says what to install."""
     what = f'"stickslip[{EXTRAS[name]}]"' if name in EXTRAS else name
     return Fault(f"this needs the package {name}: pip install {what}")

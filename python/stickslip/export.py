@@ -19,7 +19,7 @@ from stickslip.whole import whole, write_text
 
 
 def vtu(result: Result, folder: Path) -> Iterator[Path]:
-    """Writes every frame, and the file that names them."""
+    """Writes a file for every frame, and the file that lists them."""
     entries = []
     for frame in result.frames:
         path = folder / f"{result.job}_{frame.index:04d}.vtu"
@@ -46,12 +46,12 @@ def histories(result: Result, folder: Path) -> Iterator[Path]:
 
 
 def series(result: Result, folder: Path) -> Iterator[Path]:
-    """Writes the text that names the values of all frames."""
+    """Writes the XDMF text, which refers to the values of all frames."""
     yield _lines(folder / f"{result.job}.xdmf", xdmf.text_of(result, folder))
 
 
 def of_calculix(result: Result, folder: Path) -> Iterator[Path]:
-    """Writes all frames as CalculiX does."""
+    """Writes all frames in the format of CalculiX."""
     yield _lines(folder / f"{result.job}.frd", frd.text_of(result))
 
 

@@ -1,8 +1,8 @@
-"""Names of fields: what users call them, what they are in words, and the numbers that are made of their components.
+"""Names of fields: names that users write, descriptions in words, and numbers that are made of their components.
 
-A name is that of the result file, one of Abaqus, or a word: `CONTACT_PRESSURE`, `CPRESS` and `contact-pressure` are the same,
-and so are `S:1`, `S:xx` and `S11`. After a colon stands a component, or what is made of several: `U:magnitude`, `S:max`.
-Capitals do not matter.
+A name is the name in the result file, a name of Abaqus, or a word: `CONTACT_PRESSURE`, `CPRESS` and `contact-pressure`
+are the same, and so are `S:1`, `S:xx` and `S11`. After a colon stands a component, or a number made of several
+components: `U:magnitude`, `S:max`. Capitals do not matter.
 """
 
 from collections.abc import Callable, Container, Iterable
@@ -114,7 +114,7 @@ MADE: dict[int, dict[str, tuple[str, Made]]] = {
 
 
 def _sorted_principal(k: int) -> Callable[[Array, Array], Array]:
-    """The principal stress k of the three, from the smallest."""
+    """The principal stress number k of three, from the smallest on."""
 
     def of(s: Array, across: Array) -> Array:
         return np.sort(np.stack([_principal(-1.0)(s), _principal(1.0)(s), across], axis=-1), axis=-1)[..., k]
@@ -136,13 +136,13 @@ INVARIANTS: dict[str, Callable[[Array, Array], Array]] = {
 
 
 def directions(count: int, axisymmetric: bool) -> list[str]:
-    """Names of so many components."""
+    """Names of the components of a field with `count` components."""
     names = IN_BODIES_OF_REVOLUTION if axisymmetric else DIRECTIONS
     return list(names.get(count, [str(i + 1) for i in range(count)]))
 
 
 def words(name: str, axisymmetric: bool = False) -> str:
-    """A field in words."""
+    """Description of a field in words."""
     base = name.removesuffix(AT_NODES)
     text = AROUND.get(base) if axisymmetric else None
     text = text or WORDS.get(base, base.lower().replace("_", " "))
@@ -150,14 +150,15 @@ def words(name: str, axisymmetric: bool = False) -> str:
 
 
 def also(field: str, count: int) -> dict[str, str]:
-    """The names of Abaqus of a field with so many components, by the component: `{"x": "U1", "y": "U2"}`."""
+    """The names that Abaqus gives to the components of a field, by component: `{"x": "U1", "y": "U2"}`."""
     components = DIRECTIONS.get(count, ("",))
     pairs = ((name, *target.partition(":")[::2]) for name, target in ABAQUS.items())
     return {components[int(k or 1) - 1]: name for name, of, k in pairs if of == field and bool(k) == (count > 1)}
 
 
 def known(name: str, there: Container[str]) -> str:
-    """The name with the spelling of the result file, a component after its colon; `there` are the fields of the file."""
+    """A name in the spelling of the result file, with a component after its colon; `there` holds the fields of the
+    file."""
     path, colon, part = name.partition(":")
     if path not in there:
         folded = path.strip().upper().replace("-", "_").replace(" ", "_")
@@ -167,7 +168,7 @@ def known(name: str, there: Container[str]) -> str:
 
 @dataclass(frozen=True)
 class Part:
-    """A component of a field, or what is made of several."""
+    """A component of a field, or a number made of several components."""
 
     field: str
     """Name of the field in the result file."""
@@ -178,9 +179,9 @@ class Part:
 
 
 def part(name: str, count: int | None, axisymmetric: bool) -> Part:
-    """A number of a field with `count` components, None for a scalar, whose name has the spelling of the file.
+    """A number of a field, whose name has the spelling of the file, with `count` components (None for a scalar).
 
-    Without a component it is the magnitude of a vector.
+    If the name of a vector has no component, the number is its magnitude.
     """
     field, _, which = name.partition(":")
     text = words(field, axisymmetric)
@@ -206,11 +207,12 @@ def _unique(names: Iterable[str]) -> list[str]:
 
 
 def tensor_columns(name: str) -> dict[str, Columns]:
-    """The fields that a tensor of the file holds, with their columns: `S` in the plane (xx yy xy) and `S33` across it."""
+    """The fields that a tensor of the file contains, with their columns: `S` in the plane (xx yy xy) and `S33` across
+    it."""
     base = name.removesuffix(AT_NODES)
     return {name: [0, 1, 3], f"{base}33{name[len(base):]}": 2}
 
 
 def without_third(name: str, rows: NDArray[np.generic]) -> NDArray[np.generic]:
-    """Rows of a field of the file, vectors without their third component, which is 0."""
+    """Rows of a field of the file; vectors lose their third component, which is 0."""
     return rows[:, :2] if name in VECTORS else rows

@@ -36,11 +36,12 @@ ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class Frame(Mapping[str, Any]):
-    """Fields by name at one time: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of elements.
+    """A frame gives fields at one time by their names: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of
+    elements.
 
-    Vectors lose their third component, which is 0. Stresses and strains are means over the
-    elements, (xx, yy, xy); so are the values at nodes, `frame["S_AT_NODES"]` [N, 3]. Components have names of their
-    own, `frame["S11"]` [E]: see `fields`.
+    Vectors lose their third component, which is 0. Stresses and strains are means over the elements, (xx, yy, xy); so
+    are the values at nodes, `frame["S_AT_NODES"]` [N, 3]. Components have names, such as `frame["S11"]` [E] (see
+    `fields`).
     """
 
     frames: "Frames"
@@ -48,7 +49,7 @@ class Frame(Mapping[str, Any]):
 
     @property
     def result(self) -> ResultFile:
-        """The file that it is read from."""
+        """The file from which the frame is read."""
         return self.frames.result
 
     @property
@@ -58,7 +59,7 @@ class Frame(Mapping[str, Any]):
 
     @property
     def positions(self) -> Array:
-        """Current coordinates of the nodes [N, 2]; a Fault when areas overflow."""
+        """Current coordinates of the nodes [N, 2]; areas that overflow raise a Fault."""
         positions = self.result.coordinates + self["U"]
         if not (np.abs(positions) < LARGEST).all():
             place = f"{self.result.path}: frame {self.index}"
@@ -71,20 +72,21 @@ class Frame(Mapping[str, Any]):
         return self.frames.part(name).of(rows) if colon else rows
 
     def _whole(self, field: str) -> NDArray[Any]:
-        """A field of the file: of vectors what is in the plane, of elements without rigid segments."""
+        """A field of the file, with the components of vectors in the plane and without rigid segments among
+        elements."""
         kind = self.frames.kind(field)
         rows = without_third(field, self.full(field))
         return rows[: len(self.result.cells)] if kind == "CellData" else rows
 
     def nodal(self, name: str) -> NDArray[Any]:
-        """A field at the nodes [N, ...]: one of elements is averaged within a body and a material (see `nodal`)."""
+        """A field at the nodes [N, ...]; a field of elements is averaged within a body and a material (see `nodal`)."""
         return self.at_places(name)[: len(self.result.coordinates)]
 
     def at_places(self, name: str) -> NDArray[Any]:
-        """A field at the places [P, ...] of `nodal.Recovery`, which tell the materials at a node apart.
+        """A field at the places [P, ...] of `nodal.Recovery`; a node between materials has a place for each of them.
 
-        Invariants are those of the stresses there. Where the program has written a field at nodes, `POSITION=NODES`, its
-        values are taken at nodes of one material.
+        Invariants are computed from the stresses at the places. If the program has written a field at nodes
+        (`POSITION=NODES`), its values are used at nodes of one material.
         """
         spelled = self.frames.known(name)
         field, colon, _ = spelled.partition(":")
@@ -102,13 +104,13 @@ class Frame(Mapping[str, Any]):
         return self.frames.part(spelled).of(rows) if colon else rows
 
     def full(self, name: str) -> NDArray[Any]:
-        """A field with third components of vectors and with rigid segments."""
+        """A field including third components of vectors and rigid segments."""
         stored, columns = self.frames.stored[self.frames.known(name)]
         rows = self.rows(stored)
         return rows if columns is None else rows[:, columns]
 
     def rows(self, stored: str) -> NDArray[Any]:
-        """The rows of a dataset of fields as they stand in the file."""
+        """The rows of a dataset of fields in the form of the file."""
         kind = self.frames.fields[stored]
         first = self.frames.first_row(kind, stored, self.index)
         return self.result.read(f"VTKHDF/{kind}/{stored}", first, first + self.frames.sizes[kind])
@@ -127,7 +129,7 @@ class Frame(Mapping[str, Any]):
     def to_pyvista(self) -> "pyvista.UnstructuredGrid":
         """The frame as a grid of PyVista, in the reference configuration, with all fields.
 
-        `grid.warp_by_vector("U")` is the deformed shape. Needs the package pyvista.
+        `grid.warp_by_vector("U")` is the deformed shape. The function needs the package pyvista.
         """
         datasets = dict.fromkeys(stored for stored, _ in self.frames.stored.values())
         fields = {name: (self.frames.fields[name], self.rows(name)) for name in datasets}
@@ -170,7 +172,8 @@ class Frames(Sequence[Frame]):
         """Times of the frames [F]."""
 
     def known(self, name: str) -> str:
-        """The name of a field with the spelling of the file, with its component (see `fields`); Missing where there is none."""
+        """The name of a field with the spelling of the file, with its component (see `fields`); a name without a field
+        raises Missing."""
         spelled = known(name, self.fields)
         if spelled.partition(":")[0] not in self.fields:
             there = ", ".join(self.fields)
@@ -182,7 +185,7 @@ class Frames(Sequence[Frame]):
         return self.fields[self.known(name).partition(":")[0]]
 
     def part(self, name: str) -> Part:
-        """What a name asks for of its field; a Fault where it has to say of which component."""
+        """The number that a name asks for; a name that must name a component and does not raises a Fault."""
         spelled = self.known(name)
         field = spelled.partition(":")[0]
         shape = self.result.item(self.dataset(field)).shape[1:]
@@ -193,7 +196,7 @@ class Frames(Sequence[Frame]):
         return part(spelled, count, self.result.is_axisymmetric)
 
     def dataset(self, field: str) -> str:
-        """Path of the dataset that holds a field of this very name."""
+        """Path of the dataset that holds a field with exactly this name."""
         return f"VTKHDF/{self.fields[field]}/{self.stored[field][0]}"
 
     def field(self, name: str) -> tuple[str, NDArray[Any]]:
@@ -202,16 +205,16 @@ class Frames(Sequence[Frame]):
         return self.dataset(field), np.stack([frame[name] for frame in self])
 
     def first_row(self, kind: str, name: str, index: int) -> int:
-        """First row of a frame in a field; one that does not change is there once."""
+        """First row of a frame in the dataset of a field; a field that does not change is stored once."""
         offsets = self._offsets.get((kind, name))
         return 0 if offsets is None else int(offsets[index])
 
     def nearest(self, time: float) -> Frame:
-        """The frame nearest to a time, however far away."""
+        """The frame nearest to a time, at any distance."""
         return self[int(np.abs(self.times - time).argmin())]
 
     def at(self, time: float) -> Frame:
-        """The frame nearest to a time of the run; a Fault when no frame comes after it."""
+        """The frame nearest to a time of the run; a time before or after all frames raises a Fault."""
         first, last = float(self.times[0]), float(self.times[-1])
         margin = ROUND_OFF * max(last - first, abs(last))
         if not first - margin <= time <= last + margin:

@@ -1,8 +1,9 @@
-"""A result in the text format of CalculiX, .frd, for cgx, PrePoMax and others: mesh, displacements and stresses at nodes.
+"""A result in the text format of CalculiX, .frd, for cgx, PrePoMax and others: mesh, displacements and stresses at
+nodes.
 
-The columns are those of the manual of CalculiX GraphiX, section "Result Format". Numbers have six digits. Stresses are
-averaged at nodes within a body and a material (see `nodal`); at a node between two materials stands one of both values.
-Segments of rigid surfaces are beams of two nodes.
+The columns follow the manual of CalculiX GraphiX, section "Result Format". Numbers have six digits. Stresses are
+averaged at nodes within a body and a material (see `nodal`); a node between two materials gets only one of the two
+values. Segments of rigid surfaces are beams of two nodes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -82,7 +83,7 @@ def _results(
 
 
 def _rows(labels: Integers, values: Array) -> Iterable[str]:
-    """A line for each node; what three digits of an exponent would take is 0 or no number."""
+    """A line for each node; numbers whose exponent would need three digits are written as 0 or as no number."""
     size = np.abs(values)
     written = np.where(size < 1e-99, 0.0, np.where(size < 9.9999e99, values, np.nan))
     numbers = "".join(["%12.5E"] * values.shape[1])

@@ -1,7 +1,7 @@
-"""Histories of a result: one row per increment, row 0 being the start (docs/output.md, /history).
+"""Histories of a result, with one row per increment; row 0 is the start (docs/output.md, /history).
 
-A group reads its datasets when they are asked for, `group.name` or `group["name"]`, up to the last
-row that is complete. Names that classes annotate are those that every result has; a result may hold more.
+A group reads a dataset when it is accessed, `group.name` or `group["name"]`, up to the last complete row. Every result
+has the names that the classes annotate; a result may have more.
 """
 
 from collections.abc import Iterator, Mapping
@@ -30,12 +30,12 @@ class Group(Mapping[str, Any]):
 
     @property
     def name(self) -> str:
-        """Last part of the path in the file: of a contact `SLAVE_MASTER`."""
+        """Last part of the path of the group in the file, such as `SLAVE_MASTER` for a contact."""
         return self._path.rpartition("/")[2]
 
     @property
     def _stored(self) -> Mapping[str, Any]:
-        """The group in the file; empty where the result lacks it."""
+        """The group in the file; an empty group if the result lacks it."""
         return self._result.item(self._path) if self._result.has(self._path) else {}
 
     def __getitem__(self, name: str) -> Any:
@@ -80,7 +80,7 @@ class Named(Group, Generic[Each]):
 
 
 class Energy(Group):
-    """Energy ledger [I]. All but the first two are sums since the start."""
+    """Energy ledger [I]. All accounts except the first two are sums since the start."""
 
     kinetic: Array
     strain: Array
@@ -104,14 +104,14 @@ class Energy(Group):
 
     @property
     def largest(self) -> float:
-        """Largest magnitude of any account but the balance, and of the works that cancel in them; NaN
-        if one is NaN."""
+        """Largest magnitude of the accounts, without the balance, and of the works that cancel in them; NaN if one
+        value is NaN."""
         names = [name for name in (*ENERGIES, "scale") if name != "balance" and name in self]
         return float(np.max([np.abs(self[name]).max() for name in names]))
 
     @property
     def noise(self) -> float:
-        """Largest energy that may be round-off."""
+        """Largest energy that counts as round-off."""
         return float(np.max(self["round_off"])) if "round_off" in self else 0.0
 
 
@@ -202,7 +202,7 @@ class NodeSets(Named[NodeSet]):
 
 
 class ElementSet(Group):
-    """Means over the k elements of a set."""
+    """Means over the k elements of a set, and values of the elements."""
 
     labels: Integers
     """Element numbers [k]."""
@@ -234,7 +234,7 @@ class ElementSets(Named[ElementSet]):
 
 
 class Rigid(Group):
-    """Motion of the reference node of a rigid surface, and its reaction."""
+    """Motion of the reference node of a rigid surface, and the reaction there."""
 
     position: Array
     U: Array
@@ -260,7 +260,7 @@ class Solver(Group):
 
 
 class Certificate(Group):
-    """What the run has checked in every increment [I]; the attribute `bound` of a dataset is its bound."""
+    """Checks that the run has made in every increment [I]; the attribute `bound` of a dataset is its bound."""
 
     residual: Array
     """Force residual of the last pass, part of the largest force."""
@@ -269,7 +269,7 @@ class Certificate(Group):
 
 
 class Impacts(Group):
-    """Landings, one row each."""
+    """Landings; each has one row."""
 
     time: Array
     increment: Integers
@@ -313,7 +313,7 @@ class History(Group):
     }
 
     def __getitem__(self, name: str) -> Any:
-        """A dataset or group by its path; groups that a result may lack are empty then."""
+        """A dataset or group by its path; groups that a result may lack are empty if they are missing."""
         if name in self._groups and name not in self._stored:
             return self._groups[name](self._result, f"{self._path}/{name}")
         return super().__getitem__(name)

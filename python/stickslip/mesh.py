@@ -32,9 +32,9 @@ GMSH_LINES = {1: 2, 8: 3}
 
 @dataclass
 class Mesh:
-    """Nodes and elements by their indices, from 0, with named sets of them.
+    """Nodes and elements, numbered by indices from 0, with named sets.
 
-    Elements are turned so that their nodes follow each other counter-clockwise.
+    Elements with clockwise nodes are turned, so that all nodes run counter-clockwise.
     """
 
     points: Array
@@ -69,7 +69,7 @@ class Mesh:
         ]
 
     def _check(self) -> None:
-        """Tells what no deck can be made of."""
+        """Raises a Fault for a mesh from which no deck can be made."""
         for index, element in enumerate(self.elements):
             if element.shape not in ((3,), (4,), (6,), (8,)):
                 raise Fault(f"element {index} has {element.size} nodes: 3, 4, 6 or 8 are needed")
@@ -85,7 +85,7 @@ class Mesh:
                 raise Fault(f"{what} have {kind} {worst}: there are 0 to {count[kind] - 1}")
 
     def faces(self, name: str) -> list[tuple[int, int]]:
-        """Element index and number of the side, from 1, of each of the named sides."""
+        """Element index and number of the side, from 1, for each side of the surface with this name."""
         if self._owner is None:
             self._owner = {}
             for index, element in enumerate(self.elements):
@@ -106,10 +106,11 @@ class Mesh:
 
     @classmethod
     def from_meshio(cls, mesh: "meshio.Mesh") -> "Mesh":
-        """Triangles and quadrilaterals, linear or quadratic, of a mesh of meshio, with its sets and physical groups.
+        """A mesh made of the triangles and quadrilaterals, linear or quadratic, of a mesh of meshio, with its sets and
+        physical groups.
 
-        Sets of lines become sides and, with their nodes, node sets. Without any set of elements
-        all of them are the set ALL. Nodes of no element are left out.
+        Sets of lines become sides and, with their nodes, node sets. If there are no sets of elements, all elements form
+        the set ALL. Nodes that belong to no element are left out.
         """
         blocks = [(block.type, np.asarray(block.data)) for block in mesh.cells]
         groups: dict[str, list[Integers]] = {
@@ -148,9 +149,9 @@ class Mesh:
     def from_gmsh(cls, model: Any) -> "Mesh":
         """The mesh of a Gmsh model (`gmsh.model`), with its physical groups by name.
 
-        Groups of surfaces become element sets, groups of curves become sides and node sets, groups
-        of points node sets. Without a group of surfaces all elements are the set ALL; with one,
-        elements outside of all groups are left out, as Gmsh does in its files.
+        Groups of surfaces become element sets, groups of curves become sides and node sets, and groups of points become
+        node sets. If there is no group of surfaces, all elements form the set ALL; otherwise elements outside all
+        groups are left out, as in files of Gmsh.
         """
         tags, coordinates, _ = model.mesh.getNodes()
         index = {int(tag): at for at, tag in enumerate(tags)}
@@ -203,7 +204,7 @@ class Mesh:
         nodes: Mapping[str, Integers],
         sides: Mapping[str, Integers],
     ) -> "Mesh":
-        """The mesh without the nodes that no element has."""
+        """The mesh without nodes that belong to no element."""
         if not elements:
             raise Fault("the mesh has no triangles or quadrilaterals")
         used = np.unique(np.concatenate(elements))
@@ -221,7 +222,7 @@ class Mesh:
 
 
 def _plane(points: Array) -> Array:
-    """Coordinates in the plane; a Fault where z is not the same everywhere."""
+    """Coordinates in the plane; different values of z raise a Fault."""
     if points.ndim != 2 or points.shape[1] not in (2, 3):
         raise Fault(f"points [N, 2] are needed, not {list(points.shape)}")
     if points.shape[1] == 3 and len(points):
@@ -239,12 +240,12 @@ def _indices(values: ArrayLike) -> Integers:
 
 
 def _corners(element: Integers) -> Integers:
-    """The corners of an element; nodes between them come after."""
+    """The corners of an element; its nodes between corners come after them."""
     return element[: len(element) // 2] if len(element) > 4 else element
 
 
 def _turned(element: Integers) -> Integers:
-    """The element with its nodes in the other direction."""
+    """The element with its nodes in the opposite direction."""
     if len(element) <= 4:
         return element[::-1]
     corners, between = np.split(element, 2)
@@ -252,6 +253,6 @@ def _turned(element: Integers) -> Integers:
 
 
 def _area(corners: Array) -> float:
-    """Area of a polygon, positive where its corners follow each other counter-clockwise."""
+    """Area of a polygon, which is positive if its corners run counter-clockwise."""
     x, y = (corners - corners[0]).T
     return float(0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)))

@@ -1,8 +1,8 @@
-"""Values of elements at nodes, averaged within a body and a material: recovery from the means over elements.
+"""Values of elements at nodes, recovered from the means over elements by averaging within a body and a material.
 
-The value at a corner is that of the plane through the means at the centres of the elements there and of their
-neighbours, which is fitted with the weights 1/distance^4: almost the plain mean inside of a body, and extended
-linearly to its surface. A field that is linear is exact at every node. Nodes between corners have the mean of these.
+The value at a corner is that of a plane, fitted with weights 1/distance^4 to the means at the centres of the elements
+there and of their neighbours. Inside a body this is almost the plain mean; at its surface it is a linear extrapolation.
+A linear field is recovered exactly at every node. A node between two corners has the mean of their values.
 """
 
 from dataclasses import dataclass
@@ -16,13 +16,14 @@ FARTHEST = 8.0
 
 
 def around_element(cell: Integers) -> Integers:
-    """The nodes of an element in their order around it, nodes between corners in their places."""
+    """The nodes of an element in their order around it; a node between two corners stands between them."""
     return np.reshape(cell, (2, -1)).T.ravel() if len(cell) > 4 else cell
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """Places are pairs of a node and a material of its elements: the first N are the nodes, further ones share a node."""
+    """Places are pairs of a node and a material of its elements: the first N places are the nodes, further places
+    belong to nodes of several materials."""
 
     twins: Integers
     """Nodes of the places behind the first N [P - N]."""
@@ -41,7 +42,7 @@ class Recovery:
 
     @classmethod
     def of(cls, coordinates: Array, elements: list[Integers], materials: Integers) -> "Recovery":
-        """The recovery on an undeformed mesh whose elements [E] have materials by their numbers."""
+        """The recovery on an undeformed mesh, with the numbers of the materials of the elements [E]."""
         nodes = len(coordinates)
         cells, twins = _places(elements, materials, nodes)
         places = nodes + len(twins)
@@ -62,7 +63,7 @@ class Recovery:
     def __call__(self, values: Array) -> Array:
         """Values of elements [E] or [E, k] at the places [P] or [P, k]; NaN at nodes without elements.
 
-        Where no element has a negative value, no place has one.
+        If no element has a negative value, no place has a negative value.
         """
         columns = values.reshape(len(values), int(np.prod(values.shape[1:]))).T
         found = np.full((self.places, len(columns)), np.nan)
@@ -78,7 +79,7 @@ class Recovery:
 
 
 def _places(cells: list[Integers], materials: Integers, nodes: int) -> tuple[list[Integers], Integers]:
-    """Places of the nodes of each element, and the nodes of the places behind the first N."""
+    """Places of the nodes of each element, and nodes of the places beyond the first N."""
     found: dict[tuple[int, int], int] = {}
     first: set[int] = set()
     twins: list[int] = []
@@ -98,7 +99,7 @@ def _places(cells: list[Integers], materials: Integers, nodes: int) -> tuple[lis
 
 
 def _weights(corners: list[Integers], centres: Array, at: Array) -> tuple[Integers, Integers, Array]:
-    """Place, element and weight of every part of the values at corners."""
+    """Place, element and weight of every term in the values at corners."""
     around: dict[int, list[int]] = {}
     for number, ends in enumerate(corners):
         for end in ends.tolist():

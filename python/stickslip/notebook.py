@@ -1,6 +1,6 @@
-"""Notebooks: whether Python runs in one, what is shown there, and a bar that tells how far a run is.
+"""Support of notebooks: whether Python runs in one, display of results, and a bar that shows the progress of a run.
 
-IPython is used where it is installed.
+IPython is used if it is installed.
 """
 
 import html
@@ -18,7 +18,7 @@ def runs_here() -> bool:
 
 
 class Shown:
-    """What shows itself at the end of a cell."""
+    """An object that displays itself at the end of a cell."""
 
     summaries: ClassVar[dict[type, Callable[[Any], str]]] = {}
     """Makes the HTML of an object, by its class; `summary` knows how."""
@@ -29,13 +29,13 @@ class Shown:
 
 
 class Paged(Shown):
-    """What has a report page besides."""
+    """An object that also has a report page."""
 
     pages: ClassVar[dict[type, Callable[[Any, int], str]]] = {}
     """Makes the page of an object in a frame of a height in pixels, by its class; `summary` knows how."""
 
     def show(self, height: int = 780) -> None:
-        """Puts the report page below the cell of a notebook."""
+        """Shows the report page below the cell of a notebook."""
         if not runs_here():
             raise Fault("show() is for notebooks: the command stickslip report writes the page")
         from IPython.display import HTML, display
@@ -44,7 +44,7 @@ class Paged(Shown):
 
 
 class Bar:
-    """A bar below the cell that shows how far a run is; to be called with its progress."""
+    """A bar below the cell that shows the progress of a run; calling it with a `Progress` moves it."""
 
     def __init__(self) -> None:
         from IPython.display import HTML, display

@@ -1,4 +1,4 @@
-"""Runs the program: `run` solves a deck, `check` reads it; what the program says becomes exceptions."""
+"""Runs the program: `run` solves a deck, `check` reads it; messages of the program become warnings and exceptions."""
 
 import os
 import re
@@ -74,17 +74,18 @@ class DeckRejected(RunFailed):
 
 
 class RunStopped(RunFailed):
-    """The run stopped in the solve, or by a signal: `result` is valid up to there."""
+    """The run stopped during the solve, or by a signal; `result` is valid up to that point."""
 
     @property
     def result(self) -> Result:
-        """The result up to where the run stopped; a Fault when it stopped before its first frame."""
+        """The result up to the point where the run stopped; a run that stopped before its first frame raises a
+        Fault."""
         return Result(self.path)
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is."""
+    """Progress of a run."""
 
     time: float
     """Time at the end of the last increment."""
@@ -96,7 +97,7 @@ class Progress:
 
     @property
     def part(self) -> float | None:
-        """The part of the deck's time that is done."""
+        """The part of the total time of the deck that has been computed."""
         return self.time / self.end if self.end else None
 
     def __str__(self) -> str:
@@ -108,7 +109,8 @@ class Progress:
 
 
 def binary() -> Path:
-    """The program: $STICKSLIP, the one installed with this package, on the path, or built in a checkout."""
+    """Path of the program: $STICKSLIP, or the first that exists of the program installed with this package, on the
+    search path, and built in a checkout."""
     if "STICKSLIP" in os.environ:
         return Path(os.environ["STICKSLIP"])
     name = "stickslip.exe" if os.name == "nt" else "stickslip"
@@ -129,7 +131,7 @@ def binary() -> Path:
 
 @cache
 def version() -> str:
-    """First line of what the program says of itself: name, version and commit."""
+    """First line of `stickslip --version`: name, version and commit."""
     done = subprocess.run([binary(), "--version"], capture_output=True, text=True)
     return done.stdout.partition("\n")[0]
 
@@ -144,16 +146,15 @@ def run(
     progress: bool | Callable[[Progress], object] = False,
     **options: object,
 ) -> Result:
-    """Solves a deck, a file or a `Deck`, and returns its result.
+    """Solves a deck, which is a file or a `Deck`, and returns its result.
 
-    The results go to the folder `output`, under the name of the deck's file, or `job` for a `Deck`,
-    which is written there too. Results that exist are replaced, unless `overwrite` is False or the run
-    goes on from its checkpoint with `resume`. `options` are those of `stickslip run`: frames, every,
-    solver, threads, checkpoint, extend, oldjob with a value; strict, lenient, verbose, resume as True.
-    `words` are options as they are typed.
-    `parameters` are values of the deck's parameters, in place of those of its `*PARAMETER` cards.
-    `progress` prints how far the run is (a bar in a notebook), or is called with a `Progress` some times a second. Raises
-    DeckRejected, RunStopped or RunFailed.
+    The results go to the folder `output`. Their name is that of the file of the deck, or `job` for a `Deck`, which is
+    also written to this folder. Existing results are replaced, unless `overwrite` is False or `resume` continues the
+    run from its checkpoint. `options` are those of `stickslip run`: frames, every, solver, threads, checkpoint, extend
+    and oldjob have a value; strict, lenient, verbose and resume are True. `words` holds options as they are typed on
+    the command line. `parameters` gives values of parameters of the deck, which replace those of its `*PARAMETER`
+    cards. `progress` is True to show the progress of the run (as a bar in a notebook), or a function that is called
+    with a `Progress` several times a second. A failed run raises DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
     values = dict(parameters or {})
@@ -188,7 +189,7 @@ def run(
 
 
 def settings(values: Mapping[str, Value]) -> list[str]:
-    """The options that give parameters of a deck their values; numbers with all their digits."""
+    """The options that give parameters of a deck their values; numbers have all their digits."""
     words = []
     for name, value in values.items():
         match value:
@@ -224,7 +225,7 @@ def check(
 
 @contextmanager
 def first_frame(deck: Deck, parameters: Mapping[str, Value]) -> Iterator[Result | None]:
-    """A result up to its first frame, in which all histories have their names; none where there is no frame."""
+    """A result up to its first frame, which has the names of all histories; None if the run writes no frame."""
     with tempfile.TemporaryDirectory() as folder:
         path = deck.write(Path(folder) / "job.inp")
         result = path.with_suffix(".vtkhdf")
@@ -242,7 +243,7 @@ def first_frame(deck: Deck, parameters: Mapping[str, Value]) -> Iterator[Result 
 
 
 def diagnostics(text: str) -> list[Diagnostic]:
-    """Errors and warnings of a deck in what the program writes."""
+    """Errors and warnings of a deck, read from the output of the program."""
     pattern = re.compile(
         r"^(error|warning)\[(\w+)\]: (.*)(?:\n\s*--> (.*):(\d+):(\d+)$)?", flags=re.MULTILINE
     )
@@ -253,12 +254,12 @@ def diagnostics(text: str) -> list[Diagnostic]:
 
 
 def job_name(deck: Path) -> str:
-    """Name of the job of a deck: that of its file without `.inp`."""
+    """Name of the job of a deck: the name of its file without `.inp`."""
     return deck.stem if deck.suffix.lower() == ".inp" else deck.name
 
 
 def _words(options: dict[str, object]) -> list[str]:
-    """Options of the command line."""
+    """Options of the command line for `options` of a run."""
     words = []
     for name, value in options.items():
         if name not in OPTIONS + FLAGS:
@@ -271,7 +272,7 @@ def _words(options: dict[str, object]) -> list[str]:
 
 
 def _wait(process: subprocess.Popen[bytes], watch: Callable[[bool], None] | None) -> int:
-    """Waits for the end of a run, which ends in order when this process is interrupted."""
+    """Waits for the end of a run; if this process is interrupted, the run ends in order."""
     try:
         while watch and process.poll() is None:
             watch(False)
@@ -287,7 +288,7 @@ def _wait(process: subprocess.Popen[bytes], watch: Callable[[bool], None] | None
 
 
 def _duration(deck: Path) -> float | None:
-    """Time of all steps of a deck, where it can be told."""
+    """Total time of all steps of a deck, if it can be determined."""
     try:
         return Deck.read(deck).duration
     except (OSError, Fault):  # the program says what is wrong
@@ -297,7 +298,7 @@ def _duration(deck: Path) -> float | None:
 def _watch(
     status: Path, end: float | None, progress: bool | Callable[[Progress], object]
 ) -> Callable[[bool], None]:
-    """What looks at the status file of a run and tells how far it is."""
+    """A function that reads the status file of a run and reports the progress."""
     tell = progress if callable(progress) else _told()
     start, old = time.monotonic(), _stamp(status)
     last = -1
@@ -315,7 +316,7 @@ def _watch(
 
 
 def _stamp(file: Path) -> tuple[int, ...]:
-    """What changes when a file is written; nothing where there is none."""
+    """A value that changes whenever a file is written; empty if there is no file."""
     try:
         found = file.stat()
     except OSError:
@@ -336,10 +337,10 @@ def _last_increment(status: Path) -> tuple[int, float]:
 
 
 def _print(progress: Progress) -> None:
-    """One line that is written over and over."""
+    """A progress display in one line, which is overwritten each time."""
     print(f"\r{progress!s:<70}", end="", file=sys.stderr, flush=True)
 
 
 def _told() -> Callable[[Progress], object]:
-    """What tells of the progress where nothing else is asked for: a bar in a notebook, else a line."""
+    """The default display of progress: a bar in a notebook, else a line."""
     return notebook.Bar() if notebook.runs_here() else _print

@@ -1,14 +1,14 @@
 """Histories by name: `energy/kinetic`, `contact/A_B/force:1`, `nodes/TIP[3]/U:2`.
 
-A name is the path of a dataset below /history (see docs/output.md). After a colon stands the
-component of a vector, from 1. After the name of a node set may stand the number of one of its
-nodes in brackets; without it displacements and velocities are means over the set, reactions sums.
-The same holds of element sets, `elements/BLOCK[7]/S:1`: means of stresses and strains, sums of energies.
-These names hold too where a result has only the sums and means of a set (`TOTALS=ONLY`).
-Values at integration points, `elements/BLOCK/points[7.2]/S:1`, have the element and the number of the point in brackets, springs
-and dashpots, `connectors[9]/force`, their element, hinges, `hinges[3-4]/force:1`, their two nodes.
-Of the histories of bodies, `bodies/velocity[0]:1`, the number in brackets is that of the body.
-Names of Abaqus hold too, `nodes/TIP/U2` and `elements/BLOCK/S11` (see `fields`).
+A name is the path of a dataset below /history (see docs/output.md). After a colon stands the component of a vector,
+from 1. The number of one node may follow the name of a node set in brackets; without this number, displacements and
+velocities are means over the set, and reactions are sums. Element sets work in the same way, `elements/BLOCK[7]/S:1`;
+without a number, stresses and strains are means, and energies are sums. The names without a number also work if a
+result has only sums and means of a set (`TOTALS=ONLY`). Values at integration points, `elements/BLOCK/points[7.2]/S:1`,
+have the element and the number of the point in brackets; springs and dashpots, `connectors[9]/force`, have their
+element, and hinges, `hinges[3-4]/force:1`, their two nodes. In histories of bodies, `bodies/velocity[0]:1`, the number
+in brackets is that of the body. Names of Abaqus are allowed, too: `nodes/TIP/U2` and `elements/BLOCK/S11` (see
+`fields`).
 """
 
 import re
@@ -41,7 +41,7 @@ PER_BODY = re.compile(r"bodies/\w+|contact/.+/body_\w+")
 
 @dataclass(frozen=True)
 class Quantity:
-    """A named history: what it is, and its components."""
+    """A history with its name, description and components."""
 
     quantity: str
     """What it is and of what; the title of its axis."""
@@ -50,18 +50,18 @@ class Quantity:
 
     @property
     def title(self) -> str:
-        """Title of an axis; a single component is part of it."""
+        """Title of an axis; the name of a single component is part of it."""
         component = next(iter(self.parts)) if self.alone else ""
         return f"{self.quantity}, {component}" if component else self.quantity
 
     @property
     def alone(self) -> bool:
-        """Whether there is one component only."""
+        """Whether the history has only one component."""
         return len(self.parts) == 1
 
 
 def find(result: ResultFile, name: str) -> Quantity:
-    """The history of this name; a Fault says which there are when there is none."""
+    """The history with this name; if there is none, a Fault lists the names that exist."""
     place, slash, field = name.rpartition("/")
     matched = NAME.fullmatch(place + slash + known(field, {path.rpartition("/")[2] for path in result.histories}))
     if matched is None:
@@ -87,9 +87,10 @@ def find(result: ResultFile, name: str) -> Quantity:
 
 
 def force_against_displacement(result: ResultFile) -> list[tuple[str, str]]:
-    """Displacement and force in its direction, by their names, of rigid surfaces and node sets that are moved by a force.
+    """Names of the displacements of rigid surfaces and node sets that a force moves, and of the forces in the same
+    directions.
 
-    The one whose force does the largest work is the first.
+    The pair whose force does the largest work comes first.
     """
     places = {re.sub(r"(/mean|/sum)?/[^/]*$", "", path) for path in result.histories}
     works: dict[tuple[str, str], float] = {}
@@ -108,7 +109,7 @@ def force_against_displacement(result: ResultFile) -> list[tuple[str, str]]:
 
 
 def _stored(result: ResultFile, place: str, field: str) -> Array | None:
-    """A history of a rigid surface or of the nodes of a set [I, ..., 2]; else its mean or sum over the set."""
+    """A history of a rigid surface or of the nodes of a set [I, ..., 2], or its mean or sum over the set."""
     for path in (f"{place}/{field}", f"{place}/mean/{field}", f"{place}/sum/{field}"):
         if path in result.histories:
             return result.complete_rows(f"history/{path}")
@@ -117,7 +118,7 @@ def _stored(result: ResultFile, place: str, field: str) -> Array | None:
 
 @dataclass(frozen=True)
 class Members:
-    """What has a column each in a history: bodies, or the members of a group."""
+    """The objects with a column each in a history: bodies, or members of a group."""
 
     kind: str
     """Such as `body`, `node`, `element`; empty where a history has no members."""
@@ -132,7 +133,7 @@ class Members:
 
     @classmethod
     def of(cls, result: ResultFile, path: str) -> "Members":
-        """The members of a history; none where it has none."""
+        """The members of a history; empty if it has no members."""
         if path not in result.histories:
             return cls("", "", [], [])
         if PER_BODY.fullmatch(path):
@@ -167,7 +168,7 @@ def listed(result: ResultFile) -> list[str]:
 
 
 def _selected(result: ResultFile, path: str) -> tuple[Array, str]:
-    """Values [I] or [I, components] of a path with its brackets, and what they are."""
+    """Values [I] or [I, components] of a path with its brackets, and their description."""
     if path not in result.histories:
         plain = re.sub(r"\[[-\d.]+\]", "", path)
         for pattern, select in ((OF_MEMBER, _of_member), (BODIES, _of_body)):
@@ -187,7 +188,7 @@ def _selected(result: ResultFile, path: str) -> tuple[Array, str]:
 
 
 def _of_set(data: Array, what: str, path: str) -> tuple[Array, str]:
-    """Mean of a set, or the sum for forces and energies."""
+    """Mean over a set, or the sum for forces and energies."""
     place, _, field = path.rpartition("/")
     name = place.partition("/")[2]
     if data.shape[1] == 1:
@@ -198,7 +199,7 @@ def _of_set(data: Array, what: str, path: str) -> tuple[Array, str]:
 
 
 def _of_member(result: ResultFile, path: str, matched: re.Match[str]) -> tuple[Array, str]:
-    """One node, element or another member of a group."""
+    """History of one node, one element or another member of a group."""
     member, each = matched["member"], Members.of(result, path)
     if member not in each.names:
         place = matched["place"].rpartition("/")[2]
@@ -208,7 +209,7 @@ def _of_member(result: ResultFile, path: str, matched: re.Match[str]) -> tuple[A
 
 
 def _of_body(result: ResultFile, path: str, matched: re.Match[str]) -> tuple[Array, str]:
-    """One body of a history that has one column for each."""
+    """Column of one body in a history that has one column for each body."""
     data, body = result.complete_rows(f"history/{path}"), int(matched["body"])
     if data.ndim < 2 or body >= data.shape[1]:
         count = data.shape[1] if data.ndim > 1 else 0
@@ -217,7 +218,7 @@ def _of_body(result: ResultFile, path: str, matched: re.Match[str]) -> tuple[Arr
 
 
 def _description(result: ResultFile, path: str) -> str:
-    """What a dataset says it is, without the explanation after a colon."""
+    """Description of a dataset, without the explanation after its colon."""
     if path == "time":
         return path
     text = result.histories[path].attrs.get("description", path)
@@ -225,7 +226,7 @@ def _description(result: ResultFile, path: str) -> str:
 
 
 def _alternatives(result: ResultFile, path: str) -> str:
-    """What there is where the path leaves what exists."""
+    """Names that exist at the point where a path leads to nothing."""
     there = ""
     for part in path.split("/"):
         deeper = f"{there}{part}/"

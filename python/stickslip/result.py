@@ -43,19 +43,20 @@ class Result(ResultFile, Paged):
         return self.history.contact
 
     def quantity(self, name: str) -> Array:
-        """A history by the name that plots and sweeps use, such as `nodes/TIP/U:2` (see `quantity`).
+        """The history with a name as in plots and sweeps, such as `nodes/TIP/U:2` (see `quantity`).
 
-        Shape [I], or [I, components] for a vector.
+        The shape of the history is [I], or [I, components] for a vector.
         """
         parts = list(find(self, name).parts.values())
         return parts[0] if len(parts) == 1 else np.column_stack(parts)
 
     def to_dataframe(self) -> "pandas.DataFrame":
-        """All histories as a table, one row per increment. Needs the package pandas."""
+        """All histories as a table, one row per increment. The table needs the package pandas."""
         return convert.to_dataframe(self)
 
     def to_xarray(self, *fields: str) -> "xarray.Dataset":
-        """All histories, and the named fields of all frames. Needs the package xarray."""
+        """All histories and the named fields of all frames, as a dataset of xarray. The dataset needs the package
+        xarray."""
         times = self.frames.times if fields else None
         return convert.to_xarray(self, times, {name: self.frames.field(name) for name in fields})
 
@@ -67,7 +68,7 @@ class Result(ResultFile, Paged):
         return Frames(self)
 
     def frame(self, time: float) -> Frame:
-        """The frame nearest to a time of the run; a Fault for times before and after the frames."""
+        """The frame nearest to a time of the run; a time before or after all frames raises a Fault."""
         return self.frames.at(time)
 
     # The run.
@@ -79,7 +80,7 @@ class Result(ResultFile, Paged):
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings of the run, from the log beside the result; none where there is no log."""
+        """Warnings of the run, from the log beside the result; empty if there is no log."""
         log = self.path.with_suffix(".log")
         if not log.exists():
             return []

@@ -1,7 +1,6 @@
-"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone: what is stored, by the paths in the file.
+"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone: stored data by the paths in the file.
 
-The file of a running or killed job is read up to the rows that are complete. What cannot be read is told
-as a `Fault`.
+The file of a running or killed job is read up to the rows that are complete. Data that cannot be read raises a `Fault`.
 """
 
 from collections.abc import Iterable, Iterator, Sized
@@ -25,7 +24,7 @@ EVENTS = ("impacts", "returns", "touches")
 
 
 class ResultFile:
-    """A result file as it is stored: datasets by their paths, the model, and how many rows are complete."""
+    """A result file as stored: datasets by their paths, the model, and the number of complete rows."""
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path)
@@ -56,13 +55,13 @@ class ResultFile:
         return self.path.stem
 
     def read(self, name: str, start: int | None = None, end: int | None = None) -> NDArray[Any]:
-        """A dataset by its path in the file, or rows of it."""
+        """A dataset, or rows of a dataset, by its path in the file."""
         data = self.item(name)
         with self.reading(name):
             return data[()] if start is None and end is None else data[start:end]
 
     def item(self, name: str) -> Any:
-        """A dataset or a group by its path in the file; finding it takes longer than reading it, so that it is kept."""
+        """A dataset or a group by its path in the file; it is kept, because finding it takes longer than reading it."""
         with self.reading(name):
             if name not in self._found:
                 self._found[name] = self.file[name]
@@ -75,7 +74,7 @@ class ResultFile:
 
     @contextmanager
     def reading(self, name: str) -> Iterator[None]:
-        """Tells what goes wrong while `name` is read: a file can be damaged or being written."""
+        """Turns errors while `name` is read into Faults: a file can be damaged, or still being written."""
         if not self.file:
             raise Fault(f"{self.path} is closed: read {name} before")
         try:
@@ -111,22 +110,22 @@ class ResultFile:
 
     @cached_property
     def outlines(self) -> list[Integers]:
-        """Node indices around each element, nodes between corners in their places."""
+        """Node indices in order around each element; a node between two corners stands between them."""
         return list(map(around_element, self.cells))
 
     @cached_property
     def recovery(self) -> Recovery:
-        """Values of elements at nodes."""
+        """The recovery of values at nodes from values of elements."""
         return Recovery.of(self.coordinates, self.cells, self.read("model/element_materials"))
 
     @cached_property
     def drawing(self) -> Drawing:
-        """The mesh as it is drawn, sides of quadratic elements curved."""
+        """The mesh for drawing, with curved sides of quadratic elements."""
         return Drawing.of(self.recovery, self.boundary)
 
     @cached_property
     def rigid(self) -> Integers:
-        """Segments of rigid surfaces, [segments, 2] node indices, obstacle on the left."""
+        """Segments of rigid surfaces, [segments, 2] node indices, with the obstacle on the left."""
         end = self.read("VTKHDF/Offsets")[len(self.cells)]
         return self.read("VTKHDF/Connectivity")[end:].reshape(-1, 2)
 
@@ -147,7 +146,7 @@ class ResultFile:
 
     @cached_property
     def middles(self) -> dict[int, tuple[int, int]]:
-        """The corners of the sides that have a node between them, by this node."""
+        """The two corners of each side that has a node between them, by this node."""
         found: dict[int, tuple[int, int]] = {}
         for cell in self.cells:
             if len(cell) > 4:
@@ -164,7 +163,8 @@ class ResultFile:
 
     @cached_property
     def boundary(self) -> Integers:
-        """Straight lines between nodes that belong to one element only, [edges, 2] node indices, body on the left."""
+        """Straight lines between nodes that belong to one element only, [edges, 2] node indices, with the body on the
+        left."""
         pairs = (zip(one, np.roll(one, -1)) for one in self.outlines)
         edges = {(int(a), int(b)) for one in pairs for a, b in one}
         single = sorted(edge for edge in edges if edge[::-1] not in edges)
@@ -219,7 +219,7 @@ class ResultFile:
         return rows
 
     def _complete(self, group: str, datasets: Iterable[Sized]) -> int:
-        """Complete rows of the datasets of a group; files of older programs do not say it."""
+        """Complete rows of the datasets of a group; files of older programs do not state this number."""
         rows = min(map(len, datasets), default=0)
         return min(rows, int(self.file[group].attrs.get("rows", rows)))
 
@@ -239,7 +239,7 @@ class ResultFile:
 
 
 def _open(path: Path) -> h5py.File:
-    """Opens a file that may be being written: without a lock."""
+    """Opens a file without a lock, because a run may be writing it."""
     if not path.exists():
         raise Fault(f"there is no file {path}")
     if not path.is_file():

@@ -1,6 +1,6 @@
 """Summaries of results and decks with a small picture, which notebooks show, and the report page in a frame.
 
-What takes long to import is imported when it is needed; matplotlib is used where it is installed.
+Packages that take long to import are imported when they are needed; matplotlib is used if it is installed.
 """
 
 import base64
@@ -37,7 +37,7 @@ def _lines(text: str) -> str:
 
 
 def _picture(result: Result) -> str:
-    """The end of the step with the largest stress, where matplotlib is installed."""
+    """Picture of the end of the step with the largest stress; empty if matplotlib is not installed."""
     try:
         from stickslip.plot.fields import Field, Peak
         from stickslip.plot.motion import Look, panels, step_ends
@@ -56,7 +56,8 @@ def _image(kind: str, data: bytes) -> str:
 
 
 def deck_html(deck: Deck) -> str:
-    """Picture of the model of a deck and what the program says of it, its faults among it; else how many cards it has."""
+    """Picture of the model of a deck and the messages of the program about it; if there is no program, the number of
+    cards."""
     counts: dict[str, int] = {}
     for card in deck.cards:
         counts[card.keyword] = counts.get(card.keyword, 0) + 1

@@ -1,6 +1,6 @@
-"""Files that are written whole or not at all: under a name that nothing has, which is then renamed.
+"""Files that are written completely or not at all: they are written under an unused name and then renamed.
 
-A link is never written through, and a device, a pipe or a link is not replaced.
+Links are never followed for writing, and a device, a pipe or a link is not replaced.
 """
 
 import os
@@ -14,9 +14,10 @@ from stickslip.errors import Fault
 
 @contextmanager
 def whole(path: Path | str) -> Iterator[Path]:
-    """The path to write a file to, an empty file of the same suffix; it takes the place of `path` when all is written.
+    """The path of an empty file of the same suffix to write to; the file replaces `path` when everything has been
+    written.
 
-    Folders that are missing are made. After an error the file is removed and `path` stays as it was.
+    Missing folders are created. After an error the file is removed and `path` stays as it was.
     """
     path = Path(path)
     if path.is_symlink() or (path.exists() and not path.is_file()):
@@ -34,6 +35,6 @@ def whole(path: Path | str) -> Iterator[Path]:
 
 
 def write_text(path: Path | str, text: str) -> None:
-    """Writes a text file whole."""
+    """Writes a text file completely or not at all."""
     with whole(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="")

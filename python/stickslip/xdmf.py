@@ -1,7 +1,7 @@
-"""A result as a series of XDMF: a text that names where in JOB.vtkhdf the fields of every frame are, and copies none.
+"""A result as a series of XDMF: a text that refers to the fields of every frame in JOB.vtkhdf without copying them.
 
-Every component of a tensor is a field of its own with the name of Abaqus, `S11`: XDMF orders six components otherwise
-than the result file.
+Every component of a tensor is a separate field with its name in Abaqus, such as `S11`, because XDMF orders six
+components differently from the result file.
 """
 
 import os
@@ -28,7 +28,7 @@ COMPONENTS = ("11", "22", "33", "12")
 
 
 def text_of(result: Result, folder: Path) -> Iterator[str]:
-    """The lines of the file, which is to stand in `folder`."""
+    """The lines of the file, which will be written to `folder`."""
     source = os.path.relpath(result.path, folder)
     yield '<?xml version="1.0"?>'
     yield '<Xdmf Version="2.0" xmlns:xi="http://www.w3.org/2001/XInclude"><Domain>'
@@ -46,7 +46,7 @@ def text_of(result: Result, folder: Path) -> Iterator[str]:
 
 
 def _mesh(result: Result, source: str) -> Iterator[str]:
-    """Cells, whose numbers stand in the text, and nodes."""
+    """The cells, whose numbers are part of the text, and the nodes."""
     nodes = np.split(result.read("VTKHDF/Connectivity"), result.read("VTKHDF/Offsets")[1:-1])
     types = result.read("VTKHDF/Types").tolist()
     rows = [[*CELLS[kind], *each.tolist()] for kind, each in zip(types, nodes)]
@@ -59,7 +59,7 @@ def _mesh(result: Result, source: str) -> Iterator[str]:
 
 
 def _field(result: Result, index: int, field: str, source: str) -> Iterator[str]:
-    """A field of a frame; of a tensor every component."""
+    """The text for a field of a frame; for a tensor, one field for every component."""
     frames = result.frames
     kind, dataset = frames.fields[field], frames.dataset(field)
     rows, first = frames.sizes[kind], frames.first_row(kind, field, index)

@@ -1,5 +1,5 @@
-//! The allocator of the program: memory that the system refuses ends it with exit code 4 and a line
-//! that says what was needed, not with an abort.
+//! The allocator of the program: if the system refuses memory, the program ends with exit code 4 and a line that states
+//! the memory it needed, not with an abort.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io;
@@ -9,8 +9,8 @@ use super::error::Exit;
 use crate::output::memory_need;
 use crate::system::exit_now;
 
-/// The allocator of the system. Where it has no memory the program ends with [`Exit::FileSystem`]; of
-/// the results all is kept that is written, as after a kill.
+/// The allocator of the system. If it has no memory, the program ends with [`Exit::FileSystem`]; results that have been
+/// written stay, as after a kill.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Allocator;
 
@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
-/// The memory, if there is any.
+/// Returns the memory, or ends the program if there is none.
 #[inline]
 fn there(memory: *mut u8, size: usize) -> *mut u8 {
     if memory.is_null() {
@@ -42,7 +42,7 @@ fn there(memory: *mut u8, size: usize) -> *mut u8 {
     memory
 }
 
-/// Ends the program; nothing here takes memory.
+/// Ends the program without allocating memory.
 #[cold]
 fn end(size: usize) -> ! {
     const MEGABYTE: u64 = 1_000_000;

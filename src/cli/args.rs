@@ -36,7 +36,7 @@ pub(super) struct Args {
 /// Subcommands.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Solve a deck: writes JOB.vtkhdf, JOB.sta and JOB.log, JOB being the deck's name without .inp
+    /// Solve a deck and write JOB.vtkhdf, JOB.sta and JOB.log, where JOB is the name of the deck without .inp
     Run(RunArgs),
     /// Read a deck, report every error in it and describe the model, without solving
     Check(CheckArgs),
@@ -46,36 +46,36 @@ pub(super) enum Command {
     Flatten(FlattenArgs),
     /// Describe a result file
     Info(InfoArgs),
-    /// Serve an editor: diagnostics of decks while typing, completion, explanations, names (docs/editor.md)
+    /// Serve an editor with diagnostics while typing, completion, explanations and names of decks (docs/editor.md)
     ///
-    /// It speaks the Language Server Protocol on standard input and output.
+    /// The server speaks the Language Server Protocol on standard input and output.
     Lsp(LspArgs),
     /// Solve a complementarity problem, such as one that a stopped run has left behind
     ///
-    /// The file holds {"M": [[..]], "q": [..], "mu": number or list, "n_contacts": number}; the
-    /// answer is JSON too. Exit code 0 when it is solved, 1 otherwise.
+    /// The file holds {"M": [[..]], "q": [..], "mu": number or list, "n_contacts": number}; the answer is JSON, too.
+    /// The exit code is 0 if the problem is solved, 1 otherwise.
     Lcp(LcpArgs),
     /// A command of the Python package.
     #[command(flatten)]
     Package(PackageCommand),
-    /// Print what makes a shell complete the words of this program
+    /// Print a script with which a shell completes the words of this program
     ///
-    /// For the current bash: source <(stickslip completion bash)
+    /// In bash, this command enables the completion for the current shell: source <(stickslip completion bash)
     Completion(CompletionArgs),
-    /// Print the manual page: stickslip manual | man -l -
+    /// Print the manual page (to read it: stickslip manual | man -l -)
     Manual,
 }
 
-/// Commands of the Python package, to which their arguments are handed over as they are.
+/// Commands of the Python package, which get their arguments unchanged.
 #[derive(Debug, Subcommand)]
 pub(super) enum PackageCommand {
-    /// Write the page of a result: one HTML file that works offline
+    /// Write the report page of a result: one HTML file that works offline
     #[command(disable_help_flag = true)]
     Report(Words),
     /// Draw results
     #[command(subcommand)]
     Plot(PlotCommand),
-    /// Check what a result claims, from the file alone
+    /// Check the claims of a result, from its file alone
     #[command(disable_help_flag = true)]
     Certify(Words),
     /// Run a deck at many values of its parameters
@@ -89,7 +89,7 @@ pub(super) enum PackageCommand {
     Penetration(Words),
 }
 
-/// Pictures of results.
+/// Commands that draw pictures of results.
 #[derive(Debug, Subcommand)]
 pub(super) enum PlotCommand {
     /// Draw deformed shapes at some times, or an animation
@@ -106,14 +106,14 @@ pub(super) enum PlotCommand {
 /// Arguments of a command of the Python package.
 #[derive(Debug, ClapArgs)]
 pub(super) struct Words {
-    /// Arguments of the command; --help tells them
+    /// Arguments of the command; its --help lists them
     #[arg(value_name = "ARGUMENTS", trailing_var_arg = true, allow_hyphen_values = true,
           value_hint = ValueHint::AnyPath)]
     pub words: Vec<OsString>,
 }
 
 impl PackageCommand {
-    /// Its name and its arguments.
+    /// Name of the command, and its arguments.
     pub fn words(&self) -> (&'static str, &[OsString]) {
         let (name, words) = match self {
             PackageCommand::Report(words) => ("report", words),
@@ -149,17 +149,17 @@ pub(super) struct DeckArgs {
     /// Leave out unknown keywords and parameters with a warning
     #[arg(long)]
     pub lenient: bool,
-    /// The job that *RESTART, READ of the deck goes on from: the path of JOB.restart, with or without .restart, or of
-    /// JOB.restart-STEP-INC
+    /// The earlier job that *RESTART, READ of the deck continues, as path of JOB.restart (with or without .restart) or
+    /// of JOB.restart-STEP-INC
     #[arg(long, value_name = "JOB")]
     pub oldjob: Option<PathBuf>,
-    /// Give a parameter of the deck (*PARAMETER) this value; may be repeated
+    /// Give a parameter of the deck (*PARAMETER) this value; the option may be repeated
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub settings: Vec<String>,
 }
 
 impl DeckArgs {
-    /// What becomes of doubtful decks.
+    /// How the reader treats doubtful decks.
     pub fn strictness(&self) -> Strictness {
         match (self.strict, self.lenient) {
             (true, _) => Strictness::Strict,
@@ -175,32 +175,32 @@ pub(super) struct RunArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
-    /// Folder for the results, made when it is missing
+    /// Folder for the results, which is created if it is missing
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub output: PathBuf,
-    /// Write this many field frames per step, evenly spaced (default 100, or what the deck says)
+    /// Write this many field frames per step, evenly spaced (default: the frames that the deck requests, or 100)
     #[arg(long, value_name = "N", conflicts_with = "every", value_parser = positive_count)]
     pub frames: Option<usize>,
-    /// Write a field frame every DT of time
+    /// Write a field frame after every DT of simulated time
     #[arg(long, value_name = "DT", value_parser = positive_time)]
     pub every: Option<f64>,
     /// Replace the results of an earlier run
     #[arg(long)]
     pub overwrite: bool,
-    /// Write a checkpoint JOB.restart every so many seconds of wall-clock time, and at the end
+    /// Write a checkpoint JOB.restart after every SECONDS of wall-clock time, and at the end
     ///
-    /// It is also written where the deck has *RESTART, WRITE, and when a signal stops the run.
+    /// A checkpoint is also written if the deck has *RESTART, WRITE, and when a signal stops the run.
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub checkpoint: Option<Duration>,
-    /// Go on from the last checkpoint of the job, in the same files and with the same options
+    /// Continue from the last checkpoint of the job, in the same files and with the same options
     ///
-    /// The results are the same bits as without the stop. A deck that has changed is refused.
+    /// The results are the same to the last bit as without the stop. A run whose deck has changed is refused.
     #[arg(long, conflicts_with_all = ["overwrite", "frames", "every", "solver", "strict", "lenient", "settings", "oldjob"])]
     pub resume: bool,
-    /// Go on for a time T beyond the end of the last step
+    /// Continue for a time T beyond the end of the last step
     #[arg(long, value_name = "T", value_parser = positive_time, requires = "resume")]
     pub extend: Option<f64>,
-    /// Sparse factorisation (default faer, or what the deck says)
+    /// Sparse factorisation (default: the one that the deck chooses, or faer)
     #[arg(long, value_name = "NAME")]
     pub solver: Option<Solver>,
     /// Number of threads, at most 4 for each processor (default: the number of processors)
@@ -226,7 +226,7 @@ pub(super) struct Options {
 }
 
 impl RunArgs {
-    /// The options that change what is computed or written, as text.
+    /// The options of `run` that change what is computed or written, as text.
     pub fn options(&self) -> String {
         let options = Options {
             strict: self.deck.strict,
@@ -240,7 +240,7 @@ impl RunArgs {
         serde_json::to_string(&options).unwrap_or_default()
     }
 
-    /// Takes over such options.
+    /// Sets the options of `run` from such a text.
     pub fn take_options(&mut self, text: &str) {
         let options: Options = serde_json::from_str(text).unwrap_or_default();
         (self.deck.strict, self.deck.lenient) = (options.strict, options.lenient);
@@ -270,7 +270,7 @@ pub(super) struct CheckArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
-    /// Print errors, warnings and notes as text, or as JSON and nothing else
+    /// Format of errors, warnings and notes: text, or JSON without any other output
     #[arg(
         long,
         value_name = "FORMAT",
@@ -278,10 +278,10 @@ pub(super) struct CheckArgs {
         conflicts_with = "picture"
     )]
     pub format: Format,
-    /// Draw the model: bodies, supports, loads, velocities, surfaces with normals, contacts
+    /// Draw the model with bodies, supports, loads, velocities, surfaces with normals, and contacts
     #[arg(long, value_name = "FILE.svg", value_parser = svg_file)]
     pub picture: Option<PathBuf>,
-    /// Draw this part of the plane only (default: the deformable bodies and what is near them)
+    /// Draw this part of the plane only (default: the deformable bodies and their surroundings)
     #[arg(long, value_name = "X0,X1,Y0,Y1", value_parser = window, requires = "picture",
           allow_hyphen_values = true)]
     pub window: Option<Window>,
@@ -293,7 +293,7 @@ pub(super) struct CheckArgs {
 /// Arguments of `explain`.
 #[derive(Debug, ClapArgs)]
 pub(super) struct ExplainArgs {
-    /// Keywords, with or without their stars, codes, and words such as bolt or gravity
+    /// Keywords (with or without their stars), codes of messages, and words such as bolt or gravity
     #[arg(value_name = "WORD", required = true)]
     pub words: Vec<String>,
 }
@@ -304,7 +304,7 @@ pub(super) struct FlattenArgs {
     /// The deck
     #[command(flatten)]
     pub deck: DeckArgs,
-    /// A file for the flat deck (default: the screen)
+    /// File for the flat deck (default: the screen)
     #[arg(short, long, value_name = "FILE.inp")]
     pub output: Option<PathBuf>,
     /// Replace an earlier file
@@ -323,7 +323,7 @@ pub(super) struct InfoArgs {
 /// Arguments of `lsp`.
 #[derive(Debug, ClapArgs)]
 pub(super) struct LspArgs {
-    /// Standard input and output, which are always taken: many editors give this option
+    /// Use standard input and output, as the server always does; many editors give this option
     #[arg(long)]
     pub stdio: bool,
 }
@@ -384,7 +384,7 @@ fn positive_count(text: &str) -> Result<usize, String> {
     }
 }
 
-/// Most threads for each processor: more of them only wait for each other.
+/// Largest number of threads for each processor: more threads would only wait for each other.
 const THREADS_PER_PROCESSOR: usize = 4;
 
 fn thread_count(text: &str) -> Result<usize, String> {
@@ -400,7 +400,7 @@ fn thread_count(text: &str) -> Result<usize, String> {
     }
 }
 
-/// Processors that the program may use; 1 where the system does not tell.
+/// Number of processors that the program may use; 1 if the system does not report it.
 pub(super) fn processors() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get)
 }
@@ -425,10 +425,10 @@ fn positive_time(text: &str) -> Result<f64, String> {
 /// Version of the program.
 pub(super) const NUMBER: &str = env!("CARGO_PKG_VERSION");
 
-/// Commit it was built from.
+/// Commit that the program was built from.
 pub(super) const COMMIT: &str = env!("STICKSLIP_COMMIT");
 
-/// Profile it was built with.
+/// Build profile of the program.
 pub(super) const PROFILE: &str = env!("STICKSLIP_PROFILE");
 
 /// Version, commit and profile.
@@ -441,7 +441,7 @@ pub(super) const VERSION: &str = concat!(
     ")"
 );
 
-/// Licences of the libraries whose versions the build recorded.
+/// Licences of the libraries of the build, with their versions.
 const LICENCES: [(&str, &str); 7] = [
     ("clap", "MIT OR Apache-2.0"),
     ("faer", "MIT"),
@@ -452,7 +452,7 @@ const LICENCES: [(&str, &str); 7] = [
     ("sprs-ldl", "LGPL-2.1"),
 ];
 
-/// [`VERSION`] and the libraries with versions and licences.
+/// [`VERSION`], and the libraries with versions and licences.
 pub(super) static LONG_VERSION: LazyLock<String> = LazyLock::new(|| {
     let (major, minor, micro) = hdf5::library_version();
     let mut lines = vec![

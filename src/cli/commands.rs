@@ -1,5 +1,5 @@
-//! The subcommands `check`, `explain`, `flatten`, `info`, `lsp` and `lcp`, and the reading of a deck, which they
-//! share with `run`.
+//! The subcommands `check`, `explain`, `flatten`, `info`, `lsp` and `lcp`, and the reading of a deck, which these
+//! commands share with `run`.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -46,7 +46,7 @@ pub(super) fn check(args: &CheckArgs, numerics: &Numerics) -> Result<Exit, CliEr
     Ok(Exit::Finished)
 }
 
-/// Prints what a deck holds and what it says about the increment.
+/// Prints a description of the model of a deck, and advice on its increments.
 pub(super) fn describe(
     deck: &DeckArgs,
     loaded: &Loaded,
@@ -59,7 +59,7 @@ pub(super) fn describe(
     print(&echo.guide())
 }
 
-/// Reads a deck, which goes on from an earlier one; a deck that cannot be opened is an error of the file system.
+/// Reads a deck, which may continue an earlier one; a deck that cannot be opened is an error of the file system.
 pub(super) fn load(
     deck: &DeckArgs,
     earlier: Option<EarlierDeck>,
@@ -95,11 +95,11 @@ fn openable(path: &Path) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The page that has an example of every code.
+/// The page with an example for every code.
 const MESSAGES: &str = include_str!("../../docs/messages.md");
 
-/// Explains keywords, codes of messages and words of other programs, one after the other: the longest beginning of
-/// the words is taken that is one of them.
+/// Explains keywords, codes of messages and words of other programs, one after the other; of the words that remain, the
+/// longest known beginning is explained next.
 pub(super) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     let mut rest = &args.words[..];
     let mut texts = Vec::new();
@@ -114,7 +114,7 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     Ok(Exit::Finished)
 }
 
-/// What some words mean: a code, a keyword with or without its star, or a word for what is no keyword.
+/// Explanation of some words: a code, a keyword with or without its star, or a word that is no keyword.
 fn explained(words: &[String]) -> Option<String> {
     let name = name(words);
     let is_named = |code: &&Code| code.id().eq_ignore_ascii_case(&name);
@@ -125,7 +125,7 @@ fn explained(words: &[String]) -> Option<String> {
         .or_else(|| find_word(&name).map(|word| word.explanation()))
 }
 
-/// The words as one, without the star of a keyword.
+/// The words as one text, without the star of a keyword.
 fn name(words: &[String]) -> String {
     let typed = words.join(" ");
     typed.trim_start_matches('*').trim().to_owned()
@@ -142,7 +142,7 @@ fn explanation(code: Code) -> String {
     }
 }
 
-/// The example of a code: a deck, or a change of one, and what the program says about it.
+/// The example of a code: a deck, or a change of a deck, and the message of the program about it.
 fn example(code: Code) -> Option<String> {
     let (_, entry) = MESSAGES.split_once(&format!("\n### {}\n", code.id()))?;
     let entry = entry.split("\n### ").next()?;
@@ -152,8 +152,8 @@ fn example(code: Code) -> Option<String> {
     Some(lines.map(|line| format!("  {line}\n")).collect())
 }
 
-/// The error of words that begin with neither a keyword nor a code: all of them where they are like one,
-/// or the first.
+/// The error for words that begin with neither a keyword nor a code. The error names as many of the words as resemble a
+/// keyword or a code, else the first word.
 fn unknown(words: &[String]) -> CliError {
     let known = || {
         let codes = Code::ALL.iter().map(|code| code.id());
@@ -176,10 +176,11 @@ fn unknown(words: &[String]) -> CliError {
     }
 }
 
-/// Most keywords that a word leads to.
+/// Largest number of keywords that are suggested for a word.
 const MOST_ABOUT: usize = 5;
 
-/// Keywords that speak of a thing: first those that are read, of them those that have the word in their names.
+/// Keywords whose name or explanation has a word: first keywords that are read, and among them first those with the
+/// word in their names.
 fn keywords_about(word: &str) -> Vec<&'static str> {
     let word = word.to_lowercase();
     let word = word.strip_suffix('s').unwrap_or(&word);
@@ -209,8 +210,8 @@ fn keywords_about(word: &str) -> Vec<&'static str> {
     names.take(MOST_ABOUT).collect()
 }
 
-/// Writes a deck as one flat deck, after a test that this reads as the same model. What `check` rejects
-/// is rejected.
+/// Writes a deck as one flat deck, after a test that the flat deck reads as the same model. A deck that `check` rejects
+/// is rejected here, too.
 pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     openable(&args.deck.path)?;
     let earlier = old_job(&args.deck)?.map(|earlier| earlier.as_earlier_deck());
@@ -275,8 +276,8 @@ pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
     })
 }
 
-/// Writes a file, whole or not at all; one that exists is replaced only where the user asks for it.
-/// What is not a regular file stays; in place of a link a file of its own is made.
+/// Writes a file completely or not at all; an existing file is replaced only if the user asks for it. Anything that is
+/// not a regular file stays; a link is replaced by a file.
 pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(), CliError> {
     let failed = FileError::new("write", path);
     match fs::symlink_metadata(path) {
@@ -298,18 +299,18 @@ pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(),
     Ok(write_whole(path, text, existing).map_err(failed)?)
 }
 
-/// A deck as read.
+/// A deck after reading.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Loaded {
-    /// The model, ready to run, when the deck has no errors.
+    /// The model, ready to run, if the deck has no errors.
     pub model: Option<PreparedModel>,
     /// Errors, warnings and notes for the screen of `check`.
     pub all_messages: String,
-    /// The same as JSON.
+    /// Errors, warnings and notes as JSON.
     pub json: String,
-    /// The same for the screen of `run`, without those about differences from other codes.
+    /// Messages for the screen of `run`, without those about differences from other codes.
     pub messages: String,
-    /// The same without colour, for the log.
+    /// Messages without colour, for the log.
     pub plain_messages: String,
     /// Number of errors.
     pub errors: usize,
@@ -326,12 +327,12 @@ impl Loaded {
     }
 }
 
-/// Reads a deck; messages coloured or not.
+/// Function that reads a deck; the last argument says whether messages are coloured.
 type ReadDeck = fn(&DeckArgs, Option<EarlierDeck>, bool) -> Loaded;
-/// Solves all steps of a model.
+/// Function that solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
-/// Reader and solver, as the commands call them.
+/// Reader and solver that the commands call; tests replace them.
 pub(super) struct Numerics {
     pub load: ReadDeck,
     pub solve: Solve,
@@ -347,7 +348,7 @@ impl Numerics {
     }
 }
 
-/// Reads and prepares a deck; none where it has errors.
+/// Reads and prepares a deck; there is no model if the deck has errors.
 fn prepared(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Option<PreparedModel> {
     let model = reader::read_model(path, sources, d);
     let model = model.and_then(|model| prepare(model, d))?;

@@ -16,9 +16,9 @@ use crate::output::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Exit {
-    /// Everything is done.
+    /// The command has done everything.
     Finished = 0,
-    /// Stopped in the solve; the results up to there are valid.
+    /// The run stopped during the solve; the results up to that point are valid.
     Stopped = 1,
     /// The deck was rejected; no result file was touched.
     Rejected = 2,
@@ -27,11 +27,11 @@ pub enum Exit {
     /// A file or the screen could not be read or written, results exist already, or another run has
     /// the job; the run does not fit into the free memory.
     FileSystem = 4,
-    /// The terminal was closed (SIGHUP); the results up to there are valid.
+    /// The terminal was closed (SIGHUP); the results up to that point are valid.
     HungUp = 129,
-    /// Interrupted (SIGINT); the results up to there are valid.
+    /// The run was interrupted (SIGINT); the results up to that point are valid.
     Interrupted = 130,
-    /// Terminated (SIGTERM); the results up to there are valid.
+    /// The run was terminated (SIGTERM); the results up to that point are valid.
     Terminated = 143,
 }
 
@@ -41,10 +41,10 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a command failed.
+/// Reason why a command failed.
 #[derive(Debug, Error)]
 pub(super) enum CliError {
-    /// A file cannot be read or written: a deck, a complementarity problem, or what the command makes.
+    /// A file cannot be read or written: a deck, a complementarity problem, or a file that the command makes.
     #[error(transparent)]
     File(#[from] FileError),
     /// A name of the deck is not possible in the result file.
@@ -56,13 +56,14 @@ pub(super) enum CliError {
     /// The files of the job cannot be created.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// There is no checkpoint to go on from.
+    /// There is no checkpoint from which the run can continue.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// The files of the earlier run are not those of its checkpoint.
+    /// The files of the earlier run do not belong to its checkpoint.
     #[error("cannot go on: {0}; the files stay as they are")]
     GoOn(io::Error),
-    /// A job that goes beyond the end of its deck has no place in it where another one could go on.
+    /// The earlier job was extended beyond the end of its deck, so the deck has no place at which another job could
+    /// continue.
     #[error(
         "{} is of a job that --extend took beyond the end of its deck: give it the longer step, and run it anew",
         .0.display()
@@ -71,20 +72,20 @@ pub(super) enum CliError {
     /// A result cannot be written.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),
-    /// The same in the middle of a run.
+    /// A result cannot be written in the middle of a run.
     #[error("cannot write the results: {source}{}", after(kept))]
     Broken {
-        /// Why, with the file.
+        /// The reason, with the file.
         source: io::Error,
-        /// Which results can be read.
+        /// Text that says which results can be read.
         kept: Option<String>,
     },
     /// The checkpoint of an earlier job does not fit the model of the deck.
     #[error("cannot go on from the checkpoint: {source}{}", after(kept))]
     OfAnotherModel {
-        /// What does not fit.
+        /// Name of the data that does not fit.
         source: ArchiveError,
-        /// Which results can be read.
+        /// Text that says which results can be read.
         kept: Option<String>,
     },
     /// Writing to the standard output failed, except by a closed pipe.
@@ -93,33 +94,33 @@ pub(super) enum CliError {
     /// Signals cannot be received.
     #[error("cannot receive signals: {0}")]
     Signals(io::Error),
-    /// The editor says what is not the protocol, or is gone.
+    /// The editor breaks the protocol, or its connection has ended.
     #[error("the connection to the editor is broken: {0}")]
     Editor(String),
     /// The result file cannot be read.
     #[error(transparent)]
     Summary(#[from] SummaryError),
-    /// There is no keyword and no code of this name.
+    /// There is no keyword and no code with this name.
     #[error(
         "{word} is neither a keyword nor the code of a message{}{}",
         suggestion(meant),
         told(about)
     )]
     Unexplained {
-        /// What was asked for.
+        /// The word that was asked for.
         word: String,
-        /// What was probably meant.
+        /// The keyword or code that was probably meant.
         meant: Option<&'static str>,
-        /// Keywords that speak of it.
+        /// Keywords whose text has the word.
         about: Vec<&'static str>,
     },
-    /// A file that the command makes exists.
+    /// The file that the command would write exists already.
     #[error("{} exists already; --overwrite replaces it", path.display())]
     Exists {
         /// The file that exists.
         path: PathBuf,
     },
-    /// No Python has the package, of which a command is asked for.
+    /// No Python has the package with the command that was asked for.
     #[error(
         "`stickslip {0}` is a command of the Python package, which is not found: {cure} installs it; or name in \
          STICKSLIP_PYTHON the Python that has it",
@@ -129,15 +130,15 @@ pub(super) enum CliError {
     /// Python cannot be started.
     #[error("cannot start {}: {source}", path.display())]
     Python {
-        /// Its path.
+        /// Path of the Python interpreter.
         path: PathBuf,
-        /// The system's reason.
+        /// Reason that the system gives.
         source: io::Error,
     },
     /// The threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
-        /// Number of threads asked for.
+        /// Number of threads that were asked for.
         threads: usize,
         /// The reason that the library gives.
         reason: String,
@@ -145,7 +146,7 @@ pub(super) enum CliError {
 }
 
 impl CliError {
-    /// Its exit code.
+    /// Exit code for the error.
     pub fn exit(&self) -> Exit {
         match self {
             CliError::Name(_) | CliError::Output(OutputError::Name(_)) => Exit::Rejected,
@@ -167,7 +168,7 @@ fn told(about: &[&str]) -> String {
     }
 }
 
-/// What installs the package with all that a command needs.
+/// Command that installs the package with everything that a command of the package needs.
 fn cure(command: &str) -> String {
     let extra = match command.split(' ').next() {
         Some("plot") => "[plot]",

@@ -8,7 +8,7 @@ use clap_mangen::Man;
 
 use super::args::{Args, NUMBER};
 
-/// The program's name.
+/// Name of the program.
 const NAME: &str = "stickslip";
 
 /// The lines with which clap_mangen defines the apostrophe.
@@ -67,7 +67,7 @@ fn write_commands(command: &Command, page: &mut Vec<u8>) -> io::Result<()> {
     Ok(())
 }
 
-/// What makes a shell complete the words of the program.
+/// Script with which a shell completes the words of the program.
 pub(super) fn completion(shell: Shell) -> String {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Args::command(), NAME, &mut script);

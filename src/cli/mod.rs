@@ -1,4 +1,4 @@
-//! Command line: commands of the program, and those of the Python package, to which it hands over.
+//! Command line: commands of the program, and commands of the Python package, which it hands over.
 
 mod allocator;
 mod args;
@@ -24,7 +24,7 @@ pub use error::Exit;
 pub use manual::manual;
 use terminal::{complain, on_screen, print};
 
-/// Runs the program with its arguments, the program's name first.
+/// Runs the program with its arguments; the first one is the name of the program.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let args = match Args::try_parse_from(&arguments) {
@@ -51,13 +51,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     })
 }
 
-/// Prints a text; the exit code.
+/// Prints a text and returns the exit code.
 fn printed(text: &str) -> Result<Exit, CliError> {
     print(&[text.trim_end().to_owned()])?;
     Ok(Exit::Finished)
 }
 
-/// Prints help, version or the error of the command line; the exit code.
+/// Prints help, version or the error of the command line, and returns the exit code.
 fn usage(error: &clap::Error) -> Exit {
     let is_asked_for = matches!(
         error.kind(),
@@ -74,7 +74,7 @@ fn usage(error: &clap::Error) -> Exit {
     }
 }
 
-/// The command as typed, with the program's bare name; arguments with blanks in quotes.
+/// The command as typed, with the name of the program without folders; arguments with blanks are in quotes.
 fn typed(arguments: &[OsString]) -> String {
     let quoted = |argument: &OsString| {
         let text = argument.to_string_lossy();

@@ -1,4 +1,4 @@
-//! Commands of the Python package: the program finds Python with the package of its installation and hands over.
+//! Commands of the Python package: the program finds a Python that has the package and hands the command over to it.
 
 use std::env;
 use std::fs;
@@ -15,7 +15,7 @@ const PYTHON: &str = "STICKSLIP_PYTHON";
 /// The environment variable that tells the package which program this is.
 const PROGRAM: &str = "STICKSLIP";
 
-/// Ends with success where Python is new enough (-P is of 3.11) and has the package.
+/// Python code that ends with success if Python has the package; the option -P, which is passed too, needs Python 3.11.
 const HAS_PACKAGE: &str =
     "import importlib.util, sys; sys.exit(importlib.util.find_spec('stickslip') is None)";
 
@@ -44,10 +44,10 @@ pub(super) fn run(command: &PackageCommand) -> Result<Exit, CliError> {
     })
 }
 
-/// An interpreter that may have the package.
+/// A Python interpreter that may have the package.
 struct Python {
     path: PathBuf,
-    /// Where the package is, where it is not installed.
+    /// Folder of the package, if it is not installed.
     package: Option<PathBuf>,
 }
 
@@ -59,7 +59,7 @@ impl Python {
         }
     }
 
-    /// A command of it, without modules from the current folder.
+    /// A command of this interpreter, which does not import modules from the current folder.
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
         command.arg("-P");
@@ -85,8 +85,8 @@ impl Python {
     }
 }
 
-/// Interpreters that may have the package: the one of STICKSLIP_PYTHON alone where it is set; else those of a checkout
-/// in which the program was built, those beside the program, and those on the path.
+/// Interpreters that may have the package: only the one of STICKSLIP_PYTHON if it is set; else those of a checkout in
+/// which the program was built, those next to the program, and those on the search path.
 fn pythons(program: Option<&Path>) -> Vec<Python> {
     if let Some(named) = env::var_os(PYTHON).filter(|name| !name.is_empty()) {
         return vec![Python::new(named)];

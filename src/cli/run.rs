@@ -19,8 +19,7 @@ use crate::output::{
 };
 use crate::prepare::{MemoryNeed, PreparedModel};
 
-/// Solves a deck; `command` is the command as typed. The run ends early when `interrupt` requests
-/// it.
+/// Solves a deck; `command` is the command as typed. The run ends early if `interrupt` requests it.
 pub(super) fn run(
     args: &RunArgs,
     command: &str,
@@ -154,7 +153,7 @@ fn texts(sources: &Sources) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Describes the model of a deck that shall not be solved; no file is touched.
+/// Describes the model of a deck that is not to be solved; no file is touched.
 fn check_only(args: &RunArgs, loaded: &Loaded, model: &PreparedModel) -> Result<Exit, CliError> {
     if args.verbosity() == Verbosity::Quiet {
         check_names(&model.model)?;
@@ -197,7 +196,7 @@ fn solve(
     }
 }
 
-/// Starts the threads of the program, this one being the first, and returns their number.
+/// Starts the threads of the program, of which this thread is the first, and returns their number.
 fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
     let threads = wanted.unwrap_or_else(processors);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -279,7 +278,7 @@ mod tests {
     use std::sync::Arc;
     use tempfile::TempDir;
 
-    /// One square, one step of ten increments with a frame at its end.
+    /// A deck with one square element and one step of ten increments, with a frame at its end.
     fn square() -> Model {
         let mut model = Model {
             mesh: Mesh {
@@ -461,7 +460,7 @@ mod tests {
         }
     }
 
-    /// A folder with a deck in it.
+    /// A new folder with a deck in it.
     struct Bench {
         folder: TempDir,
         interrupt: Interrupt,

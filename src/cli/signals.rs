@@ -1,7 +1,7 @@
 //! Signals that request the end of a run.
 //!
-//! After the first one the run ends with the current increment and complete results. A second one
-//! ends the program at once.
+//! After the first signal the run ends with the current increment and complete results. A second signal ends the
+//! program at once.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -11,14 +11,14 @@ use super::terminal::complain;
 use crate::output::Interrupt;
 use crate::system::{HANG_UP, TERMINATE, exit_now, on_signals};
 
-/// Signals within this time of the first are the same request: a process and its group are often
-/// sent one each.
+/// Time after the first signal within which further signals count as the same request: often a process and its group
+/// each get one.
 const ONE_REQUEST: Duration = Duration::from_millis(250);
 
-/// Starts to receive signals, except those that the program was started to ignore (as by `nohup`).
+/// Starts to receive signals, except signals that were ignored when the program started (as by `nohup`).
 ///
 /// # Errors
-/// Those of the system.
+/// The system refuses the handlers.
 pub(super) fn receive() -> io::Result<Interrupt> {
     let interrupt = Interrupt::default();
     let request = interrupt.clone();

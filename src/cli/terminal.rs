@@ -1,4 +1,4 @@
-//! Standard output and standard error: closed pipes, colours.
+//! Printing on standard output and standard error, with closed pipes and colours.
 
 use std::io::{self, IsTerminal, Write};
 
@@ -12,7 +12,7 @@ pub(super) fn print(lines: &[String]) -> Result<(), CliError> {
     on_screen(printed.and_then(|()| out.flush()))
 }
 
-/// The result of printing; a closed pipe is not an error.
+/// The result of printing, where a closed pipe is not an error.
 pub(super) fn on_screen(printed: io::Result<()>) -> Result<(), CliError> {
     match printed {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CliError::Screen(error)),

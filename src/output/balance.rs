@@ -1,4 +1,4 @@
-//! The energy balance of a run, the energy that contact puts in, and the momentum of a model without forces from outside,
+//! The energy balance of a run, the energy that contact puts in, and the momentum of a model without external forces,
 //! increment by increment. See docs/theory/contact.md and docs/theory/impacts.md.
 
 use super::warnings::{BALANCE, Losses, hourglass_part, part};
@@ -6,19 +6,20 @@ use crate::dynamics::{Energy, IncrementReport, Momentum};
 use crate::linear::larger;
 use crate::model::{Connector, Equation, Model};
 
-/// Follows the energy balance, the energy that contact puts in and, of a free model, the momentum.
+/// Follows the energy balance, the energy that contact puts in and, in a free model, the momentum.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Balance {
     /// Largest energy or work so far.
     pub largest: f64,
     /// Largest absolute balance so far.
     worst: f64,
-    /// Largest energy of hourglass modes so far, and largest strain energy with what the materials have dissipated.
+    /// Largest energy of hourglass modes so far; `internal` is the largest sum so far of strain energy and energy
+    /// dissipated by materials.
     hourglass: f64,
     internal: f64,
     /// The last energies.
     last: Energy,
-    /// Normal work of nodes that took the place of others so far.
+    /// Work of normal contact forces so far at nodes that replaced other closed nodes.
     handover_work: f64,
     contact_energy: ContactEnergy,
     /// Momentum at the start of a model without external forces.
@@ -27,13 +28,14 @@ pub(crate) struct Balance {
     mass: f64,
     /// Largest sqrt(2 M T) so far, which the linear momenta of all bodies do not exceed.
     momentum: f64,
-    /// Largest change of the linear momentum so far, what mass-proportional damping took put back.
+    /// Largest change of the linear momentum so far, with the momentum that mass-proportional damping has removed put
+    /// back.
     drift: f64,
     free: bool,
 }
 
-/// Increments in which the normal contact forces did positive work: with energy-momentum contact
-/// those that a pair enters with a negative gap.
+/// Increments in which the normal contact forces did positive work. With energy-momentum contact, contact does positive
+/// work in increments that a pair enters with a negative gap.
 #[derive(Debug, Clone, Copy, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactEnergy {
     /// Number of these increments.
@@ -43,7 +45,7 @@ pub(crate) struct ContactEnergy {
 }
 
 impl Balance {
-    /// The balance of a model's run.
+    /// The balance of a run of a model.
     pub fn new(model: &Model) -> Self {
         let free = model.equations.iter().all(keeps_momentum)
             && model.connectors.iter().all(Connector::has_no_resultant)
@@ -66,7 +68,7 @@ impl Balance {
         }
     }
 
-    /// Enters an increment; returns the energy that contact put in, if it did.
+    /// Enters an increment; returns the energy that contact put in, if any.
     pub fn add(&mut self, report: &IncrementReport) -> Option<f64> {
         let Energy {
             kinetic,
@@ -110,12 +112,14 @@ impl Balance {
         self.drift = larger(self.drift, (x - x0).hypot(y - y0));
     }
 
-    /// `balance` as a part of the largest energy so far; what round-off may make of it is within its bound.
+    /// `balance` as a part of the largest energy so far, or of a larger scale, for which round-off stays within the
+    /// bound of the balance.
     pub fn relative(&self, balance: f64) -> f64 {
         part(balance, self.whole())
     }
 
-    /// The largest energy so far, at least the one beside which the work of round-off is within the bound of the balance.
+    /// The largest energy so far, but at least so large that the work of round-off relative to it stays within the
+    /// bound of the balance.
     fn whole(&self) -> f64 {
         larger(self.largest, self.last.round_off / BALANCE)
     }
@@ -130,17 +134,17 @@ impl Balance {
         self.relative(self.worst)
     }
 
-    /// Where the energy has gone so far.
+    /// Losses of energy so far.
     pub fn losses(&self) -> Losses {
         Losses::new(&self.last, self.handover_work, self.largest)
     }
 
-    /// Whether no forces act from outside.
+    /// Whether there are no external forces.
     pub fn is_free(&self) -> bool {
         self.free
     }
 
-    /// The change of a free model's linear momentum as a part of the largest momenta of its bodies.
+    /// The change of the linear momentum of a free model as a part of the largest momenta of its bodies.
     pub fn momentum_drift(&self) -> Option<f64> {
         self.free.then(|| part(self.drift, self.momentum))
     }

@@ -1,5 +1,5 @@
-//! The sheet that a picture is drawn on, as SVG: places of the model become points of the picture, y upwards;
-//! marks, and a legend with a symbol and a text for everything that is drawn.
+//! The canvas of an SVG picture. The canvas maps places of the model to points of the picture (y points upwards in the
+//! model), and draws marks and a legend with a symbol and a text for everything that is drawn.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -10,11 +10,11 @@ use super::format::general;
 const WIDTH: f64 = 860.0;
 /// Largest and smallest height of the drawing.
 const HEIGHTS: [f64; 2] = [760.0, 160.0];
-/// Space about the drawing, for arrows and names.
+/// Width of the space around the drawing, for arrows and names.
 const MARGIN: f64 = 70.0;
-/// Part of this space into which bodies and surfaces reach that are not shown as a whole.
+/// Width of the part of this space into which bodies and surfaces reach that are not shown completely.
 const BEYOND: f64 = 20.0;
-/// Width of the legend, height of one of its lines, most characters of a line and most lines.
+/// Width of the legend; its line height, and the largest numbers of characters in a line and of lines follow.
 const LEGEND: f64 = 300.0;
 const LEGEND_LINE: f64 = 20.0;
 const LONGEST: usize = 40;
@@ -23,21 +23,21 @@ const MOST_LINES: usize = 32;
 const INK: &str = "#222222";
 const GREY: &str = "#777777";
 
-/// A point of the picture, or a way in it, in pixels; y downwards.
+/// A point of the picture, or a vector in it, in pixels, with y downwards.
 pub(super) type Pixels = [f64; 2];
 
 /// Colour of the line and its width in pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Pen(pub &'static str, pub f64);
 
-/// What stands in front of a line of the legend.
+/// Symbol in front of a line of the legend.
 #[derive(Clone, Copy)]
 pub(super) enum Symbol {
     /// A filled rectangle.
     Fill(&'static str),
     /// A line.
     Line(Pen),
-    /// A line with dots, the nodes of a slave surface.
+    /// A line with dots, which represent the nodes of a slave surface.
     Dotted(Pen),
     /// An arrow.
     Arrow(Pen),
@@ -52,20 +52,20 @@ pub(super) enum Symbol {
 /// An SVG picture being drawn.
 pub(super) struct Canvas {
     body: String,
-    /// Smallest and largest coordinates of what is shown.
+    /// Smallest and largest coordinates of the part of the model that is shown.
     extents: [[f64; 2]; 2],
-    /// What is shown, with the space about it.
+    /// The part of the model that is shown, with the space around it.
     area: Window,
     /// Pixels per unit of length.
     scale: f64,
     /// Width and height of the drawing.
     size: [f64; 2],
-    /// Lines of the legend, each once.
+    /// Lines of the legend, without duplicates.
     legend: Vec<(Symbol, String)>,
 }
 
 impl Canvas {
-    /// An empty sheet that shows a part of the plane.
+    /// An empty canvas that shows a part of the plane.
     pub fn new(window: Window) -> Self {
         let Window(extents) = window;
         // half of the size, which does not overflow
@@ -84,7 +84,7 @@ impl Canvas {
         }
     }
 
-    /// The point of the picture where a place of the model lies: the model is in the middle.
+    /// The point of the picture for a place of the model; the model is in the middle of the picture.
     pub fn at(&self, x: [f64; 2]) -> Pixels {
         let from_middle = |i: usize| {
             let [low, high] = [self.extents[0][i], self.extents[1][i]];
@@ -99,7 +99,7 @@ impl Canvas {
         self.area.holds(x)
     }
 
-    /// The point of a place that is shown and where there is room for a mark, which takes it.
+    /// The point of a place for a mark, if the place is shown and has room; the mark then occupies this room.
     pub fn room(&self, place: [f64; 2], spacing: &mut Spacing) -> Option<Pixels> {
         let at = self.at(place);
         (self.area.holds(place) && spacing.takes(at)).then_some(at)
@@ -110,12 +110,12 @@ impl Canvas {
         self.area.part(line)
     }
 
-    /// Pixels that a length of the model takes.
+    /// Number of pixels of a length of the model.
     pub fn pixels(&self, length: f64) -> f64 {
         length * self.scale
     }
 
-    /// Closed loops of places, filled; what lies in two loops is a hole.
+    /// Draws closed loops of places, filled; a part inside two loops is a hole.
     pub fn fill(&mut self, loops: &[Vec<[f64; 2]>], colour: &str, pen: Pen) {
         let path: String = loops.iter().map(|places| self.path(places) + "Z").collect();
         let Pen(stroke, width) = pen;
@@ -131,7 +131,7 @@ impl Canvas {
         ));
     }
 
-    /// Lines between two places each, as far as they are shown.
+    /// Draws lines between two places each, as far as they are shown.
     pub fn lines(&mut self, lines: &[[[f64; 2]; 2]], pen: Pen) {
         let parts = lines.iter().filter_map(|&line| self.part(line));
         let path: String = parts.map(|part| self.path(&part)).collect();
@@ -149,7 +149,7 @@ impl Canvas {
         path
     }
 
-    /// A path in points of the picture.
+    /// Draws a path through points of the picture.
     pub fn stroke(&mut self, path: &str, Pen(colour, width): Pen) {
         if !path.is_empty() {
             self.tag(&format!(
@@ -159,7 +159,7 @@ impl Canvas {
         }
     }
 
-    /// A filled polygon of points.
+    /// Draws a filled polygon of points.
     pub fn polygon(&mut self, points: &[Pixels], colour: &str) {
         let points: Vec<String> = points
             .iter()
@@ -171,14 +171,14 @@ impl Canvas {
         ));
     }
 
-    /// A dot with its middle at a point.
+    /// Draws a dot with its centre at a point.
     pub fn dot(&mut self, [x, y]: Pixels, radius: f64, colour: &str) {
         self.tag(&format!(
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{colour}\"/>"
         ));
     }
 
-    /// A filled rectangle about a point, half as wide and high as it says.
+    /// Draws a filled rectangle around a point, given by half its width and height.
     fn rectangle(&mut self, [x, y]: Pixels, [half_width, half_height]: Pixels, colour: &str) {
         let ([x0, x1], [y0, y1]) = (
             [x - half_width, x + half_width],
@@ -187,12 +187,12 @@ impl Canvas {
         self.polygon(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]], colour);
     }
 
-    /// A square: neither direction moves.
+    /// Draws a square, the mark of a node that is held in both directions.
     pub fn fixed(&mut self, at: Pixels, colour: &str) {
         self.rectangle(at, [3.5, 3.5], colour);
     }
 
-    /// A triangle below the node (y is held) or on its left (x is held).
+    /// Draws a triangle below the node if y is held, or on its left if x is held.
     pub fn guided(&mut self, [x, y]: Pixels, direction: usize, colour: &str) {
         let (half, deep) = (3.5, 7.0);
         let corners = match direction {
@@ -202,7 +202,7 @@ impl Canvas {
         self.polygon(&corners, colour);
     }
 
-    /// An arrow from `from` by `way`.
+    /// Draws an arrow from `from` along the vector `way`.
     pub fn arrow(&mut self, from: Pixels, direction: Pixels, pen: Pen) {
         let length = direction[0].hypot(direction[1]);
         if !(length > 0.0 && length.is_finite()) {
@@ -226,7 +226,7 @@ impl Canvas {
         self.polygon(&corners, pen.0);
     }
 
-    /// Text with a white rim; `anchor` is start, middle or end.
+    /// Writes text with a white rim; `anchor` is start, middle or end.
     pub fn label(&mut self, [x, y]: Pixels, anchor: &str, colour: &str, text: &str) {
         let text = escaped(text);
         let place = format!("x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\"");
@@ -235,7 +235,7 @@ impl Canvas {
         self.tag(&format!("<text {place} fill=\"{colour}\">{text}</text>"));
     }
 
-    /// Adds a line to the legend that is not there yet.
+    /// Adds a line to the legend, unless it is there already.
     pub fn explain(&mut self, symbol: Symbol, text: &str) {
         if !self.legend.iter().any(|(_, known)| known == text) {
             self.legend.push((symbol, text.to_owned()));
@@ -327,24 +327,24 @@ impl Canvas {
     }
 }
 
-/// A rectangle: its smallest and largest coordinates (length).
+/// A rectangle, given by its smallest and largest coordinates (length).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window(pub [[f64; 2]; 2]);
 
 impl Window {
-    /// The rectangle with so much more on every side (length).
+    /// The rectangle widened on every side (length).
     fn widened(self, [x, y]: [f64; 2]) -> Self {
         let Window([low, high]) = self;
         Window([[low[0] - x, low[1] - y], [high[0] + x, high[1] + y]])
     }
 
-    /// Whether a place lies in it.
+    /// Whether a place lies in the rectangle.
     fn holds(&self, x: [f64; 2]) -> bool {
         let Window([low, high]) = self;
         (0..2).all(|i| low[i] <= x[i] && x[i] <= high[i])
     }
 
-    /// The part of a line from `a` to `b` that lies in it, after Liang & Barsky (1984).
+    /// The part of a line from `a` to `b` that lies in the rectangle, after Liang & Barsky (1984).
     fn part(&self, [a, b]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
         let Window([low, high]) = self;
         let (mut start, mut end) = (0.0_f64, 1.0_f64);
@@ -372,7 +372,7 @@ impl Window {
     }
 }
 
-/// Text with the signs that SVG gives a meaning to.
+/// Text in which the characters with a meaning in SVG are escaped.
 fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
@@ -394,7 +394,7 @@ pub(super) struct Spacing {
 }
 
 impl Spacing {
-    /// Marks that are at least so many pixels apart.
+    /// Keeps marks at least `distance` pixels apart.
     pub fn new(distance: f64) -> Self {
         Spacing {
             distance,
@@ -402,7 +402,7 @@ impl Spacing {
         }
     }
 
-    /// Whether there is room at a point; takes it.
+    /// Whether there is room for a mark at a point; if so, the mark occupies it.
     pub fn takes(&mut self, at: Pixels) -> bool {
         // a cell has room for one mark
         let cell = at.map(|x| (x / self.distance * std::f64::consts::SQRT_2).floor() as i64);

@@ -1,5 +1,6 @@
-//! What a run checks in every increment, each beside its bound: the table `/history/certificate`, and the line on the
-//! screen with the largest of all increments. See docs/theory/time.md, docs/theory/complementarity.md and docs/theory/impacts.md.
+//! Checks that a run makes in every increment, each with its bound: the table `/history/certificate`, and the line on
+//! the screen with the largest values of all increments. See docs/theory/time.md, docs/theory/complementarity.md and
+//! docs/theory/impacts.md.
 
 use hdf5::Group;
 
@@ -11,37 +12,38 @@ use crate::dynamics::{ContactResultant, IncrementReport};
 use crate::linear::larger;
 use crate::model::Model;
 
-/// A quantity that is zero but for round-off and for what the passes leave.
+/// A quantity that is zero up to round-off and the residuals of the passes.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Check {
-    /// Its dataset.
+    /// Name of the dataset of the check.
     pub name: &'static str,
     text: &'static str,
-    /// Largest value that counts as none; NaN where nothing holds it down.
+    /// Largest value that counts as zero; NaN for a quantity without a bound.
     bound: f64,
     of: Of,
 }
 
-/// Models that a check is made of.
+/// Models for which a check is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Of {
     All,
     WithContact,
-    /// With wear or heat.
+    /// Models with wear or heat.
     WithSurfaceWork,
-    /// Without forces from outside.
+    /// Models without external forces.
     Free,
 }
 
-/// Largest residual, overlap, gap and slip of increments that have converged: a thousand times what the passes leave.
+/// Largest residual, overlap, gap and slip of increments that have converged: a thousand times the values at which
+/// passes end.
 const LAW: f64 = 1e-8;
-/// Force outside of the cone that is round-off.
+/// Largest force outside the cone that counts as round-off.
 const CONE: f64 = 1e-9;
-/// Difference of sums over nodes from sums over pairs that is round-off.
+/// Largest difference between sums over nodes and sums over pairs that counts as round-off.
 const SURFACE_WORK: f64 = 1e-10;
-/// Change of the momentum that is round-off.
+/// Largest change of the momentum that counts as round-off.
 const MOMENTUM: f64 = 1e-9;
-/// Penetration that is told: less is round-off of positions.
+/// Smallest penetration that is reported: smaller ones are round-off of positions.
 const SHOWN_PENETRATION: f64 = 1e-9;
 
 #[rustfmt::skip]
@@ -70,12 +72,12 @@ pub(crate) const CHECKS: [Check; 10] = [
 
 const PENETRATION: &str = "penetration";
 
-/// Values of [`CHECKS`], those of which the model has none being zero.
+/// Values of [`CHECKS`]; checks that the model does not need are zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Checks([f64; CHECKS.len()]);
 
 impl Checks {
-    /// Those of an increment, whose energies `balance` knows.
+    /// Values of an increment, after `balance` has entered its energies.
     pub fn new(report: &IncrementReport, balance: &Balance) -> Self {
         let most =
             |of: fn(&ContactResultant) -> f64| report.contacts.iter().map(of).fold(0.0, larger);
@@ -94,14 +96,14 @@ impl Checks {
         ])
     }
 
-    /// Takes in those of another increment.
+    /// Enters the values of another increment.
     pub fn enter(&mut self, others: Checks) {
         for (most, value) in self.0.iter_mut().zip(others.0) {
             *most = larger(*most, value);
         }
     }
 
-    /// Those that are made of the model, with their values.
+    /// The checks that are made for a model, with their values.
     pub fn of(&self, model: &Model) -> Vec<(&'static Check, f64)> {
         let made = CHECKS.iter().zip(self.0);
         made.filter(|(check, _)| check.is_made_of(model)).collect()
@@ -132,7 +134,7 @@ impl Check {
         }
     }
 
-    /// The check in the line; none of a penetration that is round-off.
+    /// Text of a check in the line; `None` for a penetration that is round-off.
     fn told(&self, value: f64) -> Option<String> {
         let shown = scientific(value, 1);
         match (self.name, self.fails(value)) {

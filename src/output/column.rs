@@ -1,5 +1,5 @@
-//! Groups, attributes and datasets of the result file: those that never change, and those that grow by
-//! rows, which wait in memory.
+//! Groups, attributes and datasets of the result file. Some datasets never change; others grow by rows, which wait in
+//! memory.
 
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::VarLenUnicode;
@@ -8,8 +8,8 @@ use hdf5::{
 };
 use ndarray::{ArrayD, ArrayView, IxDyn};
 
-/// What a dataset holds: the dimension of its values, such as "length/time" ("1" for a pure number), and a
-/// sentence. They are its attributes `dimension` and `description`.
+/// Meaning of a dataset: the dimension of its values, such as "length/time" ("1" for a pure number), and a sentence.
+/// Dimension and sentence become the attributes `dimension` and `description` of the dataset.
 pub(crate) type Meaning = (&'static str, &'static str);
 
 /// The attribute of `/history`, and of its groups of events, that counts their complete rows.
@@ -21,7 +21,7 @@ pub(crate) fn group(parent: &Group, name: &str) -> hdf5::Result<Group> {
     builder.obj_track_times(false).create(name)
 }
 
-/// A text in the form of HDF5; a NUL, which that cannot hold, becomes U+FFFD.
+/// A text in the form of HDF5; a NUL, which HDF5 cannot store in a text, becomes U+FFFD.
 pub(crate) fn hdf5_text(text: &str) -> hdf5::Result<VarLenUnicode> {
     let clean = text.replace('\0', "\u{fffd}").parse::<VarLenUnicode>();
     clean.map_err(|_| hdf5::Error::from("text with a NUL character"))
@@ -55,42 +55,43 @@ pub(crate) fn constant<T: H5Type>(
     }
 }
 
-/// Gives a new dataset its two attributes.
+/// Gives a new dataset its attributes `dimension` and `description`.
 fn describe(dataset: &Dataset, (dimension, description): Meaning) -> hdf5::Result<()> {
     text_attribute(dataset, "description", description)?;
     text_attribute(dataset, "dimension", dimension)
 }
 
-/// Rows of a chunk of a dataset that grows by one row per increment: each chunk costs a call of the system.
+/// Number of rows of a chunk of a dataset that grows by one row per increment; a chunk has many rows because each chunk
+/// costs a system call.
 const CHUNK_ROWS: usize = 256;
 
-/// Largest chunk in bytes: well inside the library's chunk cache.
+/// Size of the largest chunk (bytes), well below the chunk cache of the library.
 const CHUNK_BYTES: usize = 1 << 16;
 
-/// Largest chunk in bytes of a field that most nodes have the same value of: small, since chunks
-/// with that value only are left out.
+/// Size of the largest chunk (bytes) of a field that has the same value at most nodes; it is small, because chunks with
+/// only this value are not stored.
 const SPARSE_CHUNK_BYTES: usize = 1 << 11;
 
-/// Largest chunk in bytes of such a field in a small model, whose frames are not larger than the second
-/// number: there the number of chunks counts.
+/// Size of the largest chunk (bytes) of such a field in a small model, whose frames have at most [`SMALL_FRAME_BYTES`]:
+/// there the number of chunks matters.
 const SMALL_CHUNK_BYTES: usize = 1 << 14;
 const SMALL_FRAME_BYTES: usize = 1 << 12;
 
-/// Bytes by which the index of a dataset may grow when rows are appended: a node of the library's
-/// tree of chunks and one for each of the levels above it (3.1 kB each with three dimensions).
+/// Number of bytes by which the index of a dataset may grow when rows are appended: a node in the chunk tree of the
+/// library and one node for each level above it (3.1 kB each with three dimensions).
 const INDEX: usize = 3 * 3200;
 
-/// Bytes of the index for a chunk: its part of a half-filled node.
+/// Number of bytes of the index for a chunk: its part of a half-filled node.
 const INDEX_OF_CHUNK: usize = 100;
 
-/// A number of a dataset, with the value that rows have which are not written.
+/// A number of a dataset, with the value of rows that are not written.
 pub(crate) trait Number: H5Type + Copy + Default + PartialEq {
-    /// The value of what is not written.
+    /// The value of rows that are not written.
     fn left_out(_nan: bool) -> Self {
         Self::default()
     }
 
-    /// Whether it is zero (or NaN, where that is the value of what is not written).
+    /// Whether the number is zero, or NaN if that is the value of rows that are not written.
     fn is_left_out(&self, _nan: bool) -> bool {
         *self == Self::default()
     }
@@ -113,7 +114,7 @@ impl Number for f64 {
     }
 }
 
-/// What most rows of a dataset hold; chunks of nothing else take no space in the file.
+/// The value in most rows of a dataset; chunks with only this value need no space in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mostly {
     /// Any value.
@@ -126,25 +127,25 @@ pub(crate) enum Mostly {
     Nan,
 }
 
-/// Rows of a dataset, and how the file keeps them.
+/// Shape of the rows of a dataset, and how the file stores them.
 pub(crate) struct Layout {
     /// Shape of a row in the file; empty for a scalar.
     row: Vec<usize>,
     /// Shape of the part of a row that is written; the rest is zero.
     given: Vec<usize>,
-    /// Rows of a chunk.
+    /// Number of rows of a chunk.
     chunk_rows: usize,
-    /// Rows that a report has; of a dataset of events, at least.
+    /// Number of rows of a report; for a dataset of events, the smallest number.
     rows: usize,
-    /// Whether the library keeps chunks in its memory until it is flushed. What is written once, in large
-    /// pieces, it need not copy.
+    /// Whether the library keeps chunks in its memory until it is flushed. Rows that are written once, in large pieces,
+    /// need no such copy.
     is_cached: bool,
     mostly: Mostly,
 }
 
 impl Layout {
-    /// Rows that come one by one, with each increment or each event. Those of events have their tree of
-    /// chunks from the start, since the first event can come late ([`Mostly::Late`]).
+    /// Rows that come one by one, with each increment or each event. Rows of events have their chunk tree from the
+    /// start, because the first event can come late ([`Mostly::Late`]).
     pub fn one_by_one<T: Number>(row: &[usize], mostly: Mostly) -> Self {
         let bytes = row.iter().product::<usize>() * size_of::<T>();
         Layout {
@@ -157,8 +158,8 @@ impl Layout {
         }
     }
 
-    /// Rows that come in frames of `rows`, up to `frames` of them in a chunk. Of a row `given` components
-    /// are written and the others are zero.
+    /// Rows that come in frames of `rows`, up to `frames` of them in a chunk. Only the `given` components of a row are
+    /// written; the others are zero.
     pub fn in_frames<T: Number>(
         row: &[usize],
         given: &[usize],
@@ -181,7 +182,7 @@ impl Layout {
         }
     }
 
-    /// Values of a row.
+    /// Number of written values of a row.
     fn size(&self) -> usize {
         self.given.iter().product()
     }
@@ -228,30 +229,30 @@ impl Layout {
     }
 }
 
-/// Shape of a number of rows.
+/// Shape of `rows` rows.
 fn rows_of(rows: usize, row: &[usize]) -> Vec<usize> {
     [&[rows], row].concat()
 }
 
-/// Appends the rows of a report to values. It is not a type parameter of [`Column`]: some 160 datasets would each have
-/// their own code for the same.
+/// Function that appends the rows of a report to a list of values. The function is boxed and not a type parameter of
+/// [`Column`], because otherwise the same code would be compiled for each of about 160 datasets.
 type Values<'m, R, T> = Box<dyn FnMut(&R, &mut Vec<T>) + 'm>;
 
-/// A dataset that grows by rows; `values` appends to the rows that wait in memory those of a report.
+/// A dataset that grows by rows; `values` appends the rows of a report to those that wait in memory.
 struct Column<'m, R, T> {
     dataset: Dataset,
     layout: Layout,
     values: Values<'m, R, T>,
-    /// Rows in the file.
+    /// Number of rows in the file.
     written: usize,
     /// Values of the rows not in the file yet, one row after the other.
     pending: Vec<T>,
 }
 
 impl<R, T: Number> Column<'_, R, T> {
-    /// The next rows from `first` on, up to the border of a chunk, that are not left out. The first
-    /// chunk never is: with it the dataset gets its tree of chunks, to which its header then points
-    /// before frames are there that a run killed in the middle of a write could make unreadable.
+    /// The next rows from `first` on, up to the end of a chunk, that must be written. The first chunk is never left
+    /// out. With it the dataset gets its chunk tree and a header that points to the tree, before there are frames that
+    /// a run killed in the middle of a write could make unreadable.
     fn next_block(&self, first: usize, end: usize) -> Option<[usize; 2]> {
         let chunk_rows = self.layout.chunk_rows;
         let border = |row: usize| ((row / chunk_rows + 1) * chunk_rows).min(end);
@@ -287,21 +288,21 @@ impl<R, T: Number> Column<'_, R, T> {
     }
 }
 
-/// A dataset that grows with the reports `R`, whatever its numbers are.
+/// A dataset that grows with the reports `R`, with any type of numbers.
 trait Growing<R> {
-    /// Appends the rows of a report, which wait in memory; returns how many reports usually have as many.
+    /// Appends the rows of a report, which wait in memory; returns the number of usual reports that have as many rows.
     fn push(&mut self, report: &R) -> usize;
 
-    /// Writes the rows that wait.
+    /// Writes the rows that wait in memory.
     fn flush(&mut self) -> hdf5::Result<()>;
 
-    /// Bytes by which the file may grow when the rows of so many reports are written.
+    /// Number of bytes by which the file may grow when the rows of `reports` reports are written.
     fn growth(&self, reports: usize) -> usize;
 
-    /// Bytes of the rows of a report.
+    /// Number of bytes of the rows of a report.
     fn report_bytes(&self) -> usize;
 
-    /// Rows in the file.
+    /// Number of rows in the file.
     fn written(&self) -> usize;
 
     /// Writes the first rows of the same dataset of an earlier file.
@@ -369,30 +370,30 @@ impl<R, T: Number> Growing<R> for Column<'_, R, T> {
     }
 }
 
-/// Bytes of a dataset that are copied in one go.
+/// Number of bytes of a dataset that are copied at a time.
 const COPIED_BYTES: usize = 1 << 22;
 
-/// A number by which readers go: it is written after all that it counts.
+/// A number of rows on which readers rely: it is written after all rows that it counts.
 struct Count<R> {
     attribute: Attribute,
     /// Rows appended.
     rows: usize,
-    /// Rows that a report has.
+    /// Function that returns the number of rows of a report.
     of: fn(&R) -> usize,
 }
 
-/// Datasets that grow together: each report `R` appends rows to every one.
+/// Datasets that grow together: each report `R` appends rows to each of them.
 pub(crate) struct GrowingColumns<'m, R> {
     all: Vec<Box<dyn Growing<R> + 'm>>,
     counts: Vec<Count<R>>,
-    /// Reports whose rows wait in memory; one with many events counts as several.
+    /// Number of reports whose rows wait in memory; a report with many events counts as several.
     waiting: usize,
-    /// Reports that wait at most.
+    /// Largest number of reports that wait.
     most: usize,
 }
 
 impl<'m, R: 'm> GrowingColumns<'m, R> {
-    /// No datasets yet.
+    /// An empty set of datasets.
     pub fn new() -> Self {
         GrowingColumns {
             all: Vec::new(),
@@ -402,23 +403,23 @@ impl<'m, R: 'm> GrowingColumns<'m, R> {
         }
     }
 
-    /// Lets rows of up to `bytes` bytes wait in memory, or those of one report.
+    /// Lets rows of up to `bytes` bytes wait in memory, but at least those of one report.
     pub fn let_wait(&mut self, bytes: usize) {
         let report: usize = self.all.iter().map(|column| column.report_bytes()).sum();
         self.most = (bytes / report.max(1)).max(1);
     }
 
-    /// Whether rows wait.
+    /// Whether rows wait in memory.
     pub fn is_waiting(&self) -> bool {
         self.waiting > 0
     }
 
-    /// Whether no further rows may wait.
+    /// Whether no further rows may wait in memory.
     pub fn is_full(&self) -> bool {
         self.waiting >= self.most
     }
 
-    /// Creates a dataset; `values` appends what a report has to whole rows.
+    /// Creates a dataset; `values` appends whole rows of a report.
     pub fn add<T: Number + 'm>(
         &mut self,
         at: &Group,
@@ -470,20 +471,20 @@ impl<'m, R: 'm> GrowingColumns<'m, R> {
         }
     }
 
-    /// Writes the rows that wait, but not their number.
+    /// Writes the rows that wait in memory, but not yet their number.
     pub fn flush(&mut self) -> hdf5::Result<()> {
         self.waiting = 0;
         self.all.iter_mut().try_for_each(|column| column.flush())
     }
 
-    /// Rows of all datasets in the file, then the counts.
+    /// Numbers of rows of all datasets in the file, then the counts.
     pub fn written(&self) -> Vec<usize> {
         let rows = self.all.iter().map(|column| column.written());
         rows.chain(self.counts.iter().map(|count| count.rows))
             .collect()
     }
 
-    /// Writes the rows of an earlier file of the same model of which [`Self::written`] tells.
+    /// Copies as many rows from an earlier file of the same model as `written` gives (see [`Self::written`]).
     pub fn copy(&mut self, earlier: &File, written: &[usize]) -> hdf5::Result<()> {
         let sizes = (self.all.len() + self.counts.len(), written.len());
         if sizes.0 != sizes.1 {
@@ -505,7 +506,7 @@ impl<'m, R: 'm> GrowingColumns<'m, R> {
         counts.try_for_each(|count| count.attribute.write_scalar(&(count.rows as i64)))
     }
 
-    /// Bytes by which the file may grow until the rows are written.
+    /// Number of bytes by which the file may grow until all waiting rows are written.
     pub fn growth(&self) -> u64 {
         let growth = self.all.iter().map(|column| column.growth(self.most));
         growth.sum::<usize>() as u64

@@ -16,22 +16,22 @@ use super::format::{scientific, signed};
 use crate::dynamics::{IncrementReport, PassReport};
 use crate::model::Model;
 
-/// How much is printed.
+/// Amount of output on the screen and in the log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Verbosity {
-    /// Nothing on the standard output; errors and the report of a stop go to the standard error.
+    /// The standard output stays empty; errors and the report of a stop go to the standard error.
     Quiet,
-    /// The header and a table of 20 to 50 lines.
+    /// The screen shows the header and a table of 20 to 50 lines.
     #[default]
     Normal,
-    /// Also the passes of every increment in the log.
+    /// The log has the passes of every increment, too.
     Verbose,
 }
 
-/// The screen with its live line, and the log, which gets everything the screen does.
+/// The screen with its live line, and the log, which gets every line that the screen gets.
 pub(crate) struct Console {
     screen: Option<Box<dyn Write>>,
-    /// Error of a failed screen; none for a closed pipe.
+    /// Error of a failed screen; `None` for a closed pipe.
     lost: Option<io::Error>,
     verbosity: Verbosity,
     table: Table,
@@ -40,8 +40,8 @@ pub(crate) struct Console {
 }
 
 impl Console {
-    /// Prints to the standard output, unless the run is quiet, and to the log; the live line is on
-    /// a terminal only.
+    /// Prints to the standard output, unless the run is quiet, and to the log; the live line appears only on a
+    /// terminal.
     pub fn new(model: &Model, verbosity: Verbosity, log: Log) -> Self {
         let shown = verbosity != Verbosity::Quiet;
         let live = shown && io::stdout().is_terminal() && io::stderr().is_terminal();
@@ -55,8 +55,8 @@ impl Console {
         }
     }
 
-    /// Prints an accepted increment: its line in the table where one is due, and its passes in the
-    /// log of a verbose run; `error` is the relative energy balance.
+    /// Prints an accepted increment: its line in the table if it has one, and its passes in the log of a verbose run;
+    /// `error` is the relative energy balance.
     pub fn increment(&mut self, report: &IncrementReport, error: f64) -> io::Result<()> {
         if self.verbosity == Verbosity::Verbose {
             self.log.line(&increment_line(report))?;
@@ -77,8 +77,7 @@ impl Console {
         lines.into_iter().try_for_each(|line| self.line(&line))
     }
 
-    /// Prints a line. After a failure of the screen, such as a closed pipe, the run continues
-    /// without it.
+    /// Prints a line. After a failure of the screen, such as a closed pipe, the run continues without the screen.
     pub fn line(&mut self, text: &str) -> io::Result<()> {
         let mut done = Ok(());
         if let Some(screen) = &mut self.screen {
@@ -93,7 +92,7 @@ impl Console {
         self.log.line(text)
     }
 
-    /// Error of a failed screen; none for a closed pipe.
+    /// Error of a failed screen; `None` for a closed pipe.
     pub fn lost(&mut self) -> Option<io::Error> {
         self.lost.take()
     }
@@ -118,7 +117,7 @@ impl Console {
     }
 }
 
-/// Lines after which the header is repeated.
+/// Number of lines after which the header is repeated.
 const HEADER_EVERY: usize = 40;
 
 /// Upper bound of the number of lines a run without cutbacks prints.
@@ -132,11 +131,11 @@ const HEADER: &str =
 pub(crate) struct Table {
     /// Increment of each step (time).
     increments: Vec<f64>,
-    /// Nominal increments from one line to the next.
+    /// Number of nominal increments from one line to the next.
     stride: f64,
-    /// Increments since the last line; a subincrement counts by its length.
+    /// Number of nominal increments since the last line; a subincrement counts in proportion to its length.
     since: f64,
-    /// Lines so far.
+    /// Number of lines so far.
     lines: usize,
 }
 
@@ -152,7 +151,7 @@ impl Table {
         }
     }
 
-    /// Whether the increment has a line.
+    /// Whether an increment gets a line in the table.
     pub fn shows(&mut self, report: &IncrementReport) -> bool {
         let whole = self.increments.get(report.step.wrapping_sub(1));
         self.since += whole.map_or(1.0, |dt| report.dt / dt);
@@ -163,7 +162,7 @@ impl Table {
         due && report.increment > 0
     }
 
-    /// The header, when one is due before the next line.
+    /// The header, if it is due before the next line.
     pub fn header(&mut self) -> Option<&'static str> {
         let due = self.lines.is_multiple_of(HEADER_EVERY);
         self.lines += 1;
@@ -190,17 +189,17 @@ pub(crate) fn row(report: &IncrementReport, error: f64) -> String {
     )
 }
 
-/// Pairs in contact, over all contacts.
+/// Number of closed pairs of all contacts.
 pub(crate) fn closed(report: &IncrementReport) -> usize {
     report.contacts.iter().map(|contact| contact.closed).sum()
 }
 
-/// Pairs that stick, over all contacts.
+/// Number of sticking pairs of all contacts.
 pub(crate) fn sticking(report: &IncrementReport) -> usize {
     report.contacts.iter().map(|contact| contact.sticking).sum()
 }
 
-/// The smallest of 1, 2, 5, 10, 20, ... that gives no more lines than allowed.
+/// The smallest interval of 1, 2, 5, 10, 20, ... increments that gives no more lines than allowed.
 fn stride(increments: f64) -> usize {
     let mut power = 1usize;
     while increments.is_finite() && power < usize::MAX / 100 {
@@ -214,27 +213,27 @@ fn stride(increments: f64) -> usize {
     1
 }
 
-/// Resolution of the bar.
+/// Number of steps of the progress bar.
 const TICKS: u64 = 10_000;
 
-/// Part of a run from which on the time that is left is told: before, it is a guess.
+/// Part of a run from which on the remaining time is shown; before, it would be a guess.
 const TOLD: f64 = 0.01;
 
-/// The live line below the table; nothing when the output is not a terminal.
+/// The live line below the table; it is not shown if the output is not a terminal.
 pub(crate) struct ProgressLine {
     bar: Option<ProgressBar>,
     nominal: NominalIncrements,
 }
 
-/// The nominal increments of a run and when it began.
+/// The nominal increments of a run, and the time when the run began.
 struct NominalIncrements {
-    /// Period and nominal increments of every step.
+    /// Duration and number of nominal increments of every step.
     steps: Vec<(f64, f64)>,
     started: Instant,
 }
 
 impl ProgressLine {
-    /// A live line, or none.
+    /// A live line, or none if it is not wanted.
     pub fn new(model: &Model, live: bool) -> Self {
         let steps = model.steps.iter().map(|step| step.increments);
         let nominal = NominalIncrements {
@@ -260,7 +259,7 @@ impl ProgressLine {
         bar.set_position((part * TICKS as f64) as u64);
     }
 
-    /// Runs `print` with the line out of the way.
+    /// Removes the line, runs `print`, and draws the line again.
     pub fn suspend(&self, print: impl FnOnce()) {
         match &self.bar {
             Some(bar) => bar.suspend(print),
@@ -268,7 +267,7 @@ impl ProgressLine {
         }
     }
 
-    /// Removes the line.
+    /// Removes the live line from the terminal.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -277,7 +276,7 @@ impl ProgressLine {
 }
 
 impl NominalIncrements {
-    /// Part of the nominal increments that are done at a time of a step, counted from 1.
+    /// Part of all nominal increments of the run that are done at a time of a step; steps are counted from 1.
     fn part(&self, step: usize, step_time: f64) -> f64 {
         let before = self.steps.iter().take(step.saturating_sub(1));
         let mut done: f64 = before.map(|(_, count)| count).sum();
@@ -288,7 +287,7 @@ impl NominalIncrements {
         (done / all).clamp(0.0, 1.0)
     }
 
-    /// Step, increment, time, contacts and, after a while, the time that is left.
+    /// Text of the line: step, increment, time, contacts and, after a while, the remaining time.
     fn text(&self, report: &IncrementReport, part: f64, elapsed: Duration) -> String {
         let mut text = format!(
             "step {}/{}  incr {}  time {}  active {}",
@@ -306,7 +305,7 @@ impl NominalIncrements {
     }
 }
 
-/// A bar that is full at the end only: what is not done is dots.
+/// A bar that is full only at the end; the part that is not done consists of dots.
 fn style() -> ProgressStyle {
     ProgressStyle::with_template("{percent:>3} % [{bar:12}] {msg}")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
@@ -317,7 +316,7 @@ fn style() -> ProgressStyle {
 pub(crate) struct Log {
     file: LineWriter<File>,
     path: PathBuf,
-    /// Lines that wait until the log begins; none afterwards.
+    /// Lines that wait until the log begins; `None` afterwards.
     waiting: Option<String>,
 }
 
@@ -331,7 +330,7 @@ impl Log {
         }
     }
 
-    /// Writes the buffered lines behind the old text.
+    /// Writes the buffered lines behind the old text of the file.
     pub fn go_on(&mut self) -> io::Result<()> {
         let waiting = self.waiting.take().unwrap_or_default();
         let at_end = self.file.get_mut().seek(SeekFrom::End(0));
@@ -340,7 +339,7 @@ impl Log {
             .map_err(at(&self.path))
     }
 
-    /// Puts a file with the buffered lines in place of the old one, and holds the job by its lock.
+    /// Puts a file with the buffered lines in place of the old one; whoever has the lock of this file has the job.
     pub fn begin(&mut self) -> io::Result<()> {
         let waiting = self.waiting.take().unwrap_or_default();
         let begun = || {
@@ -439,7 +438,7 @@ mod tests {
         assert_eq!(HEADER.len(), 80);
     }
 
-    /// The line of a run of two steps, 100 and 300 increments, at a time of a step.
+    /// The live line of a run with two steps of 100 and 300 increments, at a time of a step.
     fn line(step: usize, step_time: f64, seconds: u64) -> (String, f64) {
         let nominal = NominalIncrements {
             steps: vec![(1.0, 100.0), (0.5, 300.0)],
@@ -474,7 +473,7 @@ mod tests {
         assert!("100 % [............] ".len() + text.len() < 80, "{text}");
     }
 
-    /// A terminal that keeps the last line drawn.
+    /// A terminal that keeps the last line that was drawn.
     #[derive(Debug, Clone, Default)]
     struct Screen(Arc<Mutex<String>>);
 

@@ -1,36 +1,37 @@
-//! Files that are written whole or not at all: each is created under a name that nothing has, and gets its own
-//! name when it is complete. Neither name is written through a link.
+//! Files that are written completely or not at all: each file is created under an unused name and gets its own name
+//! when it is complete. Links are not followed under either name.
 
 use std::fs::{self, File};
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// What becomes of a file that has the name of a new one.
+/// Treatment of an existing file with the name of a new one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
-    /// It stays, and the new file is not written.
+    /// The existing file stays, and the new file is not written.
     Stays,
-    /// The new file takes its place.
+    /// The new file replaces the existing one.
     Replaced,
 }
 
-/// A file that has another name until it is complete. It is removed when it is dropped before.
+/// A file that has another name until it is complete. The file is removed if the draft is dropped before it is
+/// complete.
 #[derive(Debug)]
 pub struct Draft {
     file: File,
     name: PartName,
 }
 
-/// The name of a draft, which is removed with it.
+/// The name of a draft; dropping it removes the file.
 #[derive(Debug)]
 struct PartName(PathBuf);
 
 impl Draft {
-    /// The draft of a file of a claimed job, `FILE.part`. One that a killed run has left is removed.
+    /// The draft of a file of a claimed job, `FILE.part`. A draft that a killed run has left is removed.
     ///
     /// # Errors
-    /// Those of the file system; something else creates a file of that name at the same time.
+    /// The file system refuses the file, or something else creates a file with this name at the same time.
     pub(super) fn claimed(path: &Path) -> io::Result<Self> {
         let part = part(path);
         remove(&part)?;
@@ -43,7 +44,7 @@ impl Draft {
     /// The draft of a file that nobody has claimed, under a name that nobody can guess.
     ///
     /// # Errors
-    /// Those of the file system.
+    /// The file system refuses the file.
     fn unclaimed(path: &Path) -> io::Result<Self> {
         loop {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -69,7 +70,7 @@ impl Draft {
     /// Gives the complete file its name in one operation.
     ///
     /// # Errors
-    /// Something that may not be replaced has the name; those of the file system.
+    /// Something that may not be replaced has the name, or the file system refuses the name.
     pub(super) fn publish(self, path: &Path, existing: Existing) -> io::Result<File> {
         rename(&self.name.0, path, existing)?;
         Ok(self.file)
@@ -86,7 +87,7 @@ impl Drop for PartName {
 /// Writes a file that nobody has claimed.
 ///
 /// # Errors
-/// Something that may not be replaced has the name; those of the file system.
+/// Something that may not be replaced has the name, or the file system refuses the file.
 pub fn write_whole(path: &Path, text: &str, existing: Existing) -> io::Result<()> {
     let mut draft = Draft::unclaimed(path)?;
     draft.file.write_all(text.as_bytes())?;
@@ -116,7 +117,7 @@ pub(super) fn rename(part: &Path, path: &Path, existing: Existing) -> io::Result
     }
 }
 
-/// Gives a file a second name, in place of what has it.
+/// Gives a file a second name, in place of a file with this name.
 pub(super) fn link(path: &Path, second: &Path) -> io::Result<()> {
     let part = PartName(part(second));
     remove(&part.0)?;
@@ -124,7 +125,7 @@ pub(super) fn link(path: &Path, second: &Path) -> io::Result<()> {
     fs::rename(&part.0, second)
 }
 
-/// Removes a file or a link; it need not exist.
+/// Removes a file or a link, if it exists.
 pub(super) fn remove(path: &Path) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(error),

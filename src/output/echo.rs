@@ -20,7 +20,7 @@ use crate::model::{
 use crate::prepare::{InitialGap, PreparedModel};
 use crate::vectors::extents;
 
-/// Most nodes that are named.
+/// Largest number of nodes that are named.
 const MOST_NAMES: usize = 12;
 
 /// Numbers that describe a model.
@@ -32,14 +32,15 @@ pub struct ModelEcho {
     pub lower: [f64; 2],
     /// Largest coordinates (length).
     pub upper: [f64; 2],
-    /// Edges of the elements; the time of a wave along one is a guide for the increment.
+    /// Lengths and transit times of the edges of the elements; the time of a wave along an edge is a guide for the
+    /// increment.
     pub edges: EdgeScales,
     /// Number of dofs prescribed in any step.
     pub prescribed: usize,
 }
 
 impl ModelEcho {
-    /// Measures a model.
+    /// Computes the numbers of a model.
     pub fn new(model: &Model) -> Self {
         let [lower, upper] = extents(model.mesh.coordinates.iter().copied());
         let elements = model.mesh.elements.iter();
@@ -76,8 +77,8 @@ impl ModelEcho {
         lines
     }
 
-    /// What suits the waves of the model, an increment and the time in which they cross it, and that slow motion
-    /// asks for another increment.
+    /// Advice on the increment: the increment that resolves waves, the time in which waves cross the model, and that
+    /// slow motions allow longer increments.
     pub fn guide(&self) -> Vec<String> {
         let size = [0, 1].map(|i| self.upper[i] - self.lower[i]);
         let crossing = size[0].hypot(size[1]) / self.edges.wave_speed;
@@ -190,7 +191,7 @@ impl ModelEcho {
     }
 }
 
-/// What is different of the contacts in a step.
+/// Changes of the contacts in a step.
 fn contact_changes(
     model: &Model,
     ContactChanges { removed, friction }: &ContactChanges,
@@ -222,7 +223,7 @@ pub fn solver(choice: SolverChoice) -> &'static str {
     }
 }
 
-/// When frames are written, as text.
+/// The times of the frames as text.
 pub fn frames(frames: &Frames) -> String {
     match frames {
         Frames::Default => format!("output {}", counted(DEFAULT_FRAMES, "frame")),
@@ -295,7 +296,7 @@ fn contact_lines(
     wrap("contact", &pieces)
 }
 
-/// What a contact keeps out, and why where the program has chosen.
+/// Formulation of a contact, with the reason if the program has chosen it.
 fn formulation(contact: &Contact) -> String {
     let name = contact.formulation.name().to_lowercase();
     let lying = match contact.lying_faces {
@@ -367,7 +368,7 @@ fn rigid_lines(model: &Model) -> Vec<String> {
     lines
 }
 
-/// Nodes without mass and the nodes of contact surfaces that keep theirs, where mass is redistributed.
+/// Numbers of nodes without mass and of nodes of contact surfaces that keep their mass, if mass is redistributed.
 fn mass_lines(prepared: &PreparedModel) -> Vec<String> {
     let (model, redistribution) = (&prepared.model, &prepared.redistribution);
     let kept = redistribution.kept();
@@ -400,7 +401,7 @@ fn monitor_lines(model: &Model) -> Vec<String> {
     }
 }
 
-/// The smallest gap at the start.
+/// The smallest gap of the contacts at the start.
 fn smallest_gap(gaps: &[InitialGap]) -> String {
     match gaps.iter().map(|gap| gap.gap).reduce(f64::min) {
         Some(gap) => format!("smallest gap {}", scientific(gap, 1)),
@@ -430,7 +431,7 @@ fn prescribed(model: &Model) -> usize {
     dofs.len()
 }
 
-/// Program, job, time, threads and the deck's heading.
+/// Lines with program, job, time, threads and the heading of the deck.
 pub fn program_lines(record: &RunRecord, profile: &str, job: &str, title: &str) -> Vec<String> {
     let pieces = [
         format!(" {} ({}, {profile})", record.version, record.commit),
@@ -445,7 +446,8 @@ pub fn program_lines(record: &RunRecord, profile: &str, job: &str, title: &str) 
     lines
 }
 
-/// The deck with its size and the number of errors and warnings; `log` holds the warnings.
+/// The line of the deck with its size and the numbers of errors and warnings; `log` is the file that holds the
+/// warnings.
 pub fn deck_line(
     deck: &Path,
     sources: &Sources,

@@ -1,5 +1,4 @@
-//! Errors in writing the files of a job, and the system's error behind a failure of the HDF5
-//! library.
+//! Errors in writing the files of a job, and the system error behind a failure of the HDF5 library.
 
 use std::io;
 use std::io::ErrorKind;
@@ -7,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Why the files of a job could not be created.
+/// Reason why the files of a job could not be created.
 #[derive(Debug, Error)]
 pub enum OutputError {
     /// A name of the deck is not possible in the result file.
@@ -25,13 +24,13 @@ pub enum OutputError {
     /// Another run of the job is in progress.
     #[error("{} belongs to a run that is still going on", path.display())]
     Held {
-        /// The file that it has locked.
+        /// The file that the other run has locked.
         path: PathBuf,
     },
-    /// A file or folder could not be created, or something else has its name.
+    /// A file or folder could not be created, or something else has the name.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A file could not be written; the error names it.
+    /// A file could not be written; the error names the file.
     #[error("cannot write the results: {0}")]
     Write(#[from] io::Error),
 }
@@ -40,16 +39,16 @@ pub enum OutputError {
 #[derive(Debug, Error)]
 #[error("cannot {what} {}: {}", path.display(), reason(source))]
 pub struct FileError {
-    /// What was to be done, such as "read".
+    /// Action that failed, such as "read".
     pub what: &'static str,
     /// The file or folder.
     pub path: PathBuf,
-    /// The system's reason.
+    /// Reason that the system gives.
     pub source: io::Error,
 }
 
 impl FileError {
-    /// The error of doing something with `path`.
+    /// Makes the error of an action on `path`.
     pub fn new(what: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
         move |source| FileError {
             what,
@@ -66,7 +65,7 @@ impl FileError {
      nor hold a '/' or a NUL; rename it in the deck"
 )]
 pub struct NameError {
-    /// What has the name, such as "node set".
+    /// Kind of the object with the name, such as "node set".
     pub what: &'static str,
     /// The name in the deck.
     pub name: String,
@@ -102,8 +101,7 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
-/// An error of the HDF5 library as an input/output error: the system's error, if the library names
-/// one.
+/// An error of the HDF5 library as an input/output error; it is the system error if the library names one.
 pub(super) fn io_error(error: hdf5::Error) -> io::Error {
     let stack = error.stack();
     let frames = stack.iter().flat_map(|stack| stack.iter());

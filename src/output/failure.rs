@@ -13,15 +13,16 @@ use crate::linear::LinearError;
 use crate::model::{Bodies, Model, Procedure, RigidBody, RigidProfile, Set, Step, SurfaceKind};
 use crate::vectors::{cross, difference, length};
 
-/// Pairs of a complementarity problem that the text names.
+/// Number of pairs of a complementarity problem that the text names.
 const SHOWN_PAIRS: usize = 4;
-/// Part of the area between the sides of a corner at which its element is crushed there.
+/// Ratio of the area between the sides of a corner to its initial value, below which the element counts as crushed
+/// there.
 const CRUSHED_CORNER: f64 = 0.01;
-/// Sine of the angle by which a sharp corner of a rigid surface turns at least.
+/// Sine of the smallest angle by which a sharp corner of a rigid surface turns.
 const SHARP_SINE: f64 = 0.1;
 
-/// Increment, time, cause, worst place, advice, halvings and the passes; `u` and `elements` are the last
-/// converged displacement and the results of the elements there.
+/// Report of a stopped run: increment, time, cause, worst place, advice, halvings and the passes. `u` is the last
+/// converged displacement, and `elements` holds the results of the elements for it.
 pub(crate) fn failure_lines(
     failure: &Failure,
     model: &Model,
@@ -106,9 +107,9 @@ fn hint(cause: &Cause, model: &Model) -> Vec<String> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Crushed {
     element: usize,
-    /// At the corner.
+    /// Node at the corner.
     node: usize,
-    /// Area between the sides of the corner beside that of the reference configuration.
+    /// Area between the sides of the corner, relative to that in the reference configuration.
     part: f64,
 }
 
@@ -139,7 +140,7 @@ fn crushed(cause: &Cause, model: &Model, u: &[f64]) -> Option<Crushed> {
         .min_by(|p, q| p.part.total_cmp(&q.part))
 }
 
-/// What is crushed.
+/// Lines about a crushed element.
 fn crushed_lines(element: usize, node: usize, part: f64, model: &Model) -> Vec<String> {
     let text = format!(
         "element {} is crushed: at its corner, node {}, the area between its sides is {} of \
@@ -151,7 +152,7 @@ fn crushed_lines(element: usize, node: usize, part: f64, model: &Model) -> Vec<S
     wrap_words("cause", &text)
 }
 
-/// The element or node that the cause names.
+/// Line about the element or node that the cause names.
 fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     let name = |node: usize| model.node_name(node);
     let at = |node: usize| format!("{} at {}", name(node), point(position(model, node, u)));
@@ -190,7 +191,7 @@ fn place_line(cause: &Cause, model: &Model, u: &[f64]) -> Option<String> {
     })
 }
 
-/// The body that is not in balance: what is left over, and how it is about to move.
+/// Lines about the body that is not in balance: the force and moment left over, and the motion that is about to begin.
 fn unbalanced_lines(cause: &Cause, model: &Model) -> Vec<String> {
     let Cause::Unbalanceable(unbalanced) = cause else {
         return Vec::new();
@@ -203,7 +204,7 @@ fn unbalanced_lines(cause: &Cause, model: &Model) -> Vec<String> {
     wrap_words("body", &text)
 }
 
-/// That a motion which only facets resist is held, from an increment on.
+/// Lines that say that from this increment on a motion is held which only the facets of surfaces resist.
 pub(crate) fn held_lines(
     held: &Unbalanced,
     report: &IncrementReport,
@@ -229,8 +230,8 @@ fn unbalanced_text(unbalanced: &Unbalanced, model: &Model) -> String {
     )
 }
 
-/// The body of a node as the deck calls it: a rigid body by its name, another one by the smallest element set that holds
-/// all of it, or else by the node.
+/// Name of the body of a node in the words of the deck: a rigid body has its name, a deformable body has the name of
+/// the smallest element set that holds all of it, or else it is named by the node.
 fn body_name(node: usize, model: &Model) -> String {
     let name = model.node_name(node);
     let node = model.node_of(node);
@@ -254,10 +255,10 @@ fn body_name(node: usize, model: &Model) -> String {
     }
 }
 
-/// Largest way of the middle of a body that turns about one of its nodes, or rolls, beside that of its farthest node, with room
-/// for the strain.
+/// Largest ratio of the displacement of the middle of a body to that of its farthest node, for a motion that counts as
+/// turning about one of its nodes or rolling; it leaves room for strain.
 const ABOUT_A_NODE: f64 = 1.5;
-/// Part of a direction that is round-off.
+/// Component of a direction below which it counts as round-off.
 const NO_PART: f64 = 1e-9;
 
 fn motion_text(unbalanced: &Unbalanced) -> String {
@@ -284,7 +285,7 @@ fn motion_text(unbalanced: &Unbalanced) -> String {
     }
 }
 
-/// The body of a node: its element there that is compressed most, with a set that holds the element.
+/// Line about the body of a node: the most compressed element at the node, with a set that holds the element.
 fn body_line(node: usize, model: &Model, results: &[ElementResult]) -> Option<String> {
     let all = model.mesh.elements.iter().enumerate();
     let own = all.filter(|(_, element)| element.nodes.contains(&node));
@@ -309,8 +310,8 @@ fn least_principal(result: &ElementResult) -> f64 {
     (xx + yy) / 2.0 - ((xx - yy) / 2.0).hypot(xy)
 }
 
-/// The first pairs of an unsolved complementarity problem: on a ray those that press against each
-/// other, else of all.
+/// Lines about the first pairs of an unsolved complementarity problem: on a ray, pairs that press against each other;
+/// else any pairs.
 fn pairs_line(failed: &FailedLcp, model: &Model) -> String {
     let pairs: Vec<[usize; 3]> = match &failed.error {
         LcpError::Ray { members, .. } if !members.is_empty() => members
@@ -355,12 +356,12 @@ fn point([x, y]: [f64; 2]) -> String {
     format!("({}, {})", scientific(x, 5), scientific(y, 5))
 }
 
-/// Halvings of an increment after which none is left.
+/// Largest number of halvings of an increment.
 const NO_MORE_HALVINGS: u32 = 10;
-/// Correction, in tolerances, up to which one that becomes no smaller may be round-off.
+/// Ratio of a correction to the tolerance up to which a correction that does not become smaller may be round-off.
 const NEAR_ROUND_OFF: f64 = 1e4;
 
-/// How the passes went, where they did not converge.
+/// Text about the course of passes that did not converge.
 pub(super) fn course_text(course: &Course, model: &Model) -> String {
     match course {
         Course::Growing { from } => format!("the corrections grew from pass {from} on"),
@@ -380,7 +381,7 @@ pub(super) fn course_text(course: &Course, model: &Model) -> String {
     }
 }
 
-/// The first slave node that went to and fro, and the number of others.
+/// Text about the first slave node whose state alternated, and the number of others.
 fn alternation_text(alternations: &[Alternation], model: &Model) -> String {
     let label = |node: usize| model.node_name(node);
     let segment = |[a, b]: [usize; 2]| format!("{}-{}", label(a), label(b));
@@ -412,7 +413,7 @@ fn alternation_text(alternations: &[Alternation], model: &Model) -> String {
     first.unwrap_or_default() + " from pass to pass" + &others
 }
 
-/// What to change; none where the cause has its own lines or says it all.
+/// Advice on what to change; empty if the cause has its own lines or says everything.
 pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
     let step = model.steps.get(failure.step.wrapping_sub(1))?;
     let is_static = step.procedure == Procedure::Static;
@@ -443,7 +444,8 @@ pub(super) fn advice(failure: &Failure, model: &Model) -> Option<String> {
     })
 }
 
-/// Whether a cause is also that of a static step whose equilibria end: passes find none, or no contact forces hold the bodies.
+/// Whether a cause may mean that a static step has no further equilibrium: passes find none, or no contact forces hold
+/// the bodies.
 fn may_be_at_limit(cause: &Cause) -> bool {
     match cause {
         Cause::NotConverged | Cause::Diverged => true,
@@ -452,7 +454,7 @@ fn may_be_at_limit(cause: &Cause) -> bool {
     }
 }
 
-/// The ways out of a static step whose equilibria end.
+/// Advice for a static step that has no further equilibrium.
 fn limit_advice(step: &Step, model: &Model) -> String {
     let is_loaded = !(step.point_loads.is_empty()
         && step.body_forces.is_empty()
@@ -475,7 +477,7 @@ fn limit_advice(step: &Step, model: &Model) -> String {
     )
 }
 
-/// Whether a contact has a drawn rigid surface with a sharp corner.
+/// Whether the master of a contact is an analytical rigid surface with a sharp corner.
 fn has_sharp_die(model: &Model) -> bool {
     let mut masters = (model.contacts.iter()).map(|contact| &model.surfaces[contact.master].kind);
     masters.any(|kind| match kind {
@@ -484,7 +486,7 @@ fn has_sharp_die(model: &Model) -> bool {
     })
 }
 
-/// Whether a profile has a sharp corner, as chords of arcs have none.
+/// Whether a profile has a sharp corner; chords of arcs have no sharp corners.
 fn is_sharp(profile: &RigidProfile, x: &[[f64; 2]]) -> bool {
     profile.segments.windows(2).any(|pair| {
         let [e, f] = [pair[0], pair[1]].map(|[from, to]| difference(x[from], x[to]));
@@ -492,7 +494,7 @@ fn is_sharp(profile: &RigidProfile, x: &[[f64; 2]]) -> bool {
     })
 }
 
-/// Whether only the deck's least increment kept a stopped run from halving its increment again.
+/// Whether only the smallest increment of the deck kept a stopped run from halving its increment again.
 fn has_halvings_left(failure: &Failure, step: &Step) -> bool {
     !failure.cause.stays()
         && failure.halvings < NO_MORE_HALVINGS
@@ -592,7 +594,8 @@ pub(crate) fn pass_table(passes: &[PassReport]) -> Vec<String> {
     std::iter::once(header).chain(rows).collect()
 }
 
-/// The lines about a cutback, or an increment repeated because of its truncation error: increment, cause, and how the passes went.
+/// The lines about a cutback, or about an increment that is repeated because of its truncation error: increment, cause,
+/// and course of the passes.
 pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
     let failure = &cutback.failure;
     let pieces = [
@@ -628,7 +631,7 @@ pub(crate) fn cutback_lines(cutback: &Cutback, model: &Model) -> Vec<String> {
     lines
 }
 
-/// What to change so that an attempt as the failed one need not be repeated; empty without advice.
+/// Advice on what to change so that such attempts do not fail again; empty without advice.
 pub(crate) fn cutback_advice(cutback: &Cutback, model: &Model) -> Vec<String> {
     let text = advice(&cutback.failure, model);
     (text.into_iter())
@@ -714,7 +717,7 @@ mod tests {
         assert_eq!(line(9, &results), None, "a node without element");
     }
 
-    /// Nodes 10, 20, ... and a step of at least 0.01 an increment, 25 passes at most.
+    /// A model with nodes 10, 20, ... and a step whose increments are at least 0.01, with at most 25 passes.
     fn model() -> Model {
         let mesh = Mesh {
             node_labels: (1..=6).map(|k| 10 * k).collect(),

@@ -16,10 +16,10 @@ use super::model_group::{body_numbers, connectivity};
 use crate::elements::{ElementResult, Elements, LocalResult, MeanGradient, logarithmic_of};
 use crate::model::{Bodies, Interaction, Mesh, Model, NodalVariable};
 
-/// Cell type of VTK of a rigid segment.
+/// VTK cell type of a rigid segment.
 const VTK_LINE: u8 = 3;
 
-/// Most frames of a chunk: each chunk costs a call of the system.
+/// Largest number of frames of a chunk; a chunk has many frames because each chunk costs a system call.
 const CHUNK_FRAMES: usize = 32;
 
 /// Creates the group with the reference mesh and no frame; returns the datasets that grow with the frames.
@@ -74,17 +74,18 @@ fn per_frame<'m, T: Number + 'm>(
     })
 }
 
-/// Fields of the nodes (`PointData`), or of the cells (`CellData`): elements, then segments of rigid surfaces.
+/// Fields of the nodes (`PointData`), or of the cells (`CellData`), which are first elements, then segments of rigid
+/// surfaces.
 struct FieldGroup<'m> {
     data: Group,
-    /// Group of the first rows of the frames: one dataset, linked under the name of every field.
+    /// Group with the first rows of the frames; it has one dataset, which is linked under the name of every field.
     offsets: Group,
     first_field: Option<&'static str>,
-    /// These fields and the datasets created before them.
+    /// The datasets of these fields, and those that were created before them.
     columns: GrowingColumns<'m, Frame>,
-    /// Rows of a frame.
+    /// Number of rows of a frame.
     rows: usize,
-    /// Frames of a chunk of the fields, where these are short.
+    /// Largest number of frames in a chunk of the fields.
     chunk: usize,
 }
 
@@ -98,7 +99,7 @@ const TENSOR: RowShape = (&[6], &[4]);
 const IN_SPACE: RowShape = (&[3], &[2]);
 
 impl<'m> FieldGroup<'m> {
-    /// Creates a field with the first rows of its frames; `values` appends what a frame has to whole rows.
+    /// Creates a field with the first rows of its frames; `values` appends whole rows of a frame.
     fn add<T: Number + 'm>(
         &mut self,
         name: &'static str,
@@ -164,7 +165,7 @@ impl<'m> FieldGroup<'m> {
         Ok(())
     }
 
-    /// A field at nodes of elements, of W values each, which is NaN at the others.
+    /// A field at nodes of elements, with W values at each node; it is NaN at other nodes.
     fn add_at_nodes<const W: usize>(
         &mut self,
         name: &'static str,
@@ -207,7 +208,7 @@ impl<'m> FieldGroup<'m> {
         Ok(())
     }
 
-    /// Creates the fields of cells; `lines` rigid segments are the last of them and have NaN.
+    /// Creates the fields of cells; the last `lines` cells are rigid segments and have NaN.
     fn create_cells(&mut self, model: &Model, lines: usize) -> hdf5::Result<()> {
         let bodies = Bodies::new(&model.mesh).of_element.into_iter().map(Some);
         let bodies = body_numbers(bodies.chain(repeat_n(None, lines)));
@@ -274,18 +275,18 @@ impl<'m> FieldGroup<'m> {
     }
 }
 
-/// The components of a tensor that are written, from those in the plane and the one across it.
+/// The components of a tensor that are written, made from those in the plane and the one across it.
 fn with_across([xx, yy, xy]: [f64; 3], zz: f64) -> [f64; 4] {
     [xx, yy, zz, xy]
 }
 
-/// Size of each part when `count` is divided evenly into as few parts as there can be of up to `most`.
+/// Size of each part when `count` is divided evenly into as few parts as possible, of at most `most` each.
 fn even_part(count: usize, most: usize) -> usize {
     let parts = count.div_ceil(most).max(1);
     count.div_ceil(parts).max(1)
 }
 
-/// Attributes by which readers know the group.
+/// Writes the attributes by which readers recognise the group.
 fn write_type(grid: &Group) -> hdf5::Result<()> {
     let version = grid.new_attr::<i64>().shape([2]).create("Version")?;
     version.write_raw(&[2i64, 3])?;
@@ -294,7 +295,7 @@ fn write_type(grid: &Group) -> hdf5::Result<()> {
     new_attribute(grid, "Type", name)
 }
 
-/// The reference mesh, and lines between its nodes as the last cells.
+/// Writes the reference mesh, with lines between its nodes as the last cells.
 fn write_mesh(grid: &Group, mesh: &Mesh, lines: &[[usize; 2]]) -> hdf5::Result<()> {
     let mut connectivity = connectivity(mesh);
     connectivity.extend(lines.as_flattened().iter().map(|&node| node as i64));
@@ -371,7 +372,7 @@ const LOGARITHMIC_STRAIN: Meaning = (
     "logarithmic strain xx yy zz xy yz xz (tensor components) of the element's mean deformation gradient",
 );
 
-/// Datasets of `Steps` with the same number for all frames: name, shape of a row, meaning, number.
+/// Datasets of `Steps` whose number is the same in all frames, given by name, shape of a row, meaning, and number.
 #[rustfmt::skip]
 const STEPS: [(&str, &[usize], &str, i64); 5] = [
     ("NumberOfParts", &[], "grids of the frame", 1),
@@ -381,7 +382,7 @@ const STEPS: [(&str, &[usize], &str, i64); 5] = [
     ("ConnectivityIdOffsets", &[1], "first entry of the frame's connectivity", 0),
 ];
 
-/// A field of the nodes: name, row, what most rows hold, dimension, meaning and values.
+/// A field of the nodes: name, shape of a row, value of most rows, dimension, meaning and values.
 type NodalField = (
     &'static str,
     RowShape,
@@ -406,7 +407,7 @@ const NODAL: [NodalField; 8] = [
      "slip accumulated since the start at slave nodes, and at masters of means, NaN at others", |f| &f.nodal.slip),
 ];
 
-/// A field that a deck has to ask for.
+/// The concentrated loads, a field that is written only on request of the deck.
 #[rustfmt::skip]
 const CONCENTRATED: [NodalField; 1] = [
     ("CF", IN_SPACE, Mostly::Zero, "force", "concentrated loads on the node", |f| &f.nodal.concentrated),
@@ -418,7 +419,7 @@ const TEMPERATURE: [NodalField; 1] = [
     ("TEMPERATURE", SCALAR, Mostly::Varied, "temperature", "temperature of the node", |f| &f.state.temperature),
 ];
 
-/// Fields of models in which the coefficient of friction of a contact varies, and of those with wear and heat.
+/// Fields of models in which the coefficient of friction of a contact varies, and of models with wear or heat.
 #[rustfmt::skip]
 const FRICTION: [NodalField; 4] = [
     ("FRICTION_COEFFICIENT", SCALAR, Mostly::Nan, "1",
@@ -443,7 +444,7 @@ const TENSORS: [ElementField<[f64; 4]>; 2] = [
 
 const SCALARS: [ElementField<f64>; 1] = [("MISES", VON_MISES, ElementResult::von_mises)];
 
-/// Fields that a deck has to ask for.
+/// Fields that are written only on request of the deck.
 #[rustfmt::skip]
 const PRINCIPAL: [ElementField<f64>; 3] = [
     ("SP1", ("force/length^2", "smallest principal value of S"), |e| e.principal_stresses()[0]),
@@ -454,14 +455,14 @@ const PRINCIPAL: [ElementField<f64>; 3] = [
 /// A field of models with metals.
 const PLASTIC: [ElementField<f64>; 1] = [("PEEQ", PLASTIC_STRAIN, |e| e.plastic_strain)];
 
-/// A field of models with elements of one strain.
+/// A field of models with elements of constant strain and hourglass modes.
 const HOURGLASS: [ElementField<f64>; 1] = [(
     "ELHE",
     ("energy", "strain energy of the element in hourglass modes"),
     |e| e.hourglass_energy,
 )];
 
-/// A field of elements at nodes: what asks for it, name, meaning and value.
+/// A field of elements at nodes: the request for it, name, meaning and value.
 type FieldAtNodes<T> = (NodalVariable, &'static str, Meaning, fn(&LocalResult) -> T);
 
 #[rustfmt::skip]
@@ -500,7 +501,7 @@ const SCALARS_AT_NODES: [FieldAtNodes<f64>; 7] = [
 pub(super) const PLASTIC_STRAIN: Meaning =
     ("1", "accumulated plastic strain, mean over the element");
 
-/// A field that a deck has to ask for.
+/// A field of elements that is written only on request of the deck.
 #[rustfmt::skip]
 const PRESSURE: [ElementField<f64>; 1] = [
     ("PRESS", ("force/length^2", "pressure -(xx + yy + zz)/3 of S"), ElementResult::pressure),

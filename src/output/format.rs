@@ -27,7 +27,7 @@ pub(crate) fn signed(x: f64, decimals: usize) -> String {
     format!("{sign}{}", scientific(x, decimals))
 }
 
-/// `x` with `digits` significant digits, plain when that is short: `0.025`, `-2`, `5.2e+06`.
+/// `x` with `digits` significant digits, without an exponent if that is short: `0.025`, `-2`, `5.2e+06`.
 pub(crate) fn general(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".into();

@@ -1,4 +1,4 @@
-//! The frames of field output: their schedule (docs/output.md, "/VTKHDF: the frames"), and what one holds.
+//! The frames of field output: their schedule (docs/output.md, "/VTKHDF: the frames"), and their contents.
 
 use std::sync::Arc;
 
@@ -7,13 +7,13 @@ use crate::dynamics::{FrictionResults, IncrementReport, NodalResults, State};
 use crate::elements::ElementResult;
 use crate::model::{Frames, Model, Step};
 
-/// Frames of a step by default.
+/// Default number of frames of a step.
 pub const DEFAULT_FRAMES: usize = 100;
 
-/// Round-off by which an increment may end before a frame's time, relative to its length.
+/// Round-off by which an increment may end before the time of a frame, relative to the increment.
 const TIME_TOLERANCE: f64 = 1e-6;
 
-/// Largest count of intervals: beyond it neighbouring frame times are not distinct numbers.
+/// Largest number of intervals: with more, neighbouring frame times would not be distinct numbers.
 const MOST_INTERVALS: f64 = (1_u64 << 52) as f64;
 
 /// Decides which increments write a frame.
@@ -22,14 +22,14 @@ pub struct FrameSchedule<'a> {
     steps: &'a [Step],
     /// Number of the current step, from 1.
     step: usize,
-    /// Index of the step's next frame time, from 1.
+    /// Index of the next frame time of the step, from 1.
     next: usize,
-    /// Increments of the step so far.
+    /// Number of increments of the step so far.
     increments: usize,
 }
 
 impl<'a> FrameSchedule<'a> {
-    /// The schedule of a model's steps.
+    /// The schedule of the steps of a model.
     pub fn new(model: &'a Model) -> Self {
         FrameSchedule {
             steps: &model.steps,
@@ -39,12 +39,12 @@ impl<'a> FrameSchedule<'a> {
         }
     }
 
-    /// Transfers how far it has come.
+    /// Transfers the position in the schedule.
     pub(super) fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => FrameSchedule { step, next, increments; steps })
     }
 
-    /// Number of the step, from 1, and its increments so far.
+    /// Number of the step, from 1, and number of its increments so far.
     pub(super) fn place(&self) -> [usize; 2] {
         [self.step, self.increments]
     }
@@ -78,7 +78,7 @@ impl<'a> FrameSchedule<'a> {
     }
 }
 
-/// The first frame from `first` on whose time lies after `end`.
+/// Index of the first frame from `first` on whose time lies after `end`.
 fn passed(step: &Step, first: usize, end: f64) -> usize {
     let period = step.increments.period;
     let evenly = |count: usize| multiples(first, end, |k| period * k as f64 / count as f64);
@@ -91,9 +91,8 @@ fn passed(step: &Step, first: usize, end: f64) -> usize {
     }
 }
 
-/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0. Where
-/// intervals are negligible against `end`, the count advances by one: every increment writes a
-/// frame.
+/// The first k from `first` on with `time(k)` after `end`; `time` increases linearly from 0. If intervals are
+/// negligible against `end`, the count advances by one, so every increment writes a frame.
 fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
     let intervals = end / time(1);
     if !(0.0..MOST_INTERVALS).contains(&intervals) {
@@ -106,7 +105,7 @@ fn multiples(first: usize, end: f64, time: impl Fn(usize) -> f64) -> usize {
     k
 }
 
-/// About how many frames a run writes, when no increment is cut back.
+/// Estimated number of frames of a run without cutbacks.
 pub(super) fn expected_frames(model: &Model) -> usize {
     let of_step = |step: &Step| {
         let increments = (step.increments.period / step.increments.dt).ceil() as usize;
@@ -138,7 +137,7 @@ pub(super) fn are_dense(step: &Step) -> bool {
 /// Contents of a field frame.
 #[derive(Default)]
 pub(crate) struct Frame {
-    /// Its place among the frames of the file.
+    /// Index of the frame in the file.
     pub index: usize,
     pub time: f64,
     pub state: State,
@@ -148,7 +147,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Transfers all of it.
+    /// Transfers all contents of the frame.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let mut of_elements = self.elements.to_vec();
         archive.transfer(&mut of_elements)?;

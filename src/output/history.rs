@@ -1,5 +1,5 @@
-//! Group `/history`: energies and solver, nodes, elements, bodies, contacts and rigid surfaces, one row per
-//! increment, row 0 being the start; impacts, returns and touches, one row per event.
+//! Group `/history`. Energies, solver, nodes, elements, bodies, contacts and rigid surfaces have one row per increment;
+//! row 0 is the start. Impacts, returns and touches have one row per event.
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -27,23 +27,23 @@ use crate::model::{
 };
 use crate::vectors::cross;
 
-/// What a dataset holds of a record `Q`.
+/// Value of a dataset in a record `Q`.
 enum DatasetContent<Q> {
     Real(fn(&Q) -> f64),
     Vector(fn(&Q) -> [f64; 2]),
     Tensor(fn(&Q) -> [f64; 3]),
     Count(fn(&Q) -> usize),
     Flag(fn(&Q) -> bool),
-    /// A node by its index, told by its number in the deck.
+    /// A node, given by its index; the dataset holds its number in the deck.
     Node(fn(&Q) -> usize),
     Segment(fn(&Q) -> [usize; 2]),
-    /// Two bodies; -1 for none.
+    /// Two bodies; -1 means no body.
     Bodies(fn(&Q) -> [Option<usize>; 2]),
 }
 
 use DatasetContent::{Count, Flag, Node, Real, Segment, Tensor, Vector};
 
-/// A dataset of the records `Q`: name, dimension, what it holds, and its value.
+/// A dataset of the records `Q`: name, dimension, description, and value.
 type DatasetEntry<Q> = (&'static str, &'static str, &'static str, DatasetContent<Q>);
 
 /// The datasets of the history while they are created.
@@ -162,8 +162,8 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// Creates the datasets of a table, with a row per increment; `records` is the shape of the records in a
-    /// row, which `each` visits one after the other.
+    /// Creates the datasets of a table, with a row per increment; `records` is the shape of the records in a row, and
+    /// `each` visits these records one after the other.
     fn table<Q: 'm>(
         &mut self,
         at: &Group,
@@ -235,7 +235,7 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// `/history/momentum`; that of the consistent mass where the mass is redistributed.
+    /// `/history/momentum`; if the mass is redistributed, it is the momentum of the consistent mass.
     fn create_momentum(&mut self, at: &Group) -> hdf5::Result<()> {
         self.table(at, &[], &MOMENTUM, |r, each| each(&r.momentum))?;
         if self.model.redistributes_mass() {
@@ -244,8 +244,7 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// `/history/strain`: largest principal strain of all elements, and of those with a law for small
-    /// strains.
+    /// `/history/strain`: largest principal strain of all elements, and of the elements with a law for small strains.
     fn create_strain(&mut self, at: &Group) -> hdf5::Result<()> {
         self.table(at, &[], &LARGEST_STRAIN, |r, each| each(r))?;
         let limited = SmallStrainElements::new(self.model);
@@ -280,8 +279,8 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// `/history/connectors`: springs and dashpots, and `/history/rotary_connectors`: those between angles; absent where
-    /// there are none.
+    /// `/history/connectors`: springs and dashpots between displacements, and `/history/rotary_connectors`: those
+    /// between angles; a group without members is absent.
     fn create_connectors(&mut self, at: &Group) -> hdf5::Result<()> {
         let connectors = &self.model.connectors;
         for (name, is_rotary, entries) in [
@@ -338,7 +337,7 @@ impl<'m> History<'m> {
         Ok(())
     }
 
-    /// `/history/hinges`: the forces and places of the hinges.
+    /// `/history/hinges`: the forces of the hinges, and their positions.
     fn create_hinges(&mut self, at: &Group) -> hdf5::Result<()> {
         let Model { hinges, mesh, .. } = self.model;
         if hinges.is_empty() {
@@ -365,8 +364,8 @@ impl<'m> History<'m> {
         })
     }
 
-    /// `/history/impacts`: one row per landing; `/history/returns`: one row per pair and increment in which it
-    /// is given energy back; `/history/touches`: one row per contact of two bodies that has ended.
+    /// `/history/impacts`: one row per landing; `/history/returns`: one row for each pair and increment in which energy
+    /// is given back to the pair; `/history/touches`: one row per contact of two bodies that has ended.
     fn create_events(&mut self, at: &Group) -> hdf5::Result<()> {
         let impacts = group(at, "impacts")?;
         self.columns.count(&impacts, ROWS, |r| r.landings.len())?;
@@ -388,7 +387,8 @@ impl<'m> History<'m> {
         })
     }
 
-    /// `/history/rigid/<SURFACE>`: a rigid body at its reference node; its angle and its energy where it turns or has a mass.
+    /// `/history/rigid/<SURFACE>`: motion of a rigid body at its reference node; its angle if it turns, and its energy
+    /// if it turns or has mass.
     fn create_rigid(
         &mut self,
         at: &Group,
@@ -416,7 +416,7 @@ impl<'m> History<'m> {
         self.table(at, &[], &REACTION, own)
     }
 
-    /// `/history/nodes/<NSET>`; values of every node where these are asked for, sums and means.
+    /// `/history/nodes/<NSET>`: sums and means, and values of every node if they are asked for.
     fn create_nodes(
         &mut self,
         at: &Group,
@@ -438,7 +438,7 @@ impl<'m> History<'m> {
         })
     }
 
-    /// `/history/elements/<ELSET>/points`: values at the integration points of all elements, one after the other.
+    /// `/history/elements/<ELSET>/points`: values at the integration points of all elements, element after element.
     fn create_points(
         &mut self,
         at: &Group,
@@ -459,8 +459,8 @@ impl<'m> History<'m> {
         self.create_local(at, labels.len(), Local::at_points(local, elements))
     }
 
-    /// `/history/elements/<ELSET>/at_nodes`: values at the nodes of the elements, the plain mean of those of all elements of
-    /// the set at a node.
+    /// `/history/elements/<ELSET>/at_nodes`: values at the nodes of the elements; at a node, the plain mean over all
+    /// elements of the set.
     fn create_element_nodes(
         &mut self,
         at: &Group,
@@ -481,7 +481,7 @@ impl<'m> History<'m> {
         })
     }
 
-    /// `/history/elements/<ELSET>`; values of every element where these are asked for, and sums.
+    /// `/history/elements/<ELSET>`: sums, and values of every element if they are asked for.
     fn create_elements(
         &mut self,
         at: &Group,
@@ -637,7 +637,7 @@ const MOMENTUM: [DatasetEntry<Momentum>; 4] = [
      "angular momentum taken by mass-proportional damping since the start", Real(|m| m.damped_angular)),
 ];
 
-/// Redistributed mass has this dataset too; where no node gives its mass up it is `angular`.
+/// Models with redistributed mass have this dataset, too; if no node gives up its mass, it equals `angular`.
 #[rustfmt::skip]
 const CONSISTENT: [DatasetEntry<Momentum>; 1] = [
     ("consistent_angular", "mass*length^2/time", "angular momentum about the origin of the consistent mass",
@@ -718,14 +718,14 @@ const CONTACT: [DatasetEntry<ContactResultant>; 27] = [
      "sum of the normal impulses of landing returns since the start", Real(|c| c.impulse_sum.landing_return)),
 ];
 
-/// A contact whose master is rigid has this dataset too.
+/// A contact with a rigid master has this dataset, too.
 #[rustfmt::skip]
 const REFERENCE_MOMENT: [DatasetEntry<ContactResultant>; 1] = [
     ("reference_moment", "force*length", "moment of the force about the reference node of the master",
      Real(|c| c.reference_moment)),
 ];
 
-/// A surface that touches itself has these datasets too.
+/// A surface that touches itself has these datasets, too.
 #[rustfmt::skip]
 const CONTACT_ON_BODY: [DatasetEntry<ContactOnBody>; 2] = [
     ("body_force", "force", "force of this contact on each body", Vector(|b| b.force)),
@@ -776,7 +776,7 @@ const TOUCH: [DatasetEntry<Touch>; 10] = [
     ("node", "1", "number of a slave node that landed first", Node(|t| t.node)),
 ];
 
-/// A vector over the dofs in a report, with name, dimension and meaning of its dataset.
+/// A vector over the dofs in a report, with the name, dimension and meaning of its dataset.
 type VectorEntry = (
     &'static str,
     &'static str,
@@ -796,7 +796,7 @@ const REACTION: [DatasetEntry<RigidReaction>; 2] = [
     ("moment", "force*length", "moment of the reaction about the reference node", Real(|r| r.moment)),
 ];
 
-/// A body that turns has these datasets too.
+/// A body that turns has these datasets, too.
 #[rustfmt::skip]
 const TURNING: [DatasetEntry<RigidReaction>; 4] = [
     ("angle", "1", "angle since the start, in radians", Real(|r| r.angle)),
@@ -826,7 +826,7 @@ const MEANS_OF_NODES: [VectorEntry; 3] = [
     ("A", "length/time^2", "mean acceleration", |r| &r.state.a),
 ];
 
-/// Meanings of `LE`, `E33` and `LE33` of elements.
+/// Meanings of `LE`, `E33` and `LE33` for elements.
 const LOGARITHMIC_STRAIN: Meaning = (
     "1",
     "logarithmic strain xx yy xy (xy: tensor component) of the element's mean deformation gradient",

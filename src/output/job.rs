@@ -17,7 +17,7 @@ use crate::system::{is_at, without_links};
 /// The files of a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JobFiles {
-    /// The deck's file name without `.inp`, in capitals or not.
+    /// The file name of the deck without `.inp`, which may be in capitals.
     pub name: String,
     /// `JOB.vtkhdf`.
     pub result: PathBuf,
@@ -54,8 +54,8 @@ impl JobFiles {
         self.log.with_file_name(name)
     }
 
-    /// `JOB.restart-STEP-INC`, for a checkpoint that stays beside later ones. No other job has a file of that name:
-    /// where it ends tells what it is, and what stands before is the job.
+    /// `JOB.restart-STEP-INC`, for a checkpoint that is kept along with later ones. The name is unique among all jobs:
+    /// the end of a name gives the kind of file, and its beginning the job.
     pub(super) fn kept_checkpoint(&self, [step, increment]: [usize; 2]) -> PathBuf {
         let name = format!("{}.restart-{step}-{increment}", self.name);
         self.restart.with_file_name(name)
@@ -81,8 +81,8 @@ impl JobFiles {
         draft::part(&self.result)
     }
 
-    /// The existing files with results of a run and its checkpoints; the empty log of a run killed before its first
-    /// frame does not count.
+    /// The existing files with results of a run and its checkpoints; the empty log of a run that was killed before its
+    /// first frame does not count.
     pub(super) fn results(&self) -> Vec<PathBuf> {
         let is_empty = |path: &Path| {
             let data = path.symlink_metadata();
@@ -120,7 +120,7 @@ fn checkpoint_of(file: &str) -> Option<&str> {
     (rest.is_empty() || is_kept).then_some(job)
 }
 
-/// A deck's file name without `.inp`.
+/// File name of a deck without `.inp`.
 fn without_extension(file: &str) -> &str {
     match file.split_at_checked(file.len().saturating_sub(4)) {
         Some((name, extension)) if extension.eq_ignore_ascii_case(".inp") => name,
@@ -128,18 +128,18 @@ fn without_extension(file: &str) -> &str {
     }
 }
 
-/// What becomes of the results of an earlier run of a job.
+/// Treatment of the results of an earlier run of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Earlier {
-    /// They stay, and the new run does not begin.
+    /// The old results stay, and the new run does not begin.
     Stays,
-    /// Those of the new run take their place.
+    /// The results of the new run replace them.
     Replaced,
-    /// The new run goes on with them.
+    /// The new run continues them.
     Continued,
 }
 
-/// Holds a job until it is dropped; then files that never got a frame are removed.
+/// A claim holds a job until it is dropped; files without a complete frame are then removed.
 #[derive(Debug)]
 pub struct Claim {
     files: JobFiles,
@@ -149,7 +149,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claims a job; makes its folder where it is missing.
+    /// Claims a job; creates its folder if it is missing.
     ///
     /// # Errors
     /// Results exist and may not be overwritten, another run holds the job, or a name belongs to
@@ -181,12 +181,12 @@ impl Claim {
         &self.files
     }
 
-    /// The log, which keeps its lock as long as any handle of it lives.
+    /// The log file, which stays locked as long as any handle of it lives.
     pub(crate) fn log(&self) -> io::Result<File> {
         self.log.try_clone().map_err(at(&self.files.log))
     }
 
-    /// Path of the result until its first frame is complete; the draft of a killed run is removed.
+    /// Path of the result until its first frame is complete; a draft of a killed run is removed.
     pub(crate) fn draft(&self) -> Result<PathBuf, OutputError> {
         let draft = self.files.draft();
         draft::remove(&draft).map_err(FileError::new("create", &draft))?;
@@ -241,8 +241,8 @@ fn create_folder(file: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// Refuses fifos, devices and folders in place of old results. Links to files are replaced like files, but for the
-/// log, which a run that goes on writes on.
+/// Refuses fifos, devices and folders in place of old results. Links to files are replaced like files, except for the
+/// log, which a resumed run continues.
 fn refuse_others(files: &JobFiles, earlier: Earlier) -> Result<(), OutputError> {
     for path in files.existing() {
         let is_replaced = *path != files.log || earlier != Earlier::Continued;
@@ -254,7 +254,7 @@ fn refuse_others(files: &JobFiles, earlier: Earlier) -> Result<(), OutputError> 
     Ok(())
 }
 
-/// The log with its lock; an old log keeps its text until the new one begins. A link in its place is removed.
+/// Opens and locks the log; an old log keeps its text until the new one begins. A link in place of the log is removed.
 fn locked_log(path: &Path, earlier: Earlier) -> Result<File, OutputError> {
     loop {
         if path.is_symlink() {
@@ -287,7 +287,7 @@ fn locked_log(path: &Path, earlier: Earlier) -> Result<File, OutputError> {
     }
 }
 
-/// Whether a program has the result file open: HDF5 locks it even where the log is gone.
+/// Whether a program has the result file open: HDF5 locks the file, even if the log is gone.
 fn is_held(result: &Path) -> bool {
     let file = File::open(result);
     file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))

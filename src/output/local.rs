@@ -7,19 +7,19 @@ use crate::dynamics::State;
 use crate::elements::{ElementNodes, Elements, LocalResult};
 use crate::model::{HistorySet, Model};
 
-/// Where results are.
+/// Places of results.
 enum ResultPlaces {
-    /// At the integration points of elements (indices), one element after the other.
+    /// The integration points of elements (indices), element after element.
     Points(Vec<usize>),
-    /// At the nodes of elements.
+    /// The nodes of elements.
     Nodes(ElementNodes),
 }
 
-/// Results at places of elements.
+/// Results at the integration points or nodes of elements.
 pub(super) struct Local {
     elements: Arc<Elements>,
     places: ResultPlaces,
-    /// The latest results, and what they are of.
+    /// The latest results, and the number of their increment or frame.
     latest: RefCell<(Option<usize>, Vec<LocalResult>)>,
 }
 
@@ -32,12 +32,12 @@ impl Local {
         }
     }
 
-    /// At the integration points of the `members` (indices), one element after the other.
+    /// Results at the integration points of the elements `members` (indices), element after element.
     pub fn at_points(elements: &Arc<Elements>, members: &[usize]) -> Self {
         Self::new(elements, ResultPlaces::Points(members.to_vec()))
     }
 
-    /// At the nodes of the `members` (indices), whose indices increase.
+    /// Results at the nodes of the elements `members` (indices, in increasing order).
     pub fn at_nodes(elements: &Arc<Elements>, members: &[usize]) -> Self {
         Self::new(
             elements,
@@ -45,7 +45,7 @@ impl Local {
         )
     }
 
-    /// The nodes (indices); none of integration points.
+    /// The nodes (indices); empty for results at integration points.
     pub fn nodes(&self) -> Vec<usize> {
         match &self.places {
             ResultPlaces::Points(_) => Vec::new(),
@@ -53,7 +53,7 @@ impl Local {
         }
     }
 
-    /// Results of the increment or frame of a number, whose state is given.
+    /// Results for an increment or frame, given by its number and its state.
     pub fn of(&self, number: usize, state: &State) -> Ref<'_, [LocalResult]> {
         if self.latest.borrow().0 != Some(number) {
             let (all, motion) = (&self.elements, state.motion());
@@ -70,7 +70,7 @@ impl Local {
     }
 }
 
-/// The elements of a model if values at their points or nodes are asked for, else none.
+/// The elements of a model if values at their points or nodes are asked for; else `None`.
 pub(super) fn elements(model: &Model) -> Arc<Elements> {
     let in_history = |asked: &HistorySet| asked.at_points || asked.at_nodes;
     let sets = &model.sets;

@@ -1,4 +1,4 @@
-//! Whether a run fits into the memory that is free.
+//! Check whether a run fits into the free memory.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -6,11 +6,11 @@ use super::format::bytes;
 use crate::prepare::MemoryNeed;
 use crate::system::free_memory;
 
-/// A run whose estimated need, divided by this, is not free is refused: the estimate may be too large by
-/// as much.
+/// Factor by which the estimate of memory may be too large: a run is refused if the estimate divided by this factor
+/// exceeds the free memory.
 const TOO_LARGE: f64 = 1.5;
 
-/// What the run of this process needs (bytes); 0 before it is known.
+/// Memory need of the run of this process (bytes); 0 before it is known.
 static NEED: AtomicU64 = AtomicU64::new(0);
 
 /// A run that does not fit into the free memory.
@@ -22,14 +22,14 @@ static NEED: AtomicU64 = AtomicU64::new(0);
     bytes(*free)
 )]
 pub struct MemoryError {
-    /// What the run needs.
+    /// Memory need of the run.
     pub need: MemoryNeed,
-    /// Bytes that are free.
+    /// Number of free bytes.
     pub free: u64,
 }
 
-/// Checks that a run fits into the memory that is free; always where the system does not tell. What it
-/// needs is kept for [`memory_need`].
+/// Checks that a run fits into the free memory; if the system does not report free memory, the check holds. The memory
+/// need is kept for [`memory_need`].
 pub fn check_memory(need: MemoryNeed) -> Result<(), MemoryError> {
     NEED.store(need.total(), Ordering::Relaxed);
     match free_memory() {
@@ -40,7 +40,7 @@ pub fn check_memory(need: MemoryNeed) -> Result<(), MemoryError> {
     }
 }
 
-/// Bytes that the run of this process needs, once they are estimated.
+/// Memory need of the run of this process (bytes), after it has been estimated.
 pub fn memory_need() -> Option<u64> {
     Some(NEED.load(Ordering::Relaxed)).filter(|&need| need > 0)
 }

@@ -1,9 +1,9 @@
 //! Result file, status file, log and screen.
 //!
-//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), which are claimed by
-//! one run at a time ([`Claim`]): `JOB.vtkhdf` (`result_file`: `fields`, `model_group`, `history`,
-//! `run_record`, `space`), `JOB.sta` (`status`), `JOB.log` and the screen (`console`).
-//! `docs/output.md` describes them. [`picture`] draws a model that is not run.
+//! [`ResultWriter`] observes a run and writes the files of a job ([`JobFiles`]), which only one run at a time can claim
+//! ([`Claim`]): `JOB.vtkhdf` (`result_file`: `fields`, `model_group`, `history`, `run_record`, `space`), `JOB.sta`
+//! (`status`), `JOB.log` and the screen (`console`). `docs/output.md` describes them. [`picture`] draws a model for
+//! `check`.
 
 mod balance;
 mod canvas;

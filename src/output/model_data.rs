@@ -1,6 +1,6 @@
-//! Group `/model`: what the equations of the run are made of. With it elements, materials, contacts and steps need not be
-//! read from the deck to recompute forces, energies and the contact law from the fields.
-//! See docs/theory/elements.md, docs/theory/contact.md and docs/theory/time.md.
+//! Group `/model`: data of the equations of the run. With this data, forces, energies and the contact law can be
+//! recomputed from the fields without reading elements, materials, contacts and steps from the deck. See
+//! docs/theory/elements.md, docs/theory/contact.md and docs/theory/time.md.
 
 use std::collections::BTreeMap;
 
@@ -158,7 +158,7 @@ fn write_contacts(at: &Group, model: &Model, surfaces: &[ContactSurfaces]) -> hd
     Ok(())
 }
 
-/// The law of friction of a contact in every step.
+/// Writes the law of friction of a contact in every step.
 fn write_friction(at: &Group, model: &Model, contact: usize) -> hdf5::Result<()> {
     let own = &model.contacts[contact].interaction.friction;
     let (mut coefficients, mut decays, mut rows) = (vec![], vec![], vec![]);
@@ -207,7 +207,7 @@ fn write_friction(at: &Group, model: &Model, contact: usize) -> hdf5::Result<()>
     constant(at, "friction_ramps", &[steps], &ramps, FRICTION_RAMPS)
 }
 
-/// Radius of a disc that is slave, and the arcs of its master.
+/// Writes the radius of a disc that is slave, and the arcs of its master.
 fn write_disc(at: &Group, disc: Disc, master: &Surface) -> hdf5::Result<()> {
     constant(at, "disc_radius", &[], &[disc.radius], DISC_RADIUS)?;
     constant(at, "disc_arm", &[], &[disc.arm as i64], DISC_ARM)?;
@@ -242,7 +242,7 @@ fn write_steps(at: &Group, steps: &[Step]) -> hdf5::Result<()> {
     constant(at, "theta", &[codes.len(), 2], theta.as_flattened(), THETA)
 }
 
-/// Nodes with a support in any step, and those of rigid bodies that no step frees.
+/// Nodes with a support in any step, and nodes of rigid bodies that no step frees.
 fn supported(model: &Model) -> Vec<usize> {
     let supports = model.steps.iter().flat_map(|step| &step.supports);
     let nodes = supports.map(|support| support.dof / 2);
@@ -251,7 +251,8 @@ fn supported(model: &Model) -> Vec<usize> {
     nodes.filter(|&n| n < model.mesh.node_count()).collect()
 }
 
-/// Nodes with a force that is neither internal, of inertia, of contact, of a support nor a load.
+/// Nodes with a force that is neither an internal force, an inertia force, a contact force, a reaction of a support nor
+/// a load.
 fn constrained(model: &Model) -> Vec<usize> {
     let equations = model.equations.iter().flat_map(|equation| equation.dofs());
     let connectors = model
@@ -269,8 +270,8 @@ fn constrained(model: &Model) -> Vec<usize> {
     nodes.filter(|&n| n < model.mesh.node_count()).collect()
 }
 
-/// Nodes with a concentrated load, a pressure, a traction or a centrifugal force in any step, and those of contacts whose forces fade over a
-/// static step that removes them.
+/// Nodes with a concentrated load, a pressure, a traction or a centrifugal force in any step, and nodes of contacts
+/// whose forces fade over a static step that removes the contact.
 fn loaded_nodes(model: &Model) -> Vec<usize> {
     let mut nodes: Vec<usize> = Vec::new();
     for step in &model.steps {
@@ -297,10 +298,11 @@ fn loaded_nodes(model: &Model) -> Vec<usize> {
     nodes
 }
 
-/// A body force as far as forces of different elements may differ.
+/// The properties of a body force in which elements may differ.
 type Signature = (usize, bool, [u64; 3], [u64; 2]);
 
-/// Group of every element: those with the same body forces have the same number, -1 without any.
+/// Group number of every element: elements with the same body forces have the same number, elements without body force
+/// -1.
 fn load_groups(model: &Model) -> Vec<i64> {
     let mut forces: Vec<Vec<Signature>> = vec![Vec::new(); model.mesh.elements.len()];
     for (number, step) in model.steps.iter().enumerate() {
@@ -327,7 +329,7 @@ fn load_groups(model: &Model) -> Vec<i64> {
     forces.into_iter().map(&mut number).collect()
 }
 
-/// Writes indices, increasing and each once.
+/// Writes indices in increasing order, without duplicates.
 fn indices(at: &Group, name: &str, mut found: Vec<usize>, text: &'static str) -> hdf5::Result<()> {
     found.sort_unstable();
     found.dedup();

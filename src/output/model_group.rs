@@ -1,5 +1,5 @@
-//! Group `/model`: labels, coordinates, sets and bodies with their wave times; names of the deck that
-//! become names in the result file.
+//! Group `/model`: labels, coordinates, sets and bodies with their wave times; checks of names of the deck that become
+//! names in the result file.
 
 use std::collections::HashSet;
 
@@ -29,7 +29,7 @@ pub(crate) fn write(root: &Group, model: &Model) -> hdf5::Result<()> {
     write_bodies(&group(&at, "bodies")?, model)
 }
 
-/// Writes pure numbers that never change.
+/// Writes a dataset of pure numbers that never changes.
 fn numbers(
     at: &Group,
     name: &str,
@@ -40,7 +40,7 @@ fn numbers(
     constant(at, name, &[values.len()], &values, ("1", text))
 }
 
-/// Node indices of all elements, one element after the other.
+/// Node indices of all elements, element after element.
 pub(crate) fn connectivity(mesh: &Mesh) -> Vec<i64> {
     let nodes = mesh.elements.iter().flat_map(|element| &element.nodes);
     nodes.map(|&node| node as i64).collect()
@@ -85,7 +85,7 @@ fn write_sets(at: &Group, sets: &[Set]) -> hdf5::Result<()> {
     })
 }
 
-/// The bodies: members, masses and transit times of waves.
+/// Writes the bodies: members, masses and transit times of waves.
 fn write_bodies(at: &Group, model: &Model) -> hdf5::Result<()> {
     let bodies = Bodies::new(&model.mesh);
     let text = "body of each node, -1 for nodes without element";
@@ -140,7 +140,7 @@ const WAVE_TIME: Meaning = (
     "time a longitudinal wave takes along the longer side of the bounding box",
 );
 
-/// Checks the names of all sets and instances, and of the surfaces in contact or with a reference node.
+/// Checks the names of all sets and instances, and of surfaces that are in contact or have a reference node.
 pub fn check_names(model: &Model) -> Result<(), NameError> {
     for set in &model.sets.nodes {
         check("node set", &set.name)?;
@@ -169,8 +169,8 @@ fn check(what: &'static str, name: &str) -> Result<(), NameError> {
     Ok(())
 }
 
-/// Names of the contacts, `<SLAVE>_<MASTER>`, for general contact `ALL_EXTERIOR`; the second of the
-/// same name gets `_2`, and so on.
+/// Names of the contacts: `<SLAVE>_<MASTER>`, or `ALL_EXTERIOR` for general contact; a second contact with the same
+/// name gets `_2`, and so on.
 pub fn contact_names(model: &Model) -> Vec<String> {
     let mut taken = HashSet::new();
     (model.contacts.iter())
@@ -199,13 +199,13 @@ fn unique(base: String, taken: &mut HashSet<String>) -> String {
 /// Transit times of longitudinal waves in a body: the time scales for the choice of the increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct BodyTimes {
-    /// Shortest time along an edge of an element.
+    /// Shortest transit time along an edge of an element.
     pub edge: f64,
-    /// Time along the longer side of the body's bounding box, at the speed of its slowest element.
+    /// Transit time along the longer side of the bounding box of the body, at the wave speed of its slowest element.
     pub body: f64,
 }
 
-/// The times of every body.
+/// The transit times of every body.
 pub(crate) fn body_times(model: &Model, bodies: &Bodies) -> Vec<BodyTimes> {
     let mut edge = vec![f64::INFINITY; bodies.count];
     let mut slowest = vec![f64::INFINITY; bodies.count];

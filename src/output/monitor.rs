@@ -1,6 +1,6 @@
-//! Running checks of a run, increment by increment: conservation and energy that contact
-//! puts in (docs/theory/impacts.md, Ledger, and docs/theory/contact.md, Energy-momentum contact), strains,
-//! contacts and counts; the closing lines that report them.
+//! Checks of a run, increment by increment: conservation and energy that contact puts in (docs/theory/impacts.md,
+//! Ledger, and docs/theory/contact.md, Energy-momentum contact), strains, contacts and counts; the closing lines that
+//! report them.
 
 use std::mem::{Discriminant, discriminant};
 
@@ -20,19 +20,19 @@ use crate::linear::larger;
 use crate::model::{Bodies, Model};
 use crate::system::peak_memory;
 
-/// Follows a run.
+/// Follows a run and checks it.
 pub(crate) struct Monitor {
-    /// Energy balance, energy from contact, momentum.
+    /// Energy balance, energy put in by contact, and momentum.
     pub balance: Balance,
     strain: StrainWatch,
-    /// Whether each contact has closed, or been struck.
+    /// For each contact, whether it has closed or been struck.
     closed: Vec<bool>,
     touches: Vec<Touch>,
-    /// Length of the longest increment at whose end something moves, without static steps.
+    /// Length of the longest increment at whose end something moves; static steps do not count.
     dt: f64,
     /// Time at the end of the last increment.
     time: f64,
-    /// Failed attempts since the last increment.
+    /// Number of failed attempts since the last increment.
     failed_attempts: usize,
     cutbacks: usize,
     /// Causes of the cutbacks so far, each with the course of the passes.
@@ -40,19 +40,19 @@ pub(crate) struct Monitor {
     landings: usize,
     /// Largest values of the checks.
     checks: Checks,
-    /// Largest force that holds a motion, beside the normal forces at its body.
+    /// Largest force that holds a motion resisted by facets only, relative to the normal forces at its body.
     held: f64,
 }
 
-/// Remarks on an increment besides its line in the table.
+/// Remarks on an increment, in addition to its line in the table.
 pub(crate) struct Remarks {
     /// Energy that contact put in.
     pub contact_energy: Option<f64>,
-    /// Its checks.
+    /// Values of the checks in the increment.
     pub checks: Checks,
-    /// The most strained element, the first time it is beyond the range of its material.
+    /// The most strained element, when it exceeds the range of its material for the first time.
     pub strained: Option<Strained>,
-    /// Whether a motion that only facets resist is held the first time.
+    /// Whether a motion that only facets resist is held for the first time.
     pub holds: bool,
 }
 
@@ -75,7 +75,7 @@ impl Monitor {
         }
     }
 
-    /// Transfers what is known of the run, but for the kinds of cutbacks that the log has explained.
+    /// Transfers the state of the checks, without the kinds of cutbacks that the log has explained.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         transfer_fields!(archive, self => Monitor {
             [strain] balance, closed, touches, dt, time, failed_attempts, cutbacks, landings, checks, held; kinds
@@ -118,7 +118,7 @@ impl Monitor {
         self.cutbacks
     }
 
-    /// Whether a cutback is the first of its cause and course.
+    /// Whether a cutback is the first one with its cause and course.
     pub fn is_new_kind(&mut self, cutback: &Cutback) -> bool {
         let failure = &cutback.failure;
         let course = failure.course.as_deref().map(discriminant);
@@ -130,12 +130,12 @@ impl Monitor {
         is_new
     }
 
-    /// Attempts at the increment just accepted, including the failed ones.
+    /// Number of attempts at the increment just accepted, including failed ones.
     pub fn take_attempts(&mut self) -> usize {
         std::mem::take(&mut self.failed_attempts) + 1
     }
 
-    /// The closing lines: checks, where the energy has gone, largest strain, contact.
+    /// The closing lines: checks, losses of energy, largest strain, and contact.
     pub fn lines(&self, model: &Model) -> Vec<String> {
         let mut lines = checks::line(&self.checks.of(model));
         lines.extend(self.balance.losses().lines());
@@ -207,7 +207,7 @@ pub(crate) fn timing_lines(summary: &RunSummary, output: f64, total: f64) -> Vec
     wrap(done, &pieces)
 }
 
-/// Work of the complementarity problems by method; empty without any.
+/// Work of the complementarity problems by method; empty if there were none.
 pub(crate) fn lcp_lines(solver: &SolverCounts) -> Vec<String> {
     if solver.lcps == 0 {
         return Vec::new();

@@ -28,13 +28,13 @@ const LOAD: Pen = Pen("#c81e1e", 1.6);
 const GRAVITY: Pen = Pen("#c81e1e", 3.0);
 const VELOCITY: Pen = Pen("#15803d", 2.4);
 
-/// Pixels that an element takes on average, below which its sides are not drawn.
+/// Mean size of elements (pixels) below which their sides are not drawn.
 const SMALLEST: f64 = 5.0;
-/// Length of a normal, smallest and largest distance between two, in pixels.
+/// Length of a normal (pixels); the smallest and largest distance between two normals follow.
 const NORMAL: f64 = 9.0;
 const NORMALS_APART: f64 = 16.0;
 const NORMALS_FAR: f64 = 80.0;
-/// Longest arrow, and distance between arrows, in pixels.
+/// Length of the longest arrow (pixels); the distance between arrows follows.
 const ARROW: f64 = 44.0;
 const ARROWS_APART: f64 = 18.0;
 
@@ -45,8 +45,7 @@ type Stroke = [Location; 2];
 /// An arrow at a place of the model along a vector of the model.
 type Vector = (Location, [f64; 2]);
 
-/// Draws a model as text of an SVG file: a part of the plane, or the deformable bodies and what is near
-/// them.
+/// Draws a model as text of an SVG file: a part of the plane, or the deformable bodies and their surroundings.
 pub fn picture(model: &Model, window: Option<Window>) -> String {
     let canvas = Canvas::new(window.unwrap_or_else(|| about_bodies(model)));
     let mut picture = Picture {
@@ -67,8 +66,8 @@ pub fn picture(model: &Model, window: Option<Window>) -> String {
     picture.canvas.text(&model.title)
 }
 
-/// The extents of the deformable bodies, and of rigid surfaces as far as these reach beyond the bodies
-/// by no more than the larger side of theirs: a long floor does not make the bodies small.
+/// The extents of the deformable bodies, and of rigid surfaces up to a distance from the bodies equal to the larger
+/// side of these, so that a long floor does not make the bodies small.
 fn about_bodies(model: &Model) -> Window {
     let x = &model.mesh.coordinates;
     let of_elements = (model.mesh.elements.iter()).flat_map(|element| &element.nodes);
@@ -91,7 +90,7 @@ struct Picture<'m> {
 }
 
 impl Picture<'_> {
-    /// The outline of all elements of a material, filled, and the sides of the elements.
+    /// Draws the filled outline of all elements of a material, and the sides of the elements.
     fn bodies(&mut self) {
         let (model, x) = (self.model, self.x);
         for (index, material) in model.materials.iter().enumerate() {
@@ -115,7 +114,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Surfaces with their outward normals, as slaves, masters or neither; the contacts in the legend.
+    /// Draws surfaces with their outward normals, as slaves, masters or neither; the legend lists the contacts.
     fn surfaces(&mut self) {
         for (index, surface) in self.model.surfaces.iter().enumerate() {
             if let SurfaceKind::Rigid(_) = surface.kind {
@@ -157,7 +156,7 @@ impl Picture<'_> {
         segments.map(|s| s.map(|node| self.x[node])).collect()
     }
 
-    /// Lines along the segments, and normals out of the body.
+    /// Draws lines along the segments, and normals that point out of the body.
     fn segments(&mut self, surface: &Surface, pen: Pen) {
         let lines = self.lines_of(surface);
         self.canvas.lines(&lines, pen);
@@ -180,7 +179,7 @@ impl Picture<'_> {
         self.canvas.stroke(&normals, Pen(pen.0, 1.0));
     }
 
-    /// The name of a surface beside the middle of what is shown of it, on the side of its normal.
+    /// Writes the name of a surface beside the middle of its visible part, on the side of its normal.
     fn surface_name(&mut self, surface: &Surface, pen: Pen) {
         let lines = self.lines_of(surface).into_iter();
         let parts: Vec<Stroke> = lines.filter_map(|line| self.canvas.part(line)).collect();
@@ -205,7 +204,7 @@ impl Picture<'_> {
         self.canvas.label(at, anchor, pen.0, &surface.name);
     }
 
-    /// Reference nodes of rigid surfaces; directions of nodes that are prescribed, and how far they move.
+    /// Draws reference nodes of rigid surfaces, and prescribed directions of nodes with their displacements.
     fn supports(&mut self) {
         for body in &self.model.rigid_bodies {
             let place = self.x[body.reference];
@@ -256,8 +255,8 @@ impl Picture<'_> {
         }
     }
 
-    /// Pressures and tractions: arrows of one length that end on the middles of their faces, or begin there
-    /// where they pull.
+    /// Draws pressures and tractions as arrows of the same length, which end at the middles of their faces, or begin
+    /// there if they pull.
     fn face_loads(&mut self) {
         let mut loads: Vec<Vector> = Vec::new();
         for step in &self.model.steps {
@@ -288,7 +287,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Arrows at their places, the largest of full length and none below a third of it.
+    /// Draws arrows at their places; the largest has full length, and no arrow is shorter than a third of it.
     fn arrows(&mut self, vectors: &[Vector], pen: Pen, text: &str) {
         let size = |v: &[f64; 2]| v[0].hypot(v[1]);
         let largest = vectors.iter().map(|(_, v)| size(v)).fold(0.0, f64::max);
@@ -314,7 +313,7 @@ fn middle([a, b]: Stroke) -> Location {
     [0, 1].map(|i| a[i] / 2.0 + b[i] / 2.0)
 }
 
-/// Sides without an element of the group on their right, and the others, each once.
+/// Sides without an element of the group on their right, and all other sides, without duplicates.
 fn sides(elements: &[&Element]) -> (Vec<[usize; 2]>, Vec<[usize; 2]>) {
     let in_order = || elements.iter().flat_map(|element| element.segments());
     let all: HashSet<[usize; 2]> = in_order().collect();
@@ -322,7 +321,7 @@ fn sides(elements: &[&Element]) -> (Vec<[usize; 2]>, Vec<[usize; 2]>) {
     (outline, inside.into_iter().filter(|[a, b]| a < b).collect())
 }
 
-/// The closed ways along sides.
+/// The closed loops along sides.
 fn loops(sides: Vec<[usize; 2]>) -> Vec<Vec<usize>> {
     let mut ends: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for [a, b] in sides {
@@ -343,7 +342,7 @@ fn loops(sides: Vec<[usize; 2]>) -> Vec<Vec<usize>> {
     loops
 }
 
-/// Line and name of what a surface is in the contacts, and whether it is a slave.
+/// Pen and name for the role of a surface in the contacts, and whether it is a slave.
 fn role(index: usize, model: &Model) -> (Pen, &'static str, bool) {
     let is_slave = model.contacts.iter().any(|contact| contact.slave == index);
     let is_master = model.contacts.iter().any(|contact| contact.master == index);
@@ -356,7 +355,8 @@ fn role(index: usize, model: &Model) -> (Pen, &'static str, bool) {
     (pen, text, is_slave)
 }
 
-/// Displacement of a support in the first step, the largest of its amplitude's points where it follows one.
+/// Displacement of a support in the first step; if it follows an amplitude, the largest value at the points of the
+/// amplitude.
 fn direction(support: &Support, model: &Model) -> f64 {
     match support.motion {
         SupportMotion::Ramp { to } => to,
@@ -382,7 +382,7 @@ fn direction(support: &Support, model: &Model) -> f64 {
     }
 }
 
-/// Forces by node, of all steps.
+/// Draws the forces of all steps, by node.
 fn point_loads(model: &Model) -> Vec<Vector> {
     let mut forces: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
     let loads = model.steps.iter().flat_map(|step| &step.point_loads);
@@ -394,7 +394,7 @@ fn point_loads(model: &Model) -> Vec<Vector> {
     forces.map(|(node, force)| (x[node], force)).collect()
 }
 
-/// One arrow in the middle of every body for each direction of its body forces.
+/// Draws an arrow in the middle of every body for each direction of its body forces.
 fn body_forces(model: &Model) -> Vec<Vector> {
     let bodies = Bodies::new(&model.mesh);
     let middles = middles(&nodes_of(&bodies), model);
@@ -422,7 +422,7 @@ fn body_forces(model: &Model) -> Vec<Vector> {
     vectors
 }
 
-/// One arrow for a body that moves without turning, else arrows at its nodes.
+/// Draws initial velocities: one arrow for a body that moves without turning, else arrows at its nodes.
 fn velocities(model: &Model) -> Vec<Vector> {
     let nodes = nodes_of(&Bodies::new(&model.mesh));
     let of_node = |node: usize| [0, 1].map(|i| model.initial_velocity[2 * node + i]);
@@ -452,7 +452,7 @@ fn nodes_of(bodies: &Bodies) -> Vec<Vec<usize>> {
     nodes
 }
 
-/// Mean place of the nodes of every body.
+/// Mean position of the nodes of every body.
 fn middles(nodes: &[Vec<usize>], model: &Model) -> Vec<Location> {
     let mean = |nodes: &Vec<usize>, i: usize| {
         let x = nodes.iter().map(|&node| model.mesh.coordinates[node][i]);

@@ -1,5 +1,5 @@
-//! `JOB.restart`: the last checkpoint of a run, with the deck that it belongs to. It is written whole to another name,
-//! brought to the disk and then renamed, so that there is always a whole one. docs/restart.md.
+//! `JOB.restart`: the last checkpoint of a run, with the deck that it belongs to. A checkpoint is written completely
+//! under another name, brought to the disk and then renamed, so that there is always a complete one. docs/restart.md.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -17,53 +17,53 @@ use crate::diagnostics::EarlierDeck;
 /// First bytes of the file.
 const MAGIC: &[u8] = b"stickslip restart 2\n";
 
-/// Bytes of the check sum behind them.
+/// Number of bytes of the check sum, which follows the first bytes.
 const SUM: usize = 32;
 
-/// A checkpoint with what it is of.
+/// A checkpoint, with a description of its run and its place.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
     /// The program that wrote it: version and commit.
     pub program: String,
-    /// How the deck was read and run.
+    /// Deck and options of the run.
     pub origin: RestartOrigin,
     /// Time at the end of the last increment.
     pub time: f64,
-    /// Its step, and its number in the step.
+    /// Number of the step of this increment, and number of the increment in the step.
     pub place: [usize; 2],
-    /// Whether it is the last one of the step.
+    /// Whether the increment is the last one of the step.
     pub ends_step: bool,
-    /// How far the files of the job were written.
+    /// State up to which the files of the job were written.
     pub files: Vec<u8>,
-    /// All that the rest of the run depends on.
+    /// All data on which the rest of the run depends.
     pub solver: Vec<u8>,
 }
 
-/// Deck and options of a run, which the run that goes on must have as well.
+/// Deck and options of a run, which the continued run must have as well.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct RestartOrigin {
-    /// The run: the attribute `id` of `/run` in its result file. A run that goes on keeps it.
+    /// Identity of the run: the attribute `id` of `/run` in its result file. A continued run keeps it.
     pub run: String,
     /// The deck with its includes, file by file: name and text.
     pub deck: Vec<(String, String)>,
     /// Options that change what is computed or written.
     pub options: String,
-    /// Values of parameters in place of those of the deck.
+    /// Values of parameters that replace those of the deck.
     pub settings: Vec<String>,
     /// Time by which the last step is longer than in the deck.
     pub extension: f64,
-    /// The deck of the job that this one goes on from.
+    /// The deck of the earlier job that this job continues.
     pub earlier: Option<EarlierDeck>,
 }
 
-/// Why there is no checkpoint to go on from.
+/// Reason why there is no checkpoint from which the run can continue.
 #[derive(Debug)]
 pub enum CheckpointError {
-    /// The file cannot be read.
+    /// The file of the checkpoint cannot be read.
     File(FileError),
-    /// It is no whole checkpoint.
+    /// The file is not a complete checkpoint.
     Content(PathBuf),
-    /// It was written by another version of the program.
+    /// The checkpoint was written by another version of the program.
     Program {
         /// The file.
         path: PathBuf,
@@ -97,7 +97,7 @@ impl fmt::Display for CheckpointError {
 impl error::Error for CheckpointError {}
 
 impl Checkpoint {
-    /// The deck with the place at which another one goes on from here.
+    /// The deck with the place at which another job continues from this checkpoint.
     pub fn as_earlier_deck(&self) -> EarlierDeck {
         EarlierDeck {
             files: self.origin.deck.clone(),
@@ -132,10 +132,10 @@ impl Checkpoint {
         postcard::from_bytes(body).map_err(|_| content())
     }
 
-    /// Writes the file in place of the last checkpoint, of which it is never without one.
+    /// Writes the file in place of the last checkpoint; at every moment there is a complete checkpoint.
     ///
     /// # Errors
-    /// Those of the file system.
+    /// The file system refuses the file.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let body = postcard::to_stdvec(self).map_err(io::Error::other)?;
         let write = || {

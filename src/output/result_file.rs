@@ -22,16 +22,16 @@ use crate::deck::open_regular;
 use crate::dynamics::{IncrementReport, RunSummary};
 use crate::model::Model;
 
-/// Bytes of frames that wait in memory at most, but for one frame: the more, the fewer writes. Disk space
-/// for them is reserved beforehand; where there is less, the second number.
+/// Largest number of bytes of frames that wait in memory (but at least one frame): more bytes mean fewer writes. Disk
+/// space for them is reserved beforehand; if there is less space, the second number holds.
 const WAITING_BYTES: [usize; 2] = [8 << 20, 2 << 20];
 
-/// Bytes of frames per byte of history rows that may wait.
+/// Ratio of the bytes of frames to the bytes of history rows that may wait.
 const FRAMES_TO_HISTORY: usize = 4;
 
 /// `JOB.vtkhdf` while it is being written.
 pub(super) struct ResultFile<'m> {
-    /// Its path once the first frame is complete.
+    /// Path of the file once its first frame is complete.
     path: PathBuf,
     file: File,
     fields: GrowingColumns<'m, Frame>,
@@ -106,8 +106,8 @@ impl<'m> ResultFile<'m> {
         self.frame_time = frame.time;
     }
 
-    /// Writes what waits in memory when it is much, when writing a frame is short against the run, or when
-    /// the last write was some time ago.
+    /// Writes the rows and frames that wait in memory if they are many, if writing takes little of the time of the run,
+    /// or if the last write was some time ago.
     pub fn write_when_due(&mut self) -> io::Result<()> {
         let is_much = self.fields.is_full() || self.history.is_full();
         let has_frame = self.fields.is_waiting();
@@ -117,8 +117,8 @@ impl<'m> ResultFile<'m> {
         }
     }
 
-    /// Transfers the numbers of rows that the file has, after [`Self::write_through`]. When a checkpoint is read, these rows
-    /// are copied from `earlier`: the file of the stopped run, and its id.
+    /// Transfers the numbers of rows in the file; it must follow [`Self::write_through`] when a checkpoint is written.
+    /// When a checkpoint is read, these rows are copied from `earlier`: the file of the stopped run, and its id.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,
@@ -155,13 +155,13 @@ impl<'m> ResultFile<'m> {
         self.write_through()
     }
 
-    /// Brings what is written to the disk itself.
+    /// Brings everything that has been written to the disk itself.
     pub fn sync(&self) -> io::Result<()> {
         self.space.sync().map_err(at(&self.path))
     }
 
-    /// Writes everything to the disk, so that the file is readable even when the program is killed;
-    /// then reserves space for what comes next.
+    /// Writes everything to the disk, so that the file is readable even when the program is killed; then reserves space
+    /// for further rows.
     pub fn write_through(&mut self) -> io::Result<()> {
         let start = Instant::now();
         self.room()?;
@@ -171,8 +171,7 @@ impl<'m> ResultFile<'m> {
         self.room_for_more()
     }
 
-    /// Writes what waits in memory: the numbers of frames and rows, by which readers go, after everything
-    /// else.
+    /// Writes the rows that wait in memory; the numbers of frames and rows, on which readers rely, are written last.
     pub fn write(&mut self) -> io::Result<()> {
         let written = (self.fields.flush())
             .and_then(|()| self.history.flush())
@@ -184,8 +183,8 @@ impl<'m> ResultFile<'m> {
         self.flush()
     }
 
-    /// Writes what the library holds. It notes the end of the file last: until then the end stands
-    /// ahead of all that it may write, since a file with addresses beyond its end cannot be read.
+    /// Writes all data that the library holds. The end of the file is noted last. Until then the noted end lies behind
+    /// everything that the library may write, because a file with addresses beyond its end cannot be read.
     fn flush(&mut self) -> io::Result<()> {
         let end = self.space.move_end_ahead().map_err(at(&self.path))?;
         let flushed = self.file.flush();
@@ -221,12 +220,12 @@ impl<'m> ResultFile<'m> {
         Ok(())
     }
 
-    /// Time of the last frame that can be read once what waits is written; none without any.
+    /// Time of the last frame that can be read after waiting rows have been written; `None` if there is no frame.
     pub fn readable_time(&self) -> Option<f64> {
         (self.frames > 0 && !self.is_broken).then_some(self.frame_time)
     }
 
-    /// Reserves disk space for the rows that may wait next: many, or fewer where the disk is nearly full.
+    /// Reserves disk space for the rows that may wait next: for many rows, or for fewer if the disk is nearly full.
     fn room_for_more(&mut self) -> io::Result<()> {
         let [many, few] = WAITING_BYTES;
         self.let_wait(many);
@@ -243,8 +242,8 @@ impl<'m> ResultFile<'m> {
         self.checks.let_wait(bytes / FRAMES_TO_HISTORY);
     }
 
-    /// Reserves disk space for all that may wait: a file that the library has written only in part is
-    /// lost as a whole.
+    /// Reserves disk space for all rows that may wait, because a file that the library has written only in part is
+    /// completely lost.
     fn room(&mut self) -> io::Result<()> {
         let growth = self.fields.growth() + self.history.growth() + self.checks.growth();
         self.space.ensure(growth).map_err(at(&self.path))
@@ -267,21 +266,21 @@ impl<'m> ResultFile<'m> {
     }
 }
 
-/// Longest time for which results wait in memory while a run goes on.
+/// Longest time for which results wait in memory while a run continues.
 const LONGEST: Duration = Duration::from_secs(1);
 
-/// Time of a run as a multiple of that which its writes may take.
+/// Smallest ratio of the time of a run to the time of its writes.
 const MULTIPLE: u32 = 30;
 
-/// Decides when to write: when all writes so far and another like the last one are short against the time of the run.
-/// Increments that take long are written at once.
+/// Decides when to write: a write is due when all writes so far, and another one like the last, need little of the time
+/// of the run. Increments that take long are written at once.
 pub(super) struct Pace {
     start: Instant,
-    /// End of the last write.
+    /// Time at which the last write ended.
     last: Option<Instant>,
     /// Time of the run from which on the next write is due.
     due: Duration,
-    /// Time that all writes have taken.
+    /// Total time of all writes.
     spent: Duration,
 }
 

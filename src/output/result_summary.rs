@@ -18,7 +18,7 @@ use crate::dynamics::{Energy, Touch};
 use crate::linear::{larger, largest};
 use crate::model::ContactFormulation;
 
-/// Why a result file could not be read.
+/// Reason why a result file could not be read.
 #[derive(Debug, Error)]
 pub enum SummaryError {
     /// The file does not exist or may not be read.
@@ -34,31 +34,30 @@ pub enum SummaryError {
     },
 }
 
-/// Figures of a result file.
+/// Numbers and texts of a result file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResultSummary {
     /// The file that was read.
     pub path: PathBuf,
-    /// Its size in bytes.
+    /// Size of the file (bytes).
     pub size: u64,
     /// Version and commit of the program that wrote it.
     pub version: String,
-    /// The command that started it.
+    /// The command that started the run.
     pub command: String,
-    /// When the run started.
+    /// Time at which the run started.
     pub started: String,
-    /// When it ended; empty when it did not.
+    /// Time at which the run ended; empty if it has not ended.
     pub finished: String,
-    /// Exit status, -1 when the run did not end.
+    /// Exit status; -1 if the run has not ended.
     pub exit_status: i64,
-    /// Most bytes of memory in use at a time; none of a run that did not end, or where the system does not
-    /// tell.
+    /// Largest number of bytes of memory in use; `None` if the run has not ended or the system does not report it.
     pub peak_memory: Option<i64>,
     /// Number of nodes.
     pub nodes: usize,
     /// Number of elements.
     pub elements: usize,
-    /// Names of the contacts with the largest normal force of each.
+    /// Names of the contacts, with the largest normal force of each contact.
     pub contacts: Vec<(String, f64)>,
     /// Number of landings.
     pub landings: usize,
@@ -72,13 +71,13 @@ pub struct ResultSummary {
     pub frames: Vec<f64>,
     /// Last value of each energy.
     pub energy: Energy,
-    /// Accounts of the energy that an older file does not have.
+    /// Accounts of energy that are missing in an older file.
     unrecorded: Vec<&'static str>,
     /// Largest energy or external work of the history.
     pub largest_energy: f64,
     /// The checks with their largest values.
     checks: Vec<(&'static Check, f64)>,
-    /// Where the energy has gone.
+    /// Losses of energy.
     losses: Losses,
     /// Warnings about the run, in lines of the screen.
     pub warnings: Vec<String>,
@@ -138,7 +137,7 @@ impl ResultSummary {
         })
     }
 
-    /// Largest value of a check of every increment, a dataset of `/history/certificate`.
+    /// Largest value over all increments of a check, which is a dataset of `/history/certificate`.
     pub fn check(&self, name: &str) -> Option<f64> {
         let mut checks = self.checks.iter();
         checks
@@ -234,8 +233,8 @@ impl ResultSummary {
 /// An account of the energy ledger: its dataset, and its place in the ledger.
 type Account = (&'static str, fn(&mut Energy) -> &mut f64);
 
-/// Accounts of the energy ledger, in the order of the summary; the balance is measured by the largest of
-/// the first three.
+/// Accounts of the energy ledger, in the order of the summary; the balance is given relative to the largest of the
+/// first three.
 const ACCOUNTS: [Account; 12] = [
     ("kinetic", |e| &mut e.kinetic),
     ("strain", |e| &mut e.strain),
@@ -251,17 +250,17 @@ const ACCOUNTS: [Account; 12] = [
     ("numerical_dissipation", |e| &mut e.numerical_dissipation),
 ];
 
-/// What accounts are beside, which older files lack.
+/// Scales of the accounts, which older files lack: the largest energy, and the energy that may be round-off.
 const SCALES: [Account; 2] = [
     ("scale", |e| &mut e.scale),
     ("round_off", |e| &mut e.round_off),
 ];
 
-/// Accounts that most runs have no entry in: told where they are not zero.
+/// Accounts that are zero in most runs: they are shown only if they are not zero.
 const RARE_ACCOUNTS: [&str; 4] = ["thermal_work", "landing_return", "release_loss", "damping"];
 
-/// Last value of each energy, the accounts that an older file lacks, which are zero, and the largest energy
-/// that counts as the balance's scale.
+/// Last value of each energy, accounts that an older file lacks (their values are zero), and the largest energy, which
+/// is the scale of the balance.
 fn read_energy(at: &Group) -> hdf5::Result<(Energy, Vec<&'static str>, f64)> {
     let (mut energy, mut unrecorded, mut scale) = (Energy::default(), Vec::new(), 0.0);
     for (name, account) in SCALES {
@@ -286,7 +285,7 @@ fn read_energy(at: &Group) -> hdf5::Result<(Energy, Vec<&'static str>, f64)> {
     Ok((energy, unrecorded, scale))
 }
 
-/// Figures that the warnings are made from; datasets that older files lack are left out.
+/// Numbers from which the warnings are made; datasets that older files lack are left out.
 fn read_findings(
     file: &Group,
     losses: Losses,
@@ -333,7 +332,7 @@ fn read_findings(
     })
 }
 
-/// The touches of the bodies, as far as the warnings need them.
+/// The touches of the bodies, with the data that the warnings need.
 fn read_touches(history: &Group) -> hdf5::Result<Vec<Touch>> {
     let at = history.group("touches")?;
     let [start, end, energy] = ["start", "end", "energy"].map(|name| column::<f64>(&at, name));
@@ -359,8 +358,8 @@ fn read_touches(history: &Group) -> hdf5::Result<Vec<Touch>> {
     Ok((0..).map_while(touch).collect())
 }
 
-/// Normal work of nodes that took the place of others, of all contacts; 0 of a file from before there was this
-/// account.
+/// Work of normal contact forces of all contacts at nodes that replaced other closed nodes; 0 for an older file without
+/// this account.
 fn read_handovers(at: &Group) -> hdf5::Result<f64> {
     let last = |name: String| {
         let work = column::<f64>(at, &format!("{name}/handover_work")).unwrap_or_default();
@@ -414,7 +413,7 @@ fn read_frames(file: &Group) -> hdf5::Result<Vec<f64>> {
     Ok(times)
 }
 
-/// A dataset; of the history its complete rows.
+/// Values of a dataset; of a history only the complete rows.
 fn column<T: H5Type>(at: &Group, name: &str) -> hdf5::Result<Vec<T>> {
     let dataset = at.dataset(name)?;
     let mut values = dataset.read_raw()?;
@@ -425,8 +424,8 @@ fn column<T: H5Type>(at: &Group, name: &str) -> hdf5::Result<Vec<T>> {
     Ok(values)
 }
 
-/// How many rows of a dataset are complete, by the innermost of its groups that says it; none does of what is
-/// written at once, and in a file from before there was this number.
+/// Number of complete rows of a dataset, from the innermost of its groups that states it; `None` for a dataset that is
+/// written at once, and in older files without this number.
 fn complete_rows(dataset: &Dataset) -> hdf5::Result<Option<usize>> {
     let (file, path) = (dataset.file()?, dataset.name());
     let groups = path.rmatch_indices('/').filter(|(end, _)| *end > 0);

@@ -14,10 +14,10 @@ use crate::system::peak_memory;
 /// Value of `exit_status` until the run ends.
 pub const UNFINISHED: i64 = -1;
 
-/// The attribute that tells a run from all others.
+/// The attribute that distinguishes a run from all others.
 const ID: &str = "id";
 
-/// A text that no other run has for its id.
+/// A new id, which no other run has.
 pub fn new_run_id() -> String {
     let run = (SystemTime::now(), std::process::id());
     let any = || RandomState::new().hash_one(run);
@@ -27,19 +27,19 @@ pub fn new_run_id() -> String {
 /// Program, deck and command of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RunRecord {
-    /// Tells the run from all others; a run that goes on keeps it.
+    /// Id that distinguishes the run from all others; a continued run keeps it.
     pub id: String,
     /// Version of the program.
     pub version: String,
-    /// Commit it was built from.
+    /// Commit from which the program was built.
     pub commit: String,
-    /// Full text of the deck, includes in place.
+    /// Full text of the deck, with included files in their places.
     pub deck: String,
     /// The command as typed.
     pub command: String,
     /// Number of threads.
     pub threads: usize,
-    /// Bytes of memory that the run was estimated to need.
+    /// Estimated memory need of the run (bytes).
     pub memory_need: u64,
 }
 
@@ -100,7 +100,7 @@ impl RecordWriter {
     }
 }
 
-/// The id of the run that has written a result file; none where it has none.
+/// The id of the run that has written a result file; `None` if the file has no id.
 pub(super) fn run_id(file: &File) -> Option<String> {
     let id = file.group("run").and_then(|at| at.attr(ID)).ok()?;
     let text = id.read_scalar::<VarLenUnicode>().ok()?;

@@ -7,16 +7,16 @@ use std::path::Path;
 
 use crate::system::{free_space, largest_file, reserve};
 
-/// Bytes for the attributes that complete the record of the run.
+/// Number of bytes for the attributes that complete the record of the run.
 const CLOSING: u64 = 1 << 16;
 
 /// First bytes of an HDF5 file, up to the version of its superblock.
 const SUPERBLOCK_0: [u8; 9] = *b"\x89HDF\r\n\x1a\n\0";
 
-/// Where a superblock of version 0 notes the end of the file.
+/// Place at which a superblock of version 0 notes the end of the file.
 const END_OF_FILE: u64 = 40;
 
-/// The end of the file in its superblock before and while the library writes.
+/// End of the file in its superblock, before the library writes and while it writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct End {
     before: u64,
@@ -31,7 +31,7 @@ pub(crate) struct Space {
 }
 
 impl Space {
-    /// For a result file without rows.
+    /// The reserved space of a result file that has no rows yet.
     pub fn new(path: &Path) -> io::Result<Self> {
         Ok(Space {
             file: File::options().read(true).write(true).open(path)?,
@@ -44,8 +44,8 @@ impl Space {
         self.file.sync_data()
     }
 
-    /// Reserves the space for a file that may grow by `growth` bytes, and by the record, until it is
-    /// written through.
+    /// Reserves the space for a file that may grow by `growth` bytes, and by the record, until everything is written to
+    /// the disk.
     ///
     /// # Errors
     /// The disk is full, or the file would become larger than it may.
@@ -69,7 +69,7 @@ impl Space {
         Ok(())
     }
 
-    /// Where the file system cannot reserve space: checks that enough is free now.
+    /// Checks that enough space is free at present, for a file system that cannot reserve space.
     fn ask(&self, room: u64) -> io::Result<()> {
         match free_space(&self.file) {
             Some(free) if free < room => Err(ErrorKind::StorageFull.into()),
@@ -77,8 +77,8 @@ impl Space {
         }
     }
 
-    /// Moves the end of the file to the end of the reserved space, ahead of all that the library may
-    /// write in one go. None where the superblock is not of version 0.
+    /// Moves the noted end of the file to the end of the reserved space, behind everything that the library may write
+    /// in one step. The result is `None` if the superblock is not of version 0.
     pub fn move_end_ahead(&self) -> io::Result<Option<End>> {
         let mut first = [0; SUPERBLOCK_0.len()];
         self.read_at(0, &mut first)?;
@@ -94,8 +94,8 @@ impl Space {
         Ok(Some(end))
     }
 
-    /// Cuts the file at its end, as the library has noted it; where it had nothing to note, the end is
-    /// where it was before.
+    /// Cuts the file at the end that the library has noted; if the library noted nothing, the end is the same as
+    /// before.
     pub fn settle_end(&self, end: Option<End>) -> io::Result<()> {
         let Some(End { before, ahead }) = end else {
             return Ok(());
@@ -112,7 +112,7 @@ impl Space {
         Ok(u64::from_le_bytes(bytes))
     }
 
-    /// Reads the bytes from a place of the file on.
+    /// Reads bytes from a place in the file.
     fn read_at(&self, place: u64, bytes: &mut [u8]) -> io::Result<()> {
         let mut file = &self.file;
         file.seek(SeekFrom::Start(place))?;

@@ -17,7 +17,7 @@ use crate::model::Model;
 
 const TITLE: &str = "# stickslip status file, format 1";
 
-/// Lines of increments that follow each other faster are written together.
+/// Time between increments below which their lines are written together.
 const PAUSE: Duration = Duration::from_millis(200);
 
 /// Names of the columns with their widths.
@@ -40,28 +40,28 @@ const COLUMNS: [(&str, usize); 13] = [
 /// Width of the column of a displacement, unless its name is longer.
 const DISPLACEMENT: usize = 18;
 
-/// Names of the displacements that the deck wants to see, such as `U2(13)`, with their dofs.
+/// Names of the displacements that the deck monitors, such as `U2(13)`, with their dofs.
 pub(crate) fn monitored(model: &Model) -> Vec<(String, usize)> {
     let name = |&dof: &usize| format!("U{}({})", dof % 2 + 1, model.node_name(dof / 2));
     let dofs = model.sets.monitored.iter();
     dofs.map(|dof| (name(dof), *dof)).collect()
 }
 
-/// How far a status file is written: its length, and the check sum of its text.
+/// State of a status file: its length, and the check sum of its text.
 pub(crate) type Written = (u64, [u8; 32]);
 
 /// Writes the status file.
 pub(crate) struct StatusFile {
     file: BufWriter<File>,
     path: PathBuf,
-    /// The file until it takes the place of an earlier one; none afterwards.
+    /// The draft of the file until it replaces an earlier file; `None` afterwards.
     draft: Option<Draft>,
     /// Number of bytes of the text, and its check sum.
     length: u64,
     sum: Sha256,
     /// Further columns: dofs with the widths of their columns.
     monitored: Vec<(usize, usize)>,
-    /// When lines were last written to the disk.
+    /// Time at which lines were last written to the disk.
     written: Instant,
 }
 
@@ -74,10 +74,10 @@ impl StatusFile {
         Ok(status)
     }
 
-    /// Begins the file with what an earlier one had when a checkpoint was `written`.
+    /// Begins the file with the text that an earlier file had when a checkpoint was written (`written`).
     ///
     /// # Errors
-    /// The earlier file has another text; those of the file system.
+    /// The earlier file has another text, or the file system refuses the file.
     pub fn go_on(path: &Path, model: &Model, (length, sum): Written) -> io::Result<Self> {
         let mut text = Vec::new();
         let read = open_regular(path).and_then(|file| file.take(length).read_to_end(&mut text));
@@ -98,7 +98,7 @@ impl StatusFile {
         (self.draft.take().map_or(Ok(()), named)).map_err(at(&self.path))
     }
 
-    /// A file without text; with the names of its columns.
+    /// A status file without text, and the line with the names of its columns.
     fn at(path: &Path, model: &Model) -> io::Result<(Self, String)> {
         let mut names: String = (COLUMNS.iter())
             .map(|(name, width)| format!("{name:>width$}"))
@@ -122,7 +122,7 @@ impl StatusFile {
         Ok((status, names))
     }
 
-    /// Brings all lines to the disk itself, and tells how far the file is written.
+    /// Brings all lines to the disk itself, and returns the state of the file.
     pub fn sync(&mut self) -> io::Result<Written> {
         self.flush()?;
         self.file.get_ref().sync_data().map_err(at(&self.path))?;
@@ -141,8 +141,7 @@ impl StatusFile {
         self.file.flush().map_err(at(&self.path))
     }
 
-    /// Writes the line of an increment with the number of its attempts; `error` is the relative
-    /// energy balance.
+    /// Writes the line of an increment, with the number of its attempts; `error` is the relative energy balance.
     pub fn write(
         &mut self,
         report: &IncrementReport,

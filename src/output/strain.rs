@@ -11,7 +11,7 @@ use crate::model::Model;
 /// Principal strain above which a St. Venant-Kirchhoff material is inaccurate.
 pub(crate) const LARGE: f64 = 0.2;
 
-/// Why an element of a material for large strains may turn inside out.
+/// Text on why an element of a material for large strains may turn inside out.
 const CRUSHED: [&str; 2] = [
     "         the element was crushed or distorted too far: use smaller loads, or",
     "         a mesh whose elements keep a better shape there",
@@ -46,7 +46,7 @@ impl SmallStrainElements {
         SmallStrainElements(all.filter(is_limited).collect())
     }
 
-    /// The first of them with the largest principal strain; strain 0 without any.
+    /// The first of these elements with the largest principal strain; strain 0 if there are no such elements.
     pub fn most_strained(&self, report: &IncrementReport) -> Strained {
         let mut most = Strained::default();
         for &element in &self.0 {
@@ -64,7 +64,7 @@ impl SmallStrainElements {
 pub(crate) struct StrainWatch {
     limited: SmallStrainElements,
     most: Strained,
-    /// Number of its increment.
+    /// Number of the increment with the largest strain.
     increment: usize,
     warned: bool,
 }
@@ -137,7 +137,7 @@ mod tests {
     use crate::materials::{Law, NeoHooke};
     use crate::model::{Element, ElementType};
 
-    /// An elastic element and one of rubber.
+    /// A model with one elastic element and one of rubber.
     fn model() -> Model {
         let mut model = Model::default();
         let laws = [

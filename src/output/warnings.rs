@@ -1,5 +1,5 @@
-//! Where the energy of a run has gone, and warnings about a whole run: printed at its end, and by `info`
-//! from the result file.
+//! Losses of energy of a run, and warnings about a whole run. Losses and warnings are printed at the end of the run,
+//! and by `info` from the result file.
 
 use super::format::{counted, general, scientific, wrap, wrap_words};
 use super::model_group::BodyTimes;
@@ -7,21 +7,20 @@ use super::strain::LARGE;
 use crate::dynamics::{Energy, Touch};
 use crate::model::ALL_EXTERIOR;
 
-/// Energy balance, relative to the largest energy, above which a run is warned about.
+/// Energy balance, relative to the largest energy, above which there is a warning.
 pub(crate) const BALANCE: f64 = 1e-8;
-/// Number of increments in the transit time of the shortest edge beyond which the errors of the mesh
-/// dominate.
+/// Number of increments in the transit time of the shortest edge above which the errors of the mesh dominate.
 const MANY: f64 = 100.0;
-/// Number of increments that resolve the longest period well.
+/// Number of increments in the longest period that resolve it well.
 const ENOUGH: f64 = 20.0;
 
-/// Energy of hourglass modes, as a part of the strain energy, above which a run is warned about.
+/// Energy of hourglass modes, as a part of the strain energy, above which there is a warning.
 const HOURGLASS: f64 = 0.05;
 /// Part of the largest energy of a run below which its strain energy does not matter.
 const SMALL: f64 = 1e-3;
 
-/// Largest energy of hourglass modes as a part of the largest strain energy, with what materials have dissipated; 0 where that
-/// is small beside the largest energy of the run.
+/// Largest energy of hourglass modes as a part of the largest strain energy(with the energy that materials have
+/// dissipated); 0 if this energy is small compared with the largest energy of the run.
 pub(super) fn hourglass_part([hourglass, internal]: [f64; 2], largest: f64) -> f64 {
     match internal > SMALL * largest {
         true => hourglass / internal,
@@ -29,28 +28,28 @@ pub(super) fn hourglass_part([hourglass, internal]: [f64; 2], largest: f64) -> f
     }
 }
 
-/// Figures of a whole run that warnings are made from.
+/// Numbers of a whole run from which the warnings are made.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Findings {
     /// Largest energy balance as a part of the largest energy.
     pub balance: f64,
-    /// Where the energy has gone.
+    /// Losses of energy.
     pub losses: Losses,
-    /// Largest principal strain in a material for small strains, where it is known.
+    /// Largest principal strain in a material for small strains, if it is known.
     pub strain: Option<f64>,
-    /// Largest energy of hourglass modes as a part of the largest strain energy; 0 where that does not matter.
+    /// Largest energy of hourglass modes as a part of the largest strain energy; 0 if this energy does not matter.
     pub hourglass: f64,
     /// Names of the contacts that never closed, sorted.
     pub open: Vec<String>,
-    /// The touches that matter.
+    /// The touches that matter for the warnings.
     pub touches: Touches,
-    /// Largest force that holds a motion which only facets resist, beside the normal forces at its body.
+    /// Largest force that holds a motion which only facets resist, relative to the normal forces at its body.
     pub held: f64,
-    /// Length of the longest increment at whose end something moves; 0 without any, as in static steps.
+    /// Length of the longest increment at whose end something moves; 0 if there is none, as in static steps.
     pub dt: f64,
     /// Last time.
     pub time: f64,
-    /// Transit times of waves in the bodies, where they are known.
+    /// Transit times of waves in the bodies, if they are known.
     pub bodies: Vec<BodyTimes>,
 }
 
@@ -125,8 +124,8 @@ impl Findings {
         ))
     }
 
-    /// An increment longer than the longest period 2 L/c of longitudinal vibration: the vibration of
-    /// no body is resolved.
+    /// Warns about an increment that is longer than the longest period 2 L/c of longitudinal vibration, so the
+    /// vibration of no body is resolved.
     fn long_text(&self) -> Option<String> {
         let longest = self.bodies.iter().map(|times| 2.0 * times.body);
         let period = longest.reduce(f64::max)?;
@@ -141,7 +140,7 @@ impl Findings {
         })
     }
 
-    /// An increment in which a wave covers a small part of the shortest edge: errors of the mesh
+    /// Warns about an increment in which a wave covers only a small part of the shortest edge, so errors of the mesh
     /// dominate.
     fn short_text(&self) -> Option<String> {
         let shortest = self.bodies.iter().map(|times| times.edge);
@@ -167,9 +166,9 @@ impl Findings {
     }
 }
 
-/// Names of the contacts that never closed, sorted, from the names of all and whether they did.
-/// Of two contacts between the same surfaces with slave and master exchanged, one that closed is
-/// enough; so is any contact of general contact.
+/// Sorted names of the contacts that never closed, from the names of all contacts and whether each has closed. Two
+/// contacts with slave and master exchanged count as closed if one of them has closed, and so do all contacts of
+/// general contact.
 pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     let has_closed = |wanted: &str| {
         contacts
@@ -193,38 +192,38 @@ pub(crate) fn never_closed(contacts: &[(String, bool)]) -> Vec<String> {
     open
 }
 
-/// Part of the largest energy that is too small to be told.
+/// Part of the largest energy below which a loss is not shown.
 const NEGLIGIBLE: f64 = 1e-10;
-/// Part of the largest energy that is warned about.
+/// Part of the largest energy above which there is a warning about a loss.
 const MUCH: f64 = 0.01;
 
-/// Energies that have left the bodies since the start, as parts of the largest energy or external work;
-/// negative ones were put in.
+/// Energies that have left the bodies since the start, as parts of the largest energy or external work; negative values
+/// were put in.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Losses {
-    /// Taken by the normal contact forces: nodes that land within increments.
+    /// Landing forces: energy lost to normal contact forces, because nodes land within increments.
     pub landing_forces: f64,
-    /// The part of these losses of nodes that land where others of the same bodies have opened.
+    /// The part of these losses at nodes that land where others of the same bodies have opened.
     pub handover: f64,
-    /// Taken by the impact impulses: the mass of the nodes that land.
+    /// Node impacts: energy that impulses remove from the mass of landing nodes.
     pub node_impacts: f64,
-    /// Taken from nodes without mass as they come to rest after a release.
+    /// Energy lost by nodes without mass that come to rest after a release.
     pub release: f64,
-    /// Given back after landings and releases, as a negative loss.
+    /// Energy given back after landings and releases, as a negative loss.
     pub returned: f64,
-    /// Taken by the damping of the materials.
+    /// Energy lost to the damping of the materials.
     pub damping: f64,
-    /// Taken by friction.
+    /// Energy lost to friction.
     pub friction: f64,
-    /// Taken by the materials.
+    /// Energy that the materials have dissipated.
     pub materials: f64,
-    /// Taken by the scheme of the time integration.
+    /// Energy lost to the scheme of time integration.
     pub scheme: f64,
 }
 
 impl Losses {
-    /// The losses of a ledger beside the largest energy or work, with the normal work of nodes that take the place of
-    /// others; none where they may be round-off.
+    /// The losses of a ledger as parts of the largest energy or work, with the normal work at nodes that replace other
+    /// closed nodes; zero where they may be round-off.
     pub fn new(energy: &Energy, handover_work: f64, largest: f64) -> Self {
         let part = |loss: f64, largest: f64| match loss.abs() <= energy.round_off {
             true => 0.0,
@@ -243,7 +242,7 @@ impl Losses {
         }
     }
 
-    /// The losses that count, in percent, in lines of the screen; none where nothing is lost.
+    /// The losses that count, in per cent, in lines of the screen; empty if nothing is lost.
     pub fn lines(&self) -> Vec<String> {
         let all = [
             ("landing forces", self.landing_forces),
@@ -264,7 +263,7 @@ impl Losses {
         }
     }
 
-    /// What takes less, and its price, for each loss that is more than a hundredth.
+    /// Advice, with its price, on how to reduce each loss above a hundredth of the largest energy.
     pub fn advice(&self) -> Vec<String> {
         let landings = self.landing_forces + self.release + self.returned;
         let landed = match self.is_handover() {
@@ -321,25 +320,25 @@ impl Losses {
         texts.into_iter().filter_map(text).collect()
     }
 
-    /// Whether most of what landings take is that of nodes that take each other's place.
+    /// Whether most of the losses at landings occur at nodes that replace each other.
     fn is_handover(&self) -> bool {
         self.handover > self.landing_forces / 2.0
     }
 }
 
-/// `value / whole`; 0 where `value` is 0, whatever the whole.
+/// The ratio `value / whole`; 0 if `value` is 0, for any `whole`.
 pub(crate) fn part(value: f64, whole: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value / whole }
 }
 
-/// Part of the largest energy from which on the approach of two bodies matters.
+/// Smallest energy of the approach of two bodies that matters, as a part of the largest energy.
 const MATTERS: f64 = 0.01;
-/// Increments of a touch, landing to rebound, from which on its course is resolved; also the most between two
-/// touches of the same bodies that count as one.
+/// Smallest number of increments of a touch, from landing to rebound, that resolves its course; also the largest number
+/// between two touches of the same bodies that count as one.
 const ENOUGH_INCREMENTS: usize = 10;
-/// Increments of a touch that suit it.
+/// Number of increments of a touch that is recommended.
 const GOOD_INCREMENTS: f64 = 20.0;
-/// Nodes of a touch, where no corner bounds it, from which on its pressure has a shape.
+/// Smallest number of nodes of a touch, where no corner bounds it, that resolves the shape of its pressure.
 const ENOUGH_NODES: usize = 4;
 
 /// The touches of a run that matter and are not resolved.
@@ -347,17 +346,17 @@ const ENOUGH_NODES: usize = 4;
 pub(crate) struct Touches {
     /// Number of touches that matter.
     all: usize,
-    /// Those of too few increments: their number and the one with the fewest.
+    /// Touches with too few increments: their number, and the touch with the fewest.
     brief: WorstTouch,
-    /// Those of too few nodes.
+    /// Touches with too few nodes.
     narrow: WorstTouch,
 }
 
-/// Number of touches that are not resolved, and the worst.
+/// Number of touches that are not resolved, and the worst touch.
 type WorstTouch = Option<(usize, Touch)>;
 
 impl Touches {
-    /// Of all touches of a run those that matter beside its largest energy.
+    /// The touches of a run that matter compared with its largest energy.
     pub fn new(all: &[Touch], largest: f64) -> Self {
         let mut touches: Vec<Touch> = Vec::new();
         for touch in all {
@@ -379,7 +378,7 @@ impl Touches {
         }
     }
 
-    /// Increments as long as a landing and its rebound.
+    /// Warns about touches whose landing and rebound take only a few increments.
     pub fn brief_text(&self) -> Option<String> {
         let (count, touch) = self.brief?;
         let increments = counted(increments(&touch), "increment");
@@ -394,7 +393,7 @@ impl Touches {
         ))
     }
 
-    /// Contacts of round surfaces narrower than a few elements.
+    /// Warns about touches of round surfaces that are narrower than a few elements.
     pub fn narrow_text(&self) -> Option<String> {
         let (count, touch) = self.narrow?;
         Some(format!(
@@ -408,12 +407,12 @@ impl Touches {
     }
 }
 
-/// Increments from the landing to the rebound.
+/// Number of increments from the landing to the rebound.
 fn increments(touch: &Touch) -> usize {
     touch.last + 1 - touch.first
 }
 
-/// Makes one touch of two of the same bodies.
+/// Joins two touches of the same bodies to one.
 fn join(touch: &mut Touch, next: &Touch) {
     touch.last = next.last;
     touch.end = next.end;
@@ -436,7 +435,7 @@ fn worst<'t>(
 mod tests {
     use super::*;
 
-    /// A run without warnings: 20 increments in the longest period of the slowest body.
+    /// A run without warnings, with 20 increments in the longest period of the slowest body.
     fn sound() -> Findings {
         Findings {
             balance: 1e-10,
@@ -523,7 +522,7 @@ mod tests {
         warns(|f| f.open = vec!["A_B".into()], "contact A_B never closed");
     }
 
-    /// A ledger that lost 2 of 10 to landings and half a unit to the mass of nodes.
+    /// A ledger that has lost 2 of 10 energy units to landing forces and half a unit to node impacts.
     fn energy() -> Energy {
         Energy {
             normal_contact_work: -2.0,
@@ -603,7 +602,7 @@ mod tests {
         );
     }
 
-    /// A touch of 20 increments with five nodes.
+    /// A touch that lasts 20 increments and has five nodes.
     fn touch() -> Touch {
         Touch {
             bodies: [Some(0), Some(1)],

@@ -27,18 +27,18 @@ use crate::contact::ContactSurfaces;
 use crate::dynamics::{Cause, Cutback, Failure, IncrementReport, Observer, Outcome, RunSummary};
 use crate::model::{Model, RestartOutput};
 
-/// Cutbacks that the screen shows.
+/// Largest number of cutbacks that the screen shows.
 const SCREEN_CUTBACKS: usize = 20;
-/// Increments with energy from contact that the log shows.
+/// Largest number of increments with energy put in by contact that the log shows.
 const LOGGED_CONTACT_ENERGIES: usize = 100;
 
-/// Writes the files of a run and its screen.
+/// Writes the files of a run, its screen and its log.
 pub struct ResultWriter<'a> {
     model: &'a Model,
     result: ResultFile<'a>,
-    /// Created with the first frame.
+    /// The result file, which is created with the first frame.
     status: Option<StatusFile>,
-    /// The status file of a run that goes on, until its first increment.
+    /// The status file of a continued run, until its first increment.
     continued: Option<StatusFile>,
     console: Console,
     schedule: FrameSchedule<'a>,
@@ -54,26 +54,27 @@ pub struct ResultWriter<'a> {
     interrupt: Interrupt,
     claim: Claim,
     checkpoints: Checkpoints,
-    /// When the last checkpoint was written, or the run began.
+    /// Time at which the last checkpoint was written, or the run began.
     checkpointed: Instant,
     is_checkpoint_due: bool,
-    /// Whether the next one stays beside later ones.
+    /// Whether the next checkpoint is kept along with later ones.
     is_checkpoint_kept: bool,
 }
 
-/// Checkpoints of a run, which are written where the deck wants them and when the run is interrupted.
+/// Checkpoints of a run, which are written where the deck requests them and when the run is interrupted.
 #[derive(Debug, Clone, Default)]
 pub struct Checkpoints {
     /// The program: version and commit.
     pub program: String,
     /// Deck and options of the run.
     pub origin: RestartOrigin,
-    /// Wall-clock time from one to the next, where the deck does not say when.
+    /// Wall-clock time from one checkpoint to the next, if the deck does not give their times.
     pub every: Option<Duration>,
 }
 
 impl<'a> ResultWriter<'a> {
-    /// Begins the files of a job and prints to the standard output; the surfaces are those of the model's contacts.
+    /// Begins the files of a job and prints to the standard output; `surfaces` are the surfaces of the contacts of the
+    /// model.
     pub fn create(
         (model, surfaces): (&'a Model, &[ContactSurfaces]),
         claim: Claim,
@@ -111,11 +112,11 @@ impl<'a> ResultWriter<'a> {
         })
     }
 
-    /// Goes on from a checkpoint: with the rows and frames before it, behind the old text of the log. The old files
-    /// stay as they are until the first increment, or the end, shows that the run does go on.
+    /// Continues from a checkpoint, with the rows and frames before it, behind the old text of the log. The old files
+    /// stay unchanged until the first increment, or the end of the run, shows that the run really continues.
     ///
     /// # Errors
-    /// Result or status file cannot be read, or are not those of the checkpoint.
+    /// The result or status file cannot be read, or does not belong to the checkpoint.
     pub fn go_on(&mut self, checkpoint: &Checkpoint) -> io::Result<()> {
         let files = self.claim.files().clone();
         let mut archive = Archive::Reading(&checkpoint.files);
@@ -128,7 +129,7 @@ impl<'a> ResultWriter<'a> {
     /// Begins the files with the state of a checkpoint of another job.
     ///
     /// # Errors
-    /// The checkpoint is of another model; those of the file system.
+    /// The checkpoint belongs to another model, or a file cannot be written.
     pub fn begin_at(&mut self, checkpoint: &Checkpoint) -> io::Result<()> {
         let mut archive = Archive::Reading(&checkpoint.files);
         self.transfer_state(&mut archive)
@@ -145,7 +146,7 @@ impl<'a> ResultWriter<'a> {
         self.publish()
     }
 
-    /// Transfers how far the run has come, and the last good state.
+    /// Transfers the progress of the run, and the last good state.
     fn transfer_state(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         self.schedule.transfer(archive)?;
         self.monitor.transfer(archive)?;
@@ -153,7 +154,7 @@ impl<'a> ResultWriter<'a> {
         archive.transfer(&mut self.numbers)
     }
 
-    /// Transfers how far the files are written; gives it of the status file.
+    /// Transfers the state of the files; returns that of the status file.
     fn transfer(
         &mut self,
         archive: &mut Archive,
@@ -168,7 +169,7 @@ impl<'a> ResultWriter<'a> {
         Ok(status)
     }
 
-    /// Writes what is known to the disk, and then a checkpoint with it.
+    /// Writes all results so far to the disk, and then a checkpoint.
     fn write_checkpoint(&mut self, solver: Vec<u8>) -> io::Result<()> {
         let Some(status) = &mut self.status else {
             return Ok(());
@@ -197,8 +198,8 @@ impl<'a> ResultWriter<'a> {
         Ok(())
     }
 
-    /// Notes whether a checkpoint is due after an increment: as the deck wants it, some time after the last one, or at
-    /// the end of the last step.
+    /// Notes whether a checkpoint is due after an increment: as the deck requests, after some time since the last one,
+    /// or at the end of the last step.
     fn note_due(&mut self, report: &IncrementReport) {
         let of_step = |restart: &&RestartOutput| restart.from_step <= report.step;
         let wanted = self.model.restarts.iter().rfind(of_step);
@@ -212,17 +213,17 @@ impl<'a> ResultWriter<'a> {
         self.is_checkpoint_due |= report.increment > 0 && is_asked;
     }
 
-    /// Ends the run after the increment in which `interrupt` asks for it.
+    /// Ends the run after the increment in which `interrupt` requests it.
     pub fn heed(&mut self, interrupt: &Interrupt) {
         self.interrupt = interrupt.clone();
     }
 
-    /// Says what checkpoints are of, and when they are written.
+    /// Sets the deck and options of checkpoints, and their times.
     pub fn keep_checkpoints(&mut self, checkpoints: Checkpoints) {
         self.checkpoints = checkpoints;
     }
 
-    /// After an error: up to which time the results can be read.
+    /// Text after an error: the time up to which the results can be read.
     pub fn kept(&self) -> Option<String> {
         let time = self
             .result
@@ -232,13 +233,13 @@ impl<'a> ResultWriter<'a> {
         Some(format!("the results up to time {time} are kept"))
     }
 
-    /// Error of a failed screen; none for a closed pipe.
+    /// Error of a failed screen; `None` for a closed pipe.
     pub fn lost_screen(&mut self) -> Option<io::Error> {
         self.console.lost()
     }
 
-    /// After the first frame, puts the files of the job in place of those of an earlier run: the result
-    /// first, since the others without it would stand in the way of the next run.
+    /// After the first frame, puts the files of the job in place of those of an earlier run. The result comes first,
+    /// because other files without a result would block the next run.
     fn publish(&mut self) -> io::Result<()> {
         if self.status.is_some() {
             return Ok(());
@@ -269,7 +270,7 @@ impl<'a> ResultWriter<'a> {
         self.console.log.line(text)
     }
 
-    /// Ends the run: the last good state of a stopped run, the record and the closing lines.
+    /// Ends the run: writes the last good state of a stopped run, the record and the closing lines.
     pub fn finish(&mut self, summary: &RunSummary) -> io::Result<()> {
         let start = Instant::now();
         self.console.finish();
@@ -367,7 +368,7 @@ impl<'a> ResultWriter<'a> {
         Ok(())
     }
 
-    /// Prints a cutback: all to the log, the first ones that failed also to the screen.
+    /// Prints a cutback: every cutback goes to the log, and the first failed ones also to the screen.
     fn print_cutback(&mut self, cutback: &Cutback) -> io::Result<()> {
         let mut lines = cutback_lines(cutback, self.model);
         if let Cause::Inaccurate { .. } = cutback.failure.cause {
@@ -480,7 +481,7 @@ impl Observer for ResultWriter<'_> {
 /// the run.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt {
-    /// 0 as long as there is none.
+    /// Number of the signal; 0 as long as there is no request.
     signal: Arc<AtomicI32>,
 }
 
@@ -495,12 +496,12 @@ impl Interrupt {
         Some(self.signal.load(Ordering::Relaxed)).filter(|&signal| signal != 0)
     }
 
-    /// Exit status of a program that the signal ended, as shells give it: 128 + its number.
+    /// Exit status that shells give to a program ended by the signal: 128 + its number.
     pub(super) fn exit_status(&self) -> u8 {
         self.signal().map_or(0, |signal| 128 + signal as u8)
     }
 
-    /// The signal's name.
+    /// Name of the signal.
     pub(super) fn name(&self) -> &'static str {
         match self.exit_status() {
             129 => "SIGHUP",

@@ -1,4 +1,4 @@
-//! Decks in an editor: a language server for them.
+//! A language server for decks in an editor.
 
 #![deny(missing_docs)]
 

@@ -1,33 +1,34 @@
-//! Archive of what a run hands on from increment to increment: values one after the other, exact in bits. One function
-//! `transfer` of each structure lists these values, both to write and to read them, so that the two cannot differ. docs/restart.md.
+//! Archive of the values that a run hands on from increment to increment, one after the other and exact to the bit. One
+//! function `transfer` of each structure lists the values of the archive, both to write and to read them, so that the
+//! two orders cannot differ. See docs/restart.md.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 /// Values that are written, or read in the same order.
 pub enum Archive<'a> {
-    /// What has been written.
+    /// The bytes that have been written.
     Writing(Vec<u8>),
-    /// What is left to read.
+    /// The bytes that are left to read.
     Reading(&'a [u8]),
 }
 
-/// Why an archive cannot be read.
+/// Reason why an archive cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum ArchiveError {
-    /// It ends early, or a value is none of its kind.
+    /// The archive ends early, or a value does not have its type.
     #[error("its content is not that of a checkpoint")]
     Content,
-    /// It is of a model of another size.
+    /// The archive belongs to a model of another size.
     #[error("it is of another model")]
     Size,
-    /// The factors that it describes cannot be made.
+    /// The matrix in the archive cannot be factorised.
     #[error("its matrix has no factors")]
     Factors,
 }
 
-/// Transfers the fields of a structure: those in brackets by their own functions `transfer`, those behind the semicolon not at all.
-/// A field that is not named is an error of the compiler.
+/// Transfers the fields of a structure: fields in brackets by their own functions `transfer`; fields behind the
+/// semicolon are left out. A field that is not named gives a compiler error.
 #[macro_export]
 macro_rules! transfer_fields {
     ($archive:ident, $of:expr => $type:ident {
@@ -42,12 +43,12 @@ macro_rules! transfer_fields {
 pub use transfer_fields;
 
 impl Archive<'_> {
-    /// An archive to write.
+    /// An empty archive for writing.
     pub fn new() -> Self {
         Archive::Writing(Vec::new())
     }
 
-    /// What has been written.
+    /// The bytes that have been written.
     pub fn into_bytes(self) -> Vec<u8> {
         match self {
             Archive::Writing(bytes) => bytes,
@@ -60,10 +61,10 @@ impl Archive<'_> {
         matches!(self, Archive::Reading(_))
     }
 
-    /// Writes a value, or replaces it by the one that is read.
+    /// Writes a value, or replaces it by the value that is read.
     ///
     /// # Errors
-    /// What is read is no such value.
+    /// The value that is read does not have this type.
     pub fn transfer<T: Serialize + DeserializeOwned>(
         &mut self,
         value: &mut T,
@@ -81,10 +82,10 @@ impl Archive<'_> {
         Ok(())
     }
 
-    /// Writes values, or replaces them by as many that are read.
+    /// Writes values, or replaces them by values that are read.
     ///
     /// # Errors
-    /// What is read are not as many such values.
+    /// The values that are read do not have this type or number.
     pub fn transfer_values<T: Serialize + DeserializeOwned + Clone>(
         &mut self,
         values: &mut [T],

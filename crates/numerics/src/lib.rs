@@ -1,4 +1,4 @@
-//! Sparse factorisations and complementarity problems, which know nothing of mechanics.
+//! Sparse factorisations and complementarity problems; this package knows nothing of mechanics.
 
 #![deny(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! What only some operating systems have, with a portable fallback: the module `system`.
+//! Functions that only some operating systems have, with a portable fallback, in the module `system`.
 
 #![deny(missing_docs)]
 

@@ -1,5 +1,6 @@
-"""The certificate of a result: what the file alone tells of its claims (docs/certificate.md).
+"""The certificate of a result: checks of the claims of a result, from its file alone (docs/certificate.md).
 
-Nothing here is shared with the program: geometry and law of contact, ledger and momenta are written anew, from the equations in
-docs/theory. No element and no material is evaluated, so that those of a new kind need nothing here.
+The package shares no code with the program: it computes geometry and law of contact, ledger and momenta itself, from
+the equations in docs/theory. No element and no material is evaluated, so a new kind of element or material needs no
+change here.
 """

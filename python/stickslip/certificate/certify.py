@@ -1,4 +1,4 @@
-"""The certificate of a result: all checks, and what they say in a table and in one line."""
+"""The certificate of a result: all checks, as a table and as one line."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,7 +39,7 @@ NOT_CHECKED = "not checked: masses, momenta, energies, stresses, strains and equ
 
 @dataclass(frozen=True)
 class Certificate:
-    """What was found."""
+    """Outcome of all checks."""
 
     job: str
     checks: list[Check]
@@ -51,7 +51,7 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether every check that could be told holds."""
+        """Whether every check that the file allows holds."""
         return all(check.holds for check in self.checks)
 
     @property
@@ -84,7 +84,7 @@ class Certificate:
 
 
 def certify(result: Result | Path | str) -> Certificate:
-    """Checks what a result file claims, as far as the file alone tells it."""
+    """Makes all checks of a result file that the file alone allows."""
     if not isinstance(result, Result):
         with Result(result) as opened:
             return certify(opened)

@@ -1,6 +1,6 @@
-"""A check of the certificate: its worst value beside its bound.
+"""A check of the certificate: its worst value against its bound.
 
-Both are rounded outward, values up and bounds down, and so are the digits of values that are shown.
+Values are rounded up and bounds down, and so are the digits that are shown.
 """
 
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 @dataclass
 class Check:
-    """One quantity, everywhere in the file where it can be told."""
+    """Check of one quantity, at all places in the file where it can be computed."""
 
     name: str
     text: str
@@ -41,7 +41,7 @@ class Check:
         return self.value <= self.bound
 
     def add(self, value: ArrayLike, bound: ArrayLike, place: str) -> None:
-        """Compares values with their bounds; a value that is no number is above any bound."""
+        """Compares values with their bounds; a value that is NaN counts as above any bound."""
         values, bounds = np.broadcast_arrays(
             np.asarray(value, dtype=np.float64), np.asarray(bound, dtype=np.float64)
         )
@@ -62,14 +62,14 @@ class Check:
     _ratio: float = 0.0
 
     def shown(self, digits: int = 2) -> tuple[float, float]:
-        """Worst value, rounded up to so many digits, and bound, as parts of the scale."""
+        """Worst value and bound relative to the scale; the value is rounded up to `digits` digits."""
         scale = self.scale or 1.0
         value = np.nextafter(self.value / scale, np.inf) if self.value > 0.0 else 0.0
         up = Context(prec=digits, rounding=ROUND_UP)
         return float(up.create_decimal(float(value))), self.bound / scale
 
     def skip(self, reason: str) -> None:
-        """Notes why something could not be told."""
+        """Notes the reason why something could not be checked."""
         if reason not in self.reasons:
             self.reasons.append(reason)
 

@@ -1,6 +1,6 @@
-"""Checks what a result file claims of contacts, energies and momenta, from the file alone (docs/certificate.md).
+"""Checks the claims of a result file about contacts, energies and momenta, from the file alone (docs/certificate.md).
 
-Exit code 0 when all checks hold, 1 when one fails, 2 when the file cannot be read.
+The exit code is 0 if all checks hold, 1 if one fails, and 2 if the file cannot be read.
 """
 
 import argparse

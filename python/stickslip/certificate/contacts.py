@@ -26,7 +26,7 @@ EXACT = "NODE TO SURFACE"
 
 @dataclass(frozen=True)
 class Disc:
-    """A rigid disc that is slave, and the arcs of its master."""
+    """A rigid disc that is a slave surface, with the arcs of its master."""
 
     radius: float
     arm: int
@@ -62,7 +62,7 @@ class Law:
         return (at_rest == sliding or decay == 0.0) and not self.ramps and not self.depends_on_pressure
 
     def at(self, rate: float, pressure: float) -> float:
-        """Coefficient at a slip rate and a pressure."""
+        """Coefficient of friction at a slip rate and a pressure."""
         if np.isfinite(self.decay).all():
             at_rest, sliding, decay = self.decay
             moves = at_rest != sliding and decay != 0.0
@@ -74,15 +74,15 @@ class Law:
         return float(min(mu, self.limit / pressure) if mu * pressure > self.limit else mu)
 
     def bounds(self, slip: float, noise: float, pressure: float, dt: float) -> tuple[float, float]:
-        """The least and the largest coefficient of a slip in an increment, which may be off by a noise; from zero on where
-        this may be all of it."""
+        """The smallest and the largest coefficient for a slip in an increment that is known up to `noise`; the smallest
+        is 0 if the slip may be noise alone."""
         slower, faster = (self.at(max(s, 0.0) / dt, pressure) for s in (slip - noise, slip + noise))
         if slip <= noise:
             return 0.0, max(self.at(0.0, pressure), faster)
         return min(slower, faster), max(slower, faster)
 
     def most(self, pressure: float) -> float:
-        """The largest coefficient at any slip rate."""
+        """The largest coefficient of friction at any slip rate."""
         rates = [0.0, np.inf, *self.rows[:, 1]]
         return max(self.at(rate, pressure) for rate in rates)
 
@@ -118,7 +118,7 @@ class Contact:
 
     @property
     def is_constant(self) -> bool:
-        """Whether friction is always the same."""
+        """Whether friction is the same in all steps and at all slips."""
         return bool(self.friction[0] == self.friction[1])
 
 
@@ -157,7 +157,7 @@ def contacts(result: Result) -> list[Contact]:
 
 
 def _laws(result: Result, at: str) -> tuple[Law, ...]:
-    """Friction of a contact in all steps."""
+    """Friction of a contact in each step."""
     if f"{at}/friction_decay" not in result.file:
         return ()
     parts = ("friction_coefficients", "friction_decay", "shear_limit", "friction_ramps")
@@ -173,7 +173,7 @@ def _laws(result: Result, at: str) -> tuple[Law, ...]:
 
 
 def disc_gap(contact: Contact, disc: Disc, start: Array, x: Array) -> float:
-    """Distance of the circle of a disc from its master, in radii; `start` are the undeformed places [N, 2]."""
+    """Distance of the circle of a disc from its master, in radii; `start` holds the undeformed positions [N, 2]."""
     (centre,) = contact.slaves
     s = x[centre]
     is_chord = np.zeros(len(contact.segments), np.bool_)
@@ -200,7 +200,7 @@ def disc_gap(contact: Contact, disc: Disc, start: Array, x: Array) -> float:
 
 @dataclass(frozen=True)
 class Places:
-    """Where n nodes lie with respect to each of the S segments of a contact [n, S]."""
+    """Positions of n nodes relative to each of the S segments of a contact [n, S]."""
 
     nodes: Integers
     gap: Array
@@ -218,9 +218,10 @@ class Places:
 
 
 def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[Places]:
-    """Compares nodes with segments, some of them at a time; a node's own segments are far away.
+    """Yields the positions of nodes relative to segments, some nodes at a time; segments that end in a node count as
+    infinitely far from it.
 
-    `way` [N] is how far the nodes have moved in the increment.
+    `way` [N] holds the distances that nodes have moved in the increment.
     """
     segments = contact.segments
     if len(segments) == 0:
@@ -254,7 +255,7 @@ def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[
 
 @dataclass(frozen=True)
 class Touch:
-    """A slave node on a segment."""
+    """A slave node that lies on a segment."""
 
     contact: Contact
     node: int
@@ -266,9 +267,9 @@ class Touch:
 def touching(
     x: Array, way: Array, found: list[Contact], nodes: Integers, limit: float
 ) -> tuple[list[Touch], Array, Array, set[int]]:
-    """Slave nodes among `nodes` that are on segments; the nearest distance of each node from a line,
-    and of a slave node from a segment beyond the way of the increment [N]; and the nodes of the corners
-    that others of them meet."""
+    """Returns the slave nodes among `nodes` that are on segments; the smallest distance of each node from a line, and
+    of each slave node from a segment less the way of the increment [N]; and the nodes of corners that other slave nodes
+    meet."""
     nearest = np.full(len(x), np.inf)
     reached = np.full(len(x), np.inf)
     touches = []
@@ -296,7 +297,7 @@ def touching(
 def _at_corner(
     x: Array, way: Array, contact: Contact, node: int, least: float
 ) -> tuple[float, set[int]]:
-    """The smaller one of a distance and that from a corner, with the nodes of the corner's segments."""
+    """The smaller of a distance and the distance from a corner, with the nodes of the segments of this corner."""
     error, ends = corner_error(x, way, contact, node, 0.0)
     return (error, ends) if error < least else (least, set())
 
@@ -304,11 +305,11 @@ def _at_corner(
 def corner_error(
     x: Array, way: Array, contact: Contact, node: int, gap: float
 ) -> tuple[float, set[int]]:
-    """How far a gap is from all that (10.3) allows at the nearest corner, in lengths.
+    """Distance of a gap from the range that (10.3) allows at the nearest corner, in segment lengths.
 
-    The node must be in front of neither segment, or over one by no more than its way. With a normal
-    between those of the segments i and j the gap is between g_i and g_j, or up to the distance from
-    the corner where the node is in front of neither. Also returns the nodes of both segments.
+    The node must be in front of neither segment, or in front of one by no more than its way. If the normal lies between
+    those of the segments i and j, the gap lies between g_i and g_j, or reaches up to the distance from the corner if
+    the node is in front of neither segment. The second value holds the nodes of both segments.
     """
     before, after = contact.segments[:, 1], contact.segments[:, 0]
     corners = np.setdiff1d(np.intersect1d(before, after), [node])
@@ -338,7 +339,7 @@ def corner_error(
 
 @dataclass(frozen=True)
 class Split:
-    """Force and slip of a slave node on a segment in an increment."""
+    """Contact force and slip of a slave node on a segment in an increment."""
 
     normal: float
     tangential: float
@@ -349,8 +350,8 @@ class Split:
 
 
 def split(x0: Array, x1: Array, force: Array, touch: Touch, halfway: bool) -> Split:
-    """Pn, Pt and Dt of the node; `halfway`: rows of the energy-momentum form, eqs (7.2) and (7.3). On a curved face Pn is the
-    normal force s Pn, and the rows are those of (3.30)."""
+    """Pn, Pt and Dt of the node; with `halfway`, the force rows have the energy-momentum form, eqs (7.2) and (7.3). On
+    a curved face Pn means the normal force s Pn, and the force rows are those of (3.30)."""
     a, b = touch.segment
     e0, e1 = x0[b] - x0[a], x1[b] - x1[a]
     r0, r1 = x0[touch.node] - x0[a], x1[touch.node] - x1[a]

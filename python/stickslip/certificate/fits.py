@@ -1,4 +1,4 @@
-"""Steps in which overlaps of fits change, of which the file does not tell how much is left."""
+"""Steps in which overlaps of fits change: the file does not state the overlap that is left."""
 
 from stickslip.frame import Frame
 from stickslip.result import Result
@@ -7,7 +7,7 @@ REASON = "the deck changes overlaps in some steps"
 
 
 class Fits:
-    """The steps of a run in which its deck changes overlaps."""
+    """The steps of a run in which the deck changes overlaps."""
 
     def __init__(self, result: Result) -> None:
         self._time = result.history["time"]
@@ -15,18 +15,18 @@ class Fits:
         self.steps, self.last = _steps(result.deck)
 
     def changes(self, frame: Frame) -> bool:
-        """Whether they change in the step of a frame, or may have changed before."""
+        """Whether overlaps change in the step of a frame, or may have changed before it."""
         step = self.step(frame)
         return step in self.steps or step >= self.last
 
     def step(self, frame: Frame) -> int:
-        """The step of a frame, from 1; 0 where no increment has its time."""
+        """Number of the step of a frame, from 1; 0 if no increment ends at its time."""
         rows = (self._time == frame.time).nonzero()[0]
         return int(self._step[rows[-1]]) if len(rows) else 0
 
 
 def _steps(deck: str) -> tuple[set[int], float]:
-    """Steps with changes that end with them, and the first from which on changes may stay."""
+    """Steps whose changes of overlaps end with the step, and the first step from which on changes may stay."""
     step, steps, last = 0, set(), float("inf")
     goes_on = False
     for line in deck.upper().splitlines():

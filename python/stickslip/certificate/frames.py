@@ -1,4 +1,5 @@
-"""Checks of every frame that need no element: fields that are numbers, sums, invariants of stresses, and balanced contact forces."""
+"""Checks of every frame that need no element: NaN in fields, sums, invariants of stresses, and balance of contact
+forces."""
 
 import numpy as np
 
@@ -20,7 +21,7 @@ HEAT = 1e-10
 
 
 class Frames:
-    """What the checks of the frames share."""
+    """Data that the checks of all frames share."""
 
     def __init__(self, result: Result, contacts: list[Contact], checks: Checks) -> None:
         self.result, self.contacts, self.checks = result, contacts, checks
@@ -41,13 +42,13 @@ class Frames:
             self._heat(frame, increment.row)
 
     def _finite(self, frame: Frame) -> None:
-        """No field of motion and force is NaN."""
+        """Checks that no field of motion and force is NaN."""
         for name in ("U", "V", "A", "RF", "CONTACT_FORCE"):
             bad = ~np.isfinite(frame.full(name)).all()
             self.checks["time"].add(float(bad), 0.0, f"{name} of frame {frame.index} is no number")
 
     def _invariants(self, frame: Frame) -> None:
-        """Stress of von Mises, principal stresses and pressure are those of the stresses."""
+        """Checks the stress of von Mises, the principal stresses and the pressure against the stresses."""
         if not len(self.result.cells):
             return
         (xx, yy, xy), across = frame["S"].T, frame["S33"]
@@ -68,7 +69,7 @@ class Frames:
                 check.add(np.abs(values - frame[name]), SUMS * size, place)
 
     def _sets(self, frame: Frame, row: int) -> None:
-        """Histories of sets are those of the frames."""
+        """Checks histories of sets against the frames."""
         check, place = self.checks["accounts"], f"t = {frame.time:g}"
         groups = (
             (self.result.history.nodes, self.result.node_labels, ("U", "V", "RF")),
@@ -84,7 +85,7 @@ class Frames:
                         check.add(float(differ), 0.0, f"{field} of the set {name}, {place}")
 
     def _heat(self, frame: Frame, row: int) -> None:
-        """Heat of all nodes is that of the contacts."""
+        """Checks the heat of all nodes against the heat of the contacts."""
         if "FRICTION_HEAT" not in self.result.frames.fields:
             return
         work = {one.name: self.result.contact[one.name]["friction_dissipation"] for one in self.contacts}
@@ -96,7 +97,7 @@ class Frames:
             self.checks["accounts"].add(error / largest, HEAT, place)
 
     def _actions(self, frame: Frame, increment: Increment) -> None:
-        """Contact forces of a frame have no resultant and no moment."""
+        """Checks that the contact forces of a frame have no resultant and no moment."""
         force = frame["CONTACT_FORCE"]
         size = np.abs(force).sum()
         if size == 0.0:

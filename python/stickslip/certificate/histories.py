@@ -60,7 +60,7 @@ def check_histories(result: Result, checks: Checks) -> None:
 
 
 def _time(result: Result, check: Check) -> None:
-    """Increments follow each other and have converged."""
+    """Checks that increments follow each other and have converged."""
     time, dt = result.history["time"], result.history["dt"]
     size = np.abs(time).max() + dt.max()
     if len(time) > 1:
@@ -70,14 +70,14 @@ def _time(result: Result, check: Check) -> None:
 
 
 def _own(result: Result, checks: Checks) -> None:
-    """What the program has measured in every increment."""
+    """Checks the values that the program has measured in every increment."""
     for name, bound in OWN.items():
         if name in result.history.certificate:
             checks["law"].add(result.history.certificate[name], bound, f"{name}, increment {{}}")
 
 
 def _ledger(result: Result, checks: Checks) -> None:
-    """The balance from its accounts, eq. (9.6); the signs of what dissipates."""
+    """Checks the energy balance, recomputed from its accounts, eq. (9.6), and the signs of dissipated energies."""
     energy = result.history.energy
     # what round-off makes of an account is within the bound of the balance
     scale = max(energy.largest, energy.noise / BALANCE)
@@ -117,13 +117,13 @@ def _ledger(result: Result, checks: Checks) -> None:
 
 
 def _slip_noise(result: Result) -> float:
-    """Work of the largest contact force on the round-off of positions."""
+    """Work of the largest contact force over the round-off of positions."""
     force = max((float(contact["normal"].max(initial=0.0)) for contact in result.contact.values()), default=0.0)
     return EPS * force * float(np.abs(result.coordinates).max(initial=0.0))
 
 
 def _contacts(result: Result, checks: Checks) -> None:
-    """Resultants of the contacts in Coulomb's cone, and sums of impulses."""
+    """Checks that resultants of contacts lie in Coulomb's cone, and the sums of impulses."""
     cone = checks["cone"]
     for name, contact in result.contact.items():
         friction = _friction(result, name)
@@ -155,7 +155,7 @@ def _contacts(result: Result, checks: Checks) -> None:
 
 
 def _bodies(result: Result, check: Check) -> None:
-    """Energies of the bodies, or of rigid bodies alone, are those of the model."""
+    """Checks energies of the bodies, or of rigid bodies alone, against those of the model."""
     energy, bodies, groups = result.history.energy, result.history.bodies, result.file["history"]
     scale = max(energy.largest, energy.noise / BALANCE)
     if scale == 0.0:
@@ -175,7 +175,7 @@ def _bodies(result: Result, check: Check) -> None:
 
 
 def _body_forces(result: Result, check: Check) -> None:
-    """Contact forces on the bodies are those of the contacts."""
+    """Checks contact forces on the bodies against those of the contacts."""
     if "contacts" not in result.file["model"]:
         return
     stored = result.history.bodies["contact_force"]
@@ -189,13 +189,14 @@ def _body_forces(result: Result, check: Check) -> None:
 
 
 def _friction(result: Result, contact: str) -> float | None:
-    """The largest coefficient of a contact."""
+    """The largest coefficient of friction of a contact."""
     path = f"model/contacts/{contact}/friction"
     return float(result.read(path).max()) if path in result.file else None
 
 
 def _momenta(result: Result, check: Check) -> None:
-    """Momenta of free bodies change by the impulses of their contacts; of all, where nothing acts."""
+    """Checks that the momenta of free bodies change by the impulses of their contacts, and the momentum of all bodies
+    not at all if nothing else acts."""
     if "contacts" not in result.file["model"]:
         check.skip("the file has no data of the model")
         return
@@ -249,7 +250,7 @@ def _momenta(result: Result, check: Check) -> None:
 
 
 def _shares(result: Result, of_node: Integers, bodies: int, quantity: str) -> tuple[Flags, Array]:
-    """Force or impulse of all contacts on each body [I, B, 2], and whether it can be told [I, B]."""
+    """Force or impulse of all contacts on each body [I, B, 2], and whether the file determines it [I, B]."""
     dt = result.history["dt"]
     told = np.ones((len(dt), bodies), np.bool_)
     total = np.zeros((len(dt), bodies, 2))

@@ -1,4 +1,4 @@
-"""The increments that end with the frames of a result: their schemes, and where they start."""
+"""The increments that end with the frames of a result: their schemes, and the positions at their starts."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -37,14 +37,14 @@ class Increment:
 
 @dataclass(frozen=True)
 class ReadOnce(Frame):
-    """A frame whose fields are read once, though many checks ask for them; none may change them."""
+    """A frame that reads each field only once for all checks; checks may not change the fields."""
 
     kept: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     __hash__ = object.__hash__
 
     def full(self, name: str) -> NDArray[Any]:
-        """A field as it stands in the file."""
+        """A field in the form of the file."""
         if name not in self.kept:
             self.kept[name] = super().full(name)
             self.kept[name].flags.writeable = False
@@ -69,7 +69,7 @@ class Increments:
 
     @cached_property
     def has_rigid_parts(self) -> Flags:
-        """Bodies some of whose nodes move as rigid parts [B]."""
+        """Whether some nodes of each body move as rigid parts [B]."""
         has_rigid = np.zeros(len(self.result.read("model/bodies/mass")), np.bool_)
         if "rigid" in self.result.file["history"]:
             parts = self.result.read("model/bodies/node")[self.constrained]
@@ -78,12 +78,12 @@ class Increments:
 
     @cached_property
     def impelled(self) -> Integers:
-        """Nodes whose velocity and acceleration the impulse (11.12) changes: U0 does not follow from them."""
+        """Nodes whose velocity and acceleration the impulse (11.12) changes, so that U0 does not follow from these."""
         impelled = np.append(self.has_rigid_parts, False)
         return np.flatnonzero(impelled[self.result.read("model/bodies/node")])
 
     def frames(self) -> Iterator[tuple[Frame, Increment | None]]:
-        """All frames with their increments; none where no increment has the time of a frame."""
+        """All frames with their increments; a frame has None if no increment ends at its time."""
         last: tuple[int, Array] | None = None
         for index in range(len(self.result.frames)):
             frame = ReadOnce(self.result.frames, index)
@@ -96,7 +96,7 @@ class Increments:
             last = (row, frame["U"])
 
     def _increment(self, frame: Frame, row: int, last: tuple[int, Array] | None) -> Increment:
-        """The increment of a frame; where it starts by the last frame, or by (4.1) and (4.2)."""
+        """The increment of a frame; its start follows from the last frame, or from (4.1) and (4.2)."""
         step = int(self.step[row]) - 1
         scheme, theta = int(self.scheme[step]), self.theta[step]
         dt = float(self.dt[row])
@@ -111,7 +111,7 @@ class Increments:
         return Increment(row, step, scheme, theta, dt, start, exact)
 
     def start_is_told(self, frame: Frame, increment: Increment) -> Flags:
-        """Nodes whose place at the start of the increment is known [N]."""
+        """Whether the position of each node at the start of the increment is known [N]."""
         told = np.ones(len(frame["U"]), np.bool_)
         if not increment.exact:
             a = np.abs(frame["A"]).max(axis=1) * increment.dt**2

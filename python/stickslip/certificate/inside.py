@@ -1,4 +1,4 @@
-"""Slave nodes inside of masters and edges that cross, in every frame, from the deformed meshes alone."""
+"""Checks for slave nodes inside masters and for edges that cross, in every frame, from the deformed meshes alone."""
 
 import numpy as np
 
@@ -84,8 +84,8 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
 def _compare(
     x: Array, gap: Array, contact: Contact, found: list[Intrusion], noise: float, check: Check, place: str
 ) -> None:
-    """Compares the depths of slave nodes with what the discretisation of the contact allows: a mean that overlaps, eq. (7.9), has
-    the GAP of its node."""
+    """Compares the depths of slave nodes with the depth that the discretisation of the contact allows: a mean that
+    overlaps, eq. (7.9), has the GAP of its node."""
     check.add(0.0, DEPTH + noise, place)
     if not contact.has_means:
         check.add([one.depth for one in found], DEPTH + noise, place)
@@ -95,7 +95,7 @@ def _compare(
         after[a], before[b] = b, a
 
     def turn(node: int) -> tuple[float, float]:
-        """How far the face turns at a node, and the longer edge there."""
+        """Angle by which the face turns at a node, and length of the longer edge there."""
         if node not in after or node not in before:
             return 0.0, 0.0
         e, f = x[node] - x[before[node]], x[after[node]] - x[node]
@@ -103,7 +103,7 @@ def _compare(
         return angle if angle < SHARP else 0.0, float(max(np.hypot(*e), np.hypot(*f)))
 
     def along(ends: tuple[int, int], reach: float) -> tuple[float, float]:
-        """How far the master turns in all within a reach of an edge, and its longest edge there."""
+        """Sum of the angles by which the master turns within reach of an edge, and its longest edge there."""
         total, longest = 0.0, 0.0
         for node, ways in ((ends[1], after), (ends[0], before)):
             gone = 0.0
@@ -126,7 +126,8 @@ def _compare(
 
 
 def _vertices(result: Result) -> Integers:
-    """A number for each node: nodes that equations hold at one place, as at the ends of a pre-tension section, are one vertex."""
+    """A vertex number for each node; nodes that equations hold at one place, as at the ends of a pre-tension section,
+    have the same number."""
     numbers = np.arange(len(result.coordinates))
     held = result.read("model/constrained_nodes")
     _, first, of_place = np.unique(
@@ -139,7 +140,7 @@ def _vertices(result: Result) -> Integers:
 def _in_bodies(
     x: Array, bodies: list[Outline], contact: Contact, of_node: Integers
 ) -> list[Intrusion]:
-    """Slave nodes inside of the bodies of master segments, nearest to such a segment."""
+    """Slave nodes inside the bodies of master segments that are nearest to a master segment."""
     masters = {(int(a), int(b)) for a, b in contact.segments}
     touched = set(of_node[contact.segments.ravel()].tolist())
     found = []
@@ -158,7 +159,7 @@ def _in_bodies(
 def _in_obstacles(
     x: Array, bodies: list[Outline], obstacles: list[Profile], contact: Contact, gone: Gone
 ) -> list[Intrusion]:
-    """Slave nodes inside of the obstacles of the contact."""
+    """Slave nodes inside the obstacles of the contact."""
     masters, slaves = set(contact.segments.ravel().tolist()), set(contact.slaves.tolist())
     found = []
     for other, obstacle in enumerate(obstacles):
@@ -171,7 +172,7 @@ def _in_obstacles(
 
 
 def _crossed(x: Array, contact: Contact, vertex: Integers) -> float:
-    """How far faces of the slave surface cross master segments, eq. (10.6)."""
+    """Depths by which faces of the slave surface cross master segments, eq. (10.6)."""
     masters = Profile(contact.segments[:, 0], contact.segments[:, 1], contact.bulges)
     is_own = np.isin(contact.faces, contact.slaves).all(axis=1)
     own, bulges = contact.faces[is_own], contact.face_bulges.of(np.flatnonzero(is_own))

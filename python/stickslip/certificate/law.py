@@ -57,7 +57,7 @@ FORCE = 1e-9
 
 
 class ContactLaw:
-    """What the checks of the contact law share."""
+    """Data that the checks of the contact law share."""
 
     def __init__(self, increments: Increments, contacts: list[Contact], checks: Checks) -> None:
         self.result, self.increments = increments.result, increments
@@ -77,7 +77,7 @@ class ContactLaw:
         )
 
     def check(self, frame: Frame, increment: Increment) -> None:
-        """Gaps, complementarity, friction cones and slips of the contacts in a frame."""
+        """Checks gaps, complementarity, friction cones and slips of the contacts in a frame."""
         if not self.contacts or not self.force_scale:
             return
         if self.fits.changes(frame):
@@ -133,7 +133,7 @@ class ContactLaw:
     def _means(
         self, frame: Frame, increment: Increment, contacts: list[Contact]
     ) -> list[Contact]:
-        """Mean gaps, cones and slips from surface to surface; the other contacts."""
+        """Checks mean gaps, cones and slips of surface-to-surface contacts; returns the other contacts."""
         x1 = self.result.coordinates + frame["U"]
         start = increment.start
         x0 = x1 if start is None else self.result.coordinates + start
@@ -198,7 +198,7 @@ class ContactLaw:
         return [contact for contact in contacts if not contact.has_means]
 
     def _is_shared(self, contact: Contact) -> bool:
-        """Whether the slave nodes of a contact are in other contacts too."""
+        """Whether slave nodes of a contact are also in other contacts."""
         others = [one for one in self.contacts if one is not contact]
         nodes = [np.append(one.slaves, one.segments.ravel()) for one in others]
         return bool(nodes) and bool(np.isin(contact.slaves, np.concatenate(nodes)).any())
@@ -206,7 +206,8 @@ class ContactLaw:
     def _mean_cones(
         self, means: Means, closed: list[Mean], frame: Frame, increment: Increment, told: bool
     ) -> None:
-        """The forces of closed means: what nodal forces they leave, the cone, and slips."""
+        """Checks the forces of closed means: the nodal forces that they do not explain, the friction cone, and
+        slips."""
         forces, is_told, left = means.forces(closed, frame["CONTACT_FORCE"])
         place = f"{means.contact.name}, t = {frame.time:g}"
         self.checks["cone"].add(left / self.force_scale, MEANS, f"forces of no mean, {place}")
@@ -232,7 +233,7 @@ class ContactLaw:
     def _discs(
         self, contacts: list[Contact], x: Array, status: Integers, place: str
     ) -> tuple[list[Contact], Integers]:
-        """Gaps of discs; the other contacts, and the nodes whose forces may be those of discs."""
+        """Checks the gaps of discs; returns the other contacts, and the nodes whose forces may come from discs."""
         nodes: set[int] = set()
         for contact in contacts:
             if contact.disc is None:
@@ -254,7 +255,7 @@ class ContactLaw:
         contacts: list[Contact],
         place: str,
     ) -> None:
-        """GAP is the distance from the line of some segment."""
+        """Checks that GAP is the distance from the line of some segment."""
         asked = opened[np.isfinite(gaps[opened])]
         off = np.full(len(x), np.inf)
         bound = FIELD + noise
@@ -280,7 +281,8 @@ class ContactLaw:
         bound: float,
         at: str,
     ) -> None:
-        """Friction of a node or mean beside that of the law at its slip, which may be off by a noise, and its pressure."""
+        """Compares the friction of a node or mean with the law at its pressure and its slip, which is known up to a
+        noise."""
         normal, tangential = force
         least, most, law = 0.0, float(contact.friction.max()), None
         if contact.laws and not contact.laws[increment.step].ramps:
@@ -303,7 +305,7 @@ class ContactLaw:
         self.checks["cone"].add(outside / self.force_scale, bound, at)
 
     def _stretch(self, u: tuple[Array, Array], contact: Contact, node: int, n: Array) -> float:
-        """The change of the area of a node against a force along n, eq. (9.8), from displacements to others, as a part of it."""
+        """Relative change of the area of a node against a force along n, eq. (9.8), between two displacements."""
         faces = contact.faces if len(contact.faces) else self.result.boundary
         faces = faces[(faces == node).any(axis=1)]
         if not len(faces):
@@ -327,7 +329,8 @@ class ContactLaw:
     def _cones(
         self, frame: Frame, increment: Increment, touches: list[Touch], corners: set[int]
     ) -> None:
-        """Cone and slip of the nodes that touch one segment, and are no end of a touched one nor at a touched corner."""
+        """Checks cone and slip of the nodes that touch exactly one segment and are neither an end of a touched segment
+        nor at a touched corner."""
         if increment.start is None and increment.scheme != STATIC:
             return
         x1 = self.result.coordinates + frame["U"]
@@ -366,7 +369,7 @@ class ContactLaw:
 
     @property
     def _edge(self) -> float:
-        """The length by which gaps are measured."""
+        """The length that gaps are divided by."""
         return self.result.edge_length
 
 
@@ -385,13 +388,13 @@ class AtMaster:
 
     @property
     def gap(self) -> float:
-        """Their mean gap, eq. (9.16)."""
+        """The mean gap of these means, eq. (9.16)."""
         return self.weighted / self.whole if self.whole > 0.0 else np.inf
 
 
 def _in_means(contacts: list[Contact]) -> Integers:
-    """Nodes whose forces are those of means too: those of contacts from surface to surface, and the masters that such nodes meet by
-    themselves."""
+    """Nodes whose forces come partly from means: nodes of surface-to-surface contacts, and masters that such nodes meet
+    as single nodes."""
     of_means = [np.append(one.slaves, one.segments.ravel()) for one in contacts if one.has_means]
     nodes = np.unique(np.concatenate(of_means)) if of_means else np.empty(0, np.int64)
     shared = [one for one in contacts if not one.has_means and np.isin(one.slaves, nodes).any()]
@@ -399,7 +402,7 @@ def _in_means(contacts: list[Contact]) -> Integers:
 
 
 def _elsewhere(contact: Contact, contacts: list[Contact], with_means: set[str]) -> set[int]:
-    """Nodes that are also in contacts whose means are not known, or slaves of another contact."""
+    """Nodes that are also in contacts with unknown means, or slaves of another contact."""
     others = [one for one in contacts if one is not contact]
     nodes = [one.slaves for one in others]
     nodes += [one.segments.ravel() for one in others if one.name not in with_means]
@@ -407,7 +410,7 @@ def _elsewhere(contact: Contact, contacts: list[Contact], with_means: set[str]) 
 
 
 def _at_masters(found: list[tuple[Means, list[Mean]]]) -> dict[int, AtMaster]:
-    """What means have at their master nodes."""
+    """The means that act on each master node."""
     at: dict[int, AtMaster] = {}
     for means, some in found:
         for mean in some:

@@ -1,4 +1,5 @@
-"""Means of gaps from surface to surface, eqs (3.18) to (3.20), and the forces of their constraints, from positions alone."""
+"""Mean gaps of surface-to-surface contact, eqs (3.18) to (3.20), and the forces of their constraints, from positions
+alone."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -98,7 +99,7 @@ class Mean:
 
 
 def _turned(e: Array) -> Array:
-    """The normal of a direction, to its right."""
+    """The normal on the right of a direction."""
     return np.array([e[1], -e[0]])
 
 
@@ -107,13 +108,14 @@ def _cross(a: Array, b: Array) -> float:
 
 
 def _along_axes(node: int) -> list[Column]:
-    """What unit forces along both axes do to a node."""
+    """Force rows of a node for unit forces along both axes."""
     return [{node: axis} for axis in np.eye(2)]
 
 
 def _halfway(r: list[Array], e: list[Array]) -> list[tuple[Array, Array]]:
-    """What a unit normal and a unit tangential force do to a point and to the end of a segment e, r being the way from the start of
-    the segment to the point, at the start and the end of an increment, eqs (7.2) and (7.3)."""
+    """Force rows of a unit normal and a unit tangential force at a point and at the end of a segment, eqs (7.2) and
+    (7.3). e is the segment and r the vector from its start to the point, each at the start and the end of an
+    increment."""
     length = [float(np.linalg.norm(one)) for one in e]
     gaps = [_cross(r[k], e[k]) / length[k] for k in (0, 1)]
     mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
@@ -175,7 +177,7 @@ class Means:
         """Nodes that are held by themselves too, or have several means."""
 
     def _vertices(self, faces: Integers, against: Integers, x: Array) -> dict[int, float]:
-        """Ends of faces, and their convex vertices that turn by more than 20 degrees, with the overlap of each."""
+        """Allowed overlap of each end of a face, and of each convex vertex that turns by more than 20 degrees."""
         e = x[faces[:, 1]] - x[faces[:, 0]]
         tangents = e / np.linalg.norm(e, axis=1)[:, None]
         starting = {int(a): k for k, (a, _) in enumerate(faces)}
@@ -191,8 +193,8 @@ class Means:
         }
 
     def _closed_vertices(self) -> Iterator[list[Column]]:
-        """What forces of vertices that are closed in the end do to the slave: those along two directions of each. Vertices meet
-        the lines between the nodes themselves."""
+        """Force rows on the slave of vertices that are closed at the end of the increment, along two directions for
+        each vertex. Vertices touch the straight lines between the nodes."""
         x, noise = self.at[1][0], 16 * np.finfo(float).eps * np.abs(self.at[1][0]).max()
         for (vertices, (faces, bulges)), is_slave in zip(self.vertices, (True, False), strict=True):
             a = x[faces[:, 0]]
@@ -214,7 +216,7 @@ class Means:
                     yield from (self._under_face(node, int(k)) for k in np.flatnonzero(meets))
 
     def _under_face(self, node: int, face: int) -> list[Column]:
-        """What a normal and a tangential force of a vertex of the master do to the ends of a slave face."""
+        """Force rows of a normal and a tangential force of a vertex of the master at the ends of a slave face."""
         r, e = [], []
         for x, *_ in self.at:
             p, q = x[self.faces[face]]
@@ -229,7 +231,7 @@ class Means:
         return [{a: -own - on_end, b: on_end} for own, on_end in rows]
 
     def vertex(self, node: int) -> Vertex:
-        """The nodes that the place of an end of a face is made of."""
+        """The nodes that determine the position of an end of a face, with their weights."""
         ends = self.middles.get(node)
         if ends is None:
             return ((node, 1.0),)
@@ -247,7 +249,8 @@ class Means:
         return (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
 
     def means(self, x0: Array, x1: Array, nodes: Integers, halfway: bool) -> Iterator[Mean]:
-        """The means of some slave nodes between two positions; `halfway`: rows of the energy-momentum form."""
+        """The means of some slave nodes between two positions; with `halfway`, the force rows have the energy-momentum
+        form."""
         self.at = [(x, *self._ends(self.segments, x), self._tangents(self.segments, x)) for x in (x0, x1)]
         self.halfway = halfway
         points: dict[int, list[Point]] = {}
@@ -279,7 +282,8 @@ class Means:
                 yield mean
 
     def _without_slivers(self, means: list[tuple[float, float, Mean]]) -> list[tuple[float, float, Mean]]:
-        """The means of a node, with their covers, but for those beyond a convex vertex that cover little of what the largest does."""
+        """The means of a node with their covers; means beyond a convex vertex are left out if they cover little
+        compared with the largest."""
         largest = max((covered for covered, _, _ in means), default=0.0)
         if all(covered >= SLIVER * largest for covered, _, _ in means):
             return means
@@ -311,7 +315,7 @@ class Means:
         return float(np.linalg.norm(b - a) * part * radius)
 
     def _points(self, face: int, halfway: bool) -> Iterator[Point]:
-        """The points of a face: two in each cell, which bisectors of the start and of the end bound."""
+        """The points of a face: two in each cell; cells end at the bisectors of the start and of the end."""
         faced = self._faced(face)
         for run in sorted({int(self.run[i]) for i in faced}):
             own = [i for i in faced if self.run[i] == run]
@@ -328,12 +332,12 @@ class Means:
                     yield self._point(face, eta, weight, i, j, halfway)
 
     def _gauss(self, face: int, segments: set[int]) -> tuple[tuple[float, float], ...]:
-        """Points of a cell, which integrate the gap of curved faces over it too."""
+        """Points of a cell, which integrate the gap over it, also for curved faces."""
         cubics = [self.face_bulges.coefficients[face], *(self.bulges.coefficients[i] for i in segments)]
         return THREE if any(c[3] or (self.rings and c.any()) for c in cubics) else TWO
 
     def _faced(self, face: int) -> list[int]:
-        """Segments that a face is turned to at the start, within reach, and not behind."""
+        """Segments that a face is turned to at the start, that are within reach and not behind it."""
         x, a, b, t = self.at[0]
         p, q = (self._place(node, x) for node in self.faces[face])
         e = (q - p) / np.linalg.norm(q - p)
@@ -370,7 +374,7 @@ class Means:
         return cells
 
     def _over(self, face: int, cells: list[tuple[float, float, int]], eta: float, k: int) -> int | None:
-        """The nearest segment that a place of a face is over."""
+        """The nearest segment that faces a given place of a slave face."""
         x, a, _, t = self.at[k]
         p, q = (self._place(node, x) for node in self.faces[face])
         at = (1.0 - eta) * p + eta * q
@@ -378,7 +382,7 @@ class Means:
         return min(over, key=lambda i: abs(_cross(at - a[i], t[i])), default=None)
 
     def _point(self, face: int, eta: float, weight: float, i: int | None, j: int, halfway: bool) -> Point:
-        """A point with its gap and slip, and what forces are there, eqs (3.4), (3.30), (3.32), (7.2), (7.3) and (7.8)."""
+        """A point with its gap, slip and force rows, eqs (3.4), (3.30), (3.32), (7.2), (7.3) and (7.8)."""
         s, r, e, length, t = [], [], [], [], []
         for x, a, b, tangents in self.at:
             p, q = (self._place(node, x) for node in self.faces[face])
@@ -430,7 +434,7 @@ class Means:
         return Point(face, eta, weight, j, i, gaps[1], slip, rows, on_end, 0.0, stretch, of_chord[1])
 
     def master_parts(self, mean: Mean) -> dict[int, float]:
-        """The parts |Bn_jm| of the normal force of a mean that its master nodes take, eq. (9.16)."""
+        """The parts |Bn_jm| of the normal force of a mean that act on its master nodes, eq. (9.16)."""
         rows: dict[int, Array] = {}
         for weight, q in mean.points:
             on_end = q.on_end + (q.chord_gap - mean.gap) * q.lean
@@ -440,11 +444,12 @@ class Means:
         return {node: float(np.linalg.norm(row)) for node, row in rows.items()}
 
     def forces(self, means: list[Mean], force: Array) -> tuple[Array, Array, float]:
-        """Normal and tangential forces [J, 2] of means whose nodal forces on the slave are given, whether each is told
-        [J], and what of the forces they leave.
+        """From the nodal forces on the slave, returns normal and tangential forces [J, 2] of the means, whether each is
+        determined [J], and the nodal forces that remain unexplained.
 
-        Closed vertices have forces of their own, of any direction: at those of the slave, and under those of the master.
-        Where they and the means do not explain the nodal forces, all corners have. Forces are not told that these would change.
+        Closed vertices of slave and master have forces of their own, in any direction. If these forces and the means do
+        not explain the nodal forces, all corners get forces. Forces of means that would change with the forces of
+        vertices count as not determined.
         """
         rows: dict[tuple[int, int], dict[int, float]] = {}
         own: set[int] = set()
@@ -462,7 +467,7 @@ class Means:
         right = force[nodes].ravel()
 
         def fit(free: list[Column]) -> tuple[Array, Array, float]:
-            """Forces of the means beside those of some corners."""
+            """Forces of the means, together with forces of some corners."""
             count = 2 * len(means)
             matrix = np.zeros((2 * len(nodes), count + len(free)))
             for (node, d), columns in rows.items():
@@ -496,6 +501,6 @@ class Means:
 
 
 def _fit(matrix: Array, right: Array) -> tuple[Array, float]:
-    """The unknowns that come nearest to the right side, and what they leave of it."""
+    """The unknowns with the smallest residual, and this residual."""
     found = np.linalg.lstsq(matrix, right, rcond=None)[0]
     return found, float(np.abs(matrix @ found - right).max(initial=0.0))

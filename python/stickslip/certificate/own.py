@@ -1,4 +1,4 @@
-"""What the program has checked itself in every increment: the table `/history/certificate`."""
+"""Checks that the program itself has made in every increment: the table `/history/certificate`."""
 
 import csv
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from stickslip.whole import whole
 
 @dataclass(frozen=True)
 class OwnCheck:
-    """A check of every increment."""
+    """A check that the program makes in every increment."""
 
     name: str
     """Its path below /history."""
@@ -23,7 +23,7 @@ class OwnCheck:
 
 
 def own_checks(result: Result) -> list[OwnCheck]:
-    """All checks that the result has."""
+    """All checks of this kind in a result."""
     table = result.history.certificate
     found = []
     for name in table:

@@ -1,19 +1,17 @@
 """Looks for nodes inside bodies and obstacles, in every frame, from the deformed meshes alone.
 
-Nothing of the solver's contact search is used: each body is the region that its outline (the edges
-that belong to one element only) winds around, and a node of an outline is inside when the winding
-number there is positive, decided by exact signs. A node is compared with every body, its own
-included: there the two edges that meet in it are left out, and what counts is whether the body
-covers the place once more. The depth is the distance to the nearest other edge of that body, in
-lengths of that edge. Edges that cross are counted besides.
+The contact search of the solver is not used. A body is the region that its outline (the edges that belong to one
+element only) winds around; a node of another outline is inside if the winding number there is positive, which is
+decided with exact signs. A node is compared with every body. In its own body the two edges that meet at the node are
+left out, and the node counts as inside if the body covers its place once more. The depth is the distance to the nearest
+other edge of that body, relative to the length of this edge. Edges that cross are counted as well.
 
-Rigid surfaces are compared with all bodies too, whether the deck has a contact for them or not:
-their corners with the bodies, and the nodes of the bodies with the obstacles behind the surfaces
-(see profiles.py), the depth in lengths of the longer edge at the node. Contact keeps the nodes of
-bodies out of obstacles; the corners of a surface that is finer than the mesh, or convex, can lie
-behind the edge between two of these nodes.
+Rigid surfaces are compared with all bodies, too, with or without a contact in the deck: their corners with the bodies,
+and the nodes of the bodies with the obstacles behind the surfaces (see profiles.py). The depth of such a node is
+relative to the longer edge at the node. Contact keeps the nodes of bodies out of obstacles; corners of a surface that
+is finer than the mesh, or convex, can still lie behind the edge between two nodes.
 
-The exit code is 1 when a node is deeper than 1e-9 element sizes or edges cross.
+The exit code is 1 if a node is deeper than 1e-9 element sizes or if edges cross.
 """
 
 import argparse
@@ -63,7 +61,7 @@ class Intrusion:
 
 @dataclass(frozen=True)
 class Overlap:
-    """What was found in one frame."""
+    """Outcome for one frame."""
 
     deepest: Intrusion | None
     """The deepest node of a body."""
@@ -84,7 +82,8 @@ class Overlap:
 
 
 def intrusions(position: Array, host: Outline, guests: Integers, number: int) -> list[Intrusion]:
-    """Where the nodes `guests` are inside the outline `host` of the body `number`, which may be their own."""
+    """Finds which of the nodes `guests` are inside the outline `host` of the body `number`, which may be their own
+    body."""
     start, end = position[host.nodes], position[host.after]
     own = guests is host.nodes
     point = position[guests]
@@ -115,7 +114,8 @@ def intrusions(position: Array, host: Outline, guests: Integers, number: int) ->
 
 
 def in_obstacle(position: Array, body: Outline, obstacle: Profile, gone: bool) -> list[Intrusion]:
-    """A body's nodes inside the obstacle behind a rigid surface; `gone`: it has gone through."""
+    """Nodes of a body inside the obstacle behind a rigid surface; `gone` says that the whole body has gone through the
+    surface."""
     inside = sunk(position, body, obstacle) | gone
     if obstacle.bulges.coefficients.any():
         places = position[body.nodes], position[obstacle.nodes], position[obstacle.after]
@@ -187,8 +187,9 @@ def crossings(
 ) -> Array:
     """Depths of the edges that cross by more than LIMIT; within one outline each pair counts once.
 
-    The depth is the distance of the nearest of the four ends from the other edge, in its lengths. Edges whose ends
-    are one vertex, a number for each node, do not cross. The sides of curved edges are those of their curves.
+    The depth is the smallest distance of one of the four ends from the other edge, relative to the length of this edge.
+    Edges with a common vertex do not cross; `vertices` gives the vertex number of each node. For curved edges the side
+    of a point is that of the curve, not of its chord.
     """
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
@@ -211,9 +212,9 @@ def crossings(
 
 
 def _heights(a: Array, b: Array, c: Array, d: Array, bulges: Bulges) -> Array:
-    """Distance of the nearer of c and d from the line a, b, in lengths of a, b.
+    """Distance of the nearer of c and d from the line a, b, relative to the length of a, b.
 
-    It is zero where both are on the same side.
+    The distance is zero if c and d are on the same side.
     """
     along = b - a
     square = np.einsum("ei,ei->e", along, along)
@@ -253,7 +254,7 @@ def follow(results: Result) -> list[Overlap]:
 def still_gone(
     before: Array, position: Array, bodies: list[Outline], obstacles: list[Profile], gone: Gone
 ) -> Gone:
-    """Bodies that have gone through open profiles as a whole, and have not come back."""
+    """Bodies that have passed through open profiles as a whole and have not come back."""
     return {
         (number, other)
         for number, body in enumerate(bodies)
@@ -264,7 +265,7 @@ def still_gone(
 
 
 def describe(results: Result, frame: int, overlap: Overlap) -> str:
-    """What was found in a frame in words."""
+    """The outcome for a frame in words."""
     text = f"frame {frame:4}, t = {results.frames[frame].time:<10.6g} "
     parts = []
     if overlap.deepest is not None:
@@ -296,7 +297,7 @@ def _place(found: Intrusion, results: Result) -> str:
 
 
 def run() -> int:
-    """Command line; returns the exit code."""
+    """Runs the command line; returns the exit code."""
     parser = argparse.ArgumentParser(prog="stickslip penetration", description=__doc__)
     parser.add_argument("result", type=Path, nargs="+", help="result files JOB.vtkhdf")
     parser.add_argument("--all", action="store_true", help="every frame, not only the deepest")

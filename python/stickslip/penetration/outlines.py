@@ -16,7 +16,7 @@ LIMIT = 1e-9
 
 @dataclass(frozen=True)
 class Outline:
-    """The edges around one body, body on the left; every node is the start of one edge."""
+    """The edges around one body, with the body on their left; every node is the start of one edge."""
 
     nodes: Integers
     after: Integers
@@ -27,7 +27,7 @@ class Outline:
 
     @classmethod
     def of(cls, edges: Integers, found: Curves | None = None) -> "Outline":
-        """Takes [edges, 2] node indices in any order."""
+        """An outline from edges [edges, 2], given by node indices in any order."""
         nodes = np.unique(edges)
         one, two = edges[np.argsort(edges[:, 0])], edges[np.argsort(edges[:, 1])]
         return cls(nodes, one[:, 1], two[:, 0], of_edges(nodes, one[:, 1], found or {}))
@@ -36,8 +36,8 @@ class Outline:
 def outlines(results: Result) -> list[Outline]:
     """The outlines of all bodies, in the order of `Result.body`.
 
-    A Fault names a node in which elements touch with their corners only: what is inside is not
-    defined there.
+    If elements touch only with their corners at a node, a Fault names the node, because the inside is not defined
+    there.
     """
     starts, count = np.unique(results.boundary[:, 0], return_counts=True)
     pinched = results.node_labels[starts[count > 1]]
@@ -73,10 +73,10 @@ def _exact_side(start: tuple[float, ...], end: tuple[float, ...], at: tuple[floa
 
 
 def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
-    """How often edges wind around points, by the crossings of a ray to the right of each point.
+    """Winding number of edges around points, from the crossings of a ray to the right of each point.
 
-    `counted` [points, edges] says which edges count for which point. For points on an edge it is
-    the number of either side.
+    `counted` [points, edges] says which edges count for each point. For a point on an edge it is the winding number of
+    either side.
     """
     y, low, high = point[:, None, 1], start[None, :, 1], end[None, :, 1]
     up, down = (low <= y) & (y < high), (high <= y) & (y < low)
@@ -90,9 +90,9 @@ def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
 
 
 def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
-    """Whether the ray to the right of an outline's node starts in the body's angle there.
+    """Whether the ray to the right of a node of an outline starts inside the body.
 
-    The ray lies above the node by less than anything: its direction is (1, 0+).
+    The ray lies infinitesimally above the node: its direction is (1, 0+).
     """
     one, two = after - point, before - point
 
@@ -120,8 +120,8 @@ def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = No
 
 
 def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulges) -> Integers:
-    """What curved edges wind around points more often than their chords do [points, edges]: 1 for a point between a
-    chord and the curve outside of it, -1 for one outside of a curve that is inside of its chord."""
+    """Winding number of curved edges around points minus that of their chords [points, edges]: 1 for a point between a
+    chord and a curve outside of it, -1 for a point between a chord and a curve inside of it."""
     if not bulges.coefficients.any():
         return np.zeros((len(point), len(start)), np.int64)
     gap, height, over = _across(point, start, end, bulges)
@@ -130,8 +130,8 @@ def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulg
 
 
 def _across(point: Array, start: Array, end: Array, bulges: Bulges) -> tuple[Array, Array, Flags]:
-    """Distances of points out of the body from chords, those of the curves there, and whether the points are over the
-    edges [points, edges]."""
+    """Distances of points from chords, outward from the body, distances of the curves from chords at the same places,
+    and whether the points are over the edges [points, edges]."""
     along = end - start
     length = np.linalg.norm(along, axis=1)
     offset = point[:, None] - start
@@ -141,10 +141,10 @@ def _across(point: Array, start: Array, end: Array, bulges: Bulges) -> tuple[Arr
 
 
 def closed_hollow(point: Array, before: Array, after: Array) -> Array:
-    """Overlap of the legs of closed concave corners; infinite where a node has other legs.
+    """Overlap of the legs of closed concave corners; infinite at other nodes.
 
-    At a concave corner whose legs lie on each other the angle is zero but for round-off. When it is
-    negative by that much, the node itself is covered once more, and far from all other edges.
+    At a concave corner whose legs lie on each other, the angle is zero up to round-off. If round-off makes the angle
+    negative, the node itself is covered once more, although it is far from all other edges.
     """
     one, two = before - point, after - point
     lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)

@@ -1,10 +1,10 @@
 """Nodes inside the obstacles behind rigid surfaces, from their profiles and the outlines of bodies.
 
-A profile is a chain of segments with the obstacle on the left of the way from a to b. A closed one
-is the edge of a region, and winding numbers tell inside from outside. An open one has no other end:
-a node is inside when the outline of its body goes through the profile to get there, or when the
-whole body has gone through since the last frame, and when the nearest place of the profile has the
-node on its left. What has come around the ends of an open profile is not inside.
+A profile is a chain of segments with the obstacle on the left of the direction from a to b. A closed profile is the
+boundary of a region, and winding numbers tell inside from outside. An open profile bounds no region. A node is inside
+if it lies on the left of the nearest place of the profile, and if the outline of its body crosses the profile to get
+there or the whole body has passed through it since the last frame. A node that has come around the ends of an open
+profile is not inside.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from stickslip.result import Result
 
 @dataclass(frozen=True)
 class Profile:
-    """A chain of rigid segments, obstacle on the left."""
+    """A chain of rigid segments with the obstacle on the left."""
 
     nodes: Integers
     after: Integers
@@ -40,7 +40,7 @@ class Profile:
     def turns(self, position: Array) -> Integers:
         """Sign of the turn at the first node of each segment; 1 where the obstacle is convex.
 
-        At the first node of an open profile it is 1: there the first segment alone decides.
+        The sign is 1 at the first node of an open profile, where the first segment alone decides.
         """
         place = position[self.nodes]
         turn = side(np.roll(place, 1, axis=0), place, position[self.after])
@@ -67,10 +67,11 @@ def profiles(results: Result) -> list[Profile]:
 
 
 def crossings(start: Array, end: Array, first: Array, second: Array) -> Integers:
-    """How often the paths start, end [n, 2] cross segments first, second, to their left.
+    """Number of times that paths from `start` to `end` [n, 2] cross the segments from `first` to `second`, towards
+    their left.
 
-    The way back counts -1. What is left of a segment by less than LIMIT of the way touches it, and
-    counts as in front of it.
+    A crossing in the other direction counts -1. A point that is on the left of a segment by less than LIMIT times the
+    path touches it and counts as in front of it.
     """
     low = (np.minimum(start, end)[:, None] <= np.maximum(first, second)[None]).all(axis=2)
     high = (np.maximum(start, end)[:, None] >= np.minimum(first, second)[None]).all(axis=2)
@@ -114,7 +115,7 @@ def nearest(position: Array, nodes: Integers, profile: Profile) -> tuple[Array, 
 
 
 def passed(before: Array, after: Array, body: Outline, profile: Profile) -> bool:
-    """Whether all nodes of a body have gone through a profile between two frames."""
+    """Whether all nodes of a body have passed through a profile between two frames."""
     shift = after[profile.nodes[0]] - before[profile.nodes[0]]  # rigid surfaces do not turn
     first, second = after[profile.nodes], after[profile.after]
     through = crossings(before[body.nodes] + shift, after[body.nodes], first, second)
@@ -122,7 +123,7 @@ def passed(before: Array, after: Array, body: Outline, profile: Profile) -> bool
 
 
 def sunk(position: Array, body: Outline, profile: Profile) -> Flags:
-    """Which nodes of a body's outline have come into the obstacle, as far as one frame tells."""
+    """Nodes of the outline of a body that are inside the obstacle, as far as a single frame shows."""
     first, second = position[profile.nodes], position[profile.after]
     start, end = position[body.nodes], position[body.after]
     if profile.closed:
@@ -134,7 +135,7 @@ def sunk(position: Array, body: Outline, profile: Profile) -> Flags:
 
 
 def _along_outline(body: Outline, through: Integers) -> Flags:
-    """Nodes between an edge that enters an obstacle and the next one that goes through it."""
+    """Nodes between an edge that enters an obstacle and the next edge that crosses its surface."""
     index = {int(node): i for i, node in enumerate(body.nodes)}
     after = np.array([index[int(node)] for node in body.after])
     before = np.array([index[int(node)] for node in body.before])

@@ -1,10 +1,9 @@
 """Draws a field at the nodes along a line, at some times: the contact pressure along a surface.
 
-The nodes are those of a node set (--nset), or else all slave nodes. They are joined along the outlines of
-the bodies; where they make several lines, each has axes of its own, but for lines on which the field is
-zero at all times shown. The abscissa is the length along
-the line in the undeformed mesh, or with --against the current x or y (r, z).
-Without -o the picture goes next to the result, as JOB_along.png.
+The nodes are those of a node set (--nset), or else all slave nodes. The nodes are joined along the outlines of the
+bodies. If the nodes form several lines, each line has axes of its own; lines on which the field is zero at all shown
+times are left out. The abscissa is the length along the line in the undeformed mesh, or with --against the current x or
+y (r, z). Without -o the picture is written next to the result, as JOB_along.png.
 """
 
 import argparse
@@ -28,7 +27,7 @@ MOST = 8
 
 
 def chains(results: Result, nodes: Integers) -> list[Integers]:
-    """The given nodes as lines along the outlines, body on the left; closed ones end where they begin."""
+    """The given nodes as lines along the outlines, with the body on the left; closed lines end where they begin."""
     chosen = np.isin(results.boundary, nodes).all(axis=1)
     following = {int(a): int(b) for a, b in results.boundary[chosen]}
     starts = [a for a in following if a not in set(following.values())]
@@ -54,7 +53,7 @@ def abscissa(results: Result, line: Integers, frame: int, against: str) -> Array
 def draw(
     results: Result, lines: list[Integers], frames: Sequence[int], name: str, against: str
 ) -> Figure:
-    """Axes for each line, a curve for each frame."""
+    """A figure with axes for each line and a curve for each frame."""
     size = (8.0, 0.8 + 2.6 * len(lines))
     figure, axes = style.subplots(len(lines), 1, size, squeeze=False, sharey=True)
     shown = Field(name)

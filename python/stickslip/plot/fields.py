@@ -23,7 +23,7 @@ COLOURS: Colormap = colormaps["viridis"].resampled(BANDS)
 
 @dataclass(frozen=True)
 class Field:
-    """A number at the places of nodes, for each element, or of nodes along the outlines."""
+    """A number for drawing: at the places of nodes, for each element, or at nodes along the outlines."""
 
     name: str
     """Name with a component, as `fields` takes them."""
@@ -31,7 +31,7 @@ class Field:
     """Whether values of elements are averaged at nodes."""
 
     def values(self, results: Result, frame: int) -> Array:
-        """Values in a frame: at places [P], or of elements [E]; NaN where there is none."""
+        """Values in a frame, at places [P] or of elements [E]; NaN where there is no value."""
         shown, spelled = results.frames[frame], results.frames.known(self.name)
         field = spelled.partition(":")[0]
         rows = shown.at_places(field) if self.of_nodes(results) else shown[field]
@@ -50,9 +50,9 @@ class Field:
 
 
 def on_lines(results: Result, values: Array) -> Array:
-    """Means of values at places on the lines of the outlines [., 2].
+    """Means of the values at the two ends of each line of the outlines [., 2].
 
-    A line with one end that has no value takes that of the other one.
+    If one end of a line has no value, the line gets the value of the other end.
     """
     ends = results.drawing.values(values)[results.drawing.outline]
     known = np.isfinite(ends)
@@ -62,7 +62,7 @@ def on_lines(results: Result, values: Array) -> Array:
 
 @dataclass(frozen=True)
 class Peak:
-    """Where a field is largest, by its magnitude, in all that is shown."""
+    """Place where the magnitude of a field is largest, in everything that is shown."""
 
     results: Result
     frame: int
@@ -72,7 +72,7 @@ class Peak:
 
     @classmethod
     def of(cls, field: Field, shown: Sequence[Shown]) -> "Peak | None":
-        """None where the field is zero."""
+        """None if the field is zero."""
         found: Peak | None = None
         for results, frame in shown:
             values = np.nan_to_num(field.values(results, frame))
@@ -84,7 +84,7 @@ class Peak:
 
 @dataclass(frozen=True)
 class Colouring:
-    """A field with one colour scale for all that is shown."""
+    """A field with one colour scale for everything that is shown."""
 
     field: Field
     label: str
@@ -95,10 +95,10 @@ class Colouring:
 
     @classmethod
     def of(cls, field: Field, shown: Sequence[Shown], ends: tuple[float, float] | None = None) -> "Colouring":
-        """Scale that holds 0 and the field in the given frames, or one with the given ends.
+        """A scale that contains 0 and the field in the given frames, or a scale with the given ends.
 
-        Frames that rise far above the others do not set its ends: they would make all others
-        dark. What lies beyond has the colour of the end, and the label says how far it goes.
+        Frames with values far above those of the others do not determine its ends, because they would make all others
+        dark. Values beyond an end have the colour of the end, and the label gives the largest one.
         """
         finite = [values[np.isfinite(values)] for values in (field.values(*each) for each in shown)]
         least = np.array([min(0.0, float(values.min(initial=0.0))) for values in finite])
@@ -117,7 +117,7 @@ class Colouring:
 
     @property
     def levels(self) -> Array:
-        """Ends of the bands."""
+        """Ends of the bands of colour."""
         return np.linspace(float(self.norm.vmin or 0.0), float(self.norm.vmax or 0.0), BANDS + 1)
 
 
@@ -126,7 +126,7 @@ PEAK = 3.0
 
 
 def usual(largest: Array) -> float:
-    """The largest value of frames [frames] without the frames that are peaks."""
+    """The largest value of all frames [frames], without frames that are peaks."""
     values = np.sort(largest[largest > 0.0])
     if len(values) == 0:
         return 0.0

@@ -1,17 +1,17 @@
 """Draws the histories of results.
 
-Without names: where the energy is, its balance, momentum and contact forces, and force against displacement
-where a force moves something, results side by side or, with --overlay, on top of each other. With --y any
-histories, against the time or against the one of --x; all results stand in the same axes then, and every --y
-has axes of its own:
+Without names the command draws the energy accounts, the energy balance, momentum and contact forces, and force against
+displacement if a force moves something; results stand side by side or, with --overlay, on top of each other. With --y
+the command draws any histories, against the time or against the history of --x. All results are then in the same axes,
+and every --y has axes of its own:
 
     stickslip plot history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
 
-A name is the path of a history in the result file, see --list; after a colon stands the component
-of a vector, from 1. Of a node set, displacements and velocities are means and reactions sums;
-nodes/TIP[3]/U:2 is that of the node 3.
+A name is the path of a history in the result file (--list prints all names); after a colon stands the
+component of a vector, from 1. For a node set, displacements and velocities are means, and reactions are
+sums; nodes/TIP[3]/U:2 is the displacement of node 3.
 
-Without -o the picture goes next to the first result, as JOB_history.png.
+Without -o the picture is written next to the first result, as JOB_history.png.
 """
 
 import argparse
@@ -58,7 +58,7 @@ Plot = Callable[[Axes, Result], None]
 
 
 def energy(axes: Axes, results: Result) -> None:
-    """Where the energy is: the accounts stacked, negative ones below zero, and what was put in."""
+    """The energy accounts, stacked, with negative accounts below zero, and the energy put in."""
     account = results.history.energy
     start = account["kinetic"][0] + account["strain"][0]
     coloured = zip(LEDGER, style.ACCOUNTS)
@@ -87,7 +87,7 @@ def balance(axes: Axes, results: Result) -> None:
 
 
 def linear_momentum(axes: Axes, results: Result) -> None:
-    """Both components; round-off is drawn as zero."""
+    """Both components of the momentum; round-off is drawn as zero."""
     for label, values in zip(directions(2, results.is_axisymmetric), results.history.momentum.linear.T):
         axes.plot(results.history.time, values, label=label)
     speed = np.linalg.norm(results.frames[0]["V"], axis=1).max()
@@ -108,7 +108,7 @@ def angular_momentum(axes: Axes, results: Result) -> None:
 
 
 def flat(axes: Axes, change: float, scale: float) -> None:
-    """Widens the axes to a scale where the change is round-off of it."""
+    """Widens the axes to a given scale if the change is only round-off of this scale."""
     if change < 1e-9 * scale:
         left, low, _, high = axes.dataLim.extents
         middle = 0.5 * (low + high)
@@ -140,7 +140,7 @@ def contact_state(axes: Axes, results: Result) -> None:
 
 
 def legend_beside(axes: Sequence[Axes]) -> None:
-    """One legend to the right of a row of axes, for all lines in them, equal labels once."""
+    """One legend on the right of a row of axes for all lines in them; equal labels appear once."""
     entries: dict[str, Any] = {}
     for each in axes:
         handles, labels = each.get_legend_handles_labels()
@@ -154,7 +154,7 @@ def legend_beside(axes: Sequence[Axes]) -> None:
 
 @style.styled
 def draw(all_results: list[Result]) -> Figure:
-    """One column per result, all with the same scales."""
+    """A page with one column per result, all with the same scales."""
     rows: list[tuple[Plot, float]] = [(energy, 2.0), (balance, 1.0)]
     if any(results.history.momentum.linear.any() for results in all_results):
         rows += [(linear_momentum, 1.0), (angular_momentum, 1.0)]
@@ -186,7 +186,7 @@ def draw(all_results: list[Result]) -> Figure:
 
 
 def force_displacement(axes: Axes, results: Result) -> None:
-    """The force that does the largest work against the displacement in its direction."""
+    """Draws the force that does the largest work, against the displacement in its direction."""
     for names in force_against_displacement(results)[:1]:
         moved, force = (find(results, name) for name in names)
         axes.plot(*moved.parts.values(), *force.parts.values(), color="k")
@@ -195,7 +195,7 @@ def force_displacement(axes: Axes, results: Result) -> None:
 
 
 def losses(results: Result) -> Array:
-    """Energy that impacts, the scheme and the normal contact forces have taken."""
+    """Energy that was lost to impacts, the scheme and the normal contact forces."""
     account = results.history.energy
     others = account["impact_loss"] + account["numerical_dissipation"]
     return others - account["normal_contact_work"]
@@ -224,7 +224,7 @@ COMPARED: tuple[tuple[str, Callable[[Result], Array]], ...] = (
 
 @style.styled
 def compare(all_results: list[Result]) -> Figure:
-    """Result on top of each other: one line each."""
+    """A page with the results on top of each other, one line for each."""
     touching = any(results.contact for results in all_results)
     rows = COMPARED if touching else COMPARED[:5]
     figure, axes = style.subplots(len(rows), 1, (9.0, 1.0 + 1.6 * len(rows)), sharex=True)
@@ -243,7 +243,7 @@ def compare(all_results: list[Result]) -> Figure:
 
 @style.styled
 def draw_named(all_results: list[Result], along: str, rows: list[list[str]]) -> Figure:
-    """Histories against another one: axes for each row of names, a line for each of its names."""
+    """A page of histories against another one, with axes for each row of names and a line for each name."""
     figure, axes = style.subplots(
         len(rows), 1, (9.0, 0.8 + 3.4 * len(rows)), sharex=True, squeeze=False
     )
@@ -279,7 +279,7 @@ def draw_row(axes: Axes, all_results: list[Result], along: str, shown: list[str]
 
 
 def names(all_results: Sequence[Result]) -> list[str]:
-    """Names of the jobs; where two are the same, with their folders."""
+    """Names of the jobs, with their folders if two names are the same."""
     jobs = [results.job for results in all_results]
     if len(set(jobs)) == len(jobs):
         return jobs
@@ -287,7 +287,7 @@ def names(all_results: Sequence[Result]) -> list[str]:
 
 
 def span(all_results: list[Result]) -> tuple[float, float]:
-    """From the first to the last time of all results."""
+    """Limits from the first to the last time of all results."""
     first = min(results.history.time[0] for results in all_results)
     last = max(results.history.time[-1] for results in all_results)
     return float(first), float(last if last > first else first + 1.0)

@@ -1,9 +1,9 @@
 """Draws the motion of results: deformed shapes at chosen times, or an animation.
 
-Each time has a panel of its own, or, with --overlay, all times of a result stand in one panel.
-Several results stand below each other, with the same limits and the same colours. Slave nodes in
-contact are marked: filled where they stick, hollow where they slide. Without -o the picture goes
-next to the first result, as JOB_motion.png; --animation alone writes no picture.
+Each time has its own panel, or, with --overlay, all times of a result share one panel. Several results are arranged
+below each other, with the same limits and the same colours. Slave nodes in contact are marked: with filled marks if
+they stick, hollow ones if they slide. Without -o the picture is written next to the first result, as JOB_motion.png;
+--animation alone writes no picture.
 """
 
 import argparse
@@ -48,7 +48,7 @@ Box = tuple[Array, Array]
 
 @dataclass(frozen=True)
 class Look:
-    """What is drawn besides the shapes."""
+    """Things that are drawn in addition to the shapes."""
 
     field: str | None = None
     """Name of the field that colours the bodies (see `stickslip.fields`)."""
@@ -65,7 +65,7 @@ class Look:
 
 
 class Scene:
-    """Frames drawn with one scale of everything."""
+    """Frames that are drawn with common scales."""
 
     def __init__(self, shown: Sequence[Shown], look: Look) -> None:
         colouring = Colouring.of(Field(look.field, look.at_nodes), shown, look.ends) if look.field else None
@@ -92,8 +92,8 @@ class Scene:
 def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = None) -> Figure:
     """A page with a panel for each frame.
 
-    Those of a single row are arranged as they fill the page best, or in `columns`; of several
-    rows each begins a new line of panels.
+    Panels of a single row are arranged so that they fill the page best, or in `columns`; if there are several rows,
+    each begins a new line of panels.
     """
     shown = [each for row in rows for each in row]
     if len(shown) > MOST:
@@ -139,7 +139,7 @@ def time_legend(shown: Sequence[Shown]) -> list[Line2D]:
 
 @style.styled
 def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figure:
-    """A page with a panel for each result, all its frames in it."""
+    """A page with a panel for each result, which shows all its frames."""
     legends = Legends(time_legend(max(rows, key=len)))
     box = window or limits([each for row in rows for each in row])
     page = Page(len(rows), box, legends, titles([each for row in rows for each in row]))
@@ -152,7 +152,7 @@ def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figur
 
 
 def check_film(path: Path) -> None:
-    """A Fault unless an animation of this name can be written."""
+    """Raises a Fault if no animation with this name can be written."""
     if path.suffix == ".gif":
         return
     if path.suffix not in FILMS:
@@ -165,7 +165,7 @@ def check_film(path: Path) -> None:
 
 
 def write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: int) -> None:
-    """Writes pictures of one size as a .gif, or through ffmpeg."""
+    """A writer of pictures of one size, as a .gif or through ffmpeg."""
     with whole(path) as draft:
         _write_film(draft, pictures, frames_per_second)
 
@@ -197,7 +197,7 @@ def _write_film(path: Path, pictures: Iterable[Image.Image], frames_per_second: 
 def pictures_of(
     page: Page, grid: Sequence[Axes], scene: Scene, rows: Sequence[Sequence[Shown]]
 ) -> Iterator[Image.Image]:
-    """A picture for each row of frames. Axes and legends are drawn once, the bodies in each."""
+    """A picture for each row of frames. Axes and legends are drawn only once; the bodies are drawn in each picture."""
     canvas = FigureCanvasAgg(page.figure)
     page.figure.set_dpi(FILM_DPI)
     canvas.draw()
@@ -234,10 +234,10 @@ PANELS = 6
 
 
 def chosen_times(results: Result, times: list[float] | None, interval: float | None, field: Field | None = None) -> Array:
-    """The given times, or multiples of an interval, or those that tell of the whole run.
+    """The given times, or multiples of an interval, or times that represent the whole run.
 
-    These are the start, the ends of the steps and the time of the largest value of the field; others between them make
-    up six.
+    The representative times are the start, the ends of the steps and the time of the largest value of the field; more
+    times between them are added up to six.
     """
     if times:
         return np.array(times)
@@ -259,7 +259,7 @@ def chosen_times(results: Result, times: list[float] | None, interval: float | N
 
 
 def step_ends(results: Result) -> list[int]:
-    """Frames at the ends of the steps; of more than ten steps some."""
+    """Frames at the ends of the steps; for more than ten steps, at some of them."""
     step, time = results.history["step"], results.history["time"]
     last = np.flatnonzero(np.diff(step, append=step[-1] + 1))
     chosen = last[:: -max(1, -(-len(last) // 10))]
@@ -267,7 +267,7 @@ def step_ends(results: Result) -> list[int]:
 
 
 def shown_at(results: Result, times: Iterable[float]) -> list[Shown]:
-    """Frames nearest to the given times, each once."""
+    """Frames nearest to the given times, without duplicates."""
     return [(results, frame) for frame in sorted({results.frames.nearest(t).index for t in times})]
 
 

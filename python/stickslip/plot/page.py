@@ -1,4 +1,4 @@
-"""Pages of panels that fill their paper: all show the same box, legends stand beside them."""
+"""Pages of panels that fill the paper: all panels show the same box, and legends stand beside them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -47,9 +47,9 @@ class Grid:
 
     @classmethod
     def fitted(cls, rows: int, columns: int, ratio: float, beside: float) -> "Grid":
-        """The largest panels of a given height over width that find room on a page.
+        """The largest panels with a given ratio of height to width that fit on a page.
 
-        `beside` is the width of what stands on their left and right.
+        `beside` is the width of the space on the left and right of the panels.
         """
         across = WIDTH - beside - COLUMN_GAP * (columns - 1)
         up = HEIGHT - TOP - BOTTOM - TITLE * rows - ROW_GAP * (rows - 1)
@@ -71,14 +71,14 @@ class Grid:
         )
 
     def corner(self, row: int, column: int) -> tuple[float, float]:
-        """Lower left corner of a panel from that of the last row's first."""
+        """Lower left corner of a panel, relative to that of the first panel in the last row."""
         above = self.rows - 1 - row
         return column * (self.width + COLUMN_GAP), above * (self.height + TITLE + ROW_GAP)
 
 
 @dataclass(frozen=True)
 class Legends:
-    """Entries and colour bar beside the panels."""
+    """Legend entries and the colour bar beside the panels."""
 
     entries: Sequence[Artist] = ()
     norm: Normalize | None = None
@@ -93,13 +93,13 @@ class Legends:
 
     @property
     def lines(self) -> list[str]:
-        """Lines of the entries' labels."""
+        """Lines of text of the labels of the entries."""
         labels = [str(entry.get_label()) for entry in self.entries]
         return [line for label in labels for line in label.split("\n")]
 
     @property
     def width(self) -> float:
-        """Room that they take beside the panels."""
+        """Space that entries and colour bar need beside the panels."""
         bar = BAR if self.norm is not None else 0.0
         return max(bar, self.column if self.entries else 0.0)
 
@@ -117,14 +117,14 @@ class Legends:
 
     @property
     def height(self) -> float:
-        """Room that they take below the panels."""
+        """Space that entries and colour bar need below the panels."""
         if self.norm is not None or not self.entries:
             return LOW_BAR if self else 0.0
         return 0.1 + LINE * -(-len(self.lines) // self.columns)
 
 
 def longest_tick(low: float, high: float) -> int:
-    """Characters of the longest tick label of an axis, with any number of ticks."""
+    """Number of characters of the longest tick label of an axis, for any number of ticks."""
     formatter = ScalarFormatter(useMathText=False)
     formatter.create_dummy_axis()
     labels = []
@@ -134,7 +134,7 @@ def longest_tick(low: float, high: float) -> int:
 
 
 class Page:
-    """A figure with a grid of panels that show the box between two corners."""
+    """Makes a figure with a grid of panels, which all show the box between two corners."""
 
     def __init__(
         self,
@@ -143,7 +143,7 @@ class Page:
         legends: Legends,
         titles: Sequence[str] = ("x", "y"),
     ) -> None:
-        """`places` is the number of panels, or rows and columns; `titles` are those of the axes."""
+        """`places` is the number of panels, or of rows and columns; `titles` holds the titles of the axes."""
         self.box = box
         self.titles = titles
         across, up = box[1] - box[0]
@@ -171,7 +171,7 @@ class Page:
             self._below(legends)
 
     def panel(self, row: int, column: int, last: bool = True) -> Axes:
-        """Axes of a panel; `last` says that none stands below it."""
+        """Axes of a panel; `last` says that no panel stands below it."""
         x, y = self.grid.corner(row, column)
         axes = self._axes(self.left + x, self.bottom + y, self.grid.width, self.grid.height)
         self.frame(axes)
@@ -193,7 +193,7 @@ class Page:
         return self.figure.add_axes(tuple(np.array((x, y, width, height)) / size))
 
     def _beside(self, legends: Legends, left: float) -> None:
-        """Entries above, the colour bar below them."""
+        """Draws the entries, and the colour bar below them."""
         top = self.height - TOP - TITLE
         if legends.entries:
             self._list(legends.entries, (left / self.width, top / self.height), 1)
@@ -208,7 +208,7 @@ class Page:
             )
 
     def _below(self, legends: Legends) -> None:
-        """The colour bar on the left, entries on the right of it."""
+        """Draws the colour bar, and the entries on the right of it."""
         left = self.left
         if legends.norm is not None:
             axes = self._axes(left, 0.4, 0.55 * self.width, 0.15)
@@ -224,7 +224,7 @@ class Page:
         self._list(legends.entries, (left / self.width, top / self.height), legends.columns)
 
     def _list(self, entries: Sequence[Artist], place: tuple[float, float], columns: int) -> None:
-        """Entries with their upper left corner at a place."""
+        """Draws entries with their upper left corner at a place."""
         if entries:
             self.figure.legend(
                 handles=entries,

@@ -34,7 +34,7 @@ CROWD = 40
 
 @dataclass(frozen=True)
 class Arrows:
-    """A vector field with one scale for all that is shown."""
+    """A vector field with one scale for everything that is shown."""
 
     name: str
     largest: float
@@ -55,7 +55,7 @@ class Arrows:
         return cls(name, largest, (largest or 1.0) / (0.1 * extent), extent / CROWD)
 
     def draw(self, axes: Axes, results: Result, frame: int) -> None:
-        """The arrows of a frame, forces at all nodes that bear them."""
+        """The arrows of a frame; forces have arrows at all nodes where they act."""
         vector = results.frames[frame][self.name]
         position = results.frames[frame].positions
         nodes = results.drawn[np.linalg.norm(vector[results.drawn], axis=1) > 0.0]
@@ -74,17 +74,17 @@ class Arrows:
         )
 
     def tips(self, results: Result, frame: int) -> Array:
-        """Where the arrows end [nodes, 2]."""
+        """Ends of the arrows [nodes, 2]."""
         vector = results.frames[frame][self.name][results.drawn]
         return results.frames[frame].positions[results.drawn] + vector / self.per_length
 
     def _thinned(self, nodes: Integers, position: Array) -> Integers:
-        """One node of each square of a lattice."""
+        """One node from each square of a lattice."""
         squares = np.floor(position[nodes] / self.spacing).astype(np.int64)
         return nodes[np.unique(squares, axis=0, return_index=True)[1]]
 
     def legend(self) -> list[Artist]:
-        """What an arrow is."""
+        """Description of the arrows for the legend."""
         label = f"{words(self.name)},\nlongest {self.largest:.3g}"
         look: dict[str, Any] = {"color": ARROW, "marker": r"$\rightarrow$", "markersize": 11, "linestyle": "none"}
         return [Line2D([], [], label=label, **look)]
@@ -122,7 +122,7 @@ def draw_shape(
 def draw_field(
     axes: Axes, results: Result, frame: int, colouring: Colouring, at: Array, bodies: PolyCollection
 ) -> None:
-    """The field in its colours, and a mark where it is largest; `at` are the positions of the vertices."""
+    """Draws the field in its colours, and a mark where it is largest; `at` holds the positions of the vertices."""
     drawing, field = results.drawing, colouring.field
     values = field.values(results, frame)
     look: dict[str, Any] = {"cmap": COLOURS, "norm": colouring.norm}
@@ -151,9 +151,10 @@ def draw_field(
 
 
 def mesh_line(axes: Axes, results: Result) -> float:
-    """Width of the lines of the mesh in points: at most a thirtieth of an edge, none below that.
+    """Width of the lines of the mesh in points: at most a thirtieth of an edge; if this is too thin, there are no
+    lines.
 
-    Lines of a fine mesh would drown the colours of its elements.
+    Thicker lines of a fine mesh would hide the colours of its elements.
     """
     left, right = axes.get_xlim()
     figure = cast(Figure, axes.figure)
@@ -163,7 +164,7 @@ def mesh_line(axes: Axes, results: Result) -> float:
 
 
 def status_legend(shown: Sequence[Shown]) -> list[Artist]:
-    """What the marks mean, of those that there are."""
+    """Legend entries for the marks that occur."""
     found = {
         int(value)
         for results, frame in shown
@@ -178,9 +179,10 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
 
 
 def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array, Array]:
-    """Lower left and upper right corner of the box that holds the deformable bodies, or all without them, with a margin.
+    """Lower left and upper right corner of the box that holds the deformable bodies, or all without them, with a
+    margin.
 
-    Corners of rigid surfaces are in it where they are near: at most AROUND sizes of the box away.
+    The box includes corners of rigid surfaces that are at most AROUND times the size of the box away.
     """
     bodies = [one.in_cells if one.cells else np.unique(one.rigid) for one, _ in shown]
     positions = [one.frames[frame].positions[nodes] for nodes, (one, frame) in zip(bodies, shown, strict=True)]
@@ -200,7 +202,7 @@ def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array,
 
 
 def draw_overlay(axes: Axes, shown: Sequence[Shown], shades: Sequence[Array]) -> None:
-    """Frames of one result in one pair of axes, each in its shade.
+    """Draws frames of one result in one pair of axes, each in its own shade.
 
     Bodies that hardly move are drawn once, grey.
     """

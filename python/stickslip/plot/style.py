@@ -1,4 +1,4 @@
-"""Look of all figures."""
+"""Common style of all figures."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ ACCOUNTS = (*COLOURS[:4], "#9acd32", "#c38d5a", "#222222", *COLOURS[4:])
 
 
 def colours(count: int) -> list[str]:
-    """So many colours that differ: those of the figures, or more of them from a colour map."""
+    """`count` different colours: those of the figures, or colours of a colour map if more are needed."""
     if count <= len(COLOURS):
         return list(COLOURS[:count])
     return [
@@ -57,14 +57,14 @@ styled = matplotlib.rc_context(LOOK)
 
 @styled
 def subplots(rows: int = 1, columns: int = 1, figsize: tuple[float, float] | None = None, **options: Any) -> tuple[Figure, Any]:
-    """A figure that no window of pyplot knows, and its axes, as in `pyplot.subplots`."""
+    """A figure that is not registered in pyplot, and its axes, as from `pyplot.subplots`."""
     figure = Figure(figsize=figsize)
     return figure, figure.subplots(rows, columns, **options)
 
 
 @styled
 def save(figure: Figure, path: Path | str, dpi: float | None = None) -> Path:
-    """Writes a figure and says so; a .png gets a palette of 256 colours, which halves its size."""
+    """Writes a figure and prints its path; a .png gets a palette of 256 colours, which halves the size of the file."""
     path, dpi = Path(path), dpi or float(LOOK["savefig.dpi"])
     if figure.get_size_inches().prod() * dpi**2 > MOST_PIXELS:
         raise Fault(f"{path} would have more than {MOST_PIXELS:.0e} pixels: lower --dpi")

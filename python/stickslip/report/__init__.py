@@ -1,6 +1,6 @@
 """The report page of a result: one HTML file that works offline (docs/report.md).
 
-`stickslip report RESULT.vtkhdf` writes it.
+`stickslip report RESULT.vtkhdf` writes this page.
 """
 
 from stickslip.report.collect import Choice

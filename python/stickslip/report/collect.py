@@ -1,4 +1,4 @@
-"""What a page shows of a result: mesh, fields of the frames, surfaces, histories, run."""
+"""Data of a result that a page shows: mesh, fields of the frames, surfaces, histories, and the record of the run."""
 
 import itertools
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ CERTIFIED = 4_000_000
 
 @dataclass(frozen=True)
 class Choice:
-    """What of a result goes into the page."""
+    """Choice of the data of a result that go into the page."""
 
     fields: tuple[str, ...] | None = None
     """Names of the fields of the frames; None for all."""
@@ -45,7 +45,7 @@ def _field_values(result: Result, name: str, frames: Integers) -> Array:
 
 
 def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
-    """Everything of a result."""
+    """All data of a result."""
     with Result(path) as result:
         frames = _chosen(len(result.frames), choice.frames)
         surfaces = _surfaces(result)
@@ -66,7 +66,7 @@ def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
 
 
 def collect_outline(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
-    """What is laid over another result: outlines in motion, pressure along surfaces, histories."""
+    """Data of a result that is laid over another one: outlines in motion, pressure along surfaces, histories."""
     with Result(path) as result:
         frames = _chosen(len(result.frames), choice.frames)
         drawing = result.drawing
@@ -147,7 +147,7 @@ def _heading(deck: str) -> str:
 
 
 def _chosen(frames: int, most: int | None) -> Integers:
-    """Indices of at most `most` frames, evenly chosen, the first and the last among them."""
+    """Indices of at most `most` frames, evenly chosen; the first and the last frame are among them."""
     if most is None or frames <= most:
         return np.arange(frames)
     return np.unique(np.rint(np.linspace(0, frames - 1, max(most, 2))).astype(np.int64))
@@ -157,7 +157,7 @@ def _chosen(frames: int, most: int | None) -> Integers:
 
 
 def _middle(result: Result) -> Array:
-    """Point that coordinates are given from, so that float32 is enough for them."""
+    """Origin of the coordinates of the page, chosen so that float32 is accurate enough for them."""
     coordinates = result.coordinates
     return 0.5 * (coordinates.min(axis=0) + coordinates.max(axis=0))
 
@@ -187,7 +187,7 @@ def _pack_mesh(result: Result, packed: Packed) -> dict[str, Any]:
 
 
 def _recovery(result: Result, packed: Packed) -> dict[str, Any]:
-    """What makes values at nodes of those of elements."""
+    """The weights that give values at nodes from values of elements."""
     recovery = result.recovery
     return {
         "places": recovery.places,
@@ -202,7 +202,7 @@ def _recovery(result: Result, packed: Packed) -> dict[str, Any]:
 def _motion(
     result: Result, frames: Integers, only: Integers | None, packed: Packed
 ) -> dict[str, Any]:
-    """Displacements [frames, 2 nodes] of all nodes or some."""
+    """Displacements [frames, 2 nodes] of all nodes or of some nodes."""
     displacement = _field_values(result, "U", frames)[:, :, :2]
     drawing = result.drawing
     ends = drawing.positions(result.coordinates)[np.concatenate([drawing.outline, drawing.inner, result.rigid])]
@@ -277,7 +277,7 @@ def _contact_nodes(result: Result) -> Integers:
 def _surfaces(result: Result) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
-    A chain that is closed begins where nothing presses it, so that what is pressed is in one piece.
+    A closed chain begins where there is no pressure, so the part under pressure is in one piece.
     """
     slave = np.zeros(len(result.coordinates), dtype=bool)
     most = np.zeros(len(result.coordinates))
@@ -309,7 +309,7 @@ def _surfaces(result: Result) -> list[dict[str, Any]]:
 
 
 def _chains(edges: Integers) -> list[list[int]]:
-    """Ways along the edges [., 2] from start to end; a closed one ends where it starts."""
+    """Chains along the edges [., 2] from start to end; a closed chain ends where it starts."""
     following: dict[int, list[int]] = {}
     for start, end in edges.tolist():
         following.setdefault(start, []).append(end)
@@ -369,7 +369,7 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
 
 
 def _pairs(result: Result, packed: Packed) -> list[dict[str, Any]]:
-    """Forces against displacements: what moves, titles, and time, displacement and force [rows, 3]."""
+    """Forces against displacements: the object that moves, titles, and time, displacement and force [rows, 3]."""
     rows = np.unique(np.linspace(0, result.rows - 1, min(result.rows, MOST_ROWS)).astype(np.int64))
     pairs = []
     for names in force_against_displacement(result):
@@ -394,7 +394,7 @@ def _columns(each: Members, shape: tuple[int, ...], axisymmetric: bool) -> list[
 
 
 def _thinned(values: Array, parts: Integers | None) -> Array:
-    """The smallest and the largest value of each part of the rows, in their order."""
+    """The smallest and the largest value of each section of the rows, in the order of the rows."""
     if parts is None:
         return values
     rows = []
@@ -409,7 +409,7 @@ def _thinned(values: Array, parts: Integers | None) -> Array:
 
 
 def _checks(result: Result) -> list[dict[str, Any]]:
-    """The largest value of every check of the increments, and where it is."""
+    """The largest value of every check of the increments, and the increment where it occurs."""
     time = result.history["time"]
     found = []
     for check in own_checks(result):
@@ -430,7 +430,7 @@ def _checks(result: Result) -> list[dict[str, Any]]:
 
 
 def _certificate(result: Result) -> str:
-    """The line of the certificate, or why there is none."""
+    """The line of the certificate, or the reason why there is none."""
     if len(result.cells) * len(result.frames) > CERTIFIED:
         return "not made for a page of this size: stickslip certify makes it"
     try:

@@ -1,13 +1,12 @@
 """Arrays as short text for a page.
 
-An array becomes whole numbers q, whose differences from row to row are small. Their bytes are
-sorted by significance, deflated and written in base64; `page/decode.js` undoes it. Three maps lead
-from values to whole numbers:
+An array is mapped to whole numbers q, whose differences from row to row are small. The bytes of these differences are
+sorted by significance, deflated and written in base64; `page/decode.js` reverses all this. Three maps lead from values
+to whole numbers:
 
-* `linear`  v = step q, the error is at most step/2;
-* `curved`  v = small sinh(fine q), the error is about fine/2 of the value, or of `small` where that
-            is more;
-* `bits`    q is the bit pattern of v as a float32.
+* `linear`: v = step q; the error is at most step/2;
+* `curved`: v = small sinh(fine q); the error is about fine/2 times the value, or times `small` if this is larger;
+* `bits`: q is the bit pattern of v as a float32.
 """
 
 import base64
@@ -30,12 +29,12 @@ ORDERS = (0, 1, 2)
 
 @dataclass
 class Packed:
-    """The blobs of a page; the description of an array names its blob."""
+    """The packed arrays (blobs) of a page; the description of an array names its blob."""
 
     blobs: list[str] = field(default_factory=list)
 
     def linear(self, values: NDArray[Any], step: float) -> dict[str, Any]:
-        """Values [rows, columns] that need an absolute accuracy; there may be no NaN."""
+        """Values [rows, columns] that need an absolute accuracy; NaN is not allowed."""
         largest = float(np.abs(values).max(initial=0.0))
         step = max(step, largest / LARGEST_WHOLE)
         whole = (
@@ -87,7 +86,7 @@ class Packed:
 
 
 def _shortest(whole: NDArray[np.int32]) -> tuple[int, NDArray[np.int32]]:
-    """The order of differences with the fewest bits, and these; sums wrap around at 2^32."""
+    """The order of differences that needs the fewest bits, and the differences; sums wrap around at 2^32."""
     candidates = [whole]
     for _ in ORDERS[1:]:
         previous = candidates[-1]

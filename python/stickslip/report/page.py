@@ -71,7 +71,7 @@ def _file(name: str) -> str:
 
 
 def info_of(path: Path) -> dict[str, Any]:
-    """What `stickslip info` says of a result: lines [name, text], warnings, and what is missing."""
+    """Output of `stickslip info` for a result: lines [name, text], warnings, and missing data."""
     try:
         done = subprocess.run(
             [str(binary()), "info", str(path)], capture_output=True, text=True, check=False

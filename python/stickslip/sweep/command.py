@@ -4,8 +4,8 @@
     stickslip sweep arm.inp --points points.csv --scheduler tcp://head:8786 -o study
     stickslip sweep arm.inp --latin-hypercube 50 --vary mu=0:0.5 --vary E=1e3:2e3 -o study
 
-The folder gets table.csv (and table.parquet), plots/ and points/, with a folder for each point. Points
-that have ended are not run again. The exit code is 1 when a point failed.
+The folder gets table.csv (and table.parquet), plots/ and points/, with a folder for each point. Points that have
+already ended are not run again. The exit code is 1 when a point failed.
 """
 
 import argparse
@@ -73,7 +73,7 @@ def memory(text: str) -> int:
 
 
 def points(arguments: argparse.Namespace) -> list[Point]:
-    """The points that the options ask for."""
+    """The points of the study that the options describe."""
     if arguments.points is not None:
         if arguments.vary or arguments.latin_hypercube:
             raise Fault("--points holds all values: it stands without --vary, --latin-hypercube")

@@ -1,4 +1,4 @@
-"""Runs the points of a study: side by side on this machine, or on a cluster of Dask distributed."""
+"""Runs the points of a study, in parallel on this machine or on a cluster of Dask distributed."""
 
 import hashlib
 import os
@@ -35,7 +35,7 @@ FAILURES = 3
 
 @dataclass(frozen=True)
 class Settings:
-    """How the points of a study are run."""
+    """Settings for running the points of a study."""
 
     scheduler: str | None = None
     """Address of a Dask scheduler, `tcp://host:8786`; without it the points run on this machine."""
@@ -60,10 +60,10 @@ def sweep(
     quantities: Iterable[str] = (),
     settings: Settings = Settings(),
 ) -> Table:
-    """Runs a deck at points, values of its parameters by name, and returns the table of the study.
+    """Runs a deck at some points (values of its parameters by name) and returns the table of the study.
 
-    `output` is a folder that all workers see. Points that have ended there are not run again. A
-    point that fails is a row with its message.
+    `output` is a folder that all workers can access. Points that have already ended in this folder are not run again. A
+    point that fails has a row with its message.
     """
     chosen = [Quantity.parse(text) for text in dict.fromkeys(quantities)]
     if not points:
@@ -95,7 +95,8 @@ def sweep(
 def _tasks(
     template: Deck, points: Sequence[Point], folder: Path, settings: Settings
 ) -> list[tuple[Task, Deck]]:
-    """The runs of a study, each with its deck. Names that a deck does not know are told before the first run."""
+    """The runs of a study, each with its deck. Unknown names of parameters and histories are reported before the first
+    run."""
     options = ("--threads", str(settings.threads), *settings.options)
     studies = []
     checked = set()
@@ -116,8 +117,8 @@ def _tasks(
 
 
 def _check_quantities(chosen: Sequence[Quantity], studies: Sequence[tuple[Task, Deck]]) -> None:
-    """A Fault where the first point with a result has no such history. Points without one are begun, up to their first
-    frame."""
+    """Raises a Fault if the first point with a result lacks a history. If no point has a result, points are run up to
+    their first frame."""
     for task, own in studies:
         has_result = task.has_ended and task.result.exists()
         with Result(task.result) if has_result else first_frame(own, task.given) as result:
@@ -129,7 +130,8 @@ def _check_quantities(chosen: Sequence[Quantity], studies: Sequence[tuple[Task, 
 
 
 def _check_names(template: Deck, values: Point) -> None:
-    """Parameters that the deck does not know, and those without a value, are Faults; other faults of it are rows."""
+    """Parameters that the deck does not know, and parameters without a value, raise Faults; other faults of the deck
+    become rows of the table."""
     try:
         check(template, values)
     except DeckRejected as rejected:
@@ -139,18 +141,18 @@ def _check_names(template: Deck, values: Point) -> None:
 
 
 class Runs(Protocol):
-    """Where the points run."""
+    """Base class of the places where points run."""
 
     def submit(self, task: Task) -> Any:
-        """Begins a run; what is returned has the `exception` with which it ended."""
+        """Begins a run; the returned object has the `exception` with which the run ended."""
 
     def ended(self, futures: Iterable[Any]) -> Iterator[Any]:
-        """What was submitted, in the order in which it ends."""
+        """The submitted runs, in the order in which they end."""
 
 
 @contextmanager
 def _runs(settings: Settings, count: int) -> Iterator[Runs]:
-    """This machine, or the chosen cluster."""
+    """The place to run: this machine, or the chosen cluster."""
     if settings.scheduler is not None:
         with _cluster(settings.scheduler) as client:
             yield _OnCluster(client)
@@ -173,7 +175,7 @@ def _runs(settings: Settings, count: int) -> Iterator[Runs]:
 
 @dataclass(frozen=True)
 class _OnThreads:
-    """Threads that wait for the program: nothing listens on a port."""
+    """Threads of this process that wait for the program; no port is opened."""
 
     pool: ThreadPoolExecutor
 
@@ -186,7 +188,7 @@ class _OnThreads:
 
 @dataclass(frozen=True)
 class _OnCluster:
-    """Workers of a Dask scheduler."""
+    """Runs points on the workers of a Dask scheduler."""
 
     client: "Client"
 
@@ -217,7 +219,7 @@ def _cluster(scheduler: str) -> "Iterator[Client]":
 
 
 def _run_all(runs: Runs, tasks: Sequence[Task], settings: Settings) -> dict[str, str]:
-    """Runs the tasks. Returns the reason for each task that has no row, by its name."""
+    """Runs the tasks. Returns, by name, the reason for each task that has no row."""
     start = time.monotonic()
     futures: dict[Any, Task] = {runs.submit(task): task for task in tasks}
     lost = {}
@@ -246,7 +248,7 @@ def duration(seconds: float) -> str:
 
 
 def told_on_screen(text: str) -> None:
-    """Writes how far a study is: over and over into one line of a terminal, else line by line."""
+    """Writes the progress of a study: in a terminal into one line, which is overwritten, else line by line."""
     if sys.stderr.isatty():
         print(f"\r{text:<70}", end="", file=sys.stderr, flush=True)
     else:

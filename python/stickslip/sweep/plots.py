@@ -1,4 +1,4 @@
-"""Pictures of a study: histories of all points on top of each other, numbers against parameters."""
+"""Pictures of a study: histories of all points on top of each other, and numbers against parameters."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -28,7 +28,7 @@ SHADES = ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.0, 0.88, 2
 def draw_all(table: Table, folder: Path | str, colour: str | None = None) -> Iterator[Path]:
     """Writes a picture of each history, and of each number against each parameter that varies.
 
-    Curves are coloured by a parameter, the first that varies where none is chosen.
+    Curves are coloured by a parameter; the default is the first parameter that varies.
     """
     varying = [name for name in table.parameters if len(set(table.column(name))) > 1]
     colour = colour or [*varying, table.parameters[0]][0]
@@ -45,7 +45,7 @@ def draw_all(table: Table, folder: Path | str, colour: str | None = None) -> Ite
 
 
 def histories(table: Table, quantity: Quantity, by: str) -> Figure | None:
-    """A history of all points against the time, coloured by a parameter; None without any."""
+    """A picture of a history of all points against the time, coloured by a parameter; None if no point has it."""
     figure, axes = _axes("time", quantity.history)
     values = table.column(by)
     for row, colour in zip(table.rows, _colours(values)):
@@ -68,9 +68,10 @@ def histories(table: Table, quantity: Quantity, by: str) -> Figure | None:
 def against(
     table: Table, quantity: Quantity, name: str, others: Sequence[str], by: str
 ) -> Figure | None:
-    """A number against a parameter: one line for each combination of the others, coloured by one of them.
+    """A picture of a number against a parameter, with one line for each combination of the other parameters, coloured
+    by one of them.
 
-    Points that lie on no lattice make no lines. None where there is no number.
+    Points that do not lie on a lattice are not joined by lines. The picture is None if no point has the number.
     """
     if np.isnan(table.column(str(quantity))).all():
         return None
@@ -104,7 +105,7 @@ def _axes(across: str, up: str) -> tuple[Figure, Axes]:
 
 
 def _legend(axes: Axes, by: str, values: list[Any]) -> None:
-    """A legend beside the axes if it is short, else the scale of the colours, where these are numbers."""
+    """A legend beside the axes if it is short; else the scale of the colours, if they represent numbers."""
     if 1 < len(axes.lines) <= MOST:
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
     elif len(axes.lines) > MOST and not any(isinstance(value, str) for value in values):
@@ -113,7 +114,7 @@ def _legend(axes: Axes, by: str, values: list[Any]) -> None:
 
 
 def _colours(values: list[Any]) -> list[Any]:
-    """A colour for each value: numbers on a scale, texts one after the other."""
+    """A colour for each value: numbers are placed on a colour scale, texts get one colour after the other."""
     if any(isinstance(value, str) for value in values):
         different = sorted(map(str, set(values)))
         return [SHADES(different.index(str(value)) / len(different)) for value in values]

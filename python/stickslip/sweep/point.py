@@ -1,7 +1,7 @@
 """One point of a study, as a worker of the cluster runs it.
 
-A point has a folder named by its values. A run has a folder of its own beside it, which gets the point's
-name when the run has ended: what a killed worker leaves is never taken for a result.
+A point has a folder whose name gives its values. A run has its own folder, which gets the name of the point when the
+run has ended, so files of a killed worker are never mistaken for a result.
 """
 
 import glob
@@ -60,17 +60,17 @@ class Task:
 
     @property
     def result(self) -> Path:
-        """The result file, where there is one."""
+        """The result file, if there is one."""
         return self.folder / self.relative_result
 
     @property
     def relative_result(self) -> str:
-        """Its path from the folder of the study."""
+        """Path of the result file, relative to the folder of the study."""
         return f"points/{self.name}/{self.name}.vtkhdf"
 
     def row(self) -> dict[str, Any] | None:
-        """What is known of the point if it has ended. That of another deck, of other options or of another program
-        does not count."""
+        """The row of a point that has ended. The row of another deck, other options or another program does not
+        count."""
         try:
             row = json.loads((self.place / ROW).read_text())
         except (OSError, ValueError):
@@ -79,19 +79,19 @@ class Task:
 
     @property
     def has_ended(self) -> bool:
-        """Whether it need not run again."""
+        """Whether the point need not run again."""
         row = self.row()
         return row is not None and row["exit_status"] in ENDED
 
 
 def identity(deck: Deck, values: Point, options: Sequence[str]) -> str:
-    """What changes with the deck, its parameters, the options that change the result, and the program."""
+    """A text that changes with the deck, its parameters, the options that change the result, and the program."""
     text = "\n".join([version(), *options, *settings(values), deck.text()])
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 def solve(task: Task) -> str:
-    """Runs a point; what goes wrong with it stands in its row. Returns the point's name."""
+    """Runs a point; errors are recorded in its row. Returns the name of the point."""
     own = task.place.with_name(f".{task.name}~{uuid.uuid4().hex[:8]}")
     own.mkdir(parents=True)
     try:
@@ -137,7 +137,7 @@ def _run(task: Task, folder: Path) -> dict[str, Any]:
 
 
 def _said(command: list[str]) -> tuple[int, str]:
-    """Runs a command; its exit code and what it writes to its standard error."""
+    """Runs a command; returns its exit code and its standard error output."""
     quiet = subprocess.DEVNULL
     with subprocess.Popen(
         command, stdin=quiet, stdout=quiet, stderr=subprocess.PIPE, text=True, errors="replace"
@@ -151,13 +151,13 @@ def _said(command: list[str]) -> tuple[int, str]:
 
 
 def stop_runs() -> None:
-    """Ends the runs of this process in order: each writes its last good state."""
+    """Ends all runs of this process in order, so each writes its last good state."""
     for process in list(RUNNING):
         process.terminate()
 
 
 def _bounded(command: list[str], memory: int | None) -> list[str]:
-    """The command with bounded memory, and on Linux such that it ends when the worker is killed."""
+    """The command with bounded memory; on Linux it also ends when the worker is killed."""
     if memory is not None:
         command = ["sh", "-c", 'ulimit -v "$0" && exec "$@"', str(memory // 1024), *command]
     if os.name == "posix" and (setpriv := shutil.which("setpriv")):

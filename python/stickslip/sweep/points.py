@@ -25,14 +25,15 @@ VARIED = re.compile(r"(?P<name>[A-Za-z]\w*)=(?P<values>.+)")
 
 
 def product(values: Mapping[str, Sequence[Value]]) -> list[Point]:
-    """All combinations; the last parameter changes first."""
+    """All combinations of the values of the parameters; the last parameter changes fastest."""
     return [dict(zip(values, chosen)) for chosen in itertools.product(*values.values())]
 
 
 def latin_hypercube(
     ranges: Mapping[str, tuple[float, float]], count: int, seed: int = 0
 ) -> list[Point]:
-    """So many points of which each parameter has one in each of `count` equal parts of its range.
+    """A Latin hypercube of `count` points: for each parameter, each of `count` equal parts of its range contains one
+    point.
 
     M. D. McKay, R. J. Beckman, W. J. Conover, Technometrics 21 (1979) 239-245.
     """
@@ -67,7 +68,7 @@ def read_points(path: Path | str) -> list[Point]:
 
 
 def check_points(points: Sequence[Point]) -> None:
-    """A Fault unless all points have values of the same parameters that a deck can take."""
+    """Raises a Fault unless all points have the same parameters, with values that a deck accepts."""
     for values in points:
         if values.keys() != points[0].keys():
             names = ", ".join(values), ", ".join(points[0])
@@ -78,7 +79,7 @@ def check_points(points: Sequence[Point]) -> None:
 
 
 def point_name(values: Point) -> str:
-    """The name of a point: its values, as far as they can stand in the name of a folder."""
+    """The name of a point: its values, as far as they can be part of the name of a folder."""
     text = "_".join(f"{name}={short(value)}" for name, value in values.items())
     name = re.sub(r"[^\w.+=-]", "-", text)
     if name == text and len(name) <= LONGEST:
@@ -87,7 +88,7 @@ def point_name(values: Point) -> str:
 
 
 def short(value: Value) -> str:
-    """A value with no more digits than tell it from all others."""
+    """A value with as few digits as distinguish it from all others."""
     if not isinstance(value, float):
         return str(value)
     text = f"{value:.12g}"
@@ -95,7 +96,7 @@ def short(value: Value) -> str:
 
 
 def varied(text: str) -> tuple[str, list[Value]]:
-    """`mu=0:0.5:11` (from, to, how many), `mu=0,0.2,0.4` or `file=a.inc,b.inc`."""
+    """Reads `mu=0:0.5:11` (from, to, number of values), `mu=0,0.2,0.4` or `file=a.inc,b.inc`."""
     name, values = _split(text)
     parts = values.split(":")
     if len(parts) == 1:
@@ -111,7 +112,7 @@ def varied(text: str) -> tuple[str, list[Value]]:
 
 
 def ranged(text: str) -> tuple[str, tuple[float, float]]:
-    """`mu=0:0.5`, a range of a Latin hypercube."""
+    """Reads `mu=0:0.5`, a range of a Latin hypercube."""
     name, values = _split(text)
     try:
         low, high = map(float, values.split(":"))
@@ -128,14 +129,14 @@ def _split(text: str) -> tuple[str, str]:
 
 
 def _values(texts: Sequence[str]) -> list[Value]:
-    """Numbers, or texts as they stand where one of them is no number."""
+    """The values as numbers, or all of them as texts if one is not a number."""
     if all(map(NUMBER.fullmatch, texts)):
         return [float(re.sub("[dD]", "e", text)) for text in texts]
     return list(texts)
 
 
 def _fault(text: str) -> str:
-    """What is wrong with the text of a value; empty where a deck can take it."""
+    """The fault of the text of a value; empty if a deck accepts it."""
     if not text.strip():
         return "a value is missing"
     if DECIMAL_COMMA.fullmatch(text.strip()):

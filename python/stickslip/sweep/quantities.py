@@ -1,4 +1,4 @@
-"""Numbers that a study keeps of each run: a history and what is taken of it, `nodes/TIP/U:2@min`."""
+"""Numbers that a study keeps of each run: a reduction of a history, such as `nodes/TIP/U:2@min`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ USUAL = ("kinetic", "strain", "external_work", "friction_dissipation")
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a run."""
+    """A number of a run: a history and its reduction."""
 
     history: str
     """Name of a history with one component (`Result.quantity`)."""
@@ -32,7 +32,7 @@ class Quantity:
 
     @classmethod
     def parse(cls, text: str) -> "Quantity":
-        """`HISTORY@REDUCTION`; without the latter the last value is taken."""
+        """Reads `HISTORY@REDUCTION`; the default reduction is the last value."""
         history, _, reduction = text.partition("@")
         reduction = reduction or "last"
         if reduction not in REDUCTIONS:
@@ -43,7 +43,7 @@ class Quantity:
         return f"{self.history}@{self.reduction}"
 
     def series(self, result: Result) -> Array:
-        """The history [I]."""
+        """The values [I] of the history."""
         values = result.quantity(self.history)
         if values.ndim > 1:
             raise Fault(f"{self.history} is a vector: say which component, as {self.history}:1")
@@ -55,5 +55,5 @@ class Quantity:
 
 
 def usual() -> list[Quantity]:
-    """What is kept when nothing is chosen."""
+    """The numbers that are kept by default."""
     return [Quantity(f"energy/{name}", "last") for name in USUAL]

@@ -1,4 +1,4 @@
-"""The outcome of a study: one row for each point, as CSV and Parquet."""
+"""The table of a study, with one row for each point, as CSV and Parquet."""
 
 import csv
 from collections.abc import Mapping, Sequence
@@ -38,7 +38,7 @@ class Table:
     def of(
         cls, folder: Path, tasks: Sequence[Task], lost: Mapping[str, str], quantities: list[Quantity]
     ) -> "Table":
-        """Reads what the runs have left. `lost` tells why there is no row for some."""
+        """Reads the rows that the runs have written. `lost` gives the reasons for points without a row."""
         rows = [_row(task, lost, quantities) for task in tasks]
         return cls(list(tasks[0].values), quantities, rows, folder)
 
@@ -57,7 +57,7 @@ class Table:
         return [row[name] for row in self.rows]
 
     def write(self, folder: Path | str) -> list[Path]:
-        """Writes `table.csv`, and `table.parquet` where the package pyarrow is installed."""
+        """Writes `table.csv`, and `table.parquet` if the package pyarrow is installed."""
         path = Path(folder) / TABLE
         with whole(path) as draft, draft.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, self.columns)
@@ -76,7 +76,7 @@ class Table:
 
 
 def columns(parameters: Sequence[str], quantities: Sequence[Quantity]) -> list[str]:
-    """Names of the columns of a table; a Fault where a parameter has the name of another one."""
+    """Names of the columns of a table; a parameter with the name of another column raises a Fault."""
     own = [*KNOWN, *map(str, quantities), "result"]
     if same := [name for name in parameters if name in own]:
         raise Fault(f"the table has a column {same[0]} of its own: give the parameter another name")

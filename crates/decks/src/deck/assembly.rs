@@ -1,5 +1,5 @@
-//! Decks with parts and an assembly made flat: every instance gets the cards of its part, whose
-//! spans name the instance. What a name or a number means in an instance is left to the reader.
+//! Makes decks with parts and an assembly flat: every instance gets the cards of its part, whose spans name the
+//! instance. The reader (`crate::reader`) decides what a name or a number means in an instance.
 
 use super::card::{Card, Instance, Placement};
 use super::collect::Deck;
@@ -53,7 +53,7 @@ pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagno
     flat
 }
 
-/// Number of an instance and its part (index); zero and none of other cards.
+/// Number of an instance and index of its part; zero and `None` for cards outside instances.
 #[derive(Default)]
 struct Copy {
     instance: u32,
@@ -86,7 +86,7 @@ fn instances(
     all
 }
 
-/// The name of an instance; reports one that is missing or taken.
+/// Name of an instance; a name that is missing, or that another instance has, is reported.
 fn instance_name(head: &Card, flat: &Deck, d: &mut Diagnostics) -> Option<Name> {
     let text = head.required("NAME", d)?;
     let name = text.name(d)?;
@@ -98,7 +98,7 @@ fn instance_name(head: &Card, flat: &Deck, d: &mut Diagnostics) -> Option<Name> 
     Some(name)
 }
 
-/// The part of an instance; reports one that is not defined.
+/// Part of an instance; a part that is not defined is reported.
 fn part_of(head: &Card, parts: &[Part], flat: &Deck, d: &mut Diagnostics) -> Option<usize> {
     let text = head.required("PART", d)?;
     let key = text.name_key();
@@ -127,7 +127,7 @@ fn undefined<'n>(
     };
 }
 
-/// The card with its rows in the instance that its parameter names.
+/// The card with its rows read in the instance that its parameter INSTANCE names.
 fn scoped(card: Card, flat: &Deck, d: &mut Diagnostics) -> Card {
     let Some(text) = card.value("INSTANCE") else {
         return card;
@@ -141,7 +141,7 @@ fn scoped(card: Card, flat: &Deck, d: &mut Diagnostics) -> Card {
     }
 }
 
-/// Reports sets of instances in a deck that has none.
+/// Reports sets of instances in a deck that has no instances.
 fn without_assembly(mut deck: Deck, d: &mut Diagnostics) -> Deck {
     let sets = (deck.cards.iter()).filter(|card| ["NSET", "ELSET"].contains(&card.keyword.name));
     let mut incomplete = deck.incomplete;
@@ -157,7 +157,7 @@ fn without_assembly(mut deck: Deck, d: &mut Diagnostics) -> Deck {
 
 /// A part with its cards.
 pub(super) struct Part {
-    /// Its name, unless that cannot be read.
+    /// Name of the part, unless it cannot be read.
     pub name: Option<Name>,
     /// `*PART`.
     pub head: Card,
@@ -173,19 +173,20 @@ pub(super) enum Item {
     Instance(Card, Vec<Card>),
 }
 
-/// The cards of a deck by where they stand.
+/// The cards of a deck, sorted by the part, the instance or the assembly in which they stand.
 pub(super) struct Structure {
     pub parts: Vec<Part>,
     pub items: Vec<Item>,
     /// The level of the next card.
     level: Level,
     has_assembly: bool,
-    /// Whether the last card is reported to be out of place: one of several in a row is.
+    /// Whether the last card is reported to be out of place: of several such cards in a row, only the first is
+    /// reported.
     misplaced: bool,
 }
 
 impl Structure {
-    /// Sorts cards; reports those out of place and what is not closed.
+    /// Sorts cards; reports cards that are out of place, and parts, instances and assemblies without an end.
     pub fn new(cards: Vec<Card>, d: &mut Diagnostics) -> Structure {
         let mut structure = Structure {
             parts: Vec::new(),
@@ -263,7 +264,7 @@ impl Structure {
         self.items.push(Item::Instance(head, Vec::new()));
     }
 
-    /// The end of `level`, behind which cards belong to `outer`.
+    /// Ends `level`; the cards behind it belong to `outer`.
     fn end(&mut self, level: Level, outer: Level, card: &Card, d: &mut Diagnostics) {
         if self.level == Level::Instance && level == Level::Assembly {
             report_open(self.level, card.span, d);
@@ -309,7 +310,7 @@ fn head(level: Level) -> Option<&'static str> {
     }
 }
 
-/// Whether a card may stand here, as far as parts and the assembly decide: the order of model and steps is not looked at.
+/// Whether a card may stand here as far as parts and the assembly decide; the order of model and steps is not checked.
 fn takes(level: Level, card: &Card) -> bool {
     if card.keyword.status != Status::Read {
         return true;
@@ -322,7 +323,7 @@ fn takes(level: Level, card: &Card) -> bool {
     }
 }
 
-/// Where a card of these levels belongs.
+/// Place in the deck where a card of these levels belongs, in words.
 fn advice(levels: Levels) -> &'static str {
     if levels.has(Level::Part) && !levels.has(Level::Assembly) {
         "put it between *PART and *END PART"
@@ -335,7 +336,7 @@ fn advice(levels: Levels) -> &'static str {
     }
 }
 
-/// Reports a card that cannot stand here.
+/// Reports a card that cannot stand at its level.
 fn report(level: Level, card: &Card, d: &mut Diagnostics) {
     let place = match level {
         Level::Part => "in a part",
@@ -357,11 +358,11 @@ pub(super) fn report_open(level: Level, span: Span, d: &mut Diagnostics) {
     }
 }
 
-/// Largest deviation of the axis of a rotation from the normal of the plane, as a part of its
-/// length: numbers of a deck have six digits or more.
+/// Largest deviation of the axis of a rotation from the normal of the plane, relative to the length of the axis:
+/// numbers of a deck have six digits or more.
 const TILT: f64 = 1e-6;
 
-/// Reads where an instance is; reports what leads out of the plane.
+/// Reads the position of an instance; reports a position out of the plane.
 pub(super) fn placement(card: &Card, d: &mut Diagnostics) -> Placement {
     let mut rows = card.rows.iter();
     let translation = rows.next().map(|row| translation(row, d));
@@ -376,7 +377,7 @@ pub(super) fn placement(card: &Card, d: &mut Diagnostics) -> Placement {
     }
 }
 
-/// `tx, ty, tz`
+/// Translation of an instance, `tx, ty, tz`.
 fn translation(row: Line, d: &mut Diagnostics) -> [f64; 2] {
     row.at_most(3, d);
     let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, d).unwrap_or(0.0));
@@ -387,7 +388,7 @@ fn translation(row: Line, d: &mut Diagnostics) -> [f64; 2] {
     [x, y]
 }
 
-/// `x1, y1, z1, x2, y2, z2, angle`: centre, and cosine and sine of the angle.
+/// Rotation of an instance, `x1, y1, z1, x2, y2, z2, angle`: its centre, and cosine and sine of its angle.
 fn rotation(row: Line, d: &mut Diagnostics) -> Option<([f64; 2], [f64; 2])> {
     row.at_most(7, d);
     let point = |first: usize, d: &mut Diagnostics| {

@@ -1,5 +1,5 @@
-//! Cards with their parameters and data lines, and typed access to the parameters; a wrong or missing
-//! value is reported with its place. Instances of parts, which the cards of parts are copied to.
+//! Cards with their parameters and data lines, and typed access to the parameters; a wrong or missing value is reported
+//! with its place. Instances of parts: the cards of a part are copied to its instances.
 
 use super::keywords::{Data, Keyword};
 use super::lines::{Line, Lines};
@@ -14,13 +14,13 @@ use std::sync::Arc;
 pub struct Card {
     /// The keyword.
     pub keyword: &'static Keyword,
-    /// Place of the keyword.
+    /// Place of the keyword in the text.
     pub span: Span,
     /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
-    /// Whether a deck adds it to the model of the job that it goes on from.
+    /// Whether the deck of a later job adds this card to the model of the job that it continues.
     pub added: bool,
-    /// Its data lines.
+    /// Data lines of the card.
     pub rows: DataLines,
     pub(crate) params: Vec<Param>,
 }
@@ -28,9 +28,9 @@ pub struct Card {
 /// A parameter of a keyword line.
 #[derive(Debug, Clone)]
 pub struct Param {
-    /// Its name in full.
+    /// Name of the parameter in full.
     pub name: &'static str,
-    /// Place of the whole parameter.
+    /// Place of the whole parameter in the text.
     pub span: Span,
     pub(crate) value: Option<(String, Span)>,
     pub(crate) choice: Option<&'static str>,
@@ -44,7 +44,7 @@ impl Card {
         format!("*{}", self.keyword.name)
     }
 
-    /// The same card, its names and numbers being those of an instance of a part.
+    /// The same card, with its names and numbers read as those of an instance of a part.
     pub(crate) fn in_instance(mut self, instance: u32) -> Card {
         self.span.instance = instance;
         for param in &mut self.params {
@@ -56,7 +56,7 @@ impl Card {
         self.with_rows_in(instance)
     }
 
-    /// The same card, the names and numbers in its rows being those of an instance of a part.
+    /// The same card, with the names and numbers in its rows read as those of an instance of a part.
     pub(crate) fn with_rows_in(mut self, instance: u32) -> Card {
         self.rows.instance = instance;
         self
@@ -94,7 +94,7 @@ impl Card {
         self.value(name)
     }
 
-    /// The full word that a parameter has as its value.
+    /// Value of a parameter that is chosen from a list of words, as the full word.
     pub fn choice(&self, name: &str) -> Option<&'static str> {
         self.param(name).and_then(|param| param.choice)
     }
@@ -109,7 +109,7 @@ impl Card {
         self.value(name).and_then(|value| value.integer(d))
     }
 
-    /// Takes parameters and data lines as read: what is left out of the card is told.
+    /// Marks all parameters and data lines as read: another message says that the card is left out.
     pub fn leave_out(&self) {
         self.params.iter().for_each(|param| param.used.set(true));
         self.rows.read.set(ALL_ROWS);
@@ -136,7 +136,7 @@ impl Card {
         }
     }
 
-    /// Whether a parameter has a word that holds without it too.
+    /// Whether the value of a parameter is its default, so that leaving the parameter out changes nothing.
     fn holds_anyway(&self, param: &Param) -> bool {
         let known = self.keyword.parameter(param.name);
         let mut words = known.map_or(&[][..], |known| known.values()).iter();
@@ -144,28 +144,28 @@ impl Card {
     }
 }
 
-/// The data lines of a card: blocks of the texts of its files, cut into lines and fields when they are
-/// asked for. They count the rows that have been.
+/// Data lines of a card: blocks of the texts of its files, cut into lines and fields on demand. The rows that the
+/// reader has asked for are counted.
 #[derive(Debug, Clone, Default)]
 pub struct DataLines {
     blocks: Vec<LineBlock>,
     instance: u32,
-    /// Number of rows from the first one to the last that was asked for; [`ALL_ROWS`] where all were.
+    /// Number of rows from the first one to the last one that the reader has asked for; [`ALL_ROWS`] for all rows.
     read: Cell<usize>,
 }
 
-/// More than the rows of any card.
+/// A number larger than the number of rows of any card.
 const ALL_ROWS: usize = usize::MAX;
 
-/// Lines one after the other in a file, among which are no keyword lines.
+/// A block of consecutive lines of a file without a keyword line among them.
 #[derive(Debug, Clone)]
 struct LineBlock {
     file: FileId,
     /// Text of the whole file.
     source: Arc<String>,
-    /// Bytes of the lines.
+    /// Range of the bytes of the lines.
     bytes: Range<usize>,
-    /// Number of the line before them.
+    /// Number of the line before the block.
     before: u32,
 }
 
@@ -191,7 +191,7 @@ impl DataLines {
         })
     }
 
-    /// Whether there are none.
+    /// Whether the card has no data lines.
     pub fn is_empty(&self) -> bool {
         self.lines().flat_map(Lines::data).next().is_none()
     }
@@ -220,7 +220,7 @@ impl DataLines {
         rows.chain(end)
     }
 
-    /// Number of lines, not all of which may hold a row.
+    /// Number of lines; blank lines and comments among them hold no row.
     pub fn line_count(&self) -> usize {
         self.lines().map(|lines| lines.count_lines() as usize).sum()
     }
@@ -229,9 +229,9 @@ impl DataLines {
 /// An instance of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instance {
-    /// Its name.
+    /// Name of the instance.
     pub name: Name,
-    /// Where its nodes are.
+    /// Placement of the nodes of the instance.
     pub placement: Placement,
 }
 
@@ -245,7 +245,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Where a point of the part is (length): `c + R (x + t - c)`.
+    /// Place of a point of the part in the instance (length): `c + R (x + t - c)`.
     pub fn of(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = [x + self.translation[0], y + self.translation[1]];
         let Some(([a, b], [cosine, sine])) = self.rotation else {
@@ -255,7 +255,7 @@ impl Placement {
         [a + cosine * x - sine * y, b + sine * x + cosine * y]
     }
 
-    /// Where a direction of the part points: `R n`.
+    /// Direction of the part in the instance: `R n`.
     pub fn turn(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         match self.rotation {
             Some((_, [cosine, sine])) => [cosine * x - sine * y, sine * x + cosine * y],

@@ -1,5 +1,6 @@
-//! Whether a deck is the one that a checkpoint is of: the first field that differs, letter by letter and row by row.
-//! What a field means is the keyword's affair: `1E1` and `10.` are one number, but two names.
+//! Compares a deck with the deck of a checkpoint, letter by letter and row by row, and finds the first field that
+//! differs. Fields are compared as text, because their meaning depends on the keyword: `1E1` and `10.` are one number,
+//! but two names.
 
 use super::lines::{Line, LineKind, Lines};
 use super::text::Text;
@@ -9,7 +10,7 @@ use crate::diagnostics::{Code, Diagnostic, FileId, Sources, Span};
 struct CardField<'a> {
     card: &'a str,
     field: Text<'a>,
-    /// Whether its row begins with it.
+    /// Whether the field is the first one of its row.
     begins: bool,
 }
 
@@ -19,7 +20,7 @@ impl CardField<'_> {
     }
 }
 
-/// The fields of a text in their order, without comments and without the cards that may change.
+/// The fields of a text in their order, without comments and without the cards that may change (`*RESTART`).
 fn entries(file: FileId, text: &str) -> impl Iterator<Item = CardField<'_>> {
     let is_said = |line: &Line| !matches!(line.kind(), LineKind::Blank | LineKind::Comment);
     let lines = Lines::new(file, text).filter(is_said);
@@ -44,7 +45,7 @@ fn entries(file: FileId, text: &str) -> impl Iterator<Item = CardField<'_>> {
     })
 }
 
-/// The first change of a deck, file by file, against earlier texts with their names.
+/// The first difference between a deck and its earlier texts, which are given with their names, file by file.
 pub fn first_change(earlier: &[(String, String)], sources: &Sources) -> Option<Diagnostic> {
     for (index, file) in sources.files().iter().enumerate() {
         let id = FileId(index as u32);

@@ -1,5 +1,5 @@
-//! Files of a deck: reading them with the files that they include, cutting them into logical lines,
-//! and collecting these into cards. Cards with a reported error are left out.
+//! Reads the files of a deck with the files that they include, cuts them into logical lines, and collects the lines
+//! into cards. Cards with a reported error are left out.
 
 use super::card::{Card, DataLines, Instance};
 use super::content::Content;
@@ -20,17 +20,17 @@ use std::sync::Arc;
 /// All cards of a deck.
 #[derive(Debug, Clone, Default)]
 pub struct Deck {
-    /// Cards whose keyword is known, in order, included files in their place.
+    /// Cards with a known keyword in the order of the deck; the cards of an included file stand in its place.
     pub cards: Vec<Card>,
-    /// Whether a file is missing, which is reported: it might define any name.
+    /// Whether a file is missing, which is reported: the missing file might define any name.
     pub incomplete: bool,
     /// Whether a card is left out because of a reported error.
     pub dropped: bool,
-    /// Keys of the names that the cards left out may define.
+    /// Keys of names that may be defined by cards that are left out.
     pub suspects: HashSet<String>,
-    /// Instances of parts; spans number them from 1.
+    /// Instances of parts; a span refers to an instance by its number, from 1.
     pub instances: Vec<Instance>,
-    /// Whether nobody waits for the deck any longer.
+    /// Asked whether the reading has been cancelled.
     pub interrupt: Interrupt,
 }
 
@@ -58,10 +58,10 @@ impl Deck {
 /// Deepest nesting of included files.
 const DEEPEST: usize = 20;
 
-/// Most files of one deck.
+/// Largest number of files of one deck.
 const MOST_FILES: usize = 1000;
 
-/// Cards of the model that may stand in a deck that goes on from an earlier job.
+/// Cards of the model that may stand in the deck of a job that continues an earlier one.
 const ADDED: [&str; 8] = [
     "HEADING",
     "AMPLITUDE",
@@ -73,7 +73,7 @@ const ADDED: [&str; 8] = [
     "RESTART",
 ];
 
-/// Longest line that other codes read.
+/// Length of the longest line that other codes read.
 const LONGEST_USUAL_LINE: usize = 256;
 
 /// Reads a deck and the files it includes.
@@ -91,7 +91,7 @@ pub(super) fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> D
     }
 }
 
-/// Reads a deck from text; it cannot include files.
+/// Reads a deck from text, which cannot include files.
 pub(super) fn parse_str(
     name: &str,
     text: &str,
@@ -145,9 +145,9 @@ fn collect(
 
 /// A file being read.
 struct OpenFile {
-    /// Its canonical path, the same for all paths to it.
+    /// Canonical path of the file, which is the same for all paths to it.
     identity: PathBuf,
-    /// Its folder.
+    /// Folder of the file.
     folder: PathBuf,
 }
 
@@ -160,18 +160,18 @@ impl OpenFile {
     }
 }
 
-/// What happens to data lines.
+/// What happens to the data lines that come next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowRule {
-    /// No keyword stands before them.
+    /// No keyword stands before the data lines.
     Stray,
-    /// They belong to the last card.
+    /// The data lines belong to the last card.
     Keep,
-    /// They define parameters.
+    /// The data lines define parameters.
     Define,
-    /// They are left out.
+    /// The data lines are left out.
     Skip,
-    /// The last card takes none.
+    /// The last card has no data lines by definition, so data lines are an error.
     Refuse,
 }
 
@@ -185,17 +185,16 @@ struct Collector<'a> {
     /// The files being read, outermost first.
     open: Vec<OpenFile>,
     parameters: Parameters,
-    /// The deck that the one being read goes on from.
+    /// The deck of the earlier job that the deck being read continues.
     earlier: Option<Box<EarlierDeck>>,
-    /// Texts of the earlier deck that is being read, by their names.
+    /// Texts of the files of the earlier deck that is being read, by their names.
     earlier_files: Vec<(String, String)>,
-    /// The cards of the steps of the earlier deck, and where its cards end.
+    /// Range of the cards of the steps of the earlier deck; it ends where the cards of that deck end.
     earlier_steps: Option<Range<usize>>,
 }
 
 impl Collector<'_> {
-    /// Reads the lines of a file, which may hold data lines only; reports content that is not text of a
-    /// deck.
+    /// Reads the lines of a file, which may hold data lines only; reports a file that is not the text of a deck.
     fn content(
         &mut self,
         name: &str,
@@ -276,7 +275,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Reports the first of the lines.
+    /// Reports the first one of some lines.
     fn refuse(&mut self, lines: Lines, message: String) {
         if let Some(line) = lines.data().next() {
             self.d.error(Code::StrayData, line.span(), message);
@@ -284,7 +283,7 @@ impl Collector<'_> {
         self.rows = RowRule::Skip;
     }
 
-    /// Reports what other codes may not read of a line.
+    /// Reports parts of a line that other codes may not read.
     fn remark_on_form(&mut self, line: Line) {
         if line.text.chars().count() > LONGEST_USUAL_LINE {
             let message = "a line of more than 256 characters";
@@ -304,8 +303,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Adds a keyword line with its continuation lines, which are taken from `rest`, and reads the file
-    /// that it names.
+    /// Adds a keyword line with its continuation linesfrom `rest`, and reads the file that it names.
     fn keyword_line<'l>(&mut self, line: Line<'l>, rest: &mut Lines<'l>) {
         let mut pieces = Vec::new();
         let lines = continued(line, rest);
@@ -391,7 +389,7 @@ impl Collector<'_> {
         });
     }
 
-    /// Leaves out a card with a reported error, and the names that it defines.
+    /// Leaves out a card with a reported error; records the names that the card defines.
     fn drop_card(&mut self, pieces: &[Piece]) {
         self.deck.dropped = true;
         pieces.iter().for_each(|piece| self.suspect(piece));
@@ -426,8 +424,8 @@ impl Collector<'_> {
         }
     }
 
-    /// Reads the deck of the earlier job in the place of the last card, `*RESTART, READ`, up to the step that its
-    /// checkpoint is of.
+    /// Reads the deck of the earlier job in the place of the last card, `*RESTART, READ`, up to the step of the
+    /// checkpoint.
     fn go_on_from_earlier(&mut self) {
         self.rows = RowRule::Refuse;
         let Some(card) = self.deck.cards.pop() else {
@@ -488,7 +486,7 @@ impl Collector<'_> {
         self.rows = RowRule::Refuse;
     }
 
-    /// Checks that `*RESTART, READ` means the place of the checkpoint.
+    /// Checks that the step and increment of `*RESTART, READ` are those of the checkpoint.
     fn check_place(&mut self, card: &Card, earlier: &EarlierDeck) {
         let [step, increment] = earlier.place;
         let asked = |name, d: &mut Diagnostics| card.integer(name, d).map(|number| number as usize);
@@ -511,7 +509,7 @@ impl Collector<'_> {
         );
     }
 
-    /// Puts the cards that a deck adds to the model of the earlier job before the steps of that.
+    /// Moves the cards that a deck adds to the model of the earlier job in front of the steps of that job.
     fn put_steps_behind(&mut self) {
         let Some(Range { start, end }) = self.earlier_steps.take() else {
             return;
@@ -534,7 +532,7 @@ impl Collector<'_> {
         cards[start..end + added].rotate_left(end - start);
     }
 
-    /// Reads a file, which may hold data lines only, in the place `span` where it is named.
+    /// Reads a file that is named at `span`; the file may be restricted to data lines.
     fn include(&mut self, typed: &str, span: Span, rows_only: bool) {
         match self.open_included(typed) {
             Ok((path, content)) => {
@@ -572,7 +570,7 @@ impl Collector<'_> {
         Ok((path, content))
     }
 
-    /// Path of a file relative to the including file, or else to the main deck.
+    /// Path of a file, relative to the including file or else to the main deck.
     fn find(&self, path: &str) -> Result<PathBuf, String> {
         let (Some(first), Some(last)) = (self.open.first(), self.open.last()) else {
             return Err("this deck was not read from a file".to_string());
@@ -591,8 +589,7 @@ impl Collector<'_> {
     }
 }
 
-/// A keyword line and, while a line ends with a comma, the data line that continues it; these are taken
-/// from the lines after it.
+/// A keyword line and its continuation: while a line ends with a comma, the next data line belongs to it.
 fn continued<'l>(first: Line<'l>, rest: &mut Lines<'l>) -> Vec<Line<'l>> {
     let mut all = vec![first];
     while all.last().is_some_and(|line| line.ends_with_comma()) {
@@ -614,7 +611,7 @@ fn begins_as_a_number(text: Text) -> bool {
     first.is_some_and(|c| c.is_ascii_digit() || "+-.".contains(c))
 }
 
-/// The text of a file, or what an editor has in its place.
+/// Text of a file; a file that is open in an editor has the text of the editor.
 fn content_of(path: &Path, sources: &Sources) -> Result<Content, String> {
     if let Some(text) = sources.unsaved(path) {
         return Ok(Content::new(text));

@@ -11,16 +11,16 @@ use std::path::Path;
 /// Longest line, in bytes.
 pub(super) const LONGEST_LINE: usize = 1 << 16;
 
-/// Bytes that are read and looked at in one go.
+/// Number of bytes that are read and checked at a time.
 const PIECE: u64 = 1 << 20;
 
-/// The error of a fifo, a device or a file of the system in place of a file.
+/// The error for a fifo, a device or a file of the system that stands in place of a regular file.
 pub fn not_regular() -> io::Error {
     io::Error::other("it is not a regular file")
 }
 
-/// Opens a regular file to read it. Nothing waits here or when it is read: a fifo would wait for its writer, and a file
-/// that the system makes up as it is read, which says that it is empty, for an event.
+/// Opens a regular file to read it. Neither opening nor reading can block: a fifo, which would wait for its writer, is
+/// refused. So is a file that the system makes up as it is read (its size is zero), which would wait for an event.
 ///
 /// # Errors
 /// The file does not exist, may not be read, or is not a regular file.
@@ -43,9 +43,9 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 
 /// Text of a file.
 pub(super) struct Content {
-    /// The text, up to the fault if there is one.
+    /// The text, up to the first fault if there is one.
     pub text: String,
-    /// The byte at the fault, if a NUL byte or a line that is longer than [`LONGEST_LINE`] ends the text.
+    /// The byte at the fault: a NUL byte, or a byte of a line that is longer than [`LONGEST_LINE`], ends the text.
     fault: Option<u8>,
 }
 

@@ -1,4 +1,5 @@
-//! Expressions of `*PARAMETER`: numbers, names, functions and operators with Python's precedence. Division is real.
+//! Expressions of `*PARAMETER`: numbers, names, functions and operators with Python's precedence. The quotient of two
+//! whole numbers is real.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }
@@ -20,7 +21,7 @@ use nom::multi::{many0, separated_list0};
 use nom::sequence::{delimited, pair, preceded, terminated};
 use nom::{IResult, Parser};
 
-/// Value of a parameter. Whole numbers stay whole under +, -, *, ** and where a function keeps them.
+/// Value of a parameter. The result of +, -, * and ** of whole numbers is whole, as is that of some functions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum ParameterValue {
     Whole(i64),
@@ -29,7 +30,7 @@ pub(super) enum ParameterValue {
 }
 
 impl ParameterValue {
-    /// As it stands in a deck: a real number with all its digits, and with a decimal point or an exponent.
+    /// The value as text of a deck: a real number has all its digits, and a decimal point or an exponent.
     pub fn written(&self) -> String {
         match self {
             ParameterValue::Whole(value) => value.to_string(),
@@ -42,18 +43,18 @@ impl ParameterValue {
 /// What is wrong with an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Fault {
-    /// Bytes of it.
+    /// Bytes of the expression that are at fault.
     pub at: Range<usize>,
     pub message: String,
-    /// The name that has no value, if that is the fault.
+    /// The name without a value, if that is the fault.
     pub unknown: Option<String>,
 }
 
-/// Deepest nesting of parentheses, powers and signs, and most operators.
+/// Deepest nesting of parentheses, powers and signs in an expression.
 const DEEPEST: usize = 50;
 const MOST_OPERATORS: usize = 1000;
 
-/// Longest text: a line that other codes read.
+/// Length of the longest text: a line that other codes read.
 const LONGEST_TEXT: usize = 256;
 
 /// The value of an expression, and the names that it uses.
@@ -106,7 +107,7 @@ fn fault(at: Range<usize>, message: &str) -> Fault {
     }
 }
 
-/// Most parentheses open at a time, with signs and powers in a row.
+/// Deepest nesting: parentheses open at a time plus signs in a row; or the number of powers if that is larger.
 fn nesting(text: &str) -> usize {
     let (mut open, mut row, mut most) = (0_usize, 0_usize, 0_usize);
     for byte in text.bytes().filter(|byte| !byte.is_ascii_whitespace()) {
@@ -121,7 +122,7 @@ fn nesting(text: &str) -> usize {
     most.max(text.matches("**").count())
 }
 
-/// What was expected where so many bytes were left.
+/// Kind of word that was expected at a place, which is given by the number of bytes behind it.
 #[derive(Debug)]
 struct Expected {
     left: usize,
@@ -146,7 +147,7 @@ impl nom::error::ParseError<&str> for Expected {
     }
 }
 
-/// A node of an expression; `left` are the bytes that are left where it begins.
+/// A node of an expression.
 #[derive(Debug)]
 enum Tree<'a> {
     Number(WordPlace<'a>),
@@ -157,12 +158,12 @@ enum Tree<'a> {
     Binary(WordPlace<'a>, Box<[Tree<'a>; 2]>),
 }
 
-/// A word of an expression and the bytes that are left where it begins.
+/// A word of an expression, with the number of bytes from its beginning to the end of the text.
 type WordPlace<'a> = (usize, &'a str);
 
 type Parsed<'a, T> = IResult<&'a str, T, Expected>;
 
-/// A word, with its place, behind blanks.
+/// A word with its place; blanks in front of it are skipped.
 fn placed<'a>(
     mut word: impl Parser<&'a str, Output = &'a str, Error = Expected>,
 ) -> impl FnMut(&'a str) -> Parsed<'a, WordPlace<'a>> {
@@ -173,7 +174,7 @@ fn placed<'a>(
     }
 }
 
-/// Operands with operators between them, from left to right.
+/// Operands with operators between them, grouped from left to right.
 fn chain<'a>(
     operator: fn(&'a str) -> Parsed<'a, WordPlace<'a>>,
     operand: fn(&'a str) -> Parsed<'a, Tree<'a>>,
@@ -259,7 +260,7 @@ fn closing(input: &str) -> Parsed<'_, char> {
     })
 }
 
-/// digits[.digits][e[+-]digits], or .digits
+/// A number: `digits[.digits][e[+-]digits]`, or `.digits`.
 fn number(input: &str) -> Parsed<'_, Tree<'_>> {
     let input = input.trim_start();
     let bytes = input.as_bytes();
@@ -293,7 +294,7 @@ fn number(input: &str) -> Parsed<'_, Tree<'_>> {
 
 /// Evaluates the nodes of an expression.
 struct Evaluator<'v> {
-    /// Bytes of the expression.
+    /// Number of bytes of the expression.
     length: usize,
     values: &'v BTreeMap<String, ParameterValue>,
 }

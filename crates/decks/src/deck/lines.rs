@@ -1,5 +1,5 @@
-//! The lines of a deck file, blocks of data lines among them, and the fields of a line with typed
-//! access; a wrong or missing field is reported with its place.
+//! The lines of a deck file, blocks of data lines, and the fields of a line with typed access. A wrong or missing field
+//! is reported with its place.
 
 use super::number::{self, LONGEST_NUMBER};
 use super::text::Text;
@@ -11,31 +11,31 @@ use std::ops::Range;
 /// One line of a file.
 #[derive(Debug, Clone, Copy)]
 pub struct Line<'a> {
-    /// The file that it stands in.
+    /// File of the line.
     pub file: FileId,
-    /// Its number in the file, from 1.
+    /// Number of the line in the file, from 1.
     pub number: u32,
-    /// The instance of a part that its names and numbers belong to, from 1; 0 for none.
+    /// Number of the instance that the names and numbers of the line belong to, from 1; 0 for none.
     pub instance: u32,
-    /// Its text without the line end.
+    /// Text of the line without the line end.
     pub text: &'a str,
 }
 
-/// What a line is.
+/// Kinds of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineKind {
-    /// It has nothing but blanks.
+    /// The line has nothing but blanks.
     Blank,
-    /// It begins with two stars.
+    /// The line begins with two stars.
     Comment,
-    /// It begins with one star.
+    /// The line begins with one star.
     Keyword,
-    /// It begins with anything else.
+    /// The line begins with anything but a blank or a star.
     Data,
 }
 
 impl<'a> Line<'a> {
-    /// What kind of line it is.
+    /// Kind of the line.
     pub fn kind(self) -> LineKind {
         // the first character of most lines
         if let Some(b'0'..=b'9') = self.text.as_bytes().first() {
@@ -49,18 +49,18 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Whether its last visible character is a comma.
+    /// Whether the last visible character of the line is a comma.
     pub fn ends_with_comma(self) -> bool {
         self.text.trim_end().ends_with(',')
     }
 
-    /// Place of its visible text.
+    /// Place of the visible text of the line.
     pub fn span(self) -> Span {
         let (start, end) = trimmed(self.text, 0, self.text.len());
         self.span_of(start..end)
     }
 
-    /// Place of some of its bytes.
+    /// Place of a range of bytes of the line.
     pub(super) fn span_of(self, bytes: Range<usize>) -> Span {
         let is_ascii = self.text.is_ascii();
         let characters = |bytes: Range<usize>| match is_ascii {
@@ -103,7 +103,7 @@ impl<'a> Line<'a> {
         self.get(index).map_or(self.span(), |field| field.span)
     }
 
-    /// Field `index`; reports that `what` is missing where it is blank.
+    /// Field `index`; a blank field is reported as missing, under the name `what`.
     pub fn required(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<Text<'a>> {
         let field = self.get(index);
         if field.is_none() {
@@ -114,7 +114,7 @@ impl<'a> Line<'a> {
         field
     }
 
-    /// The number in field `index`; reports that `what` is missing where it is blank.
+    /// The number in field `index`; a blank field is reported as missing, under the name `what`.
     pub fn real(self, index: usize, what: &str, d: &mut Diagnostics) -> Option<f64> {
         self.required(index, what, d)?.real(d)
     }
@@ -127,22 +127,22 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// The fields of a line without quotation marks, of which no empty one is dropped but the last.
+    /// The fields of a line without quotation marks; only an empty field at the end of the line is dropped.
     fn plain_fields(self) -> impl Iterator<Item = &'a str> {
         let text = self.text.trim_ascii();
         let fields = text.strip_suffix(',').unwrap_or(text).split(',');
         fields.map(str::trim_ascii)
     }
 
-    /// The integers without sign that the line consists of; none if it has anything else.
+    /// The integers without sign that the line consists of; `None` if it holds anything else.
     pub fn plain_integers(self) -> Option<SmallVec<[u64; 5]>> {
         self.plain_fields()
             .map(|field| field.parse().ok())
             .collect()
     }
 
-    /// The integer without sign that the line begins with and its coordinates, 0 where they are missing;
-    /// none if the line has anything else, or numbers that other codes read differently.
+    /// The label (an integer without sign) and the coordinates of a line, 0 where they are missing; `None` if the line
+    /// has anything else, or numbers that other codes read differently.
     pub fn plain_point(self) -> Option<(u64, [f64; 3])> {
         let mut fields = self.plain_fields();
         let label = fields.next()?.parse().ok()?;
@@ -173,8 +173,8 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Whether the line may have a decimal comma: two fields of digits one after the other, such as
-    /// `0,25`, after the first.
+    /// Whether the line may have a decimal comma: two neighbouring fields of digits only, such as `0,25`, behind the
+    /// first field.
     fn has_decimal_comma(self) -> bool {
         let fields: Vec<Text> = self.fields().skip(1).collect();
         let mut pairs = fields.windows(2);
@@ -194,7 +194,7 @@ impl<'a> Line<'a> {
 /// last field is dropped. Commas between quotation marks do not count.
 pub(super) struct Fields<'a> {
     text: &'a str,
-    /// Where the next field starts; behind the text after the last one.
+    /// Byte where the next field starts; behind the last field it lies beyond the text.
     start: usize,
 }
 
@@ -204,7 +204,7 @@ impl<'a> Fields<'a> {
         Fields { text, start: 0 }
     }
 
-    /// End of the field at `start`: its comma, or the end of the text.
+    /// End of the field that begins at `start`: the next comma, or the end of the text.
     fn end(&self, start: usize) -> usize {
         let mut quoted = false;
         for (at, &byte) in self.text.as_bytes().iter().enumerate().skip(start) {
@@ -250,15 +250,15 @@ fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
 /// The lines of a text, which end with LF or CRLF.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<'a> {
-    /// The file that they stand in.
+    /// File of the lines.
     pub file: FileId,
     /// The text up to the end of the last line.
     pub text: &'a str,
     /// Byte at which the next line starts.
     pub start: usize,
-    /// Number of the line before it.
+    /// Number of the line before that byte.
     pub before: u32,
-    /// The instance of a part that names and numbers belong to.
+    /// Number of the instance that the names and numbers of the lines belong to, from 1; 0 for none.
     pub instance: u32,
 }
 
@@ -274,7 +274,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The same lines with another text, which is theirs alone.
+    /// The same lines with another text; the numbers of the lines stay the same.
     pub fn at<'t>(self, text: &'t str) -> Lines<'t> {
         Lines {
             file: self.file,
@@ -285,24 +285,24 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The text of these lines.
+    /// The text of the lines that have not been read.
     pub fn rest(&self) -> &'a str {
         self.text.get(self.start..).unwrap_or("")
     }
 
-    /// The number of these lines.
+    /// The number of lines that have not been read.
     pub fn count_lines(&self) -> u32 {
         let text = self.rest();
         let is_open = !text.is_empty() && !text.ends_with('\n');
         memchr_iter(b'\n', text.as_bytes()).count() as u32 + u32::from(is_open)
     }
 
-    /// Those among them that are data lines.
+    /// The data lines among these lines.
     pub fn data(self) -> impl Iterator<Item = Line<'a>> + Clone {
         self.filter(|line| line.kind() == LineKind::Data)
     }
 
-    /// Takes the lines before the next keyword line.
+    /// Splits off the lines before the next keyword line.
     pub fn take_block(&mut self) -> Lines<'a> {
         let end = self.start + before_keyword(self.rest());
         let block = Lines {
@@ -336,8 +336,7 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// Bytes before the first keyword line of a text that begins with a line: a line that holds a star
-/// may be one.
+/// Number of bytes before the first keyword line of a text; only lines that hold a star are examined.
 fn before_keyword(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut start = 0;
@@ -355,8 +354,7 @@ fn before_keyword(text: &str) -> usize {
     bytes.len()
 }
 
-/// The byte at which the first line of more than `most` bytes has as many; a line that ends with CRLF may
-/// be said to be too long.
+/// The byte at which the first line of more than `most` bytes exceeds this length; the CR of a CRLF counts, too.
 pub(super) fn overlong(text: &[u8], most: usize) -> Option<usize> {
     let mut start = 0;
     while text.len() - start > most {
@@ -394,7 +392,7 @@ mod tests {
         assert!(!fit("abcd") && !fit("abcd\n") && !fit("abc\nabcd\na"));
     }
 
-    /// Checks that what is read of a plain line is what its fields are.
+    /// Checks that the fast path for plain lines reads the same values as the fields do.
     fn assert_plain_is_fields(text: &str) {
         let line = Lines::new(FileId(0), text).next().unwrap_or(Line {
             file: FileId(0),

@@ -1,8 +1,8 @@
 //! From text to cards: files, logical lines, keyword lines and data fields.
 //!
-//! A *card* is a keyword line with the data lines under it. [`read`] turns a file and its includes
-//! into a [`Deck`] of cards whose keywords and parameters are known ones, see [`keywords`], with the
-//! cards of parts in the places of their instances; what they mean is left to the reader.
+//! A *card* is a keyword line with the data lines under it. [`read`] turns a file and its includes into a [`Deck`] of
+//! cards with known keywords and parameters (see [`keywords`]). The cards of parts stand in the places of their
+//! instances. The reader finds the meaning of the cards.
 
 mod assembly;
 mod card;
@@ -39,7 +39,7 @@ pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     assembly::flatten(deck, sources, d)
 }
 
-/// Reads a deck from text; it cannot include files.
+/// Reads a deck from text, which cannot include files.
 pub fn parse_str(name: &str, text: &str, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     let deck = collect::parse_str(name, text, sources, d);
     assembly::flatten(deck, sources, d)

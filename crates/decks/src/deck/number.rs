@@ -1,25 +1,25 @@
 //! Numbers of a deck, parsed from whole fields.
 
-/// Longest number other codes read.
+/// Length of the longest number that other codes read.
 pub(super) const LONGEST_NUMBER: usize = 20;
 
-/// A real number and how it was written.
+/// A real number, and whether its exponent has a letter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Real {
-    /// Its value.
+    /// Value of the number.
     pub value: f64,
-    /// Whether its exponent lacks the letter, as in `1.5-5`.
+    /// Whether the exponent lacks its letter, as in `1.5-5`.
     pub letterless: bool,
 }
 
-/// Why a field is not a number.
+/// Reason why a field is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotANumber {
-    /// This character does not belong.
+    /// A character, the given one, does not belong to a number.
     Unexpected(char),
-    /// The field ends too early.
+    /// The field ends before the number is complete.
     Incomplete,
-    /// It is an exponent with no number before it.
+    /// The field is an exponent without a number before it.
     BareExponent,
     /// The value is too large to be stored.
     TooLarge,
@@ -35,7 +35,7 @@ pub(crate) fn integer(text: &str) -> Result<i64, NotANumber> {
     text.parse().map_err(|_| NotANumber::TooLarge)
 }
 
-/// `[+-]digits[.digits][(E|D)[+-]digits]`, `.5`, `1.`, and `1.5-5` for `1.5E-5`
+/// Reads a real number: `[+-]digits[.digits][(E|D)[+-]digits]`, `.5`, `1.`, or `1.5-5` for `1.5E-5`.
 pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
     if let Some(value) = plain_real(text) {
         let letterless = false;
@@ -58,24 +58,24 @@ pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
     }
 }
 
-/// The value of a number without `D`, whose exponent has its letter: the standard library reads
-/// these as they are. What it reads besides them is not finite: `inf` and `nan`.
+/// The value of a number in a form that the standard library reads: without `D`, and with the letter of the exponent.
+/// The words `inf` and `nan`, which the standard library reads too, are not finite and give `None`.
 pub(super) fn plain_real(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-/// Where the text goes on after a sign, if one stands at this byte.
+/// Byte behind a sign, if a sign stands at this byte; else this byte.
 fn after_sign(text: &str, at: usize) -> usize {
     at + usize::from(matches!(text.as_bytes().get(at), Some(b'+' | b'-')))
 }
 
-/// Where the text goes on after the digits from this byte on.
+/// Byte behind the digits that begin at this byte.
 fn after_digits(text: &str, at: usize) -> usize {
     let rest = text.as_bytes().iter().skip(at);
     at + rest.take_while(|byte| byte.is_ascii_digit()).count()
 }
 
-/// Where the text goes on after `[+-]digits[.digits]` or `[+-].digits`, or where it differs from both.
+/// Byte behind `[+-]digits[.digits]` or `[+-].digits`; `Err` with the byte where the text differs from both.
 fn after_mantissa(text: &str) -> Result<usize, usize> {
     let first = after_sign(text, 0);
     let whole = after_digits(text, first);
@@ -86,8 +86,7 @@ fn after_mantissa(text: &str) -> Result<usize, usize> {
     if end > first + 1 { Ok(end) } else { Err(end) }
 }
 
-/// Sign and digits of the exponent at this byte, whether its letter is missing, and where the text
-/// goes on.
+/// Sign and digits of the exponent at this byte, whether its letter is missing, and the byte behind the exponent.
 fn exponent(text: &str, at: usize) -> Option<(&str, bool, usize)> {
     let has_letter = matches!(text.as_bytes().get(at), Some(b'E' | b'e' | b'D' | b'd'));
     let sign = at + usize::from(has_letter);
@@ -97,7 +96,7 @@ fn exponent(text: &str, at: usize) -> Option<(&str, bool, usize)> {
     is_exponent.then_some((text.get(sign..end)?, !has_letter, end))
 }
 
-/// The first character from a byte on that cannot continue a number.
+/// The first character from a byte on that cannot belong to a number.
 fn unexpected(text: &str, at: usize) -> NotANumber {
     let rest = text.get(at..).unwrap_or("");
     let after = rest.trim_start_matches(|c| "+-.eEdD".contains(c));

@@ -1,5 +1,5 @@
-//! Parameters of a deck: the rows of `*PARAMETER`, and the lines in which `<name>` stands for a value. Messages about
-//! such a line show it as it was typed.
+//! Parameters of a deck: the rows of `*PARAMETER`, and the lines in which `<name>` stands for a value. Messages about a
+//! line with `<name>` show the line as it was typed.
 
 use std::collections::BTreeMap;
 use std::collections::BTreeSet;
@@ -15,20 +15,20 @@ use crate::diagnostics::{Code, Diagnostics, Replaced, Sources, Span, closest};
 #[derive(Default)]
 pub(super) struct Parameters {
     values: BTreeMap<String, ParameterValue>,
-    /// Where they are defined.
+    /// Places where the parameters are defined.
     places: BTreeMap<String, Span>,
-    /// Those that something uses.
+    /// Parameters that something uses.
     used: BTreeSet<String>,
-    /// Those whose values were given from outside.
+    /// Parameters whose values were given from outside.
     given: BTreeSet<String>,
-    /// Those without a value, which is reported.
+    /// Parameters without a value, which have a reported error.
     faulty: BTreeSet<String>,
-    /// Whether a line had a name without value since [`Self::take_failure`].
+    /// Whether a line had a name without value since the last [`Self::take_failure`].
     has_failed: bool,
 }
 
 impl Parameters {
-    /// Those that `settings` give values, `name=expression`, which replace those of the deck.
+    /// The parameters that get values from `settings`, `name=expression`, in place of the values of the deck.
     pub fn new(settings: &[String], d: &mut Diagnostics) -> Self {
         let mut parameters = Parameters::default();
         parameters.set(settings, d);
@@ -108,7 +108,7 @@ impl Parameters {
         }
     }
 
-    /// Whether a line had a name without value, which is reported, since this was last asked.
+    /// Whether a line had a name without value (a reported error) since the last call of this function.
     pub fn take_failure(&mut self) -> bool {
         std::mem::take(&mut self.has_failed)
     }
@@ -132,7 +132,7 @@ impl Parameters {
         Arc::new(text)
     }
 
-    /// The line with the values of its parameters; none where it has no parameter.
+    /// The line with the values of its parameters; `None` where it has no parameter.
     pub fn replace(
         &mut self,
         line: Line,
@@ -212,7 +212,7 @@ impl Parameters {
         };
     }
 
-    /// Reports parameters that nothing uses.
+    /// Reports the parameters that no line and no expression uses.
     pub fn finish(&self, d: &mut Diagnostics) {
         for (name, place) in &self.places {
             if !self.used.contains(name) && !self.faulty.contains(name) {
@@ -251,7 +251,7 @@ fn before_note(text: &str) -> &str {
     text
 }
 
-/// The next `<name>` of a line: its bytes and the name.
+/// The next `<name>` of a line: the range of its bytes, and the name.
 fn next_name(text: &str, within: Range<usize>) -> Option<(Range<usize>, &str)> {
     let mut start = within.start;
     while let Some(open) = text.get(start..within.end)?.find('<') {

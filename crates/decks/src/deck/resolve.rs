@@ -1,5 +1,4 @@
-//! Looks keywords, parameters and their values up in the keyword table; reports those that are
-//! unknown, ignored or refused.
+//! Looks up keywords, parameters and their values in the keyword table; reports the unknown, ignored and refused ones.
 
 use super::card::{Card, Param};
 use super::keywords::{Keyword, Parameter, Status, Takes, find_keyword, keywords};
@@ -9,14 +8,14 @@ use std::cell::Cell;
 
 /// A piece of a keyword line between commas.
 pub(crate) struct Piece<'a> {
-    /// Its text and place.
+    /// Text of the piece and its place.
     pub text: Text<'a>,
-    /// Whether it stands on a continuation line.
+    /// Whether the piece stands on a continuation line.
     pub continued: bool,
 }
 
-/// The keyword of a text that begins with its star, or the one probably meant; reports unknown,
-/// ignored and refused keywords.
+/// The keyword that a text with a star names, or the keyword that is probably meant; reports unknown, ignored and
+/// refused keywords.
 pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keyword> {
     let (starred, span) = (text.text.trim_start_matches('*'), text.span);
     let typed = starred.trim();
@@ -39,7 +38,7 @@ pub(crate) fn keyword(text: Text, d: &mut Diagnostics) -> Option<&'static Keywor
     Some(keyword)
 }
 
-/// The keyword that a typed word is read as: its name or a beginning of it.
+/// The keyword that a typed word means: the word is its name or an abbreviation of it.
 pub fn keyword_read_as(typed: &str) -> Option<&'static Keyword> {
     find_keyword(typed).or_else(|| {
         match find_known(typed, keywords().map(|keyword| keyword.name)) {
@@ -49,15 +48,15 @@ pub fn keyword_read_as(typed: &str) -> Option<&'static Keyword> {
     })
 }
 
-/// Whether an unknown keyword asks for output by its last word.
+/// Whether the last word of an unknown keyword asks for output (`OUTPUT`, `PRINT`, `FILE`).
 fn asks_for_output(typed: &str) -> bool {
     let last = typed.split_whitespace().next_back().unwrap_or_default();
     let words = ["OUTPUT", "PRINT", "FILE"];
     typed != last && words.iter().any(|word| last.eq_ignore_ascii_case(word))
 }
 
-/// The known word of a match, or the one probably meant unless reading is lenient; reports
-/// abbreviations and unknown words. Those of output are left out with a warning.
+/// The known word that was found, or else the word that is probably meant; reports abbreviations and unknown words.
+/// Unknown words that ask for output are left out with a warning.
 fn known_word(
     found: Match,
     unknown: impl FnOnce() -> Diagnostic,
@@ -84,7 +83,7 @@ fn known_word(
     }
 }
 
-/// A fault of output as a warning.
+/// Makes the error of a request for output a warning.
 fn left_out(fault: Diagnostic) -> Diagnostic {
     Diagnostic {
         severity: Severity::Warning,
@@ -95,8 +94,8 @@ fn left_out(fault: Diagnostic) -> Diagnostic {
     }
 }
 
-/// Error of an unknown keyword, as typed after its star; several words or a leading blank suggest
-/// a comment.
+/// Error of an unknown keyword. If it has several words or begins with a blank, the message suggests that a comment was
+/// meant.
 fn unknown_keyword(starred: &str, span: Span, found: Match) -> Diagnostic {
     let meant = match found {
         Match::Unknown(Some(name)) => Some(format!("*{name}")),
@@ -133,7 +132,7 @@ fn report_keyword(keyword: &Keyword, span: Span, d: &mut Diagnostics) {
     }
 }
 
-/// A sentence of the table as the help of a diagnostic: without capital and full stop.
+/// A sentence of the table as the help of a diagnostic: without its capital letter and full stop.
 fn advice(sentence: &str) -> String {
     let mut characters = sentence.trim_end_matches('.').chars();
     let first = characters.next().into_iter().flat_map(char::to_lowercase);
@@ -175,8 +174,8 @@ pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Opti
     Some(param)
 }
 
-/// Reports a parameter or a value that is left out, or else refused; none of the latter. The words say
-/// what it is, what happens to it and why.
+/// Reports a parameter or a value that is left out or refused; returns `None` if it is refused. The three texts say
+/// what the object is, what happens to it, and why.
 fn report(
     status: Status,
     [what, treated, why]: [&str; 3],

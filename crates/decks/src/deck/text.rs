@@ -1,31 +1,31 @@
 //! Fields and parameter values with their places, read as numbers, names or words.
 //!
-//! Values that are no numbers or names are reported, as are those that Abaqus or CalculiX read
-//! differently. Case and blanks of words do not matter, a unique beginning of at least four letters
-//! suffices, and a likely typing error gets a suggestion.
+//! Values that are not numbers or names are reported, and so are values that Abaqus or CalculiX read differently. Case
+//! and blanks of words do not matter, a word may be shortened to a unique beginning of at least four letters, and a
+//! likely typing error gets a suggestion.
 
 use super::number::{self, LONGEST_NUMBER, NotANumber};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
 
-/// Longest name other codes read.
+/// Number of characters of the longest name that other codes read.
 const LONGEST_NAME: usize = 80;
 
 /// A field or a parameter's value: its text and its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Text<'a> {
-    /// As typed, without blanks around it.
+    /// The text as typed, without blanks around it.
     pub text: &'a str,
-    /// Where it stands.
+    /// Place of the text.
     pub span: Span,
 }
 
 impl<'a> Text<'a> {
-    /// Whether nothing was typed.
+    /// Whether the text is empty.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()
     }
 
-    /// Its value as an integer; reports anything else.
+    /// The value as an integer; anything else is reported.
     pub fn integer(&self, d: &mut Diagnostics) -> Option<i64> {
         let parsed = number::integer(self.text);
         parsed
@@ -33,17 +33,17 @@ impl<'a> Text<'a> {
             .ok()
     }
 
-    /// Its value as an integer, if it is one; reports nothing.
+    /// The value as an integer, or `None` without a report.
     pub fn as_integer(&self) -> Option<i64> {
         number::integer(self.text).ok()
     }
 
-    /// Its value as a real number, if it is one; reports nothing.
+    /// The value as a real number, or `None` without a report.
     pub fn as_real(&self) -> Option<f64> {
         number::real(self.text).ok().map(|real| real.value)
     }
 
-    /// Its value as a real number; reports anything else.
+    /// The value as a real number; anything else is reported.
     pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
         match number::real(self.text) {
             Err(why) => {
@@ -57,7 +57,8 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Its value as a real number for which `is_fine`; reports one that breaks this `rule`, and anything else.
+    /// The value as a real number for which `is_fine` holds. A number that breaks this `rule`, or anything else, is
+    /// reported.
     pub fn real_that(
         &self,
         is_fine: impl Fn(f64) -> bool,
@@ -72,7 +73,7 @@ impl<'a> Text<'a> {
         is_fine(value).then_some(value)
     }
 
-    /// Warns of forms of numbers that other codes read differently, of each once in a deck.
+    /// Warns about forms of numbers that other codes read differently; each form is named once in a deck.
     fn remark_on_form(&self, letterless: bool, d: &mut Diagnostics) {
         if letterless {
             d.warning_once(
@@ -129,12 +130,12 @@ impl<'a> Text<'a> {
         })
     }
 
-    /// Whether it consists of digits only, without point, sign or exponent.
+    /// Whether the text consists of digits only, without point, sign or exponent.
     pub(crate) fn is_digits(&self) -> bool {
         !self.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit())
     }
 
-    /// Its value as a name; reports invalid names.
+    /// The value as a name; an invalid name is reported.
     pub fn name(&self, d: &mut Diagnostics) -> Option<Name> {
         if let Some((prefix, last)) = self.parts() {
             let (prefix, last) = (prefix.name(d)?, last.name(d)?);
@@ -157,7 +158,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Name and value of a parameter, `NAME` or `NAME=value`.
+    /// Splits a parameter, `NAME` or `NAME=value`, into its name and its value.
     pub fn assignment(&self) -> (&'a str, Option<Text<'a>>) {
         let Some((name, value)) = self.text.split_once('=') else {
             return (self.text, None);
@@ -173,7 +174,7 @@ impl<'a> Text<'a> {
         (name.trim_end(), Some(Text { text: value, span }))
     }
 
-    /// Key by which its value is compared as a name, valid or not.
+    /// Key by which the text is compared as a name, valid or not.
     pub fn name_key(&self) -> String {
         if let Some((prefix, last)) = self.parts() {
             return format!("{}.{}", prefix.name_key(), last.name_key());
@@ -182,7 +183,7 @@ impl<'a> Text<'a> {
         quoted.map_or_else(|| fold(self.text), str::to_string)
     }
 
-    /// The names before and behind a dot, if one of both is between quotation marks: `"Part 1".Top`.
+    /// The names before and behind a dotif one of the two names is between quotation marks: `"Part 1".Top`.
     fn parts(&self) -> Option<(Text<'a>, Text<'a>)> {
         let mut is_quoted = false;
         let is_outside = |(at, c): (usize, char)| {
@@ -225,9 +226,9 @@ fn fits(name: &str) -> bool {
 /// A name in a deck: shown as typed, compared without case unless it was quoted.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Name {
-    /// As typed, without quotation marks.
+    /// The name as typed, without quotation marks.
     pub typed: String,
-    /// As compared: upper case without blanks, or as typed if quoted.
+    /// Key by which names are compared: upper case without blanks, or as typed if quoted.
     pub key: String,
 }
 
@@ -240,7 +241,7 @@ impl Name {
         }
     }
 
-    /// The name of something in an instance, as it is called outside.
+    /// Full name of something in this instance: `Instance.name`.
     pub fn joined(&self, own: &Name) -> Name {
         Name {
             typed: format!("{}.{}", self.typed, own.typed),
@@ -269,12 +270,12 @@ const SHORTEST: usize = 4;
 /// How a typed word matches a list of known words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Match {
-    /// It is this one.
+    /// The word is this known word.
     Exact(&'static str),
-    /// It is the beginning of this one, and of no other or only of those that begin with it: FREQ is FREQUENCY where there is
-    /// FREQUENCYF too.
+    /// The word is the beginning of this known word. The typed word may also begin longer known words that begin with
+    /// this one: FREQ is FREQUENCY although FREQUENCYF exists.
     Abbreviation(&'static str),
-    /// It is none of them; the one probably meant.
+    /// The word is not known; this known word is probably meant.
     Unknown(Option<&'static str>),
 }
 
@@ -288,7 +289,7 @@ fn folded(word: &str) -> impl Iterator<Item = char> {
     visible.flat_map(char::to_uppercase)
 }
 
-/// Looks a word up among known ones, blanks and case aside.
+/// Looks up a word among known words; blanks and case do not matter.
 pub(crate) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
     match find_known(word, known.clone()) {
         Match::Unknown(_) => Match::Unknown(suggestion(&fold(word), known)),
@@ -296,7 +297,7 @@ pub(crate) fn find(word: &str, known: impl Iterator<Item = &'static str> + Clone
     }
 }
 
-/// As [`find`], without a suggestion for an unknown word.
+/// Looks up a word as [`find`] does, but without a suggestion for an unknown word.
 pub(crate) fn find_known(word: &str, known: impl Iterator<Item = &'static str> + Clone) -> Match {
     let short = fold(word);
     if let Some(exact) = known.clone().find(|k| folded(k).eq(short.chars())) {
@@ -318,7 +319,7 @@ pub(crate) fn find_known(word: &str, known: impl Iterator<Item = &'static str> +
     }
 }
 
-/// The known word at the smallest edit distance, if that is small.
+/// The known word with the smallest edit distance from a word, if this distance is small.
 fn suggestion(
     short: &str,
     known: impl Iterator<Item = &'static str> + Clone,

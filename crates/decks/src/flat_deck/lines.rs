@@ -1,11 +1,11 @@
-//! DeckWriter of a deck: keyword lines, data lines, names and numbers.
+//! Writer of a deck: keyword lines, data lines, names and numbers.
 
 use crate::diagnostics::WIDTH;
 
 /// Length up to which a number needs no exponent.
 const SHORT: usize = 12;
 
-/// Most entries of a data line that lists numbers.
+/// Largest number of entries of a data line that lists numbers.
 const MOST_ENTRIES: usize = 16;
 
 /// A deck being written.
@@ -18,7 +18,8 @@ impl DeckWriter {
         self.0
     }
 
-    /// A keyword line with its parameters, continued where it is longer than a screen is wide.
+    /// Writes a keyword line with its parameters; a line that is longer than 80 characters is continued on the next
+    /// one.
     pub fn card(&mut self, keyword: &str, parameters: impl IntoIterator<Item = String>) {
         let mut width = 1 + keyword.len();
         self.0.push('*');
@@ -33,14 +34,14 @@ impl DeckWriter {
         self.0.push('\n');
     }
 
-    /// A data line.
+    /// Writes a data line.
     pub fn row(&mut self, fields: impl IntoIterator<Item = String>) {
         let fields: Vec<String> = fields.into_iter().collect();
         self.0.push_str(&fields.join(", "));
         self.0.push('\n');
     }
 
-    /// Data lines of a list.
+    /// Writes the entries of a list on data lines.
     pub fn list(&mut self, labels: &[u64]) {
         for labels in labels.chunks(MOST_ENTRIES) {
             self.row(labels.iter().map(u64::to_string));

@@ -1,8 +1,9 @@
 //! The model written back as a flat deck: one file without includes and assembly, every card and
 //! setting in full, numbers in the shortest form that reads as the same number.
 //!
-//! The deck reads as the same model but for the places of its contacts in the text, the reason why a pair is from surface to
-//! surface, which it tells, and the instances of parts, whose nodes and elements have the numbers of the mesh. Two kinds of names are made up, as the model does not keep those of the deck: of interactions and of time points.
+//! The flat deck reads as the same model except in three points: contacts stand at other places of the text, each pair
+//! states whether it is surface to surface, and there are no instances: nodes and elements have the numbers of the
+//! mesh. Names of interactions and of time points are made up, because the model does not keep those of the deck.
 
 mod lines;
 mod model;
@@ -14,7 +15,7 @@ use crate::model::{Model, Step};
 use crate::reader;
 use lines::DeckWriter;
 
-/// The deck of a model.
+/// Text of the flat deck of a model.
 pub fn flat_deck(model: &Model) -> String {
     let mut lines = DeckWriter::default();
     title(&model.title, &mut lines);
@@ -23,8 +24,8 @@ pub fn flat_deck(model: &Model) -> String {
     lines.text()
 }
 
-/// What a deck reads otherwise than this model, but for the places and reasons of its contacts and the instances of parts; none
-/// where it reads as the same.
+/// The first difference between this model and the model that `deck` reads as, apart from places and reasons of
+/// contacts and instances of parts; `None` if there is no difference.
 pub fn difference(text: &str, model: &Model) -> Option<String> {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
     let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
@@ -71,7 +72,7 @@ pub fn difference(text: &str, model: &Model) -> Option<String> {
     Some(all.next().unwrap_or("title or checkpoints".to_owned()))
 }
 
-/// What two steps do otherwise.
+/// The first difference between two steps.
 fn difference_of_steps(a: &Step, b: &Step) -> Option<&'static str> {
     let loads = a.point_loads != b.point_loads
         || a.body_forces != b.body_forces
@@ -88,7 +89,7 @@ fn difference_of_steps(a: &Step, b: &Step) -> Option<&'static str> {
     }
 }
 
-/// A model without what a flat deck does not hold.
+/// The model without the parts that a flat deck does not hold.
 fn flat(mut model: Model) -> Model {
     model.sets.instances.clear();
     for contact in &mut model.contacts {
@@ -101,7 +102,7 @@ fn flat(mut model: Model) -> Model {
     model
 }
 
-/// The title on lines of at most 80 characters, cut at single blanks: the reader joins them by these.
+/// The title on lines of at most 80 characters, cut at single blanks, because the reader joins the lines with a blank.
 fn title(title: &str, lines: &mut DeckWriter) {
     if title.is_empty() {
         return;

@@ -1,4 +1,4 @@
-//! What stands before the steps: nodes, elements, sets and surfaces, materials and sections,
+//! Writes the part of the deck before the steps: nodes, elements, sets and surfaces, materials and sections,
 //! amplitudes, contacts with their interactions, rigid bodies and equations.
 
 use super::lines::{DeckWriter, name, named, number, set};
@@ -13,10 +13,10 @@ use crate::model::{
 };
 use std::collections::BTreeSet;
 
-/// Terms of an equation on a data line.
+/// Number of terms of an equation on a data line.
 const TERMS: usize = 4;
 
-/// Writes what stands before the initial velocities and the steps.
+/// Writes everything that stands before the initial velocities and the steps.
 pub(super) fn write(model: &Model, lines: &mut DeckWriter) {
     write_mesh(model, lines);
     write_properties(model, lines);
@@ -107,8 +107,8 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
     }
 }
 
-/// Nodes of a rigid body that are neither those of its elements or node sets nor points of its surfaces: they ride on it by
-/// a constraint.
+/// Nodes of a rigid body that belong neither to its elements, its node sets nor its surfaces: a constraint makes these
+/// nodes ride on the body.
 fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
     let elements = body.elements.iter();
     let mut own: BTreeSet<usize> = elements
@@ -135,7 +135,8 @@ fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usi
     nodes.filter(move |node| !is_whole && !own.contains(node))
 }
 
-/// Masses at nodes and rotary inertia of rigid bodies, as elements with numbers after the largest one.
+/// Masses at nodes and rotary inertia of rigid bodies, written as elements with numbers above the largest one of the
+/// model.
 fn point_elements(model: &Model, lines: &mut DeckWriter) {
     let elements = model.mesh.elements.iter().map(|element| element.label);
     let connectors = model.connectors.iter().map(|connector| connector.label);
@@ -207,7 +208,7 @@ impl Interactions {
     }
 }
 
-/// Writes what a contact has of friction.
+/// Writes the friction of a contact.
 pub(super) fn friction(friction: &Friction, lines: &mut DeckWriter) {
     let mut parameters = Vec::new();
     if friction.has_limit() {
@@ -275,7 +276,7 @@ fn general_smoothing(general: &Contact, model: &Model, lines: &mut DeckWriter) {
     rows.into_iter().for_each(|row| lines.row(row));
 }
 
-/// Writes the circles of a pair and what its card says of them.
+/// Writes the circles of a contact pair, and the parameter of its card that names them.
 fn smoothing(contact: &Contact, model: &Model, lines: &mut DeckWriter) -> Option<String> {
     let circles = match &contact.smoothing {
         Smoothing::Straight => return Some(set("GEOMETRIC CORRECTION", "NONE")),
@@ -318,7 +319,8 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
     }
 }
 
-/// Writes which nodes of general contact are moved before the start, and whether overlaps are pressed out.
+/// Writes which nodes of general contact are moved before the start, and whether the remaining overlaps are pressed
+/// out.
 fn initialization(reach: Option<Reach>, is_fit: bool, lines: &mut DeckWriter) {
     const NAME: &str = "INITIALIZATION-1";
     if reach.is_none() && !is_fit {
@@ -342,7 +344,7 @@ fn initialization(reach: Option<Reach>, is_fit: bool, lines: &mut DeckWriter) {
     lines.row([String::new(), String::new(), NAME.to_owned()]);
 }
 
-/// Writes a tie, whose nodes are where they shall be.
+/// Writes a tie without adjusting its nodes, which the model has already moved.
 fn write_tie(tie: &Tie, model: &Model, lines: &mut DeckWriter) {
     let mut parameters = vec![
         named("NAME", &tie.name),
@@ -358,7 +360,7 @@ fn write_tie(tie: &Tie, model: &Model, lines: &mut DeckWriter) {
     lines.row([tie.slave, tie.master].map(|surface| name(&model.surfaces[surface].name)));
 }
 
-/// Writes -u_dof + sum c_k u_k = 0.
+/// Writes the equation -u_dof + sum c_k u_k = 0.
 fn write_equation(equation: &Equation, model: &Model, lines: &mut DeckWriter) {
     let Equation { dof, terms } = equation;
     let mut all = vec![(*dof, -1.0)];
@@ -380,7 +382,7 @@ fn write_equation(equation: &Equation, model: &Model, lines: &mut DeckWriter) {
     }
 }
 
-/// A dof that no equation eliminates: equations have two terms at least.
+/// A dof that no equation eliminates, as the second term of equations that have only one.
 fn any_other_dof(dof: usize, model: &Model) -> Option<usize> {
     let eliminated = |other: &usize| model.equations.iter().any(|e| e.dof == *other);
     (0..model.mesh.dof_count()).find(|other| *other != dof && !eliminated(other))
@@ -403,13 +405,14 @@ fn write_mesh(model: &Model, lines: &mut DeckWriter) {
     surfaces(model, lines);
 }
 
-/// Index of the first node that belongs to a rigid surface: these nodes come with the surfaces.
+/// Index of the first node that belongs to a rigid surface: the nodes from this one on are written with the surfaces.
 fn first_of_rigid(model: &Model) -> usize {
     let nodes = model.rigid_segments().into_iter().flatten();
     nodes.min().unwrap_or(model.mesh.node_count())
 }
 
-/// The surface of general contact: the last one, by its name, which touches itself.
+/// The surface of general contact, if there is one: the last surface, if it has that name and is in contact with
+/// itself.
 pub(super) fn all_exterior(model: &Model) -> Option<usize> {
     let last = model.surfaces.len().checked_sub(1)?;
     let touches_itself = |contact: &Contact| contact.slave == last && contact.master == last;
@@ -449,7 +452,7 @@ fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut 
     }
 }
 
-/// Surfaces but that of general contact, which its card makes.
+/// The surfaces, without that of general contact: the card of general contact makes that surface itself.
 fn surfaces(model: &Model, lines: &mut DeckWriter) {
     let mesh = &model.mesh;
     let own = all_exterior(model).unwrap_or(model.surfaces.len());
@@ -513,8 +516,9 @@ pub(super) fn set_of<'m>(elements: &[usize], model: &'m Model) -> Option<&'m str
     Some(&found.name)
 }
 
-/// A field that names elements of bodies: nothing for all of them, a set, or `None` where they make none. Nothing names point
-/// masses too, whose weights are forces in the flat deck.
+/// A field that names elements of bodies: empty for all elements, or the name of their set; `None` where no set has
+/// exactly these elements. An empty field would name point masses too, but the flat deck writes their weights as
+/// forces.
 pub(super) fn elements_field(elements: &[usize], model: &Model) -> Option<String> {
     let mut bodies = model.rigid_bodies.iter();
     let has_masses = bodies.any(|body| !body.masses.is_empty());
@@ -598,7 +602,7 @@ fn write_section(index: usize, section: &Section, model: &Model, lines: &mut Dec
     }
 }
 
-/// Writes a set of the elements of a section, which no set of the model holds.
+/// Writes a set of the elements of a section where the model has no such set.
 fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut DeckWriter) -> String {
     let set = Set {
         name: format!("SECTION-{}", index + 1),
@@ -609,7 +613,7 @@ fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut DeckWrite
     set.name
 }
 
-/// Writes springs and dashpots, those that follow each other and are alike together.
+/// Writes springs and dashpots; neighbouring ones of the same kind share their cards.
 fn write_connectors(model: &Model, lines: &mut DeckWriter) {
     let alike = |a: &Connector, b: &Connector| {
         let what = |c: &Connector| (c.type_name(), c.direction, c.law);
@@ -677,14 +681,14 @@ fn write_connectors(model: &Model, lines: &mut DeckWriter) {
     }
 }
 
-/// The number of a direction of the plane along an axis.
+/// Number (1 or 2) of the direction along an axis of the plane.
 fn axis(direction: [f64; 2]) -> Option<usize> {
     let axes = [[1.0, 0.0], [0.0, 1.0]];
     let found = axes.iter().position(|axis| *axis == direction);
     found.map(|index| index + 1)
 }
 
-/// Points on a data line.
+/// Number of points on a data line.
 const POINTS: usize = 4;
 
 /// Writes all amplitudes.

@@ -1,5 +1,4 @@
-//! Initial velocities and steps, with the cards that lead to the loads of a step from those of the
-//! step before.
+//! Writes initial velocities and steps; the cards of a step change the loads of the step before into those of the step.
 
 use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{Interactions, elements_field, friction, pair_row};
@@ -13,7 +12,7 @@ use crate::reader::{self, carried_loads, carried_temperatures};
 use crate::vectors::difference;
 use std::collections::HashMap;
 
-/// Times on a data line.
+/// Number of times on a data line.
 const TIMES: usize = 8;
 
 /// Writes initial velocities and all steps.
@@ -74,8 +73,8 @@ fn initial_temperature(model: &Model, lines: &mut DeckWriter) {
     }
 }
 
-/// Writes the temperatures that are others than those carried from the step before. Where none is left, and they do not ramp, a
-/// card without rows lets all nodes return to the start.
+/// Writes the temperatures that differ from those carried over from the step before. Where no temperature is left and
+/// temperatures do not ramp, a card without rows returns all nodes to their initial temperature.
 fn write_temperatures(
     now: &[Load<NodeTemperature>],
     carried: &[Load<NodeTemperature>],
@@ -117,7 +116,7 @@ fn dof_fields(dof: usize, model: &Model) -> [String; 2] {
     [label.to_string(), (dof % 2 + 1).to_string()]
 }
 
-/// `*STEP` and its procedure.
+/// Writes `*STEP` and its procedure.
 fn head(step: &Step, model: &Model, ramps: bool, lines: &mut DeckWriter) {
     let mut parameters = vec!["NLGEOM".to_owned()];
     parameters.extend(step.name.as_ref().map(|name| named("NAME", name)));
@@ -154,7 +153,7 @@ fn head(step: &Step, model: &Model, ramps: bool, lines: &mut DeckWriter) {
     lines.row(times.take(count).map(number));
 }
 
-/// Cards of what is different of the contacts from one step to the next.
+/// Writes the cards for changes of contacts between one step and the next.
 fn contact_changes([before, now]: [&ContactChanges; 2], model: &Model, lines: &mut DeckWriter) {
     let interactions = Interactions::new(&model.contacts);
     let mut written = Vec::new();
@@ -238,7 +237,7 @@ fn settings(settings: &Settings, lines: &mut DeckWriter) {
     lines.card("STICKSLIP", parameters);
 }
 
-/// Supports that a step leaves to the next one.
+/// Supports that a step hands on to the next one.
 fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<Support> {
     let period = step.increments.period;
     let kept = supports.iter().map(|&Support { dof, motion }| Support {
@@ -248,7 +247,7 @@ fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<S
     kept.collect()
 }
 
-/// Writes the overlaps that contact pairs allow, but those that the step before leaves.
+/// Writes the overlaps that contact pairs allow, except the overlaps that are carried over from the step before.
 fn write_interferences(step: &Step, before: Option<&Step>, model: &Model, lines: &mut DeckWriter) {
     let is_pair = |load: &&Load<Interference>| {
         let contact = &model.contacts[load.at.contact];
@@ -287,8 +286,7 @@ fn write_interferences(step: &Step, before: Option<&Step>, model: &Model, lines:
     }
 }
 
-/// What a card of supports says on its keyword line: the derivative that it prescribes, and the
-/// amplitude.
+/// Parameters on the keyword line of a card of supports: the derivative that it prescribes, and the amplitude.
 fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
     match support.motion {
         SupportMotion::Ramp { .. } => (None, None),
@@ -299,7 +297,7 @@ fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
     }
 }
 
-/// Writes the supports of a step, all of them where they are not those of the step before.
+/// Writes all supports of a step if any of them differs from the step before.
 fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &mut DeckWriter) {
     if now == carried {
         return;
@@ -333,7 +331,7 @@ fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &m
     }
 }
 
-/// Supports of one or both directions of a node that move alike.
+/// Supports of a node that have the same motion in one or both directions.
 fn support_row(supports: &[&Support], model: &Model, lines: &mut DeckWriter) {
     let (Some(first), Some(last)) = (supports.first(), supports.last()) else {
         return;
@@ -346,7 +344,7 @@ fn support_row(supports: &[&Support], model: &Model, lines: &mut DeckWriter) {
     lines.row([label, direction, to, number(value)]);
 }
 
-/// Name of the times at which a step writes its frames.
+/// Name of the list of times at which a step writes its frames.
 fn times_name(index: usize) -> String {
     format!("TIMES-{}", index + 1)
 }
@@ -363,8 +361,8 @@ fn time_points(index: usize, step: &Step, lines: &mut DeckWriter) {
     }
 }
 
-/// When frames are written; in the first step fields on request, sets of the history and dofs in the status
-/// file.
+/// Writes the times of the frames; in the first step also the fields on request, the sets of the history and the dofs
+/// in the status file.
 fn requests(index: usize, step: &Step, model: &Model, lines: &mut DeckWriter) {
     let when = match &step.frames {
         Frames::Default => None,
@@ -441,29 +439,29 @@ fn histories(sets: &NamedSets, lines: &mut DeckWriter) {
     }
 }
 
-/// A load as it stands in a data line.
+/// A load as the fields of a data line.
 #[derive(Clone, PartialEq)]
 struct LoadLine {
     /// Loaded element, for body forces.
     element: Option<usize>,
-    /// Node, unless an element is loaded.
+    /// Label of the loaded node, or of the element of a loaded face; empty for body forces.
     target: String,
-    /// What acts there.
+    /// Fields of the loaded dof or face.
     kind: String,
-    /// Fields after the magnitude.
+    /// Fields behind the magnitude.
     direction: Vec<String>,
-    /// Whether it is a traction.
+    /// Whether the load is a traction.
     is_traction: bool,
     magnitude: f64,
     variation: Variation,
 }
 
-/// LoadCards of the keywords `*CLOAD` and `*DLOAD`.
+/// Cards of the keywords `*CLOAD` and `*DLOAD`.
 #[derive(Default)]
 pub(super) struct LoadCards([Vec<LoadLine>; 2]);
 
 impl LoadCards {
-    /// The loads of a step.
+    /// Loads of a step, and those carried over from the step before.
     pub fn of(step: &Step, model: &Model) -> LoadCards {
         let points = step.point_loads.iter().map(|load| point_load(load, model));
         let bodies = step.body_forces.iter().map(body_force);
@@ -510,7 +508,7 @@ impl LoadCards {
     }
 }
 
-/// Element or target, and what acts there.
+/// Place of a load: its element or target, and the loaded dof or face.
 type Key<'e> = (Option<usize>, &'e str, &'e str);
 
 impl LoadLine {
@@ -604,8 +602,8 @@ fn traction(load: &Load<Traction>, model: &Model) -> LoadLine {
     }
 }
 
-/// All loads of the places where they are not those of the step before: a load that ramps takes the place
-/// of all that were there.
+/// All loads of the places whose loads differ from those of the step before: a load that ramps replaces all earlier
+/// loads of its place.
 fn at_changed_places(entries: &[LoadLine], carried: &[LoadLine]) -> Vec<LoadLine> {
     let (now, before) = (by_key(entries), by_key(carried));
     let is_changed = |entry: &&LoadLine| {
@@ -623,7 +621,7 @@ fn by_key(entries: &[LoadLine]) -> HashMap<Key<'_>, Vec<&LoadLine>> {
     by_key
 }
 
-/// LoadCards with body forces that are alike in one entry, where they act on all elements or on a set.
+/// Cards in which equal body forces share one entry, where they act on all elements or on a set.
 fn grouped(entries: Vec<LoadLine>, model: &Model) -> Vec<LoadLine> {
     let mut groups: Vec<(LoadLine, Vec<usize>)> = Vec::new();
     let mut rest = Vec::new();
@@ -660,7 +658,7 @@ fn grouped(entries: Vec<LoadLine>, model: &Model) -> Vec<LoadLine> {
     written.chain(rest).collect()
 }
 
-/// Writes loads, those with the same parameters under one card; a card without loads removes all.
+/// Writes loads, one card for all loads with the same parameters; a card without loads removes all loads.
 fn write_cards(
     keyword: &str,
     operation: Option<String>,

@@ -1,9 +1,9 @@
-//! Loads, motions and velocities of nodes without element, kept with their places until all cards are read: what gives such
-//! a node a displacement may stand behind them.
+//! Loads, motions and velocities of nodes without element. Such actions are kept with their places until all cards are
+//! read, because the card that gives such a node a displacement may stand behind them.
 
 use crate::diagnostics::Span;
 
-/// What acts on a displacement.
+/// An action on a displacement of a node: load, motion or velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Action {
     Load,
@@ -11,14 +11,14 @@ pub(crate) enum Action {
     Velocity,
 }
 
-/// Dofs of nodes without element that something other than zero acts on, with the places of the rows.
+/// Dofs of nodes without element on which something other than zero acts, with the places of the rows.
 #[derive(Default)]
 pub(crate) struct Actions {
     pub all: Vec<(usize, Action, Span)>,
 }
 
 impl Actions {
-    /// Enters what acts on a dof; `has_element` tells of each node whether a plane element has it.
+    /// Enters an action on a dof; `has_element` says for each node whether it belongs to a plane element.
     pub fn enter(&mut self, dof: usize, action: Action, span: Span, has_element: &[bool]) {
         let is_of_element = has_element.get(dof / 2) != Some(&false);
         if !is_of_element {

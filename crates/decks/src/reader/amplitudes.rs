@@ -8,9 +8,9 @@ use crate::model::{Amplitude, Curve, Signal, TimeBase};
 
 /// All amplitudes.
 pub(crate) struct Amplitudes {
-    /// Amplitudes with their names.
+    /// The amplitudes by their names.
     pub named: Named<Amplitude>,
-    /// Their places.
+    /// Places of the amplitudes.
     pub spans: Vec<Span>,
 }
 
@@ -61,7 +61,7 @@ fn curve(card: &Card, cx: &mut Context) -> Option<Curve> {
     }
 }
 
-/// Time and value as the card gives them, and the field to name in a message.
+/// Time and value as the card gives them, and the field that messages refer to.
 type Given<'a> = (f64, f64, Text<'a>);
 
 /// The points of a table; reports times that do not increase.
@@ -83,7 +83,7 @@ fn points(given: Vec<Given>, axes: Axes, cx: &mut Context) -> Option<Vec<(f64, f
     (!points.is_empty()).then_some(points)
 }
 
-/// Numbers that other codes read of a line of a table.
+/// Number of fields that other codes read on a line of a table.
 const NUMBERS: usize = 8;
 
 /// Warns about the first line that has more numbers than other codes read.
@@ -97,7 +97,7 @@ pub(super) fn report_long_rows(card: &Card, cx: &mut Context) {
     }
 }
 
-/// `time, value, time, value, ...`
+/// Reads rows `time, value, time, value, ...`.
 fn tabulated<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
     report_long_rows(card, cx);
     let mut given = Vec::new();
@@ -107,7 +107,7 @@ fn tabulated<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
     given
 }
 
-/// `value, value, ...` at BEGIN and every FIXED INTERVAL after it.
+/// Reads rows `value, value, ...`: values at BEGIN and after every FIXED INTERVAL.
 fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
     report_long_rows(card, cx);
     let interval = card.required("FIXED INTERVAL", cx.d);
@@ -128,7 +128,7 @@ fn equally_spaced<'a>(card: &'a Card, cx: &mut Context) -> Vec<Given<'a>> {
     given
 }
 
-/// Times and values of a row.
+/// Pairs of time and value of a row.
 fn pairs<'a>(row: Line<'a>, cx: &mut Context) -> Vec<Given<'a>> {
     let mut pairs = Vec::new();
     let count = row.fields().count();
@@ -150,12 +150,12 @@ fn pairs<'a>(row: Line<'a>, cx: &mut Context) -> Vec<Given<'a>> {
 /// Largest time, value or frequency of an amplitude: products of a few of them do not overflow.
 const LARGEST: f64 = 1e100;
 
-/// Whether numbers of an amplitude can be computed with.
+/// Whether numbers of an amplitude are small enough for computing.
 pub(super) fn are_in_reach(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| number.abs() <= LARGEST)
 }
 
-/// Reports numbers of an amplitude that cannot be computed with.
+/// Reports numbers of an amplitude that are too large for computing.
 pub(super) fn report_out_of_reach(what: &str, span: Span, cx: &mut Context) {
     let message = format!("{what}: the numbers of an amplitude end at {LARGEST:e}");
     cx.error(Code::AmplitudeTable, span, message)
@@ -172,7 +172,7 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// Reads the parameters.
+    /// Reads the parameters for scale and shift of an amplitude.
     pub fn read(card: &Card, cx: &mut Context) -> Axes {
         let mut number = |name: &str, default: f64| card.real(name, cx.d).unwrap_or(default);
         Axes {
@@ -181,7 +181,7 @@ impl Axes {
         }
     }
 
-    /// The time and value of the curve that stand for these of the card.
+    /// The time and value of the curve, scaled and shifted, for a time and value of the card.
     pub fn point(self, time: f64, value: f64) -> (f64, f64) {
         (
             time * self.scale[0] + self.shift[0],
@@ -219,7 +219,7 @@ pub(super) fn signal(definition: &str, card: &Card, axes: Axes, cx: &mut Context
     })
 }
 
-/// `N, w, t0, A0`, and `A1, B1, A2, B2, ...` on further lines; returns t0, A0 and the signal.
+/// Reads `N, w, t0, A0`, and `A1, B1, A2, B2, ...` on further lines; returns t0, A0 and the signal.
 fn periodic<'a>(
     row: Line,
     more: &mut impl Iterator<Item = Line<'a>>,
@@ -253,7 +253,7 @@ fn periodic<'a>(
     Some((start, base, signal))
 }
 
-/// `A0, A, t0, td`; returns t0, A0 and the signal.
+/// Reads `A0, A, t0, td`; returns t0, A0 and the signal.
 fn decay(row: Line, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
     row.at_most(4, cx.d);
     let [base, size, start] = first_three(row, cx)?;
@@ -265,7 +265,7 @@ fn decay(row: Line, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> 
     Some((start, base, signal))
 }
 
-/// `A0, A, t0, w1, w2`; returns t0, A0 and the signal.
+/// Reads `A0, A, t0, w1, w2`; returns t0, A0 and the signal.
 fn modulated(row: Line, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signal)> {
     row.at_most(5, cx.d);
     let [base, size, start] = first_three(row, cx)?;
@@ -280,13 +280,13 @@ fn modulated(row: Line, axes: Axes, cx: &mut Context) -> Option<(f64, f64, Signa
     Some((start, base, signal))
 }
 
-/// `A0, A, t0`
+/// Reads the first three fields, `A0, A, t0`.
 fn first_three(row: Line, cx: &mut Context) -> Option<[f64; 3]> {
     let [base, size, start] = [0, 1, 2].map(|index| row.real_or(index, 0.0, cx.d));
     Some([base?, size?, start?])
 }
 
-/// The number of a field, which must be positive; `what` it is.
+/// The number of a field, which must be positive; messages call the field `what`.
 fn positive(field: Text, what: &str, cx: &mut Context) -> Option<f64> {
     let rule = format!("{what} must be positive");
     field.real_that(|x| x > 0.0, &rule, Code::AmplitudeTable, cx.d)

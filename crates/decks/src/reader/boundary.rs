@@ -22,16 +22,16 @@ pub(crate) struct Targets<'a> {
     pub sets: &'a Sets,
     /// All amplitudes with their names.
     pub amplitudes: &'a Amplitudes,
-    /// Masses of the point elements, 0 of those that have none (mass).
+    /// Masses of the point elements, 0 for those without a mass (mass).
     pub masses: &'a [f64],
-    /// Rigid bodies, whose nodes move with reference nodes.
+    /// The rigid bodies; their nodes move with reference nodes.
     pub rigid_bodies: &'a [Rigid],
     /// Whether each node belongs to a plane element.
     pub has_element: &'a [bool],
 }
 
 impl Targets<'_> {
-    /// Dof of the angle of the rigid body whose reference node this is.
+    /// Dof of the angle of the rigid body whose reference node is `node`.
     pub fn angle_at(&self, node: usize) -> Option<usize> {
         rigid_bodies::angle_at(node, self.rigid_bodies, &self.mesh_index.mesh)
     }
@@ -39,7 +39,7 @@ impl Targets<'_> {
 
 /// A direction of displacement or rotation that the deck names.
 pub(crate) enum Direction {
-    /// A direction in the plane: 0 is x, 1 is y.
+    /// A direction in the plane, 0 for x and 1 for y.
     Plane(usize),
     /// The rotation in the plane.
     Rotation,
@@ -51,34 +51,34 @@ pub(crate) enum Direction {
 #[derive(Default)]
 pub(crate) struct Supports {
     held: BTreeMap<usize, Prescription>,
-    /// Those that steps have removed, with their places.
+    /// Dofs whose supports have been removed by steps, with the places of the cards.
     removed: BTreeMap<usize, Span>,
-    /// Motions of nodes without element.
+    /// Prescribed motions of nodes without element.
     pub actions: Actions,
 }
 
 #[derive(Clone, Copy)]
 struct Prescription {
     motion: SupportMotion,
-    /// Step that last prescribed it; 0 for model data.
+    /// Number of the step that prescribed the dof last; 0 for model data.
     step: usize,
-    /// Where it stands.
+    /// Place of the row that prescribes the dof.
     span: Span,
 }
 
-/// What a card prescribes.
+/// Kind of motion that a card prescribes.
 #[derive(Clone, Copy)]
 enum CardMotion {
-    /// Displacements, that follow an amplitude or grow over the step.
+    /// Displacements that follow an amplitude or grow over the step.
     Displacement(Option<usize>),
     /// Velocities or accelerations, constant or with an amplitude.
     Rate(Rate, Option<usize>),
-    /// The displacements of the start of the step.
+    /// The displacements at the start of the step, which are held.
     Fixed,
 }
 
 impl CardMotion {
-    /// The motion with the value of a row.
+    /// The motion that a row with this value prescribes.
     fn motion(self, value: f64) -> SupportMotion {
         match self {
             CardMotion::Displacement(Some(amplitude)) => {
@@ -117,13 +117,13 @@ impl Supports {
             .extend(removed.map(|(dof, held)| (dof, held.span)));
     }
 
-    /// Where a dof is prescribed in some step.
+    /// Place of the row that prescribes a dof in some step.
     pub fn place(&self, dof: usize) -> Option<Span> {
         let held = self.held.get(&dof).map(|held| held.span);
         held.or_else(|| self.removed.get(&dof).copied())
     }
 
-    /// Ends a step of this duration: what follows an amplitude in step time keeps its last value.
+    /// Ends a step of this duration: displacements that follow an amplitude in step time keep their last value.
     pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
         for held in self.held.values_mut() {
             held.motion = held.motion.after_step(period, amplitudes);
@@ -140,7 +140,7 @@ impl Supports {
         }
     }
 
-    /// `node or set, first[, last[, value]]` or `set, name`
+    /// Reads a row `node or set, first[, last[, value]]` or `set, name`.
     fn row(
         &mut self,
         row: Line,
@@ -206,7 +206,7 @@ impl Supports {
     }
 }
 
-/// What a card prescribes; with FIXED neither amplitude nor type are used.
+/// Kind of motion that a card prescribes; with FIXED, amplitude and type have no effect.
 fn card_motion(card: &Card, targets: Targets, cx: &mut Context) -> Option<CardMotion> {
     if card.has("FIXED") {
         return Some(CardMotion::Fixed);
@@ -219,7 +219,7 @@ fn card_motion(card: &Card, targets: Targets, cx: &mut Context) -> Option<CardMo
     })
 }
 
-/// Only the reference node of a rigid body turns.
+/// Reports direction 6 at a node other than the reference node of a rigid body: only this node turns.
 fn report_no_angle(span: Span, cx: &mut Context) {
     let message =
         "only directions 1 and 2 can move, and direction 6 of the reference node of a rigid body";
@@ -229,7 +229,7 @@ fn report_no_angle(span: Span, cx: &mut Context) {
 /// Directions and value of a row of `*BOUNDARY`.
 struct Prescribed {
     directions: Vec<usize>,
-    /// Whether direction 6 is one of them, the angle of a rigid body.
+    /// Whether the row prescribes direction 6, the angle of a rigid body.
     turns: bool,
     value: f64,
     span: Span,
@@ -268,8 +268,8 @@ fn prescribed(row: Line, cx: &mut Context) -> Option<Prescribed> {
     })
 }
 
-/// Names of supports, the directions that they fix in the plane, and whether they fix direction 6; Abaqus Keywords
-/// Reference, *BOUNDARY.
+/// Names of supports, the directions that they fix in the plane, and whether they fix direction 6 (Abaqus Keywords
+/// Reference, *BOUNDARY).
 const NAMED: [(&str, &[usize], bool); 8] = [
     ("XSYMM", &[0], true),
     ("YSYMM", &[1], true),
@@ -281,7 +281,7 @@ const NAMED: [(&str, &[usize], bool); 8] = [
     ("ENCASTRE", &[0, 1], true),
 ];
 
-/// Directions that a named support fixes; reports other names.
+/// Directions that a named support fixes; any other name is reported.
 fn named_directions(name: Text, cx: &mut Context) -> Option<(Vec<usize>, bool)> {
     let key = name.name_key();
     if let Some((_, directions, turns)) = NAMED.iter().find(|named| named.0 == key) {
@@ -310,7 +310,7 @@ fn dof_number(field: Text, cx: &mut Context) -> Option<usize> {
     None
 }
 
-/// The direction that a field names, in the plane or out of it.
+/// The direction of the plane, rotation or direction out of the plane that a field names.
 pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
     Some(match dof_number(field, cx)? {
         number @ 1..=2 => Direction::Plane(number - 1),
@@ -319,8 +319,8 @@ pub(crate) fn direction(field: Text, cx: &mut Context) -> Option<Direction> {
     })
 }
 
-/// The dofs of some nodes in the direction of a row whose value acts there; out of the plane, and in direction 6 of a
-/// node that is no reference node of a rigid body, it must be zero.
+/// The dofs of some nodes in the direction of a row. The value of the row must be zero for a direction out of the
+/// plane, and for direction 6 of a node other than the reference node of a rigid body.
 pub(crate) fn row_dofs(
     row: Line,
     nodes: &[usize],
@@ -353,15 +353,15 @@ pub(crate) fn row_dofs(
 
 /// Initial velocities of a deck.
 pub(crate) struct InitialVelocity {
-    /// Values, `2 N` entries, then those of the angles of the rigid bodies.
+    /// Initial velocities: `2 N` values for the nodes, then those for the angles of the rigid bodies.
     pub values: Vec<f64>,
-    /// Rows that give them, by the dof.
+    /// Places of the rows that give initial velocities, by dof.
     pub places: BTreeMap<usize, Span>,
-    /// Actions on nodes without element.
+    /// Initial velocities of nodes without element.
     pub actions: Actions,
 }
 
-/// Reads initial velocities; `at_start` are the supports of the first step, whose places `supports` knows.
+/// Reads initial velocities; `at_start` holds the supports of the first step, and `supports` their places.
 pub(crate) fn initial_velocity(
     outline: &Outline,
     targets: Targets,
@@ -403,7 +403,7 @@ pub(crate) fn initial_velocity(
     }
 }
 
-/// Warns about initial velocities before a static step, which is at rest.
+/// Warns about initial velocities if the first step is static: the bodies of such a step are at rest.
 pub(crate) fn check_start(outline: &Outline, first: Option<&Step>, cx: &mut Context) {
     let cards = outline.model_cards("INITIAL CONDITIONS");
     let is_velocity =
@@ -417,7 +417,7 @@ pub(crate) fn check_start(outline: &Outline, first: Option<&Step>, cx: &mut Cont
     }
 }
 
-/// Whether a support has its velocity at the start from what is prescribed; an acceleration leaves it.
+/// Whether a support prescribes the velocity at the start of the step; a prescribed acceleration does not.
 fn is_given(support: &Support) -> bool {
     let SupportMotion::Rate { rate, .. } = support.motion else {
         return true;
@@ -425,7 +425,7 @@ fn is_given(support: &Support) -> bool {
     rate == Rate::Velocity
 }
 
-/// `node or set, angular velocity, vx, vy, vz` and the axis, `xa, ya, za, xb, yb, zb`.
+/// Reads `node or set, angular velocity, vx, vy, vz` and the axis, `xa, ya, za, xb, yb, zb`.
 fn rotating_velocity(
     card: &Card,
     targets: Targets,
@@ -481,7 +481,7 @@ fn rotating_velocity(
     Some((row.span(), nodes.into_iter().flat_map(of_node).collect()))
 }
 
-/// `node or set, direction, velocity`
+/// Reads a row `node or set, direction, velocity`.
 fn velocity_row(row: Line, targets: Targets, cx: &mut Context) -> Vec<(usize, f64)> {
     row.at_most(3, cx.d);
     let target = row.required(0, "a node or node set", cx.d);
@@ -495,7 +495,7 @@ fn velocity_row(row: Line, targets: Targets, cx: &mut Context) -> Vec<(usize, f6
     })
 }
 
-/// Reports initial velocities of supported dofs, which move as prescribed from the start.
+/// Reports initial velocities of supported dofs: a support prescribes the velocity from the start.
 fn report_supported(
     (velocity, places): (&[f64], &BTreeMap<usize, Span>),
     (at_start, supports): (&[Support], &Supports),

@@ -1,5 +1,5 @@
-//! Quadrilaterals of the deck with two neighbouring corners at one node: triangles, whose sides keep the numbers that the
-//! quadrilateral gives them.
+//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. Their sides keep the numbers
+//! that they have in the quadrilateral.
 
 use smallvec::SmallVec;
 
@@ -8,17 +8,17 @@ use crate::model::{ElementType, Formulation, Shape};
 /// A quadrilateral with a side of no length.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Collapsed {
-    /// The triangle.
+    /// Type of the triangle.
     pub element_type: ElementType,
-    /// Places of its nodes among those of the quadrilateral.
+    /// Positions of the nodes of the triangle among those of the quadrilateral.
     pub nodes: SmallVec<[usize; 6]>,
-    /// The side of no length, from 0.
+    /// The side of no length, counted from 0.
     pub side: usize,
 }
 
 impl Collapsed {
-    /// What becomes of an element with nodes of these labels; none if it is no quadrilateral with one side of no length, or
-    /// there is no such triangle.
+    /// The triangle that an element with nodes of these labels becomes; `None` if the element is no quadrilateral with
+    /// exactly one side of no length, or if there is no such triangle.
     pub fn new(element_type: ElementType, labels: &[u64]) -> Option<Collapsed> {
         let (shape, is_plain) = match (element_type.shape, element_type.formulation) {
             (
@@ -57,7 +57,8 @@ impl Collapsed {
     }
 }
 
-/// The side of the triangle that is side `side` of a quadrilateral whose side `short` has no length; none is that one.
+/// The side of the triangle that is side `side` of a quadrilateral whose side `short` has no length; `None` if both are
+/// the same side.
 pub(super) fn side_of_triangle(side: usize, short: usize) -> Option<usize> {
     let side = (side + 3 - short) % 4;
     (side < 3).then_some(side)

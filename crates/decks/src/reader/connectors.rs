@@ -1,5 +1,5 @@
-//! `*SPRING` and `*DASHPOT`: what the force of elements of the types SPRINGA, SPRING1, DASHPOT2 ... follows.
-//! See docs/theory/elements.md.
+//! `*SPRING` and `*DASHPOT` define the forces of elements of the types SPRINGA, SPRING1, DASHPOT2 ... follows. See
+//! docs/theory/elements.md.
 
 use super::boundary::{self, Targets};
 use super::context::Context;
@@ -48,8 +48,8 @@ pub(super) fn read(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec
     all
 }
 
-/// Reports nodes of springs and dashpots that nothing gives a mass in a dynamic step: those of no element, no rigid
-/// body and no equation, which are not held in both directions.
+/// Reports nodes of springs and dashpots without mass in a dynamic step: nodes that belong to no element, rigid body or
+/// equation and are not held in both directions.
 pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Context) {
     let mut has_mass = vec![false; model.mesh.dof_count()];
     let of_elements = model
@@ -94,7 +94,7 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
     }
 }
 
-/// Gives springs and dashpots of instances numbers behind all others.
+/// Numbers springs and dashpots of instances; the numbers lie above all others.
 fn number_instances(mesh_index: &MeshIndex, all: &mut [Connector]) {
     let elements = mesh_index.mesh.elements.iter().map(|element| element.label);
     let connectors = all.iter().map(|connector| connector.label);
@@ -107,7 +107,7 @@ fn number_instances(mesh_index: &MeshIndex, all: &mut [Connector]) {
     }
 }
 
-/// Gives the force of a card to its elements.
+/// Makes springs or dashpots of the elements of a card, with the force of this card.
 fn card_of(
     (card, law): (&Card, ConnectorLaw),
     orientations: &Orientations,
@@ -197,8 +197,8 @@ fn axes(
     }
 }
 
-/// Direction and force that the rows of a card give: the directions of nodes first, but for types that act along a
-/// line.
+/// Direction and force that the rows of a card give. The first row holds the directions of the nodes, except for types
+/// that act along a line.
 fn force(
     card: &Card,
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),
@@ -234,7 +234,7 @@ fn force(
     Some((direction?, curve?))
 }
 
-/// `direction of node 1, direction of node 2`, along the axes of an orientation, or of the instance of the row.
+/// Reads `direction of node 1, direction of node 2`, along the axes of an orientation or of the instance of the row.
 fn directions(
     row: Line,
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),
@@ -284,7 +284,7 @@ fn directions(
     }
 }
 
-/// `k`, for springs the stiffness, for dashpots the coefficient.
+/// Reads `k`: the stiffness of springs, the coefficient of dashpots.
 fn linear(
     row: Line,
     more: Option<Line>,
@@ -343,7 +343,7 @@ fn table<'a>(
     complete.then_some(ForceCurve::Table(points))
 }
 
-/// Reports connectors along a line whose nodes are at one place: they have no direction.
+/// Reports springs and dashpots along a line whose nodes are at one place, because they have no direction.
 fn report_short(mesh_index: &MeshIndex, all: &[Option<Connector>], cx: &mut Context) {
     let coordinates = &mesh_index.mesh.coordinates;
     for (element, connector) in mesh_index.connectors.iter().zip(all) {

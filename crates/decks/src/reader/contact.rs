@@ -64,7 +64,7 @@ pub(crate) fn read(
     contacts
 }
 
-/// What `TYPE` says.
+/// Formulation of contact that the parameter `TYPE` asks for.
 fn formulation(card: &Card) -> ContactFormulation {
     match card.choice("TYPE") {
         Some("SURFACE TO SURFACE") => ContactFormulation::SurfaceToSurface,
@@ -72,7 +72,7 @@ fn formulation(card: &Card) -> ContactFormulation {
     }
 }
 
-/// A clearance or a node set.
+/// Reads `ADJUST`, which is a clearance or a node set.
 fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
     let value = card.value("ADJUST")?;
     if value.as_real().is_none() {
@@ -86,7 +86,7 @@ fn adjust(card: &Card, sets: &Sets, cx: &mut Context) -> Option<Adjust> {
     }))
 }
 
-/// Gives the contact that a card names its clearance.
+/// Gives the clearance of `*CLEARANCE` to the contact that the card names.
 fn clearance(card: &Card, surfaces: &Surfaces, contacts: &mut [Contact], cx: &mut Context) {
     let rule = "the clearance must not be negative";
     let value = card.required("VALUE", cx.d);
@@ -138,7 +138,7 @@ fn report_repeated(contacts: &[Contact], cx: &mut Context) {
     }
 }
 
-/// `slave, master`; a single surface is in contact with itself.
+/// Reads a row `slave, master`; a single surface is in contact with itself.
 fn contact(
     row: Line,
     interaction: Option<Interaction>,
@@ -187,7 +187,7 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
     None
 }
 
-/// Keeps the arcs of rigid surfaces where discs may meet them; nodes meet their chords.
+/// Keeps the arcs of rigid surfaces if discs may meet them, because nodes meet only the chords.
 pub(super) fn keep_arcs_for_discs(model: &mut Model) {
     let has_discs = model
         .contacts
@@ -203,7 +203,7 @@ pub(super) fn keep_arcs_for_discs(model: &mut Model) {
     }
 }
 
-/// Whether a profile is closed and its body lies outside, on the left of its segments.
+/// Whether a profile is closed with its body outside, on the left of its segments.
 fn is_hole(profile: &RigidProfile, mesh: &Mesh) -> bool {
     let ends = |segment: &Segment| segment.map(|node| mesh.coordinates[node]);
     let doubled_area: f64 = (profile.segments.iter())
@@ -215,7 +215,7 @@ fn is_hole(profile: &RigidProfile, mesh: &Mesh) -> bool {
     first == last && doubled_area < 0.0
 }
 
-/// Reports rigid surfaces that are slaves and no discs.
+/// Reports rigid surfaces that are slaves although they are no discs.
 pub(super) fn check_discs(model: &Model, cx: &mut Context) {
     for contact in &model.contacts {
         let SurfaceKind::Rigid(profile) = &model.surfaces[contact.slave].kind else {
@@ -318,7 +318,7 @@ fn out_of_plane_thickness(head: &Card, cx: &mut Context) {
     }
 }
 
-/// What the card says of the coefficient, and `TAUMAX`.
+/// Friction of a card: the coefficient, and the limit `TAUMAX` of the shear stress.
 pub(super) fn friction_of(card: &Card, cx: &mut Context) -> Option<Friction> {
     let limit = card.real("TAUMAX", cx.d).unwrap_or(0.0);
     let span = card.span_of("TAUMAX");
@@ -339,7 +339,8 @@ pub(super) fn friction_of(card: &Card, cx: &mut Context) -> Option<Friction> {
     })
 }
 
-/// `mu[, ...]`; with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`; rows `mu, slip rate, pressure`; none with ROUGH.
+/// Reads `mu[, ...]`; with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`; else rows `mu, slip rate, pressure`.
+/// ROUGH needs no row.
 fn coefficient(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     if card.has("ROUGH") {
         if let Some(row) = card.rows.first() {
@@ -377,7 +378,7 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     Some(Friction::constant(friction).law)
 }
 
-/// Rows `mu, slip rate, pressure`: for one pressure after the other the slip rates, both increasing.
+/// Reads rows `mu, slip rate, pressure`, pressure by pressure; the pressures increase, as do the slip rates of each.
 fn table(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     let mut curves: Vec<FrictionCurve> = Vec::new();
     let mut temperature = None;
@@ -418,7 +419,7 @@ fn table(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     Some(FrictionLaw::Table(curves))
 }
 
-/// `k`, or `k/H` without UNITLESS WEAR COEF.
+/// Reads `k`, or `k/H` without UNITLESS WEAR COEF.
 fn wear_of(card: &Card, cx: &mut Context) -> Option<Wear> {
     let row = card.rows.first()?;
     if let Some(extra) = card.rows.get(1) {
@@ -448,7 +449,7 @@ fn wear_of(card: &Card, cx: &mut Context) -> Option<Wear> {
     })
 }
 
-/// `part of the work of friction, part of it that heats the slave`
+/// Reads `part of the work of friction that becomes heat, part of this heat that enters the slave`.
 fn heat_of(card: &Card, cx: &mut Context) -> Option<Heat> {
     let part = |index: usize, default: f64, cx: &mut Context| {
         let field = card.rows.first().and_then(|row| row.get(index));
@@ -468,7 +469,7 @@ fn heat_of(card: &Card, cx: &mut Context) -> Option<Heat> {
     })
 }
 
-/// A field that is not negative, 0 where it is empty; `what` it is.
+/// A field that is not negative, 0 where it is empty; messages call the field `what`.
 fn not_negative_or_zero(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     match row.get(index) {
         Some(_) => not_negative(row, index, what, cx),
@@ -476,15 +477,15 @@ fn not_negative_or_zero(row: Line, index: usize, what: &str, cx: &mut Context) -
     }
 }
 
-/// A field that is not negative; `what` it is.
+/// A field that is not negative; messages call the field `what`.
 fn not_negative(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     let field = row.required(index, what, cx.d)?;
     let rule = format!("{what} must not be negative");
     field.real_that(|x| x >= 0.0, &rule, Code::FrictionRange, cx.d)
 }
 
-/// Reads general contact and adds its surface: contact of the surface with itself and with every
-/// rigid surface, there without the slave nodes of contact pairs.
+/// Reads general contact and adds its surface. The surface is in contact with itself and with every rigid surface;
+/// contact with a rigid surface leaves out the slave nodes of contact pairs with it.
 fn general_contacts(
     outline: &Outline,
     mesh_index: &MeshIndex,
@@ -575,8 +576,8 @@ fn general(
     })
 }
 
-/// Reports contact pairs of faces, which general contact includes; pairs with a rigid surface take
-/// precedence for their nodes.
+/// Reports contact pairs of faces, which general contact includes; pairs with a rigid surface are allowed and replace
+/// general contact at their nodes.
 fn report_pairs(pairs: &[Contact], surfaces: &Surfaces, cx: &mut Context) {
     let is_rigid = |pair: &Contact| {
         let master = surfaces.all.get(pair.master);
@@ -608,7 +609,7 @@ fn inclusions(block: &CardBlock, cx: &mut Context) -> Option<Span> {
     None
 }
 
-/// The interaction of all surfaces, the last one assigned; an error is reported.
+/// The interaction that was assigned last to all surfaces; `Err` after a reported error.
 fn assignment(
     block: &CardBlock,
     interactions: &Named<Interaction>,
@@ -623,7 +624,7 @@ fn assignment(
     assigned
 }
 
-/// `, , interaction`
+/// Reads a row `, , interaction`.
 fn assigned_in(
     row: Line,
     interactions: &Named<Interaction>,
@@ -633,7 +634,7 @@ fn assigned_in(
     interactions.find(name, cx).cloned()
 }
 
-/// Leaves out of general contact the faces that equations join to others: those of a pre-tension section.
+/// Leaves out of general contact the faces that equations join to other faces, as at a pre-tension section.
 pub(super) fn leave_out_joined(model: &mut Model) {
     let mesh = &model.mesh;
     let partners = model.joined_nodes();
@@ -659,7 +660,7 @@ pub(super) fn leave_out_joined(model: &mut Model) {
     }
 }
 
-/// Faces chain by chain along the boundaries.
+/// The faces, ordered in chains along the boundaries.
 fn chained(free: &[Face], mesh: &Mesh) -> Vec<Face> {
     let mut starts: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, face) in free.iter().enumerate() {
@@ -679,7 +680,7 @@ fn chained(free: &[Face], mesh: &Mesh) -> Vec<Face> {
     chained
 }
 
-/// What the last assignment in the block of `*CONTACT` asks for; an error is reported.
+/// The initialization that was assigned last in the block of `*CONTACT`; `Err` after a reported error.
 fn initialization(
     outline: &Outline,
     block: &CardBlock,
@@ -697,7 +698,7 @@ fn initialization(
     assigned
 }
 
-/// All data of initialization, which may stand in the block or outside.
+/// All data of contact initialization; the cards may stand in the block of `*CONTACT` or outside.
 fn initializations(
     outline: &Outline,
     block: &CardBlock,
@@ -713,7 +714,7 @@ fn initializations(
     all
 }
 
-/// What general contact does before the start.
+/// Initialization of general contact before the start.
 #[derive(Debug, Clone, Copy)]
 struct Initialization {
     /// Which nodes are moved.
@@ -722,7 +723,7 @@ struct Initialization {
     is_fit: bool,
 }
 
-/// Nodes that are moved, or overlaps that stay.
+/// Reads which nodes are moved, or which overlaps stay.
 fn own_initialization(card: &Card, cx: &mut Context) -> Option<Initialization> {
     if !card.has("INTERFERENCE FIT") {
         let moved = Some(reach(card, cx)?);
@@ -761,7 +762,7 @@ fn own_initialization(card: &Card, cx: &mut Context) -> Option<Initialization> {
     })
 }
 
-/// Which nodes are moved and where to: those inside, unless the card says more.
+/// Which nodes are moved and where to; by default only nodes inside the other body are moved.
 fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
     let mut or = |name: &str, default: f64| {
         let rule = format!("{name} must not be negative");
@@ -781,7 +782,7 @@ fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
     })
 }
 
-/// The name in `, , name`, where `what` it names; the empty fields stand for all surfaces.
+/// Reads the name in a row `, , name`, whose empty fields stand for all surfaces; messages call the name `what`.
 fn of_all_surfaces<'a>(row: Line<'a>, what: &str, cx: &mut Context) -> Option<Text<'a>> {
     row.at_most(3, cx.d);
     let mut named = (0..2).filter_map(|i| row.get(i));

@@ -11,20 +11,20 @@ use crate::model::{
     Amplitude, Contact, ContactChanges, FormerFriction, Friction, FrictionChange, TimeBase,
 };
 
-/// Difference from 1 of an amplitude that has brought a change to its end.
+/// Largest difference from 1 of an amplitude whose change is complete.
 const AT_ITS_END: f64 = 1e-12;
 
-/// What the steps so far have made of the contacts.
+/// State of the contacts after the steps read so far.
 pub(crate) struct ContactHistory<'a> {
     contacts: &'a [Contact],
     amplitudes: &'a Amplitudes,
-    /// Friction of each, in the end where a change is under way.
+    /// Friction of each contact; during a change, the friction at its end.
     friction: Vec<Friction>,
-    /// Changes under way by amplitudes.
+    /// For each contact, the change of friction by an amplitude that is under way.
     under_way: Vec<Option<ChangeUnderWay>>,
-    /// Those that do not act, increasing.
+    /// Contacts (indices) that do not act, in increasing order.
     removed: Vec<usize>,
-    /// Total time at which the step starts, and duration of the step before.
+    /// Total time at which the step starts.
     start: f64,
     last_period: f64,
 }
@@ -34,12 +34,12 @@ pub(crate) struct ContactHistory<'a> {
 struct ChangeUnderWay {
     from: Friction,
     amplitude: usize,
-    /// Place of the amplitude's name.
+    /// Place of the name of the amplitude.
     span: Span,
 }
 
 impl<'a> ContactHistory<'a> {
-    /// Contacts before the first step.
+    /// State of the contacts before the first step.
     pub fn new(contacts: &'a [Contact], amplitudes: &'a Amplitudes) -> Self {
         let friction = |contact: &Contact| contact.interaction.friction.clone();
         ContactHistory {
@@ -53,7 +53,7 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// Takes in the cards of a step; gives what is different in it.
+    /// Obeys the cards of a step; returns the changes that the step makes.
     pub fn step(
         &mut self,
         cards: &[&Card],
@@ -100,7 +100,8 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// The friction under `*CHANGE FRICTION` for the contacts of an interaction, or with RESET that of the model.
+    /// The friction under `*CHANGE FRICTION` for the contacts of an interaction; with RESET it is the friction of the
+    /// model.
     fn change_friction(
         &mut self,
         card: &Card,
@@ -182,7 +183,7 @@ impl<'a> ContactHistory<'a> {
         self.last_period = period;
     }
 
-    /// Ends changes under way with some amplitudes.
+    /// Ends the changes under way whose amplitudes end.
     fn end_changes(&mut self, ends: impl Fn(&Amplitude) -> bool, cx: &mut Context) {
         for contact in 0..self.under_way.len() {
             let curve = |change: &ChangeUnderWay| self.amplitudes.named.all.get(change.amplitude);
@@ -193,7 +194,7 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// A change by an amplitude must be complete at the end of the step before.
+    /// Reports a change that its amplitude has not completed at the end of the step before.
     fn check_end(&self, change: &ChangeUnderWay, cx: &mut Context) {
         let Some(curve) = self.amplitudes.named.all.get(change.amplitude) else {
             return;
@@ -245,7 +246,7 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// The contact pair of a row `slave, master`, or `surface` where it touches itself.
+    /// The contact pair of a row `slave, master`, or `surface` for a surface in contact with itself.
     fn pair(&self, row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<usize> {
         row.at_most(2, cx.d);
         let find = |field: Text, cx: &mut Context| Some(surfaces.find(field, cx)?.0);
@@ -267,7 +268,7 @@ impl<'a> ContactHistory<'a> {
     }
 }
 
-/// The values of an amplitude are parts of a change.
+/// Reports an amplitude whose values lie outside the range from 0 to 1: they are parts of a change of friction.
 fn check_parts(curve: &Amplitude, span: Span, cx: &mut Context) {
     let [least, most] = curve.bounds();
     if least < 0.0 || most > 1.0 {

@@ -1,5 +1,5 @@
-//! The state shared by all functions of the reader: deck and diagnostics; undefined names with a
-//! suggestion of what was meant, among names of all kinds of things that a deck defines.
+//! State that all functions of the reader share: the deck and the diagnostics. An undefined name is reported with a
+//! suggestion among the names of all kinds of objects of the deck.
 
 use super::label::{instance_of, label, number_of};
 use crate::deck::{Card, Deck, Line, Name, Placement, Text};
@@ -7,13 +7,13 @@ use crate::diagnostics::{Added, Code, Diagnostic, Diagnostics, Span, closest, li
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
-/// What every reader function needs: the deck as a whole and a place for messages.
+/// Context of every reader function: the deck as a whole, and the list of messages.
 pub(super) struct Context<'a> {
     /// All cards.
     pub deck: &'a Deck,
     /// Messages so far.
     pub d: &'a mut Diagnostics,
-    /// Kinds of the names of the deck, collected for the first name that is not found.
+    /// Names of the deck with their kinds, collected when the first name is not found.
     catalogue: OnceCell<Catalogue>,
 }
 
@@ -42,7 +42,7 @@ impl<'a> Context<'a> {
         self.deck.incomplete || self.deck.dropped
     }
 
-    /// What `read` makes of a card, unless the card or reading it has a reported error.
+    /// The result of reading a card; `None` if the card, or reading it, has a reported error.
     pub fn sound<T>(
         &mut self,
         card: &Card,
@@ -53,7 +53,7 @@ impl<'a> Context<'a> {
         read.filter(|_| !card.faulty && self.errors() == errors)
     }
 
-    /// Ends the reading where nobody waits for the deck any longer.
+    /// Stops the reading if it has been cancelled.
     pub fn go_on(&self) {
         self.deck.interrupt.end_if_asked();
     }
@@ -63,13 +63,13 @@ impl<'a> Context<'a> {
         self.d.errors_found()
     }
 
-    /// Where a point of a part is in the instance of a row (length).
+    /// Place of a point of a part in the instance of a row (length).
     pub fn placed(&self, at: [f64; 2], row: Line) -> [f64; 2] {
         let placement = self.placement_of(row);
         placement.map_or(at, |placement| placement.of(at))
     }
 
-    /// Where a direction of a part points in the instance of a row; of length 1 where it was.
+    /// Direction of a part, turned into the instance of a row; its length stays the same.
     pub fn turned(&self, direction: [f64; 2], row: Line) -> [f64; 2] {
         let placement = self.placement_of(row);
         placement.map_or(direction, |placement| placement.turn(direction))
@@ -80,7 +80,7 @@ impl<'a> Context<'a> {
         Some(&self.deck.instances.get(index)?.placement)
     }
 
-    /// A name of a part as it is called outside: `Instance.name`.
+    /// Name of an object of a part as other cards call it: `Instance.name`.
     pub fn of_instance(&self, name: Name, span: Span) -> Name {
         match self.deck.instance_of(span) {
             Some(instance) => instance.name.joined(&name),
@@ -88,7 +88,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Key of a name that a card defines: that of a part has its instance before it.
+    /// Key of a name that a card defines; a name of a part gets the name of its instance in front.
     pub fn key_of(&self, text: Text) -> String {
         match self.deck.instance_of(text.span) {
             Some(instance) => format!("{}.{}", instance.name.key, text.name_key()),
@@ -96,9 +96,9 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Keys of what a name may mean where it stands, the nearest first: what its instance defines, and what the assembly and
-    /// the model do. Where the name of an instance and what it holds stand in the same quotation marks, neither need be
-    /// defined between such marks.
+    /// Keys of the objects that a name may mean at its place: first objects of its instance, then those of the assembly
+    /// and of the model. In `"instance.name"`, with one pair of quotation marks, each of the two names may be defined
+    /// without such marks.
     pub fn keys_of(&self, text: Text) -> [String; 3] {
         let key = text.name_key();
         let of_instance = self.deck.instances.iter().find_map(|instance| {
@@ -112,8 +112,8 @@ impl<'a> Context<'a> {
         [self.key_of(text), key, last]
     }
 
-    /// A number with the name of an instance before it, such as `Block-1.12`, without that name and
-    /// in that instance.
+    /// A number such as `Block-1.12`, with the name of an instance before it, as the number alone, marked as one of
+    /// that instance.
     pub fn in_instance<'t>(&self, text: Text<'t>) -> Text<'t> {
         if self.deck.instances.is_empty() {
             return text;
@@ -136,12 +136,12 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Whether a text is a number, or one with the name of an instance before it.
+    /// Whether a text is a number, with or without the name of an instance before it.
     pub fn is_number(&self, text: Text) -> bool {
         self.in_instance(text).as_integer().is_some()
     }
 
-    /// The label of a number, if the text is one; reports nothing.
+    /// The label of a number, or `None` without a report if the text is not a number.
     pub fn as_label(&self, text: Text) -> Option<u64> {
         let text = self.in_instance(text);
         let number = u64::try_from(text.as_integer()?).ok()?;
@@ -156,7 +156,7 @@ impl<'a> Context<'a> {
         labels.any(|known| known == label)
     }
 
-    /// What the deck calls the node or element with this label.
+    /// Name of the node or element with this label in the words of the deck.
     pub fn named(&self, label: u64) -> String {
         let index = (instance_of(label) as usize).checked_sub(1);
         let instance = index.and_then(|index| self.deck.instances.get(index));
@@ -166,7 +166,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Reports an undefined name of a `what`, unless the cause may have been reported already.
+    /// Reports an undefined name of an object of kind `what`, unless the cause may have been reported already.
     pub fn undefined<'n>(
         &mut self,
         what: &str,
@@ -187,9 +187,8 @@ impl<'a> Context<'a> {
         self.d.push(error);
     }
 
-    /// Adds a suggestion to the error of an undefined name: an object of another kind, a name with
-    /// a comma missing behind it, a typing error, one in the name of an object of another kind, or
-    /// else the list of defined names.
+    /// Adds a suggestion to the error of an undefined name: an object of another kind with this name, a missing comma,
+    /// a similar name of this kind or of another kind, or else the list of defined names.
     fn with_what_is_meant<'n>(
         &self,
         error: Diagnostic,
@@ -221,7 +220,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Reports a second card of a kind that may appear once.
+    /// Reports a second card of a keyword that may appear once.
     pub fn only_once(&mut self, cards: &[&Card]) {
         for card in cards.iter().skip(1) {
             let message = format!("{} appears a second time here", card.title());
@@ -230,7 +229,7 @@ impl<'a> Context<'a> {
     }
 }
 
-/// The known name, or the number, that stands before a blank.
+/// The known name, or the number, that stands before the first blank of a text.
 fn name_before_blank<'t, 'n>(
     name: Text<'t>,
     mut known: impl Iterator<Item = &'n str>,
@@ -259,13 +258,13 @@ impl Catalogue {
         Catalogue { kinds }
     }
 
-    /// Another kind than `kind` of the objects with this key.
+    /// A kind other than `kind` among the objects with this key.
     pub fn other_kind(&self, name: &str, kind: &str) -> Option<&'static str> {
         let kinds = self.kinds.get(name)?;
         kinds.iter().copied().find(|other| *other != kind)
     }
 
-    /// An object of another kind than `kind` that a misspelt key probably means, and its kind.
+    /// An object of a kind other than `kind` that a misspelt key probably means, and its kind.
     pub fn meant(&self, name: &str, kind: &str) -> Option<(&str, &'static str)> {
         let others = self
             .kinds
@@ -297,7 +296,7 @@ pub(super) fn with_article(kind: &str) -> String {
     format!("{article} {kind}")
 }
 
-/// Help where an object of kind `wanted` is needed and `name` is a `found`.
+/// Help where an object of kind `wanted` is needed, and `name` is an object of kind `found`.
 pub(super) fn help_for(wanted: &str, found: &str, name: &str) -> Option<String> {
     match (wanted, found) {
         ("node set", "element set") => Some(format!(

@@ -11,16 +11,17 @@ use crate::model::Hinge;
 use crate::vectors::distance;
 use std::collections::BTreeSet;
 
-/// Largest distance of two nodes that a pin joins, one of them on a rigid body, in distances of the nodes of the body.
+/// Largest distance of two nodes that a pin joins, one of them on a rigid body, relative to the distance to the
+/// farthest node of the body.
 const AT_ONE_PLACE: f64 = 1e-6;
 
-/// Nodes that are joined without a rigid body.
+/// A connection of nodes other than by a rigid body.
 pub(crate) enum Link {
-    /// Both displacements of a node are those of another.
+    /// Both displacements of a node equal those of another node.
     Joined { node: usize, to: usize, span: Span },
-    /// Two nodes at one place, each of a rigid body.
+    /// A hinge: two nodes at one place that belong to different rigid bodies.
     Hinge { nodes: [usize; 2], span: Span },
-    /// Both displacements of a node are the means of those of others.
+    /// Both displacements of a node are the means of the displacements of other nodes.
     Mean {
         name: String,
         node: usize,
@@ -30,7 +31,7 @@ pub(crate) enum Link {
 }
 
 impl Link {
-    /// What it is called, as in `the coupling C`.
+    /// What messages call the link, as in `the coupling C`.
     pub fn title(&self) -> String {
         match self {
             Link::Joined { .. } | Link::Hinge { .. } => "an *MPC".to_owned(),
@@ -38,14 +39,14 @@ impl Link {
         }
     }
 
-    /// Its place.
+    /// Place of the link in the deck.
     pub fn span(&self) -> Span {
         match self {
             Link::Joined { span, .. } | Link::Hinge { span, .. } | Link::Mean { span, .. } => *span,
         }
     }
 
-    /// All of its nodes.
+    /// All nodes of the link.
     pub fn nodes(&self) -> Vec<usize> {
         match self {
             Link::Joined { node, to, .. } => vec![*node, *to],
@@ -55,7 +56,7 @@ impl Link {
     }
 }
 
-/// Adds the rigid bodies of all couplings and constraints to the others; the links without one.
+/// Adds the rigid bodies of all couplings and constraints to `bodies`; returns the links that need no rigid body.
 pub(super) fn read(
     outline: &Outline,
     lookup: Lookup,
@@ -154,7 +155,7 @@ fn coupling(
     }
 }
 
-/// Checks that `first[, last]` stand for both directions of the plane; none do.
+/// Checks that `first[, last]` name both directions of the plane; empty fields do.
 fn takes_both([first, last]: [Option<Text>; 2], row: Line, cx: &mut Context) {
     let Some(first) = first.or(last) else { return };
     let mut number = |field: Text| match direction(field, cx)? {
@@ -173,7 +174,7 @@ fn takes_both([first, last]: [Option<Text>; 2], row: Line, cx: &mut Context) {
     }
 }
 
-/// Makes nodes ride on a reference node: adds them to its body, or makes it one.
+/// Makes nodes ride on a reference node: adds them to its rigid body, which is made if needed.
 fn ride(
     name: &str,
     reference: usize,
@@ -206,7 +207,7 @@ fn ride(
     }
 }
 
-/// `type, n1, n2`
+/// Reads a row `type, n1, n2`.
 fn mpc(
     row: Line,
     lookup: Lookup,
@@ -262,7 +263,8 @@ fn mpc(
     }
 }
 
-/// Joins two nodes: by equations, on the rigid body that one of them belongs to, or by a hinge between those of both.
+/// Joins two nodes: by equations; by adding one node to the rigid body of the other; or by a hinge between two rigid
+/// bodies.
 fn join(
     kind: &str,
     [node, to]: [usize; 2],
@@ -305,7 +307,7 @@ fn join(
     }
 }
 
-/// Whether two nodes, one of them of a rigid body, are at one place; reports that they are not.
+/// Whether two nodes, one of them of a rigid body, are at one place; a distance between them is reported.
 fn is_at_one_place(
     [node, to]: [usize; 2],
     body: &Rigid,
@@ -324,7 +326,7 @@ fn is_at_one_place(
     is_near
 }
 
-/// Whether each node belongs to an element, a spring or dashpot, or to nodes that are joined.
+/// For each node, whether it belongs to an element, a spring or dashpot, or to nodes that are joined.
 pub(super) fn moving_nodes(links: &[Link], lookup: Lookup) -> Vec<bool> {
     let mut moves = lookup.mesh_index.mesh.has_element();
     let connectors = lookup.mesh_index.connectors.iter();

@@ -12,24 +12,24 @@ use crate::diagnostics::{Code, Span};
 use crate::model::{Equation, Step, Support};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Terms on a data line; each takes three fields.
+/// Number of terms on a data line; each term has three fields.
 const TERMS_PER_LINE: usize = 4;
 
-/// Largest ratio of two displacements of an equation, and the inverse of the smallest: its square, which stiffness
-/// and mass are multiplied by, and their products stay within the range of numbers.
+/// Largest ratio of two displacements of an equation, and inverse of the smallest ratio. Stiffness and mass are
+/// multiplied by the square of a ratio, and these products must not overflow.
 const LARGEST_RATIO: f64 = 1e50;
 
-/// A term of an equation, or of those of all nodes of a set.
+/// A term of an equation of one node, or of the equations of all nodes of a set.
 struct Term {
-    /// Nodes, in the order of their numbers.
+    /// Nodes of the term; the nodes of a set are in the order of their numbers.
     nodes: Vec<usize>,
-    /// Coefficients of the displacements along x and y: one, or two where the instance of the row is turned.
+    /// Coefficients of the displacements along x and y: one of them is zero unless the instance of the row is turned.
     coefficients: [f64; 2],
     span: Span,
 }
 
 impl Term {
-    /// Dofs with their coefficients at the node number `i` of the first term's.
+    /// Dofs and coefficients of the term in equation number `i`, one for each node of the first term.
     fn at(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let node = self.nodes[if self.nodes.len() == 1 { 0 } else { i }];
         let both = [2 * node, 2 * node + 1].into_iter();
@@ -37,17 +37,17 @@ impl Term {
     }
 }
 
-/// An equation of single dofs, u_dof = sum c_k u_k.
+/// An equation between single dofs, u_dof = sum c_k u_k.
 struct SolvedEquation<'a> {
     terms: Vec<(usize, f64)>,
     owner: Owner<'a>,
 }
 
-/// Equations by the dofs that they eliminate: each has one owner.
+/// Equations by the dofs that they eliminate; each equation has one owner.
 type ByDof<'a> = BTreeMap<usize, SolvedEquation<'a>>;
 
-/// Reads all equations with the cards that they are of: those between eliminated dofs are substituted into each
-/// other.
+/// Reads all equations with the cards that define them; equations that contain eliminated dofs get the equations of
+/// these dofs substituted.
 pub(crate) fn read<'a>(
     outline: &Outline,
     targets: Targets<'a>,
@@ -85,8 +85,8 @@ pub(crate) fn read<'a>(
     substituted(solved, targets, cx)
 }
 
-/// The terms of one equation without faulty ones; line `head` holds their number. `None` when it is
-/// unclear where the next equation begins.
+/// The terms of one equation without the faulty ones; line `head` holds the number of terms. `None` when it is unclear
+/// where the next equation begins.
 fn terms<'r>(
     card: &Card,
     head: Line,
@@ -115,7 +115,7 @@ fn terms<'r>(
     Some(terms)
 }
 
-/// `number of terms`
+/// Reads a row `number of terms`.
 fn number_of_terms(row: Line, cx: &mut Context) -> Option<usize> {
     row.at_most(1, cx.d);
     let field = row.required(0, "the number of terms", cx.d)?;
@@ -129,7 +129,7 @@ fn number_of_terms(row: Line, cx: &mut Context) -> Option<usize> {
     usize::try_from(count).ok()
 }
 
-/// `node or set, direction, coefficient`, from field `first` on.
+/// Reads a term `node or set, direction, coefficient` from field `first` on.
 fn term(row: Line, first: usize, targets: Targets, cx: &mut Context) -> Option<Term> {
     let target = row.required(first, "a node or node set", cx.d);
     let nodes = target.and_then(|field| nodes(field, targets, cx));
@@ -152,7 +152,7 @@ fn term(row: Line, first: usize, targets: Targets, cx: &mut Context) -> Option<T
     })
 }
 
-/// The node, or the nodes of the set in the order of their numbers.
+/// The node that a field names, or the nodes of the set in the order of their numbers.
 fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> {
     let errors = cx.errors();
     let mut nodes = targets.sets.nodes_of(field, targets.mesh_index, cx);
@@ -171,7 +171,7 @@ fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> 
     (!nodes.is_empty()).then_some(nodes)
 }
 
-/// Adds u_1 = -sum a_k/a_1 u_k of every node of the first term.
+/// Adds the equation u_1 = -sum a_k/a_1 u_k for every node of the first term.
 fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context) {
     let [first, others @ ..] = terms else { return };
     let count = first.nodes.len();
@@ -209,11 +209,11 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
     }
 }
 
-/// The dependent dof with its terms in other dofs. `Err` holds a dof for which the equation cannot be solved: it
-/// stands among the other terms, or its terms cancel.
+/// The dependent dof with its terms in other dofs. `Err` holds a dof for which the equation cannot be solved, because
+/// this dof stands among the other terms or its terms cancel.
 type Solution = Result<(usize, Vec<(usize, f64)>), usize>;
 
-/// An equation solved for its first term, which must not stand among the others.
+/// Solves an equation for its first dof, which must not stand among the others.
 fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solution {
     if others.iter().any(|&(other, _)| other == dof) {
         return Err(dof);
@@ -222,8 +222,9 @@ fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solu
     Ok((dof, others))
 }
 
-/// An equation solved for one of both displacements of a node, that with the larger coefficient where what equations
-/// before give is substituted; where the other one follows that, it is substituted there.
+/// Solves an equation for one of the two displacements of a node. Earlier equations are substituted, and the
+/// displacement with the larger coefficient is eliminated; if the other one depends on it, the result is substituted
+/// there too.
 fn solved_at_node(
     own: &[(usize, f64)],
     others: impl Iterator<Item = (usize, f64)>,
@@ -269,7 +270,7 @@ fn solved_at_node(
     Ok((pivot, terms))
 }
 
-/// Enters an equation; reports a dof that another card makes follow already.
+/// Enters an equation; reports a dof that the equation of another card eliminates already.
 fn claim<'a>(
     dof: usize,
     equation: SolvedEquation<'a>,
@@ -342,7 +343,7 @@ fn of_ties<'a>(
     }
 }
 
-/// Adds the equations of nodes that are joined, and of reference nodes that follow the mean of others.
+/// Adds the equations of nodes that are joined, and of reference nodes that follow the mean of other nodes.
 fn of_links<'a>(
     links: &'a [Link],
     solved: &mut ByDof<'a>,
@@ -382,15 +383,16 @@ fn of_links<'a>(
     }
 }
 
-/// Whether a tied dof is prescribed.
+/// How a tied dof is prescribed.
 enum PrescribedDof {
     Not,
-    /// As the dofs of the master in the same direction are: its support makes what the tie would.
+    /// The dof is prescribed in the same way as the dofs of the master in the same direction, so that its support
+    /// replaces the tie.
     Alike,
     Otherwise,
 }
 
-/// Whether a tied dof is prescribed, and in all steps as those of the same direction that it follows.
+/// How a tied dof is prescribed, compared in all steps with the dofs of the same direction that it follows.
 fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> PrescribedDof {
     let same_direction = || terms.iter().filter(|(to, _)| to % 2 == dof % 2);
     if steps.iter().all(|step| step.motion_of(dof).is_none()) {
@@ -407,13 +409,13 @@ fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> Pr
     }
 }
 
-/// The dof in the words of the deck.
+/// Name of the dof in the words of the deck.
 fn name(dof: usize, targets: Targets) -> String {
     let name = targets.mesh_index.node_name(dof / 2);
     format!("direction {} of node {name}", dof % 2 + 1)
 }
 
-/// What prescribes a dof: a support, or the body that it moves with.
+/// The card that prescribes a dof: a support, or the body that the dof moves with.
 fn holder<'a>(dof: usize, supports: &Supports, targets: Targets<'a>) -> Option<Owner<'a>> {
     let rides = |body: &&Rigid| body.has(dof / 2);
     match supports.place(dof) {
@@ -422,7 +424,7 @@ fn holder<'a>(dof: usize, supports: &Supports, targets: Targets<'a>) -> Option<O
     }
 }
 
-/// An eliminated dof cannot be prescribed as well.
+/// Reports eliminated dofs that are also prescribed.
 fn report_prescribed(
     solved: &ByDof,
     (places, steps): (&Supports, &[Step]),
@@ -451,8 +453,8 @@ fn report_prescribed(
     }
 }
 
-/// The equations with eliminated dofs replaced by their own equations, so that all remaining terms
-/// are independent; each with its place.
+/// The equations with their owners. Eliminated dofs among the terms are replaced by their own equations, so that all
+/// remaining terms are independent.
 fn substituted<'a>(
     mut solved: ByDof<'a>,
     targets: Targets,
@@ -495,7 +497,7 @@ fn substituted<'a>(
     equations.into_values().collect()
 }
 
-/// Reports a displacement that would follow another one in a ratio that cannot be computed with.
+/// Reports a displacement that would follow another one in a ratio that is too large or too small for computing.
 fn report_ratios(
     dof: usize,
     terms: &[(usize, f64)],
@@ -512,8 +514,7 @@ fn report_ratios(
     }
 }
 
-/// The eliminated dofs, each after those it depends on; dofs that depend on themselves are left
-/// out.
+/// The eliminated dofs, each behind the dofs that it depends on; dofs that depend on themselves are left out.
 fn elimination_order(solved: &ByDof) -> Vec<usize> {
     let mut users: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut open: BTreeMap<usize, usize> = BTreeMap::new();
@@ -543,8 +544,8 @@ fn elimination_order(solved: &ByDof) -> Vec<usize> {
     order
 }
 
-/// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the one
-/// its equation implies; the velocities of `supports` are prescribed.
+/// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the one its equation
+/// implies; `supports` prescribe velocities.
 pub(crate) fn check_velocities(
     equations: &[(Equation, Owner)],
     velocity: &[f64],

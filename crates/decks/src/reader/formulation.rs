@@ -1,5 +1,5 @@
-//! What contacts keep out: nodes, or means over faces. General contact chooses where the deck does not say.
-//! docs/numerics.md, Faces that lie on each other.
+//! Formulation of contacts, node to surface or surface to surface, which the reader chooses where the deck leaves it
+//! open. See docs/numerics.md, Faces that lie on each other.
 
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
@@ -13,20 +13,20 @@ use crate::model::{
 };
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, length};
 
-/// Faces that lie on each other from which on both orders of pairs take so much longer than one, 1.3 times and more, that the
-/// reader says so.
+/// Number of faces lying on each other from which on the reader advises against contact pairs in both orders: such a
+/// run takes at least 1.3 times as long as with one order.
 const MANY_LYING: usize = 50;
 
-/// Distance of faces that lie on each other, in the length of the longer one.
+/// Largest distance of two faces that lie on each other, relative to the longer face.
 const LYING_GAP: f64 = 0.1;
 
-/// Sine of the angle between faces that lie on each other.
+/// Sine of the largest angle between two faces that lie on each other.
 const LYING_SINE: f64 = 0.01;
 
-/// Part of the shorter of two faces that must lie on the other.
+/// Part of the shorter of two faces that must lie on the other face.
 const LYING_PART: f64 = 0.1;
 
-/// Length of the segments of a surface, in that of another one, below which it is the finer one.
+/// Ratio of the segment lengths of two surfaces below which the first surface counts as the finer one.
 const FINER: f64 = 0.99;
 
 /// Chooses the formulation of contacts that the deck leaves open, if their nodes are slaves on both sides. Contacts with faces
@@ -55,7 +55,7 @@ pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     }
 }
 
-/// Takes contacts, which others stand for, out of a model and out of what its steps change.
+/// Removes contacts that other contacts replace from a model and from the changes of its steps.
 fn leave_out(left_out: &HashSet<usize>, model: &mut Model) {
     let all = std::mem::take(&mut model.contacts).into_iter().enumerate();
     let (numbers, stay): (Vec<usize>, Vec<Contact>) =
@@ -77,7 +77,7 @@ fn leave_out(left_out: &HashSet<usize>, model: &mut Model) {
     }
 }
 
-/// Whether all steps do the same to two contacts.
+/// Whether all steps change two contacts in the same way.
 fn are_changed_alike(pair: [usize; 2], steps: &[Step]) -> bool {
     steps.iter().all(|step| {
         let [one, other] = pair.map(|number| {
@@ -94,7 +94,7 @@ fn are_changed_alike(pair: [usize; 2], steps: &[Step]) -> bool {
     })
 }
 
-/// Warns of pairs in both orders whose friction differs: the forces of both add up, each by its own law.
+/// Warns about pairs in both orders whose friction differs: the forces of both add up, each by its own law.
 fn warn_of_two_laws(model: &Model, cx: &mut Context) {
     for (number, contact) in model.contacts.iter().enumerate() {
         let mut before = model.contacts[..number].iter();
@@ -112,7 +112,7 @@ fn warn_of_two_laws(model: &Model, cx: &mut Context) {
     }
 }
 
-/// Takes general contact from surface to surface where faces lie on other bodies and the deck does not say.
+/// Makes general contact surface to surface if faces lie on other bodies and the deck leaves the formulation open.
 fn choose_for_general(model: &mut Model) {
     let is_open = |contact: &Contact| contact.is_self_contact() && contact.lying_faces.is_some();
     let Some(number) = model.contacts.iter().position(is_open) else {
@@ -139,17 +139,18 @@ fn choose_for_general(model: &mut Model) {
 
 /// Two contact pairs of the same surfaces, one in each order.
 struct BothOrders {
-    /// Their numbers: that whose slave is the finer surface, or the first, and the other.
+    /// Numbers of the two contacts: first the one whose slave is the finer surface (or that stands first), then the
+    /// other.
     contacts: [usize; 2],
-    /// What both keep out.
+    /// Formulation of both contacts.
     formulation: ContactFormulation,
-    /// Faces of one that lie on the other, and of the other that lie on the one.
+    /// Number of faces of either surface that lie on the other surface.
     lying: usize,
     /// Whether one contact from surface to surface may stand for both.
     becomes_one: bool,
 }
 
-/// The contact pairs that stand in both orders, from surface to surface or not, in the order of the second one.
+/// The contact pairs that stand in both orders, from surface to surface or not, in the order of the second pair.
 fn both_orders(model: &Model) -> Vec<BothOrders> {
     let mut first = HashMap::new();
     let mut both = Vec::new();
@@ -194,8 +195,8 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
     both
 }
 
-/// Whether one contact from surface to surface can stand for two of the same surfaces: they have the same law, no node
-/// of theirs is moved or left out, and what they keep out is open or means.
+/// Whether one contact from surface to surface can replace two contacts of the same surfaces: both have the same law,
+/// no node is moved or left out, and the formulation is open or surface to surface.
 fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     let laws = pair.map(|contact| &contact.interaction);
     let is_of_one_side = laws[0].wear.is_some() || laws[0].heat.is_some();
@@ -210,8 +211,8 @@ fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     laws[0] == laws[1] && !is_of_one_side && pair.into_iter().all(may)
 }
 
-/// Tells that pairs in both orders have become one contact. Advises against those that stay two where their faces lie on
-/// each other.
+/// Tells that pairs in both orders have become one contact. Advises against pairs that stay in both orders although
+/// their faces lie on each other.
 fn report_both_orders(
     model: &Model,
     (of_one, of_two): (&[&BothOrders], &[&BothOrders]),
@@ -253,16 +254,16 @@ fn report_both_orders(
     }
 }
 
-/// Where faces are, and what can move them.
+/// Places of faces, and which nodes can move.
 struct Place<'a> {
     mesh: &'a Mesh,
     /// Body of every node.
     bodies: &'a [usize],
-    /// Whether a node is held in both directions in all steps, by itself or as a part of a rigid body.
+    /// For each node, whether it is held in both directions in all steps, by itself or as a part of a rigid body.
     held: &'a [bool],
 }
 
-/// Which nodes are held in both directions in all steps, by themselves or as parts of rigid bodies.
+/// For each node, whether it is held in both directions in all steps, by itself or as a part of a rigid body.
 fn held_nodes(model: &Model) -> Vec<bool> {
     let dofs = prescribed_throughout(&model.steps);
     let is_held = |node: usize| [0, 1].iter().all(|axis| dofs.contains(&(2 * node + axis)));
@@ -274,7 +275,7 @@ fn held_nodes(model: &Model) -> Vec<bool> {
     held
 }
 
-/// Number of the faces that lie on one of the others, of another body, where one of both can move.
+/// Number of the faces that lie on one of `others`, on another body, where at least one of the two can move.
 fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     let (x, bodies) = (&place.mesh.coordinates, place.bodies);
     let is_held = |face: [usize; 2]| face.iter().all(|&node| place.held[node]);
@@ -301,7 +302,7 @@ fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     lies.into_iter().filter(|lies| *lies).count()
 }
 
-/// Whether two faces run against each other on one line, and have a part of it in common.
+/// Whether two faces run in opposite directions along one line and share a part of it.
 fn lie_on_each_other([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     let [e, f] = [difference(a, b), difference(p, q)];
     let [of_e, of_f] = [length(e), length(f)];
@@ -315,7 +316,7 @@ fn lie_on_each_other([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     is_near(from) && is_near(to) && common >= LYING_PART * of_e.min(of_f)
 }
 
-/// Takes node to surface where contact from surface to surface cannot be used, with a warning that says why.
+/// Replaces surface to surface by node to surface where it cannot be used, with a warning that says why.
 pub(super) fn restrict(model: &mut Model, cx: &mut Context) {
     for number in 0..model.contacts.len() {
         let contact = &model.contacts[number];
@@ -331,7 +332,7 @@ pub(super) fn restrict(model: &mut Model, cx: &mut Context) {
     }
 }
 
-/// Why a contact cannot be from surface to surface, if it cannot.
+/// Reason why a contact cannot be surface to surface; `None` if it can.
 fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'static str> {
     let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
     let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));

@@ -1,4 +1,4 @@
-//! `*CONTACT INTERFERENCE`: overlaps that contact pairs allow, and that of general contact, from step to step.
+//! `*CONTACT INTERFERENCE`: overlaps that contact pairs and general contact allow, carried from step to step.
 
 use super::boundary::Targets;
 use super::context::Context;
@@ -9,16 +9,17 @@ use crate::diagnostics::{Code, Span};
 use crate::model::{Amplitude, Contact, Interference, Load, TimeBase};
 use std::collections::BTreeMap;
 
-/// The overlaps as they are carried from step to step, by contacts.
+/// The allowed overlaps by contacts, as they are carried from step to step.
 #[derive(Default)]
 pub(crate) struct Interferences {
     all: LoadHistory<usize, Interference>,
     operation: Operation,
-    /// Step in which a contact was given last, and whether by a row of its own rather than of the other order.
+    /// For each contact, the last step that gives it an overlap, and whether the row names the surfaces in the order of
+    /// the contact.
     given: BTreeMap<usize, (usize, bool)>,
 }
 
-/// What the rows of a card are read with.
+/// Data for reading the rows of a card.
 #[derive(Clone, Copy)]
 pub(crate) struct Pairs<'a> {
     pub surfaces: &'a Surfaces,
@@ -29,7 +30,7 @@ pub(crate) struct Pairs<'a> {
 }
 
 impl Interferences {
-    /// Takes general contact that presses overlaps out in the first step.
+    /// Adds the overlap that general contact presses out in the first step.
     pub fn first_step(&mut self, contacts: &[Contact]) {
         let fitted = contacts.iter().enumerate();
         for (contact, _) in fitted.filter(|(_, contact)| contact.is_interference_fit) {
@@ -110,7 +111,7 @@ impl Interferences {
         }
     }
 
-    /// Allows an overlap, which must not be less at once than the one that is left of the step before.
+    /// Allows an overlap, which must not begin below the overlap that is left of the step before.
     fn add(
         &mut self,
         contact: usize,
@@ -155,7 +156,7 @@ impl Interferences {
     }
 }
 
-/// The contact pair of the surfaces of a row, and that with their orders changed.
+/// The contact pair of the surfaces of a row, and the pair with slave and master exchanged.
 fn found(row: Line, pairs: Pairs, cx: &mut Context) -> Option<[Option<usize>; 2]> {
     let mut surface = |index: usize, what: &str| {
         let field = row.required(index, what, cx.d)?;

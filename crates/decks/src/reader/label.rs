@@ -1,12 +1,11 @@
-//! Labels of nodes and elements: the number in the deck and the instance of a part; maps from them.
+//! Labels of nodes and elements: the number in the deck and the instance of a part; maps and lists of labels.
 
 use std::collections::BTreeMap;
 
-/// Bits of a label that hold the number; those above hold the instance.
+/// Number of bits of a label that hold the number; the bits above hold the instance.
 const NUMBER_BITS: u32 = 32;
 
-/// What distinguishes the nodes and the elements of the deck: the number and, above it, the instance
-/// of a part.
+/// Label of a node or element of the deck: its number and, in higher bits, the instance of a part.
 pub(super) fn label(instance: u32, number: u64) -> u64 {
     (u64::from(instance) << NUMBER_BITS) | number
 }
@@ -21,16 +20,16 @@ pub(super) fn instance_of(label: u64) -> u32 {
     (label >> NUMBER_BITS) as u32
 }
 
-/// A map from labels, small and fast where they follow each other, as those of meshes do.
+/// A map from labels. The map is small and fast for consecutive labels, which most meshes have.
 #[derive(Debug, Clone)]
 pub(super) struct LabelMap<T> {
-    /// Runs of successive labels in increasing order: the first label, and where its value is.
+    /// Runs of consecutive labels in increasing order: the first label, and the index of its value.
     runs: Vec<(u64, usize)>,
     /// Values of the labels of all runs.
     values: Vec<T>,
     /// The label after the largest one of the runs.
     next: u64,
-    /// Labels added behind larger ones.
+    /// Labels that were added after larger ones.
     others: BTreeMap<u64, T>,
 }
 
@@ -55,7 +54,7 @@ impl<T> LabelMap<T> {
         }
     }
 
-    /// Sets the value of a label; returns the one before.
+    /// Sets the value of a label; returns its earlier value.
     pub fn insert(&mut self, label: u64, value: T) -> Option<T> {
         if label < self.next {
             return match self.place(label) {
@@ -71,7 +70,7 @@ impl<T> LabelMap<T> {
         None
     }
 
-    /// Makes room for so many labels more.
+    /// Makes room for `count` more labels.
     pub fn reserve(&mut self, count: usize) {
         self.values.reserve(count);
     }
@@ -81,7 +80,7 @@ impl<T> LabelMap<T> {
         self.values.iter_mut().chain(self.others.values_mut())
     }
 
-    /// Index of a label of the runs among the values.
+    /// Index of the value of a label in the runs.
     fn place(&self, label: u64) -> Option<usize> {
         if label >= self.next {
             return None;
@@ -125,10 +124,10 @@ impl<T> LabelMap<T> {
     }
 }
 
-/// Labels in any order, small where they follow each other.
+/// A list of labels in any order, which is small for consecutive labels.
 #[derive(Debug, Clone, Default)]
 pub(super) struct LabelList {
-    /// Runs of successive labels: the first one and how many.
+    /// Runs of consecutive labels: the first label of each, and the number of labels.
     runs: Vec<(u64, u64)>,
 }
 

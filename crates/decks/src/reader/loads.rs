@@ -19,28 +19,28 @@ use std::collections::BTreeMap;
 #[derive(Default)]
 pub(crate) struct LoadHistories {
     points: LoadHistory<usize, PointLoad>,
-    /// Weights of point masses, by their number and direction.
+    /// Weights of point masses, by number of the mass and direction.
     weights: LoadHistory<(u32, usize), PointLoad>,
     bodies: LoadHistory<(u32, Body), BodyForce>,
     turned: LoadHistory<u32, CentrifugalForce>,
     pressures: LoadHistory<(OnFace, Follower), Pressure>,
     tractions: LoadHistory<OnFace, Traction>,
-    /// By the keywords.
+    /// Value of `OP` by the keywords of the cards.
     operations: BTreeMap<&'static str, Operation>,
     /// Forces on nodes without element.
     pub actions: Actions,
 }
 
-/// A face, and the surface (index) on which `*DSLOAD` loads it; none with `*DLOAD`.
+/// A face, and the surface (index) on which `*DSLOAD` loads it; `None` for `*DLOAD`.
 type OnFace = (Option<usize>, Face);
 
 /// Kinds of load that follow their face; a later step replaces a load of the same kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Follower {
     Pressure,
-    /// What a traction that turns with the face has across it.
+    /// Component across the face of a traction that turns with the face.
     Across,
-    /// What it has along the face, or a shear.
+    /// Component along the face of a traction that turns with the face, or a shear.
     Along,
 }
 
@@ -57,11 +57,11 @@ impl Follower {
 #[derive(Clone, Copy)]
 enum FaceLoad {
     Pressure,
-    /// Along a direction that stays.
+    /// A traction along a fixed direction.
     Dead([f64; 2]),
-    /// Along a direction that turns with the face.
+    /// A traction along a direction that turns with the face.
     Turning([f64; 2]),
-    /// Along the face, to the side of a direction.
+    /// A shear along the face, to the side of this direction.
     Shear([f64; 2]),
 }
 
@@ -83,7 +83,7 @@ impl Body {
     }
 }
 
-/// A step with the loads that it leaves to the next one, given on nodes and elements.
+/// A copy of a step with the loads that it hands on to the next step, given on nodes and elements.
 pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
     let mut loads = LoadHistories {
         points: LoadHistory::of(&step.point_loads, |at| at.dof),
@@ -101,7 +101,7 @@ pub(crate) fn carried_loads(step: &Step, amplitudes: &[Amplitude]) -> Step {
     carried
 }
 
-/// A card of loads with what its rows have in common.
+/// A card of loads with the data that its rows share.
 #[derive(Clone, Copy)]
 struct Source<'a> {
     card: &'a Card,
@@ -161,7 +161,7 @@ impl LoadHistories {
         self.tractions.clear(context, is_meant);
     }
 
-    /// `node or set, direction, force`
+    /// Reads a row `node or set, direction, force`.
     fn point_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         row.at_most(3, cx.d);
         let Targets {
@@ -184,7 +184,7 @@ impl LoadHistories {
         Some(())
     }
 
-    /// `element or set, kind, magnitude[, dx, dy[, dz]]`; no set is all elements
+    /// Reads a row `element or set, kind, magnitude[, dx, dy[, dz]]`; an empty first field means all elements.
     fn element_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         let Targets {
             mesh_index, sets, ..
@@ -259,7 +259,7 @@ impl LoadHistories {
         Some(())
     }
 
-    /// The weight of a point mass, a force in each direction; both replace those of earlier steps.
+    /// Adds the weight of a point mass as a force in each direction; both forces replace those of earlier steps.
     fn add_weight(&mut self, point: usize, magnitude: f64, direction: [f64; 2], source: Source) {
         let Targets {
             mesh_index, masses, ..
@@ -272,7 +272,7 @@ impl LoadHistories {
         }
     }
 
-    /// `element or set, CENTRIF, omega^2, x, y, z, ax, ay, az`: a point of the axis and its direction
+    /// Reads `element or set, CENTRIF, omega^2, x, y, z, ax, ay, az`, with a point of the axis and its direction.
     fn centrifugal_row(
         &mut self,
         row: Line,
@@ -328,7 +328,7 @@ impl LoadHistories {
         Some(())
     }
 
-    /// A load on one side of each element.
+    /// Adds a load on one side of each element.
     fn face_row(
         &mut self,
         row: Line,
@@ -356,7 +356,7 @@ impl LoadHistories {
         Some(())
     }
 
-    /// `surface, P, p`, or `surface, TRVEC or TRSHR, t, dx, dy[, dz]`
+    /// Reads `surface, P, p`, or `surface, TRVEC or TRSHR, t, dx, dy[, dz]`.
     fn surface_row(&mut self, row: Line, source: Source, cx: &mut Context) -> Option<()> {
         let field = row.required(0, "a surface", cx.d);
         let surface = field.and_then(|field| source.surfaces.find(field, cx));
@@ -418,7 +418,7 @@ impl LoadHistories {
         Some(())
     }
 
-    /// Writes the loads of the current step; those of the last one are not carried further.
+    /// Writes the loads of the current step; after the last step nothing is carried over.
     pub fn fill(&mut self, step: &mut Step, is_last: bool) {
         step.point_loads = self.points.list(is_last);
         let acts = |load: &Load<PointLoad>| match load.ends() {
@@ -453,7 +453,7 @@ fn unknown_kind(kind: Text, known: &str, cx: &mut Context) -> Option<()> {
     None
 }
 
-/// The kind of a load on a face, and its side from 0: of P1 to P4, TRVEC1 to TRVEC4 and TRSHR1 to TRSHR4.
+/// Splits P1 to P4, TRVEC1 to TRVEC4 and TRSHR1 to TRSHR4 into the kind of load and the side of the element, from 0.
 fn loaded_side(kind: &str) -> Option<(&'static str, usize)> {
     let kinds = ["TRVEC", "TRSHR", "P"].into_iter();
     let (name, number) = kinds
@@ -465,10 +465,11 @@ fn loaded_side(kind: &str) -> Option<(&'static str, usize)> {
     Some((name, side))
 }
 
-/// Cosine of the angle between a face and a shear's direction below which the direction says no side.
+/// Smallest cosine of the angle between a face and the direction of a shear: below it the sense of the shear along the
+/// face is undecided.
 const ACROSS: f64 = 1e-3;
 
-/// Largest distance of a node between the ends of a side from its chord, as a part of that, for the side to be straight.
+/// Largest distance of a node of a straight side from the chord of the side, relative to the length of the chord.
 const STRAIGHT: f64 = 1e-9;
 
 /// The unit vector along a face in the mesh, from its first corner to its last.
@@ -479,7 +480,7 @@ fn chord(face: Face, targets: Targets) -> [f64; 2] {
     difference(a, b).map(|x| x / length)
 }
 
-/// The unit vector along a straight face; reports a curved one, which has many.
+/// The unit vector along a straight face; a curved face, which has no single such vector, is reported.
 fn straight(face: Face, row: Line, targets: Targets, cx: &mut Context) -> Option<[f64; 2]> {
     let (mesh, along) = (&targets.mesh_index.mesh, chord(face, targets));
     let [first, last] = face.ends(mesh).map(|node| mesh.coordinates[node]);
@@ -511,7 +512,7 @@ fn masses_of(row: Line, targets: Targets, cx: &mut Context) -> Vec<usize> {
     points
 }
 
-/// Warns that a centrifugal force leaves out the point masses, of which there are some among the elements of a row.
+/// Warns that a centrifugal force does not act on point masses if there are some among the elements of a row.
 fn warn_of_masses(row: Line, targets: Targets, cx: &mut Context) {
     if !masses_of(row, targets, cx).is_empty() {
         let message = "CENTRIF does not act on elements of the type MASS";
@@ -529,7 +530,7 @@ fn gravity_direction(row: Line, magnitude: f64, cx: &mut Context) -> Option<[f64
     Some(direction)
 }
 
-/// Notes a gravity that hints at mixed units.
+/// Notes a gravity whose value hints at mixed units.
 fn hint_at_units(row: Line, magnitude: f64, cx: &mut Context) {
     let usual = [9.81, 981.0, 9810.0, 32.2, 386.0];
     let near = |g: &f64| (magnitude.abs() / g - 1.0).abs() < 0.02;
@@ -541,7 +542,7 @@ fn hint_at_units(row: Line, magnitude: f64, cx: &mut Context) {
     }
 }
 
-/// Fields 3 to 5: dx, dy, dz with dz = 0, made a unit vector.
+/// Reads fields 3 to 5, dx, dy, dz with dz = 0, and makes them a unit vector.
 fn unit_direction(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     let components = [3, 4, 5].map(|i| row.real_or(i, 0.0, cx.d));
     let [Some(x), Some(y), Some(z)] = components else {
@@ -564,7 +565,8 @@ fn unit_direction(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     Some([x / length, y / length])
 }
 
-/// CalculiX multiplies an acceleration by the length of its direction.
+/// Warns about the direction of an acceleration if it is no unit vector: CalculiX multiplies the acceleration by its
+/// length.
 fn warn_unless_unit(row: Line, cx: &mut Context) {
     let component = |i: usize| row.get(i).and_then(|field| field.as_real());
     let length = component(3)
@@ -586,7 +588,7 @@ fn warn_that_it_follows(what: &str, card: &Card, cx: &mut Context) {
     }
 }
 
-/// What a row of P, TRVEC or TRSHR says of the load on a face.
+/// The load on a face that a row of P, TRVEC or TRSHR gives.
 fn face_load(name: &str, row: Line, card: &Card, cx: &mut Context) -> Option<FaceLoad> {
     if name == "P" {
         row.at_most(3, cx.d);
@@ -615,10 +617,10 @@ fn face_load(name: &str, row: Line, card: &Card, cx: &mut Context) -> Option<Fac
     })
 }
 
-/// How a load without amplitude reaches its magnitude, and the step it is given in.
+/// How a load without amplitude reaches its magnitude, and the step that gives the load.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepContext {
-    /// Number of the step, from 1; 0 is model data.
+    /// Number of the step, from 1; 0 for model data.
     pub step: usize,
     /// Whether loads without amplitude grow linearly (`*STEP, AMPLITUDE=RAMP`).
     pub ramp: bool,
@@ -632,7 +634,7 @@ pub(crate) struct Operation {
 }
 
 impl Operation {
-    /// Enters a card; true if it removes all loads of earlier steps.
+    /// Enters a card; returns whether the card removes all loads of earlier steps.
     pub fn starts_anew(&mut self, card: &Card, step: usize, cx: &mut Context) -> bool {
         let typed = card.choice("OP");
         let new = typed == Some("NEW");
@@ -649,22 +651,22 @@ impl Operation {
     }
 }
 
-/// LoadHistories of one kind by their keys.
+/// The loads of one kind by their keys.
 pub(crate) struct LoadHistory<K, T> {
-    /// The first ones, `sorted` of them, in the order of their keys; then those added since.
+    /// The first `sorted` loads are in the order of their keys; later ones follow in any order.
     parts: Vec<(K, CarriedLoad<T>)>,
     sorted: usize,
 }
 
-/// A load with what the step before has left of it.
+/// A load with its magnitude at the end of the step before.
 #[derive(Clone, Copy)]
 pub(super) struct CarriedLoad<T> {
     load: Load<T>,
     /// Magnitude at the end of the step before.
     end: f64,
-    /// Step that gave it.
+    /// Number of the step that gave the load.
     step: u32,
-    /// Whether another one has taken its place.
+    /// Whether another load has replaced this one.
     replaced: bool,
 }
 
@@ -678,7 +680,7 @@ impl<K, T> Default for LoadHistory<K, T> {
 }
 
 impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
-    /// The loads of a step, by the keys of what they act on.
+    /// The loads of a step, by keys made from the places they act on.
     fn of(loads: &[Load<T>], key: impl Fn(&T) -> K) -> LoadHistory<K, T> {
         LoadHistory {
             parts: loads
@@ -689,8 +691,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         }
     }
 
-    /// All loads of the current step, in the order of their keys; nothing remains after the last
-    /// step.
+    /// All loads of the current step, in the order of their keys; after the last step the list is emptied.
     pub fn list(&mut self, is_last: bool) -> Vec<Load<T>> {
         self.sort();
         match is_last {
@@ -703,7 +704,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         }
     }
 
-    /// Removes the loads under some keys; where loads ramp they fade out over the step.
+    /// Removes the loads whose keys fulfil `is_meant`; if loads ramp, the removed loads fade out over the step.
     pub fn clear(&mut self, context: StepContext, is_meant: impl Fn(&K) -> bool) {
         if !context.ramp {
             self.parts.retain(|(key, _)| !is_meant(key));
@@ -714,12 +715,12 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.sort();
     }
 
-    /// Makes room for so many loads more.
+    /// Makes room for `count` more loads.
     pub fn reserve(&mut self, count: usize) {
         self.parts.reserve(count);
     }
 
-    /// Adds a load; it replaces those of earlier steps under the same key.
+    /// Adds a load, which replaces the loads of earlier steps under the same key.
     pub fn add(
         &mut self,
         key: K,
@@ -742,8 +743,8 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Adds a load that falls from a magnitude to nothing over the step; it replaces those of earlier steps under the
-    /// same key.
+    /// Adds a load that falls from a magnitude to zero over the step. This load replaces the loads of earlier steps
+    /// under the same key.
     pub fn add_falling(&mut self, key: K, at: T, from: f64, step: usize) {
         let context = StepContext { step, ramp: true };
         (self.earlier(key, context)).for_each(|part| part.replaced = true);
@@ -751,7 +752,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Takes back what a step has added under a key, and what it has replaced.
+    /// Removes the loads that a step has added under a key, and restores those that they replaced.
     pub fn take_back(&mut self, key: K, step: usize) {
         (self.parts).retain(|(known, part)| *known != key || part.step as usize != step);
         let own = self.parts.iter_mut().filter(|(known, _)| *known == key);
@@ -764,7 +765,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.earlier(key, context).map(|part| part.end).sum()
     }
 
-    /// Parts of earlier steps under a key.
+    /// Loads of earlier steps under a key.
     fn earlier(
         &mut self,
         key: K,
@@ -779,7 +780,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
             .filter(move |part| (part.step as usize) < context.step && !part.replaced)
     }
 
-    /// Leaves out parts that are replaced, and puts the others in the order of their keys.
+    /// Drops replaced loads and sorts the others by their keys.
     fn sort(&mut self) {
         self.parts.retain(|(_, part)| !part.replaced);
         if !self.parts.is_sorted_by_key(|(key, _)| *key) {
@@ -788,7 +789,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.sorted = self.parts.len();
     }
 
-    /// Ends a step: loads keep the magnitude they have reached, unless they follow the total time.
+    /// Ends a step: loads keep the magnitude that they have reached, unless they follow an amplitude in total time.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         self.sort();
         for (_, part) in &mut self.parts {
@@ -803,8 +804,8 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
     }
 }
 
-/// Loads on faces in the order of their places, at each those without amplitude first, which are one load where
-/// they have one direction.
+/// Loads on faces in the order of their places. At each place loads without amplitude come first; such loads in the
+/// same direction are joined to one load.
 pub(super) fn joined<T: Copy + PartialEq, K: Ord>(
     mut loads: Vec<Load<T>>,
     place: fn(&Load<T>) -> K,
@@ -846,7 +847,7 @@ fn add_up<K, T: Copy + PartialEq>(parts: &mut [(K, CarriedLoad<T>)]) {
 }
 
 impl<T: Copy> CarriedLoad<T> {
-    /// A load of a step of its own.
+    /// A load of one step, without earlier steps.
     pub fn of(load: &Load<T>) -> Self {
         CarriedLoad {
             load: *load,
@@ -856,13 +857,13 @@ impl<T: Copy> CarriedLoad<T> {
         }
     }
 
-    /// The load, without a ramp where it is constant.
+    /// The load, as a constant load if its ramp does not change the magnitude.
     pub fn simple(&self) -> Load<T> {
         let load = self.load;
         load.ends().map_or(load, |ends| load.between(ends))
     }
 
-    /// Magnitude that a load ramps from that takes its place in a step: the one at the end of the step before.
+    /// Magnitude at the end of the step before, from which a load ramps that replaces this one.
     pub fn reached(&self, context: StepContext) -> f64 {
         match (self.step as usize == context.step, self.load.variation) {
             (true, Variation::Ramp { from }) => from,
@@ -872,7 +873,7 @@ impl<T: Copy> CarriedLoad<T> {
 }
 
 impl<T> CarriedLoad<T> {
-    /// A load that reaches its magnitude from zero where it ramps.
+    /// A new load; if loads ramp, it grows from zero to its magnitude.
     pub fn new(
         at: T,
         magnitude: f64,
@@ -897,7 +898,7 @@ impl<T> CarriedLoad<T> {
         }
     }
 
-    /// The same load, from another magnitude where it ramps.
+    /// The same load; if it ramps, it grows from this magnitude.
     pub fn rising_from(mut self, from: f64) -> CarriedLoad<T> {
         if let Variation::Ramp { .. } = self.load.variation {
             self.load.variation = Variation::Ramp { from };
@@ -910,7 +911,7 @@ impl<T> CarriedLoad<T> {
         self.load.variation = Variation::Ramp { from: self.end };
     }
 
-    /// Ends a step: the load keeps the magnitude it has reached, unless it follows the total time.
+    /// Ends a step: the load keeps the magnitude that it has reached, unless it follows an amplitude in total time.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         let load = &mut self.load;
         let curve = match load.variation {

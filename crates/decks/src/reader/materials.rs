@@ -1,4 +1,4 @@
-//! `*MATERIAL` with its law (`*ELASTIC`, with `*PLASTIC` or without, or `*HYPERELASTIC`), `*DENSITY` and `*DAMPING`.
+//! `*MATERIAL` with its law (`*ELASTIC` with or without `*PLASTIC`, or `*HYPERELASTIC`), `*DENSITY` and `*DAMPING`.
 
 use super::context::Context;
 use super::names::Names;
@@ -14,17 +14,17 @@ use crate::model::{Damping, Material, Section};
 /// Places of a material for messages.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MaterialPlaces {
-    /// `*MATERIAL`.
+    /// Place of `*MATERIAL`.
     pub material: Span,
-    /// What Poisson's ratio follows from.
+    /// Place of the constant that determines Poisson's ratio.
     pub poisson: Span,
-    /// Mass-proportional damping.
+    /// Place of the mass-proportional damping.
     pub damping: Span,
     /// Whether the deck gives no density.
     pub has_no_density: bool,
 }
 
-/// A material as far as the deck gives it.
+/// A material with the properties that the deck gives.
 struct Draft {
     name: String,
     places: MaterialPlaces,
@@ -34,12 +34,13 @@ struct Draft {
     expansion: Constant<Expansion>,
 }
 
-/// Density where none is given: static steps use none, and masses are volumes.
+/// Density of a material without `*DENSITY`, for static steps, which do not use it; masses in the results are then
+/// volumes.
 const NO_DENSITY: f64 = 1.0;
 
 /// The materials of a deck before their sections are known.
 pub(super) struct Drafts {
-    /// Names, in the order of the materials.
+    /// Names of the materials in their order.
     pub names: Names,
     all: Vec<Draft>,
 }
@@ -72,8 +73,8 @@ impl Drafts {
         }
     }
 
-    /// The materials and their places. Unknown constants of the law are zero, which a model without errors never has in
-    /// use; a density that is not given is [`NO_DENSITY`].
+    /// The materials and their places. A law that is not given has constants zero, which are never used in a model
+    /// without errors; a density that is not given is [`NO_DENSITY`].
     pub fn complete(self, cx: &mut Context) -> (Vec<Material>, Vec<MaterialPlaces>) {
         let complete = self.all.into_iter().map(|draft| {
             let material = Material {
@@ -92,7 +93,7 @@ impl Drafts {
     }
 }
 
-/// A material; `general` is the damping of one that has none of its own.
+/// Reads a material; `general` is the damping of materials without their own.
 fn draft(
     name: String,
     block: &CardBlock,
@@ -120,7 +121,7 @@ fn draft(
     }
 }
 
-/// `alpha[, T]`, in rows of increasing temperatures, alpha being the mean since `ZERO`.
+/// Reads rows `alpha[, T]` of increasing temperatures; alpha is the mean from `ZERO` to T.
 fn expansion(cards: &[&Card], cx: &mut Context) -> Constant<Expansion> {
     cx.only_once(cards);
     let Some(card) = cards.first() else {
@@ -174,7 +175,7 @@ impl Draft {
     }
 }
 
-/// Notes a wave speed that hints at mixed units.
+/// Notes a wave speed whose value hints at mixed units.
 fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
     let speed = material.wave_speed(Plane::Strain);
     if speed.is_finite() && speed > 0.0 && !(10.0..=1e8).contains(&speed) {
@@ -188,7 +189,7 @@ fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
 /// Keywords of the laws.
 const KEYWORDS: [&str; 2] = ["ELASTIC", "HYPERELASTIC"];
 
-/// The one law of a material.
+/// The law of a material, of which there must be one.
 fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     let is_law = |card: &&&Card| KEYWORDS.contains(&card.keyword.name);
     let mut cards = block.parts.iter().filter(is_law);
@@ -215,7 +216,8 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     })
 }
 
-/// The metal of `*ELASTIC` and `*PLASTIC`. Its elastic strains are Hencky's, whether the deck says so or not.
+/// The metal of `*ELASTIC` and `*PLASTIC`. The elastic strains of this metal are logarithmic (Hencky), with or without
+/// TYPE=HENCKY in the deck.
 fn metal(elasticity: &Card, plasticity: &Card, cx: &mut Context) -> Constant<Law> {
     let is_of_metals =
         elasticity.keyword.name == "ELASTIC" && elasticity.choice("TYPE") != Some("NEO HOOKE");
@@ -237,8 +239,8 @@ fn metal(elasticity: &Card, plasticity: &Card, cx: &mut Context) -> Constant<Law
     }
 }
 
-/// Rows `yield stress, plastic strain[, T]`: the table of plastic strains and yield stresses, and the modulus of
-/// kinematic hardening.
+/// Reads rows `yield stress, plastic strain[, T]`; returns the table of plastic strains and yield stresses, and the
+/// modulus of kinematic hardening.
 fn hardening(card: &Card, cx: &mut Context) -> Option<(Vec<[f64; 2]>, f64)> {
     if card.faulty {
         return None;
@@ -297,14 +299,14 @@ fn hardening(card: &Card, cx: &mut Context) -> Option<(Vec<[f64; 2]>, f64)> {
     Some((vec![[0.0, first]], (second - first) / strain))
 }
 
-/// Place of what Poisson's ratio follows from: the second constant of the law.
+/// Place of the constant that determines Poisson's ratio: the second one of the law.
 fn poisson_span(block: &CardBlock) -> Option<Span> {
     let mut cards = block.parts.iter();
     let card = cards.find(|card| KEYWORDS.contains(&card.keyword.name))?;
     Some(card.rows.first()?.get(1)?.span)
 }
 
-/// Reports a law that stands beside the first one.
+/// Reports a second law of a material.
 fn report_second(first: &Card, card: &Card, cx: &mut Context) {
     if first.keyword.name == card.keyword.name {
         return cx.only_once(&[first, card]);
@@ -314,7 +316,7 @@ fn report_second(first: &Card, card: &Card, cx: &mut Context) {
         .help("take one of the two out, or give each a material of its own");
 }
 
-/// `E, nu[, T]`
+/// Reads a row `E, nu[, T]`.
 fn elastic_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let code = Code::MaterialRange;
@@ -330,20 +332,20 @@ fn elastic_row(row: Line, cx: &mut Context) -> Option<Law> {
     Some(Law::elastic(young?, poisson?))
 }
 
-/// `E, nu[, T]` of the neo-Hookean material with these moduli at small strains.
+/// Reads a row `E, nu[, T]` for the neo-Hookean material with these moduli at small strains.
 fn elastic_neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     let SmallStrainModuli { young, poisson } = elastic_row(row, cx)?.small_strain();
     let law = NeoHooke::of_small_strain(SmallStrainModuli { young, poisson });
     Some(Law::NeoHooke(law))
 }
 
-/// `E, nu[, T]` of Hencky's material.
+/// Reads a row `E, nu[, T]` for Hencky's material.
 fn hencky_row(row: Line, cx: &mut Context) -> Option<Law> {
     let moduli = elastic_row(row, cx)?.small_strain();
     Some(Law::Hencky(Hencky { moduli }))
 }
 
-/// The law of `*HYPERELASTIC`, by its form. What a faulty keyword line gives is not looked at.
+/// The law of `*HYPERELASTIC`, by its form. A card with a faulty keyword line is not read further.
 fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
     if card.faulty {
         return Constant::Wrong;
@@ -374,7 +376,7 @@ fn hyperelastic(card: &Card, cx: &mut Context) -> Constant<Law> {
     constant(&[card], read, cx)
 }
 
-/// `C10, D1[, T]`
+/// Reads a row `C10, D1[, T]`.
 fn neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(3, cx.d);
     let c10 = row.required(0, "C10", cx.d);
@@ -384,7 +386,7 @@ fn neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     Some(Law::NeoHooke(NeoHooke { c10, d1 }))
 }
 
-/// `C10, C01, D1[, T]`
+/// Reads a row `C10, C01, D1[, T]`.
 fn mooney_rivlin_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(4, cx.d);
     let c10 = row.required(0, "C10", cx.d)?;
@@ -404,8 +406,8 @@ fn mooney_rivlin_row(row: Line, cx: &mut Context) -> Option<Law> {
     }))
 }
 
-/// `mu1, alpha1, ..., D1, ...[, T]` of `order` terms: eight constants in a row at most, the ninth and the temperature in the
-/// next.
+/// Reads `mu1, alpha1, ..., D1, ...[, T]` of `order` terms: at most eight constants in a row; the ninth constant and
+/// the temperature stand in the next row.
 fn ogden(card: &Card, order: &str, cx: &mut Context) -> Constant<Law> {
     let terms = match order {
         "1" => 1,
@@ -465,7 +467,7 @@ fn ogden_rows(rows: &[Line], terms: usize, cx: &mut Context) -> Option<Law> {
     Some(Law::Ogden(law))
 }
 
-/// D2 or D3, zero where there is none.
+/// D2 or D3; zero if the field is empty.
 fn higher_d(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
     let rule = "D2 and D3 must not be negative; 0 is none";
     let field = row.get(index).filter(|field| !field.text.is_empty());
@@ -474,7 +476,8 @@ fn higher_d(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
     })
 }
 
-/// `C10, C20, C30, D1, D2, D3[, T]`: all but C10 and D1 may be zero, for no such term.
+/// Reads a row `C10, C20, C30, D1, D2, D3[, T]`; constants other than C10 and D1 may be zero, which leaves out their
+/// terms.
 fn yeoh_row(row: Line, cx: &mut Context) -> Option<Law> {
     row.at_most(7, cx.d);
     let c10 = row.required(0, "C10", cx.d);
@@ -494,11 +497,11 @@ fn positive_c10(c10: Text, cx: &mut Context) -> Option<f64> {
     c10.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)
 }
 
-/// K/mu of a material with D1 = 0. In plane stress its force is that of an incompressible one to 5e-5 at stretches from
-/// 0.5 to 1.5.
+/// Ratio K/mu of a material with D1 = 0. In plane stress, at stretches from 0.5 to 1.5, the force of such a material
+/// differs from that of an incompressible one by at most 5e-5 of the force.
 const NEARLY_INCOMPRESSIBLE: f64 = 1e4;
 
-/// D1 in field `index` of a material of the shear modulus mu = 2 c; zero stands for K = 1e4 mu:
+/// Reads D1 in field `index` of a material with the shear modulus mu = 2 c; zero means K = 1e4 mu:
 ///
 /// ```text
 /// D1 = 2/K = 1/(1e4 c)
@@ -526,12 +529,12 @@ fn d1(row: Line, index: usize, c: f64, cx: &mut Context) -> Option<f64> {
     Some(d1)
 }
 
-/// What D1 is.
+/// Help on the meaning of D1.
 const BULK: &str = "D1 = 2/K with the bulk modulus K; where it is not known, K = 20 mu (D1 = 0.05/C10 of NEO HOOKE) is \
                     usual for rubber; D1 = 0 stands for K = 10000 mu, which is all but incompressible and needs CPE4H, \
                     CPE8H or CPE8R in plane strain";
 
-/// The damping that a card gives which may appear once, with the place of the part in proportion to the mass.
+/// Reads the damping of a material, which may have one card, and the place of its mass-proportional part.
 fn damping(cards: &[&Card], cx: &mut Context) -> Option<(Damping, Span)> {
     cx.only_once(cards);
     let card = cards.first()?;
@@ -595,7 +598,8 @@ fn constant<T: PartialEq>(
     found
 }
 
-/// A temperature in field `index`, which may be any: the rows of all temperatures are alike.
+/// Reads the temperature in field `index`, whose value has no effect: the constants must be the same at all
+/// temperatures.
 fn temperature(row: Line, index: usize, cx: &mut Context) -> Option<()> {
     row.real_or(index, 0.0, cx.d).map(|_| ())
 }

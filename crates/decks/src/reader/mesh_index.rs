@@ -1,6 +1,6 @@
-//! The mesh with the node and element numbers of the deck, the sets named on `*NODE` and `*ELEMENT`,
-//! and the places of the elements. Nodes and elements of instances get numbers of the program's own, as
-//! their numbers in the part appear in every instance.
+//! The mesh with the node and element numbers of the deck, the sets named on `*NODE` and `*ELEMENT`, and the places of
+//! the elements. Nodes and elements of instances get new numbers, because the numbers of a part appear in each of its
+//! instances.
 
 use super::collapsed::side_of_triangle;
 use super::context::Context;
@@ -13,14 +13,14 @@ use std::collections::{HashMap, HashSet};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
-    /// Nodes that belong to elements, and elements. Sections are not yet known.
+    /// The mesh: nodes that belong to elements, and elements. The sections of its elements are not known yet.
     pub mesh: Mesh,
     /// Instances of parts.
     pub instances: Vec<Instance>,
     /// Labels of the nodes.
     pub nodes: Labels,
-    /// Labels of the elements; the indices of line elements follow those of the plane ones, and those of springs and
-    /// dashpots follow these.
+    /// Labels of the elements; their indices number plane elements first, then line elements, point elements, springs
+    /// and dashpots, and rigid lines.
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
@@ -32,28 +32,28 @@ pub(crate) struct MeshIndex {
     pub rigid_lines: Vec<RigidLine>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
-    /// Sides of no length of quadrilaterals that are triangles (indices).
+    /// For quadrilaterals that are triangles (indices of elements), the number of the side of no length.
     pub collapsed: HashMap<usize, usize>,
     /// Node sets named on `*NODE`.
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
     pub element_groups: Vec<Group>,
-    /// Faces on both sides of the cuts of pre-tension sections, which belong to no surface but those that name them.
+    /// Faces on both sides of the cuts of pre-tension sections; only surfaces that name such faces contain them.
     pub cut_faces: HashSet<Face>,
 }
 
 /// An element at one node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PointElement {
-    /// What it has.
+    /// Property of the element.
     pub kind: PointKind,
-    /// Its node.
+    /// Node of the element.
     pub node: usize,
-    /// Where it is defined.
+    /// Place of the row that defines the element.
     pub span: Span,
 }
 
-/// What a point element has.
+/// Property of a point element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PointKind {
     /// Mass (`MASS`).
@@ -66,36 +66,36 @@ pub(crate) enum PointKind {
 pub(crate) struct ConnectorElement {
     /// Label of the element.
     pub label: u64,
-    /// Its type.
+    /// Type of the element.
     pub kind: ConnectorKind,
-    /// Its nodes (indices).
+    /// Nodes of the element (indices).
     pub nodes: Vec<usize>,
-    /// Its place.
+    /// Place of the element.
     pub span: Span,
 }
 
-/// An element that is a rigid line, of the type R2D2 or RAX2.
+/// A rigid line: an element of the type R2D2 or RAX2.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RigidLine {
     /// Label of the element.
     pub label: u64,
-    /// Its nodes (indices).
+    /// Nodes of the line (indices).
     pub nodes: [usize; 2],
-    /// Its place.
+    /// Place of the line.
     pub span: Span,
 }
 
 /// A type of springs or dashpots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ConnectorKind {
-    /// What its force follows.
+    /// Whether the force follows the elongation (spring) or its rate (dashpot).
     pub law: ConnectorLaw,
-    /// `1`, `2` or `A`.
+    /// End of the name of the type: `1`, `2` or `A`.
     pub form: char,
 }
 
 impl ConnectorKind {
-    /// The type with this folded name.
+    /// The type with this name, in capitals without blanks.
     pub fn from_name(name: &str) -> Option<Self> {
         let families = [
             ("SPRING", ConnectorLaw::Spring),
@@ -112,19 +112,19 @@ impl ConnectorKind {
         })
     }
 
-    /// Number of nodes.
+    /// Number of nodes of an element of this type.
     pub fn nodes(self) -> usize {
         if self.form == '1' { 1 } else { 2 }
     }
 }
 
-/// A set named where its members are defined.
+/// A set that is named on the card that defines its members.
 pub(crate) struct Group {
-    /// Its name.
+    /// Name of the set.
     pub name: Name,
-    /// Where it is named.
+    /// Place of the name.
     pub span: Span,
-    /// Labels of its members.
+    /// Labels of the members of the set.
     pub labels: LabelList,
 }
 
@@ -168,17 +168,17 @@ impl Default for MeshIndex {
 }
 
 impl MeshIndex {
-    /// What the deck calls a node.
+    /// Name of a node in the words of the deck.
     pub fn node_name(&self, node: usize) -> String {
         node_name(node, &self.mesh, &self.instances)
     }
 
-    /// What the deck calls an element.
+    /// Name of an element in the words of the deck.
     pub fn element_name(&self, element: usize) -> String {
         element_name(element, &self.mesh, &self.instances)
     }
 
-    /// The side of an element that the deck gives a number from 0; none if the element has no such side.
+    /// The side of an element that has this number in the deck, counted from 0; `None` if the element has no such side.
     pub fn side(&self, element: usize, number: usize) -> Option<usize> {
         let count = self.mesh.elements.get(element)?.side_count();
         match self.collapsed.get(&element) {
@@ -187,7 +187,7 @@ impl MeshIndex {
         }
     }
 
-    /// Adds nodes without element at these points; their numbers follow the largest one.
+    /// Adds nodes without element at these points; their numbers follow the largest number of a node.
     pub fn add_points(&mut self, points: &[[f64; 2]]) {
         let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
         let labels = (1..).map(|i| largest.saturating_add(i));
@@ -195,21 +195,22 @@ impl MeshIndex {
         self.mesh.coordinates.extend(points);
     }
 
-    /// Makes room for so many nodes more.
+    /// Makes room for `count` more nodes.
     pub fn reserve_nodes(&mut self, count: usize) {
         self.nodes.reserve(count);
         self.mesh.node_labels.reserve(count);
         self.mesh.coordinates.reserve(count);
     }
 
-    /// Makes room for so many elements more.
+    /// Makes room for `count` more elements.
     pub fn reserve_elements(&mut self, count: usize) {
         self.elements.reserve(count);
         self.mesh.elements.reserve(count);
         self.places.reserve(count);
     }
 
-    /// Numbers springs and dashpots after the point elements, and rigid lines after them.
+    /// Gives springs and dashpots indices after the point elements, and rigid lines indices after the springs and
+    /// dashpots.
     pub fn number_connectors(&mut self) {
         let first = self.mesh.elements.len() + self.lines.len() + self.points.len();
         let connectors = self.connectors.iter().map(|connector| connector.label);
@@ -219,7 +220,7 @@ impl MeshIndex {
         }
     }
 
-    /// Takes out the nodes that are not used and numbers the others anew.
+    /// Removes nodes that are not used, and gives the others new indices.
     pub fn keep_nodes(&mut self, used: &[bool]) {
         let mut count = 0;
         let numbers = used.iter().map(|&used| {
@@ -244,8 +245,8 @@ impl MeshIndex {
     }
 }
 
-/// Replaces the labels of nodes and elements by numbers; those of instances follow the largest one
-/// of the others, that of springs and dashpots among them.
+/// Replaces the labels of nodes and elements by numbers. Numbers in instances follow the largest number outside
+/// instances, including springs and dashpots.
 pub(super) fn number_instances(
     mesh: &mut Mesh,
     connectors: &[ConnectorElement],
@@ -285,14 +286,14 @@ pub(super) fn number_instances(
     instances
 }
 
-/// The number after the largest one outside instances.
+/// The number after the largest number outside instances.
 fn first_number<'l>(labels: impl Iterator<Item = &'l u64>) -> u64 {
     let others = labels.filter(|label| instance_of(**label) == 0);
     1 + others.max().copied().unwrap_or(0)
 }
 
-/// Gives those of instances numbers of their own from `next` on; returns index, instance and number
-/// in the part of each.
+/// Gives labels of instances new numbers from `next` on; returns the index, the instance and the number in the part of
+/// each.
 fn renumbered<'l>(
     labels: impl Iterator<Item = &'l mut u64>,
     mut next: u64,

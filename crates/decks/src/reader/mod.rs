@@ -1,8 +1,7 @@
 //! From cards to the model: what each keyword means, and the checks across them.
 //!
-//! One file per family of keywords. Names and numbers are collected before they are looked up, so
-//! the order of a deck never matters; names that a card with an error defines are marked, so
-//! that they are not reported as undefined where they are used.
+//! One file per family of keywords. Names and numbers are collected before they are looked up, so the order of a deck
+//! never matters. Names that a faulty card defines are marked, so that their uses are not reported as undefined.
 
 mod actions;
 mod amplitudes;
@@ -211,7 +210,7 @@ fn read(cx: &mut Context) -> Model {
     model
 }
 
-/// The sets of the model: element sets without those that hold no plane elements but others.
+/// The sets of the model; element sets with line or point elements, springs or dashpots only are left out.
 fn named_sets(sets: Sets, histories: Histories, instances: Vec<Instance>) -> NamedSets {
     let is_kept = |&set: &usize| !sets.holds_others_only(set);
     let kept: Vec<usize> = (0..sets.elements.len()).filter(is_kept).collect();

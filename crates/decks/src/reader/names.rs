@@ -7,10 +7,10 @@ use crate::deck::{Card, Name, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use std::collections::HashMap;
 
-/// The names of one kind of thing, numbered in the order of their definition.
+/// The names of one kind of object, numbered in the order of their definition.
 pub(super) struct Names {
     what: &'static str,
-    /// Whether the names of a part are names in each of its instances.
+    /// Whether parts may define such names, once for each of their instances.
     of_parts: bool,
     index: HashMap<String, Option<usize>>,
     typed: Vec<Name>,
@@ -18,7 +18,7 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// No names yet of objects called `what`.
+    /// An empty table of names for objects called `what`.
     pub fn new(what: &'static str) -> Names {
         Names {
             what,
@@ -29,7 +29,7 @@ impl Names {
         }
     }
 
-    /// No names yet of objects called `what` that parts may define: the name `Set` of a part is
+    /// An empty table of names for objects called `what` that parts may define: the name `Set` of a part is
     /// `Instance.Set` outside.
     pub fn of_parts(what: &'static str) -> Names {
         Names {
@@ -38,7 +38,7 @@ impl Names {
         }
     }
 
-    /// The name that a card defines; reports invalid names.
+    /// The name that a card defines; an invalid name is reported.
     pub fn defined(&self, text: Text, cx: &mut Context) -> Option<Name> {
         let name = text.name(cx.d)?;
         Some(match self.of_parts {
@@ -47,12 +47,12 @@ impl Names {
         })
     }
 
-    /// Names as first typed.
+    /// The names as they were first typed.
     pub fn typed(&self) -> impl Iterator<Item = &str> + Clone {
         self.typed.iter().map(|name| name.typed.as_str())
     }
 
-    /// Number of a name, new or not.
+    /// Number of a name; a new name gets the next number.
     pub fn define(&mut self, name: Name) -> usize {
         let next = self.typed.len();
         match self.index.entry(name.key.clone()).or_insert(Some(next)) {
@@ -65,13 +65,13 @@ impl Names {
         }
     }
 
-    /// Whether the name has a number.
+    /// Whether the name is defined without an error.
     pub fn is_defined(&self, name: &Name) -> bool {
         matches!(self.index.get(&name.key), Some(Some(_)))
     }
 
-    /// The name of a card that defines something, from its parameter `NAME`; reports a missing,
-    /// bad or repeated one.
+    /// The name of a card that defines something, from its parameter `NAME`; a missing, invalid or repeated name is
+    /// reported.
     pub fn new_name(&mut self, card: &Card, cx: &mut Context) -> Option<Name> {
         let text = card.required("NAME", cx.d);
         let name = text.and_then(|text| self.defined(text, cx));
@@ -92,12 +92,12 @@ impl Names {
         self.index.entry(name.key.clone()).or_insert(None);
     }
 
-    /// Marks that some definition has no name, which is reported.
+    /// Marks that the name of some definition is missing, after an error has been reported.
     pub fn spoil_unknown(&mut self) {
         self.nameless = true;
     }
 
-    /// Number of a name; reports an undefined one.
+    /// Number of a name; an undefined name is reported.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let name = text.name(cx.d)?;
         let local = self.defined(text, cx)?;
@@ -111,7 +111,8 @@ impl Names {
         found?
     }
 
-    /// What a name means where it stands, if it is defined: its number, none where its definition has an error.
+    /// Number of a name as it is meant at its place; `Some(None)` if its definition has an error, `None` if it is
+    /// undefined.
     fn known(&self, text: Text, cx: &Context) -> Option<Option<usize>> {
         let keys = match self.of_parts {
             true => cx.keys_of(text),
@@ -120,7 +121,7 @@ impl Names {
         keys.iter().find_map(|key| self.index.get(key)).copied()
     }
 
-    /// What is meant by a name where it stands, as it is called in the whole deck.
+    /// Full name of the object that a name means at its place, valid in the whole deck.
     pub fn full_name(&self, text: Text, cx: &Context) -> String {
         let found = self.known(text, cx).flatten();
         let found = found.and_then(|index| self.typed.get(index));
@@ -128,16 +129,16 @@ impl Names {
     }
 }
 
-/// Things of one kind with their names.
+/// Objects of one kind with their names.
 pub(super) struct Named<T> {
-    /// Their names.
+    /// Names of the objects.
     pub names: Names,
-    /// The things in the order of their names.
+    /// The objects in the order of their names.
     pub all: Vec<T>,
 }
 
 impl<T> Named<T> {
-    /// Nothing yet of things called `what`.
+    /// An empty list of objects called `what`.
     pub fn new(what: &'static str) -> Named<T> {
         Named {
             names: Names::new(what),
@@ -145,8 +146,8 @@ impl<T> Named<T> {
         }
     }
 
-    /// Adds what `read` makes of a card under the name that its parameter `NAME` gives; nothing marks the
-    /// name.
+    /// Adds the object that `read` makes of a card, under the name in the parameter `NAME`; if `read` returns `None`,
+    /// the name is marked as faulty.
     pub fn add(
         &mut self,
         card: &Card,
@@ -165,34 +166,33 @@ impl<T> Named<T> {
         }
     }
 
-    /// The thing with this name; reports an undefined one.
+    /// The object with this name; an undefined name is reported.
     pub fn find(&self, name: Text, cx: &mut Context) -> Option<&T> {
         self.all.get(self.names.find(name, cx)?)
     }
 }
 
-/// Meaning of a node or element number of the deck: an index, or none.
+/// Meaning of a node or element number of the deck: an index, or a node or element that is left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Labelled(u32);
 
 impl Labelled {
-    /// A node or element that is left out, which is reported.
+    /// A node or element that is left out, after a report.
     pub const LEFT_OUT: Labelled = Labelled(u32::MAX);
 
-    /// The node or element of this index.
+    /// The node or element with this index.
     pub fn new(index: usize) -> Labelled {
         Labelled(index as u32)
     }
 
-    /// The index, unless it is left out.
+    /// The index of the node or element; `None` if it is left out.
     pub fn index(self) -> Option<usize> {
         (self != Labelled::LEFT_OUT).then_some(self.0 as usize)
     }
 }
 
-/// Largest node or element number: the largest that Abaqus reads. CalculiX keeps 32 bits, and the
-/// numbers that are given to the points of rigid surfaces have to follow the largest one of the
-/// deck.
+/// Largest node or element number, which is also the largest that Abaqus reads. CalculiX keeps 32 bits of a number, and
+/// the points of rigid surfaces get numbers after the largest one of the deck.
 const LARGEST_LABEL: i64 = 999_999_999;
 
 /// Node or element numbers of the deck, as labels.
@@ -200,12 +200,12 @@ pub(super) struct Labels {
     what: &'static str,
     code: Code,
     index: LabelMap<Labelled>,
-    /// Whether some could not be read, which is reported.
+    /// Whether some numbers could not be read, which has been reported.
     pub incomplete: bool,
 }
 
 impl Labels {
-    /// No numbers yet of objects called `what`.
+    /// An empty table of numbers of objects called `what`.
     pub fn new(what: &'static str, code: Code) -> Labels {
         Labels {
             what,
@@ -220,12 +220,12 @@ impl Labels {
         self.index.insert(label, labelled);
     }
 
-    /// Makes room for so many numbers more.
+    /// Makes room for `count` more numbers.
     pub fn reserve(&mut self, count: usize) {
         self.index.reserve(count);
     }
 
-    /// Gives new indices, none to what is left out from here on.
+    /// Gives new indices; objects without a new index are left out from here on.
     pub fn renumber(&mut self, numbers: &[Option<usize>]) {
         for labelled in self.index.values_mut() {
             let number = labelled.index().and_then(|index| numbers[index]);
@@ -238,7 +238,7 @@ impl Labels {
         self.index.get(label).copied()
     }
 
-    /// Index of the node or element with this number; reports one that does not exist.
+    /// Index of the node or element with this number; a number that does not exist is reported.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let label = self.label(text, cx)?;
         match self.get(label) {
@@ -250,20 +250,20 @@ impl Labels {
         }
     }
 
-    /// The label that `text` gives, with its instance.
+    /// The label of the number in `text`, with its instance.
     pub fn label(&self, text: Text, cx: &mut Context) -> Option<u64> {
         let text = cx.in_instance(text);
         let number = self.number(text, cx)?;
         Some(label(text.span.instance, number))
     }
 
-    /// The label of a number in an instance, if it is from 1 to the largest allowed.
+    /// The label of a number in an instance, if the number lies between 1 and the largest allowed one.
     pub fn plain_label(&self, number: u64, instance: u32) -> Option<u64> {
         let allowed = 1..=LARGEST_LABEL as u64;
         allowed.contains(&number).then(|| label(instance, number))
     }
 
-    /// The number in `text`, from 1 to the largest allowed.
+    /// The number in `text`, which must lie between 1 and the largest allowed one.
     pub fn number(&self, text: Text, cx: &mut Context) -> Option<u64> {
         let value = text.integer(cx.d)?;
         let what = self.what;
@@ -278,7 +278,7 @@ impl Labels {
         None
     }
 
-    /// Reports a number that does not exist.
+    /// Reports that the number of a label does not exist.
     pub fn undefined(&self, label: u64, span: Span, cx: &mut Context) {
         if self.incomplete || cx.deck.incomplete {
             return;
@@ -293,7 +293,7 @@ impl Labels {
         cx.d.push(error);
     }
 
-    /// Adds to the error what else has the number, or how numbers in instances are written.
+    /// Adds help to the error: another kind of object has the number, or numbers in instances are written otherwise.
     fn with_what_is_meant(&self, error: Diagnostic, label: u64, cx: &Context) -> Diagnostic {
         let (other, keyword, help) = match self.what {
             "node" => (

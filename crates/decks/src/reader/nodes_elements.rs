@@ -1,7 +1,7 @@
 //! `*NODE` and `*ELEMENT`.
 //!
-//! A line element names the side of a plane element with the same nodes, as the boundary curves do that
-//! a mesh generator writes; it has no stiffness and no section.
+//! A line element, such as mesh generators write for boundary curves, names the side of a plane element with the same
+//! nodes; it has no stiffness and no section.
 
 use super::collapsed::Collapsed;
 use super::context::Context;
@@ -19,8 +19,7 @@ use crate::vectors::extents;
 use smallvec::SmallVec;
 use std::collections::{BTreeSet, HashMap};
 
-/// Reads nodes and elements; leaves out nodes of neither an element, a spring, a rigid surface nor an
-/// equation.
+/// Reads nodes and elements; leaves out nodes that belong to no element, spring, rigid surface or equation.
 pub(crate) fn read<'a>(outline: &Outline<'a>, cx: &mut Context<'a>) -> MeshIndex {
     let errors = cx.errors();
     let mut reading = MeshReading::default();
@@ -53,9 +52,9 @@ struct MeshReading {
     mesh_index: MeshIndex,
     /// Third coordinates (length) of the nodes up to the last one off the plane z = 0.
     heights: Vec<f64>,
-    /// Lines that define the nodes.
+    /// Numbers of the lines that define the nodes.
     node_lines: Vec<u32>,
-    /// Last lines of line elements, and of plane ones that are defined again.
+    /// Number of the last line that defines a line element, or defines a plane element again.
     other_lines: LabelMap<u32>,
     lines: Vec<LineElement>,
     points: Vec<(PointKind, LineElement)>,
@@ -90,7 +89,7 @@ impl MeshReading {
         Some(label)
     }
 
-    /// Reads the node of any row; returns its number.
+    /// Reads the node of a row in any form; returns its number.
     fn node(&mut self, row: Line, cx: &mut Context) -> Option<u64> {
         let fields: SmallVec<[Text; 4]> = row.fields().collect();
         // a normal of shells may follow an empty z; after a z, a fifth field is a decimal comma
@@ -245,7 +244,7 @@ impl MeshReading {
         Some(label)
     }
 
-    /// Whether no element has this label yet; reports one that has.
+    /// Whether no element has this label yet; a second element with the label is reported.
     fn is_new(&mut self, label: u64, (first, span): (&Text, Span), cx: &mut Context) -> bool {
         let Some(line) = self.line_of(label) else {
             return true;
@@ -257,7 +256,7 @@ impl MeshReading {
         false
     }
 
-    /// The triangle that a quadrilateral is, with the fields of its nodes.
+    /// The triangle that a quadrilateral with a side of no length becomes, with the fields of its nodes.
     fn collapsed<'t>(
         &self,
         kind: ElementKind,
@@ -274,7 +273,7 @@ impl MeshReading {
         Some((triangle, nodes))
     }
 
-    /// The last line that defines an element.
+    /// Number of the last line that defines an element.
     fn line_of(&self, element: u64) -> Option<u32> {
         self.other_lines.get(element).copied().or_else(|| {
             let index = self.mesh_index.elements.get(element)?.index()?;
@@ -360,8 +359,8 @@ impl MeshReading {
         }
     }
 
-    /// Reports a mesh without nodes or elements at their card, or else where it should stand:
-    /// elements after the last nodes, nodes at the first keyword of the deck.
+    /// Reports a mesh without nodes or elements. The place is their card; if there is none, it is the last nodes for
+    /// elements, the first keyword of the deck for nodes.
     fn report_empty(&self, outline: &Outline, cx: &mut Context) {
         let mesh = &self.mesh_index.mesh;
         // rigid bodies of mass elements need no others
@@ -391,7 +390,7 @@ impl MeshReading {
         }
     }
 
-    /// Reports nodes whose z differ by more than a small fraction of the model's size.
+    /// Reports nodes whose z differ by more than 1e-9 of the size of the model.
     fn report_not_planar(&self, outline: &Outline, cx: &mut Context) {
         if self.heights.is_empty() {
             return;
@@ -458,7 +457,7 @@ impl MeshReading {
         mesh_index
     }
 
-    /// Warns about nodes of no element.
+    /// Warns about nodes that belong to no element.
     fn report_unused(&self, used: &[bool], outline: &Outline, cx: &mut Context) {
         let MeshIndex { mesh, elements, .. } = &self.mesh_index;
         if elements.incomplete || mesh.elements.is_empty() || cx.deck.incomplete {
@@ -486,8 +485,8 @@ fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Line<'a
     rows.find(|row| row.get(0).and_then(|field| cx.as_label(field)) == Some(label))
 }
 
-/// Fields of the element that starts in row `first`: it takes rows until it has `count` fields or
-/// the next row would exceed them.
+/// Fields of the element that starts in row `first`: rows are added until there are `count` fields, or the next row
+/// would give more.
 fn element_fields<'a>(
     first: Line<'a>,
     rest: &mut (impl Iterator<Item = Line<'a>> + Clone),
@@ -505,12 +504,13 @@ fn element_fields<'a>(
     fields
 }
 
-/// ElementKind of an element of the deck.
+/// Kind of an element of the deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ElementKind {
     /// A plane element.
     Plane(ElementType),
-    /// Two nodes that name a side of a plane element, or three with the one in its middle.
+    /// A line element of two nodes, which name a side of a plane element, or of three with the node in the middle of
+    /// the side.
     Line(usize),
     /// A node with mass or inertia.
     PointElement(PointKind),
@@ -521,7 +521,7 @@ pub(super) enum ElementKind {
 }
 
 impl ElementKind {
-    /// Name of plane elements.
+    /// Name of the type of a plane element; empty for other kinds.
     fn name(self) -> &'static str {
         match self {
             ElementKind::Plane(element_type) => element_type.name(),
@@ -529,7 +529,7 @@ impl ElementKind {
         }
     }
 
-    /// Number of nodes.
+    /// Number of nodes of an element of this kind.
     pub fn nodes(self) -> usize {
         match self {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
@@ -576,7 +576,7 @@ fn report_unusable(name: Text, folded: &str, cx: &mut Context) {
     };
 }
 
-/// Why a type that other codes know cannot be used.
+/// Reason why a type of elements of other codes cannot be used.
 fn reason(folded: &str) -> Option<&'static str> {
     let starts = |prefixes: &[&str]| prefixes.iter().any(|prefix| folded.starts_with(prefix));
     if starts(&["CPE4", "CPS4", "CPE3", "CPS3"]) && folded.len() > 4 {
@@ -602,15 +602,15 @@ fn reason(folded: &str) -> Option<&'static str> {
     }
 }
 
-/// A line element as the deck gives it.
+/// A line element in the form of the deck.
 pub(super) struct LineElement {
     pub label: u64,
     pub nodes: Nodes,
     pub span: Span,
 }
 
-/// Numbers the line elements after the plane ones; leaves out those that are no side. `used` tells
-/// which nodes are not left out.
+/// Numbers the line elements after the plane ones; line elements that are no sides of plane elements are left out.
+/// `used` says for each node whether it is kept.
 pub(super) fn add_lines(
     lines: &[LineElement],
     used: &[bool],
@@ -644,7 +644,8 @@ pub(super) fn add_lines(
     }
 }
 
-/// A face for the nodes of every side, in increasing order; the first of two elements.
+/// The face of every side by the nodes of the side, in increasing order; the face of a side between two elements
+/// belongs to the first element.
 fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     let mut faces = HashMap::new();
     for (element, e) in mesh.elements.iter().enumerate() {
@@ -657,7 +658,7 @@ fn faces_by_nodes(mesh: &Mesh) -> HashMap<Nodes, Face> {
     faces
 }
 
-/// What to do about line elements that are no sides.
+/// Help for line elements that are no sides of plane elements.
 const NO_TRUSSES: &str = "line elements only name sides of plane elements: trusses and beams cannot be used, and other \
                           lines of a mesh generator can go";
 
@@ -686,8 +687,8 @@ fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
     }
 }
 
-/// Labels that may be those of nodes of rigid bodies or of equations; `groups` are the node
-/// sets of `*NODE` by their names, as compared, with the labels of their members.
+/// Labels that may belong to nodes of rigid bodies or of equations; `groups` holds the node sets of `*NODE` by their
+/// keys, with the labels of their members.
 pub(super) fn labels_needed(
     outline: &Outline,
     groups: &[(&str, &LabelList)],

@@ -1,4 +1,4 @@
-//! `*ORIENTATION`: axes that the directions of springs and dashpots are those of.
+//! `*ORIENTATION`: axes for the directions of springs and dashpots.
 
 use super::context::Context;
 use super::names::Names;
@@ -25,7 +25,7 @@ pub(super) struct Orientations<'a> {
 }
 
 impl<'a> Orientations<'a> {
-    /// Those of a deck. Their data lines are read where they are used.
+    /// The orientations of a deck; their data lines are read when a spring or dashpot uses them.
     pub fn new(outline: &Outline<'a>, cx: &mut Context) -> Self {
         let mut all = Orientations {
             names: Names::of_parts("orientation"),
@@ -40,14 +40,14 @@ impl<'a> Orientations<'a> {
         all
     }
 
-    /// The axes that a parameter names.
+    /// The axes of the orientation that a parameter names.
     pub fn find(&self, field: Text, cx: &mut Context) -> Option<Axes> {
         let (card, is_used) = self.cards.get(self.names.find(field, cx)?)?;
         is_used.set(true);
         axes(card, field.span, cx)
     }
 
-    /// Warns of an orientation that no spring and no dashpot uses.
+    /// Warns about an orientation that no spring and no dashpot uses.
     pub fn report_unused(&self, cx: &mut Context) {
         for (card, is_used) in &self.cards {
             card.leave_out();
@@ -63,7 +63,7 @@ impl<'a> Orientations<'a> {
     }
 }
 
-/// The axes of a card that something at a place uses.
+/// The axes of a card; `user` is the place that uses them.
 fn axes(card: &Card, user: Span, cx: &mut Context) -> Option<Axes> {
     let system = card.choice("SYSTEM").unwrap_or("RECTANGULAR");
     let definition = card.choice("DEFINITION").unwrap_or("COORDINATES");
@@ -94,7 +94,8 @@ fn axes(card: &Card, user: Span, cx: &mut Context) -> Option<Axes> {
     })
 }
 
-/// `ax, ay, az, bx, by, bz[, cx, cy, cz]`: the first axis points from c to a, the second to the side of b.
+/// Reads `ax, ay, az, bx, by, bz[, cx, cy, cz]`: the first axis points from c to a; the second axis points to the side
+/// of b.
 fn of_points(row: Line, cx: &mut Context) -> Option<Axes> {
     row.at_most(9, cx.d);
     let mut point = |first: usize| -> Option<[f64; 3]> {
@@ -123,7 +124,7 @@ fn of_points(row: Line, cx: &mut Context) -> Option<Axes> {
     Some([[x, y], normal])
 }
 
-/// `axis, angle in degrees`
+/// Reads `axis, angle in degrees`.
 fn turn(row: Line, cx: &mut Context) -> Option<f64> {
     row.at_most(2, cx.d);
     let axis = row.get(0).map_or(Some(1), |field| field.integer(cx.d))?;

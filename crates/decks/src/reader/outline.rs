@@ -6,16 +6,16 @@ use crate::diagnostics::Code;
 
 /// A model card with the cards that belong to it, such as a material with its constants.
 pub(crate) struct CardBlock<'a> {
-    /// The card that begins it.
+    /// The card that begins the block.
     pub head: &'a Card,
-    /// The cards under it.
+    /// The cards that belong to the first one.
     pub parts: Vec<&'a Card>,
-    /// The step that it stands in, from 0.
+    /// Index of the step that the block stands in.
     pub step: Option<usize>,
 }
 
 impl<'a> CardBlock<'a> {
-    /// The cards of a keyword.
+    /// The cards of the block with this keyword.
     pub fn parts_of(&self, keyword: &str) -> Vec<&'a Card> {
         let parts = self.parts.iter().copied();
         parts.filter(|card| card.keyword.name == keyword).collect()
@@ -33,11 +33,11 @@ pub(crate) struct StepCards<'a> {
 /// The cards of a deck, sorted into blocks of the model and steps.
 #[derive(Default)]
 pub(crate) struct Outline<'a> {
-    /// Cards of the model: those outside steps, and those in steps that define what belongs to the model.
+    /// Blocks of cards of the model: cards outside steps, and cards in steps that define something of the model.
     pub model: Vec<CardBlock<'a>>,
     /// Steps in order.
     pub steps: Vec<StepCards<'a>>,
-    /// Whether the deck has steps at all.
+    /// Whether the deck has any steps.
     has_steps: bool,
     /// Whether a step is open.
     open: bool,
@@ -46,7 +46,7 @@ pub(crate) struct Outline<'a> {
 }
 
 impl<'a> Outline<'a> {
-    /// Sorts the cards of a deck; reports those out of place.
+    /// Sorts the cards of a deck; reports cards that are out of place.
     pub fn new(cx: &mut Context<'a>) -> Outline<'a> {
         let deck = cx.deck;
         let mut outline = Outline {
@@ -63,7 +63,7 @@ impl<'a> Outline<'a> {
         outline
     }
 
-    /// Cards of the model with this keyword.
+    /// Cards with this keyword that begin blocks of the model.
     pub fn model_cards(&self, keyword: &str) -> Vec<&'a Card> {
         self.blocks(keyword).map(|block| block.head).collect()
     }
@@ -101,7 +101,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Places a card that belongs to no block by the levels at which it may stand.
+    /// Places a card that belongs to no block, according to the levels at which it may stand.
     fn place_at(&mut self, card: &'a Card, levels: Levels, cx: &mut Context) {
         let is_in_step = self.open && levels.has(self.step_level());
         if is_in_step && levels.hold_from_the_start() {
@@ -113,7 +113,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// The level of the step that is open.
+    /// Level of the step that is open.
     fn step_level(&self) -> Level {
         match self.steps.len() {
             1 => Level::FirstStep,
@@ -172,7 +172,7 @@ impl<'a> Outline<'a> {
         last.filter(|block| block.head.keyword.name == head)
     }
 
-    /// Whether the last card is that of a step with this keyword.
+    /// Whether the last card belongs to a step and has this keyword.
     fn is_after(&self, of_step: &str) -> bool {
         let step = self.steps.last().filter(|_| self.open && !self.in_model);
         let last = step.and_then(|step| step.cards.last());

@@ -10,7 +10,7 @@ use crate::deck::{Card, Line, Text};
 use crate::diagnostics::{Code, shown};
 use crate::model::{Frames, HistorySet, NodalVariable, RequestedFields, RestartOutput, TimeBase};
 
-/// Variables that the result file holds.
+/// Names of variables that the result file holds.
 const WRITTEN: &[&str] = &[
     "U", "V", "A", "RF", "CF", "UT", "VT", "AT", "S11", "S22", "S33", "S12", "MISES", "E11", "E22",
     "E33", "E12", "LE11", "LE22", "LE33", "LE12", "U1", "U2", "V1", "V2", "A1", "A2", "RF1", "RF2",
@@ -25,18 +25,18 @@ pub(crate) struct Requests {
     points: TimePoints,
     /// Frames of the current step.
     frames: Frames,
-    /// Time points in total time: those of each step are selected when it is built.
+    /// Time points in total time; the points of a step are selected when the step is built.
     total_times: Option<Vec<f64>>,
-    /// What the histories and the status file show.
+    /// Requests for histories and the status file.
     pub histories: Histories,
-    /// Requests of checkpoints.
+    /// Requests for checkpoints.
     pub restarts: Vec<RestartOutput>,
-    /// Number of the step that is read, from 1.
+    /// Number of the step that is being read, from 1.
     pub step: usize,
 }
 
 impl Requests {
-    /// No requests yet.
+    /// The state before any request.
     pub fn new(cx: &mut Context) -> Requests {
         Requests {
             points: time_points(cx),
@@ -104,7 +104,7 @@ impl Requests {
         }
     }
 
-    /// `*OUTPUT`: whether histories, or else fields, are asked for below it.
+    /// Reads `*OUTPUT`; returns whether the cards below ask for histories (`true`) or for fields (`false`).
     fn output(&mut self, card: &Card, cx: &mut Context) -> Option<bool> {
         match (card.has("FIELD"), card.has("HISTORY")) {
             (true, true) => {
@@ -127,7 +127,7 @@ impl Requests {
         }
     }
 
-    /// Adds the set of a card to the history.
+    /// Adds the set of a card to the histories.
     fn history(&mut self, card: &Card, family: MemberKind, targets: Targets, cx: &mut Context) {
         self.check_when(card, cx);
         self.histories.card(card, family, targets.sets, cx);
@@ -148,14 +148,14 @@ impl Requests {
         }
     }
 
-    /// Checks the times on a card for histories; histories hold every increment all the same.
+    /// Checks the times on a card for histories; they have no effect, because histories hold every increment.
     fn check_when(&self, card: &Card, cx: &mut Context) {
         for name in WHEN.into_iter().filter(|name| card.has(name)) {
             self.asked(name, card, cx);
         }
     }
 
-    /// Frames that a parameter requests, and its time points in total time.
+    /// Frames that a parameter requests, and its time points if they are in total time.
     fn asked(
         &self,
         name: &str,
@@ -178,7 +178,7 @@ impl Requests {
         Some((Frames::Times(times.clone()), total_times))
     }
 
-    /// Frames of a step that begins at total time `start` and takes `period`.
+    /// Frames of a step that begins at total time `start` and has the duration `period`.
     pub fn frames(&self, start: f64, period: f64) -> Frames {
         let within = |times: Vec<f64>| {
             let inside = times
@@ -194,7 +194,7 @@ impl Requests {
     }
 }
 
-/// Sets that fields are asked for on, which are written on the whole mesh.
+/// Marks the sets of a request for fields as read: fields are written on the whole mesh.
 fn skip_sets(card: &Card) {
     card.value("NSET");
     card.value("ELSET");
@@ -207,7 +207,7 @@ const WHEN: [&str; 4] = [
     "TIME POINTS",
 ];
 
-/// Every so many increments; 0 means the ends of the step only.
+/// Reads FREQUENCY: frames after every so many increments; 0 means only at the end of the step.
 fn frequency(card: &Card, cx: &mut Context) -> Option<Frames> {
     match count(card, "FREQUENCY", 0, cx)? {
         0 => Some(Frames::Count(1)),
@@ -249,7 +249,7 @@ fn report_variables(card: &Card, cx: &mut Context) {
     }
 }
 
-/// What the deck has asked for so far.
+/// Histories, fields and monitored dofs that the deck has asked for so far.
 #[derive(Default)]
 pub(crate) struct Histories {
     /// Node sets that have a history.
@@ -262,7 +262,7 @@ pub(crate) struct Histories {
     pub monitored: Vec<usize>,
 }
 
-/// What the members of a set are.
+/// Kind of the members of a set.
 #[derive(Clone, Copy)]
 pub(super) enum MemberKind {
     Nodes,
@@ -290,7 +290,7 @@ impl MemberKind {
 }
 
 impl Histories {
-    /// Adds the set of a card; `FREQUENCY=0` asks for nothing.
+    /// Adds the set of a card to the histories; a card with `FREQUENCY=0` adds nothing.
     pub(super) fn card(&mut self, card: &Card, family: MemberKind, sets: &Sets, cx: &mut Context) {
         let name = card.value(family.parameter());
         let is_off = card
@@ -333,7 +333,7 @@ impl Histories {
         }
     }
 
-    /// Adds the fields of nodes or elements that a card names and that are written on request only.
+    /// Of the fields of nodes or elements that a card names, adds those that are written on request only.
     pub(super) fn fields(&mut self, card: &Card) {
         if card.keyword.name.starts_with("CONTACT") {
             return;
@@ -364,7 +364,8 @@ impl Histories {
 }
 
 impl MemberKind {
-    /// The set of a name; none that holds no plane elements but others, with a warning.
+    /// Index of the set with a name. An element set without plane elements gives `None` and a warning if it holds other
+    /// elements.
     fn set(self, name: Text, sets: &Sets, cx: &mut Context) -> Option<usize> {
         let set = match self {
             MemberKind::Nodes => return sets.node_names.find(name, cx),
@@ -403,7 +404,7 @@ pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Opti
     }
 }
 
-/// Largest number of frames a deck may generate.
+/// Largest number of times that a row with GENERATE may give, less one.
 const MOST_TIMES: f64 = 1e6;
 
 /// Named lists of times.
@@ -422,7 +423,7 @@ fn time_points(cx: &mut Context) -> TimePoints {
     points
 }
 
-/// The times of a card in increasing order.
+/// The times of a card `*TIME POINTS` in increasing order.
 fn times(card: &Card, cx: &mut Context) -> Vec<f64> {
     let generate = card.has("GENERATE");
     if !generate {
@@ -440,7 +441,7 @@ fn times(card: &Card, cx: &mut Context) -> Vec<f64> {
     times
 }
 
-/// `first, last, increment`
+/// Reads a row `first, last, increment`.
 fn generated(row: Line, cx: &mut Context) -> Vec<f64> {
     row.at_most(3, cx.d);
     let first = row.real(0, "the first time", cx.d);

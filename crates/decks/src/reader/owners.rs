@@ -1,6 +1,6 @@
-//! Who decides where each node goes: the table of all cards that make nodes and displacements follow others. Two cards
-//! that decide the same one, and loads, supports and velocities of displacements that nothing has, are errors that name
-//! both.
+//! Which card decides where a node goes: a table of all cards that make nodes and displacements follow others. If two
+//! cards decide the same displacement, or if a load, support or velocity acts on a displacement that does not exist, an
+//! error names both cards.
 
 use super::actions::{Action, Actions};
 use super::boundary::Targets;
@@ -14,7 +14,7 @@ use crate::diagnostics::{Added, Code, Span};
 use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Equation, Tie};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What makes nodes follow others, but for `*EQUATION`.
+/// Constraints that make nodes follow others, without those of `*EQUATION`.
 #[derive(Clone, Copy)]
 pub(crate) struct Constraints<'a> {
     pub ties: &'a Ties,
@@ -22,16 +22,16 @@ pub(crate) struct Constraints<'a> {
     pub cuts: &'a [Cut],
 }
 
-/// What a card makes of nodes.
+/// A card that decides the motion of nodes, by its kind.
 #[derive(Clone, Copy)]
 pub(crate) enum Owner<'a> {
-    /// The node of a section, which has one direction.
+    /// The node of a pre-tension section, whose only displacement has direction 1.
     Section(&'a Cut),
     /// Nodes that move with a reference node.
     Body(&'a Rigid),
     /// Slave nodes that follow a master.
     Tie(&'a Tie, Span),
-    /// Nodes that are joined, or follow the mean of others.
+    /// Nodes that are joined, or that follow the mean of others.
     Link(&'a Link),
     /// The ends of a spring or dashpot.
     Connector(&'a ConnectorElement),
@@ -44,7 +44,7 @@ pub(crate) enum Owner<'a> {
 }
 
 impl Owner<'_> {
-    /// What it is called, as in `the rigid body TOP`.
+    /// What messages call the card, as in `the rigid body TOP`.
     pub fn title(self) -> String {
         match self {
             Owner::Section(_) => "the *PRE-TENSION SECTION".to_owned(),
@@ -64,7 +64,7 @@ impl Owner<'_> {
         }
     }
 
-    /// Its place.
+    /// Place of the card.
     pub fn span(self) -> Span {
         match self {
             Owner::Section(cut) => cut.span,
@@ -76,7 +76,7 @@ impl Owner<'_> {
         }
     }
 
-    /// The code of what is wrong with it.
+    /// Code of errors that concern this card.
     pub fn code(self) -> Code {
         match self {
             Owner::Section(_) => Code::PreTension,
@@ -90,14 +90,15 @@ impl Owner<'_> {
         }
     }
 
-    /// Reports at the place of this owner that it contradicts the `other` one.
+    /// Reports, at the place of this owner, that it contradicts the owner `other`.
     pub fn contradicts<'d>(self, other: Owner, message: String, cx: &'d mut Context) -> Added<'d> {
         cx.error(self.code(), self.span(), message)
             .other(other.title(), other.span())
     }
 }
 
-/// Reports nodes that two cards move: a node rides on one body, and that of a section belongs to nothing else.
+/// Reports nodes that two cards move: a node may ride on one body only, and the node of a pre-tension section may
+/// belong to nothing else.
 pub(crate) fn check_nodes(
     rigid_bodies: &[Rigid],
     of: Constraints,
@@ -149,7 +150,8 @@ pub(crate) fn check_nodes(
     }
 }
 
-/// Reports two bodies, or two ties, whose results would have one name: groups `rigid` and `ties` of the histories.
+/// Reports two bodies, or two ties, whose results would have the same name in the group `rigid` or `ties` of the
+/// histories.
 pub(crate) fn check_names(rigid_bodies: &[Rigid], ties: &Ties, cx: &mut Context) {
     let bodies = rigid_bodies.iter();
     let bodies = bodies.map(|body| ("rigid", body.name(), Owner::Body(body)));
@@ -170,7 +172,7 @@ pub(crate) fn check_names(rigid_bodies: &[Rigid], ties: &Ties, cx: &mut Context)
     }
 }
 
-/// Reports a node of two cards.
+/// Reports a node that belongs to two cards.
 fn report_shared(node: usize, [other, own]: [Owner; 2], mesh_index: &MeshIndex, cx: &mut Context) {
     let name = mesh_index.node_name(node);
     let (first, second) = (other.title(), own.title());
@@ -187,7 +189,7 @@ fn report_shared(node: usize, [other, own]: [Owner; 2], mesh_index: &MeshIndex, 
     own.contradicts(other, message, cx).help(help);
 }
 
-/// Reports what acts on displacements that nothing has: neither elements, nor bodies, springs, dashpots and equations.
+/// Reports actions on displacements that do not exist because no element, body, spring, dashpot or equation has them.
 pub(crate) fn check_actions(
     actions: [&Actions; 3],
     targets: Targets,

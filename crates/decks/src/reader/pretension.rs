@@ -1,5 +1,6 @@
-//! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let both sides of the cut overlap by one more
-//! displacement, which a force tightens and a support locks. See docs/theory/contact.md, Pre-tension.
+//! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let the two sides of the cut overlap by one
+//! additional displacement; a force tightens this overlap, and a support locks it. See docs/theory/contact.md,
+//! Pre-tension.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
@@ -16,9 +17,9 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) struct Cut {
     /// Pre-tension node.
     pub node: usize,
-    /// Direction in which the side of the surface moves out of its elements; a unit vector out of them.
+    /// Direction in which the side of the surface moves: a unit vector that points out of its elements.
     normal: [f64; 2],
-    /// Nodes of the surface, and those of the elements behind it at the same places.
+    /// Pairs of a node of the surface and the node of the elements behind it at the same place.
     pairs: Vec<[usize; 2]>,
     /// Place of the card.
     pub span: Span,
@@ -115,12 +116,12 @@ fn faces(
     Some(found)
 }
 
-/// Cosine of the angle between the normal of the data line and that of the faces, below which the sides would slip on
-/// each other.
+/// Smallest cosine of the angle between the normal of the data line and that of the faces; with a smaller cosine the
+/// two sides would slip on each other.
 const TANGENT: f64 = 0.01;
 
-/// The normal of a section, out of the elements of its faces: that of the data line, whichever way it points, or the
-/// mean one of the faces.
+/// The normal of a section, out of the elements of its faces: the normal of the data line, with either sign, or else
+/// the mean normal of the faces.
 fn normal(
     card: &Card,
     faces: &[Face],
@@ -157,7 +158,7 @@ fn normal(
     Some(given.map(|x| x * cosine.signum()))
 }
 
-/// `nx, ny[, nz]`, turned with the instance of the row.
+/// Reads a row `nx, ny[, nz]` and turns it with the instance of the row.
 fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     row.at_most(3, cx.d);
     let [x, y, z] = [0, 1, 2].map(|i| row.real_or(i, 0.0, cx.d));
@@ -171,7 +172,7 @@ fn given_normal(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     Some(cx.turned([x / length, y / length], row))
 }
 
-/// Mean normal out of the elements of the faces; none of faces around a hole.
+/// Mean normal that points out of the elements of the faces; `None` for faces that close a ring.
 fn mean_normal(faces: &[Face], mesh_index: &MeshIndex) -> Option<[f64; 2]> {
     let mesh = &mesh_index.mesh;
     let (mut sum, mut whole) = ([0.0; 2], 0.0);
@@ -189,7 +190,7 @@ fn mean_normal(faces: &[Face], mesh_index: &MeshIndex) -> Option<[f64; 2]> {
     (length > TANGENT * whole).then(|| sum.map(unit))
 }
 
-/// Gives the elements behind the faces nodes of their own; pairs of nodes of both sides.
+/// Gives the elements behind the faces new nodes; returns pairs of an old and a new node at the same place.
 fn cut(
     faces: &[Face],
     mesh_index: &mut MeshIndex,

@@ -1,5 +1,5 @@
-//! `*RIGID BODY`: rigid surfaces, rigid elements and nodes move with their reference nodes, and turn by an angle
-//! where it is prescribed or they have mass.
+//! `*RIGID BODY`: rigid surfaces, rigid elements and nodes move with their reference nodes. Rigid bodies turn by an
+//! angle if the angle is prescribed or the body has mass.
 
 use super::context::Context;
 use super::mesh_index::{MeshIndex, PointElement, PointKind, RigidLine};
@@ -14,32 +14,32 @@ use std::collections::BTreeSet;
 /// Rigid surfaces, elements and nodes, and the node that they move with.
 #[derive(Default)]
 pub(crate) struct Rigid {
-    /// What the cards make it of; nothing of coupled nodes.
+    /// Surfaces, element sets and node sets that cards make parts of the body; empty for coupled nodes.
     pub(super) parts: Vec<RigidPart>,
-    /// Name of its first part.
+    /// Name of the first part of the body.
     pub(super) name: String,
-    /// Its nodes, increasing.
+    /// Nodes of the body, in increasing order.
     pub(super) nodes: Vec<usize>,
-    /// Its elements, increasing.
+    /// Elements of the body, in increasing order.
     pub(super) elements: Vec<usize>,
     /// Reference node.
     pub(super) reference: usize,
     /// Number of the reference node in the deck.
     pub(super) label: String,
-    /// Masses at its nodes.
+    /// Masses at nodes of the body.
     pub(super) masses: Vec<(usize, f64)>,
-    /// Rotary inertia at its nodes.
+    /// Rotary inertia at nodes of the body.
     pub(super) rotary_inertia: f64,
-    /// Whether it is made of coupled nodes.
+    /// Whether the body is made of coupled nodes.
     pub(super) is_coupling: bool,
-    /// Its nodes of elements that deform, whose mass it has.
+    /// Nodes of the body that belong to deformable elements; their mass counts for the body.
     pub(super) carried: Vec<usize>,
-    /// Place of `*RIGID BODY`, or of what couples its nodes.
+    /// Place of `*RIGID BODY`, or of the card that couples the nodes.
     pub(super) span: Span,
 }
 
 impl Rigid {
-    /// Nodes that ride on a reference node.
+    /// A body of nodes that ride on a reference node.
     pub fn of_coupling(
         name: &str,
         reference: usize,
@@ -58,12 +58,12 @@ impl Rigid {
         }
     }
 
-    /// Its nodes with the reference node.
+    /// Nodes of the body with its reference node.
     pub fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
         self.nodes.iter().copied().chain([self.reference])
     }
 
-    /// Whether a node is one of them.
+    /// Whether a node belongs to the body or is its reference node.
     pub fn has(&self, node: usize) -> bool {
         self.reference == node || self.nodes.binary_search(&node).is_ok()
     }
@@ -77,7 +77,7 @@ impl Rigid {
         self.nodes.dedup();
     }
 
-    /// Reports that a node of it has no angle, which is direction 6 of its reference node.
+    /// Reports that a node of the body has no direction 6: the angle belongs to the reference node.
     pub fn report_angle(&self, span: Span, cx: &mut Context) {
         let (title, label) = (self.title(), &self.label);
         let message = format!(
@@ -88,22 +88,22 @@ impl Rigid {
             .help("name the reference node");
     }
 
-    /// Name in the deck.
+    /// Name of the body in the deck.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Place in the deck.
+    /// Place of the body in the deck.
     pub fn span(&self) -> Span {
         self.span
     }
 
-    /// Whether it is made of coupled nodes.
+    /// Whether the body is made of coupled nodes.
     pub fn is_coupling(&self) -> bool {
         self.is_coupling
     }
 
-    /// What it is, as in `the rigid body TOP`.
+    /// What messages call the body, as in `the rigid body TOP`.
     pub fn title(&self) -> String {
         match self.is_coupling {
             true => format!("the coupling {}", self.name),
@@ -111,12 +111,13 @@ impl Rigid {
         }
     }
 
-    /// Whether it has mass.
+    /// Whether the body has mass.
     pub(super) fn has_mass(&self) -> bool {
         !self.elements.is_empty() || !self.masses.is_empty()
     }
 
-    /// Whether it has a moment of inertia about its centre of mass: masses at two places.
+    /// Whether the body has a moment of inertia about its centre of mass: elements, rotary inertia, or masses at two
+    /// places.
     pub(super) fn has_inertia(&self, mesh: &Mesh) -> bool {
         let masses = self.masses.iter().map(|(node, _)| node);
         let mut places = masses
@@ -128,7 +129,7 @@ impl Rigid {
     }
 }
 
-/// The mesh, its sets and surfaces, among which a card names.
+/// The mesh with its sets and surfaces, in which names of a card are looked up.
 #[derive(Clone, Copy)]
 pub(super) struct Lookup<'a> {
     pub mesh_index: &'a MeshIndex,
@@ -136,8 +137,8 @@ pub(super) struct Lookup<'a> {
     pub surfaces: &'a Surfaces,
 }
 
-/// Reads all rigid bodies: cards with one reference node make one body. Bodies with surfaces come first, in the order of
-/// these.
+/// Reads all rigid bodies: cards with one reference node make one body. Bodies with surfaces come first, in the order
+/// of the surfaces.
 pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<Rigid> {
     let surfaces = lookup.surfaces;
     let mut all: Vec<Rigid> = Vec::new();
@@ -189,7 +190,7 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
     all
 }
 
-/// Whether a card before has made a body of a surface or set already, which is reported.
+/// Whether an earlier card has made a body of the same surface or set; this is reported.
 fn is_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) -> bool {
     let other = |part: &RigidPart| earlier.iter().find(|other| other.parts.contains(part));
     let Some(other) = rigid.parts.iter().find_map(other) else {
@@ -207,13 +208,14 @@ fn is_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) -> bool {
 
 /// Masses of point elements.
 pub(super) struct PointMasses {
-    /// By the point elements, 0 of others (mass).
+    /// Masses of the point elements, 0 for those without a mass (mass).
     pub all: Vec<f64>,
-    /// Those at nodes of no rigid body (index, mass).
+    /// Masses at nodes of no rigid body (index of the node, mass).
     pub free: Vec<(usize, f64)>,
 }
 
-/// Gives the bodies the masses and inertia of `*MASS` and `*ROTARY INERTIA`, and others to the nodes that `moves` tells to move.
+/// Gives the masses and inertia of `*MASS` and `*ROTARY INERTIA` to the bodies, and other masses to nodes that move
+/// (`moves`).
 pub(super) fn point_masses(
     all: &mut [Rigid],
     moves: &[bool],
@@ -347,7 +349,7 @@ fn rigid(card: &Card, lookup: Lookup, cx: &mut Context) -> Option<Rigid> {
 }
 
 impl Rigid {
-    /// Adds the elements of a set, which do not deform, with their nodes.
+    /// Adds the elements of a set, which become rigid, with their nodes.
     fn add_elements(&mut self, field: Text, lookup: Lookup, cx: &mut Context) {
         let elements = lookup.sets.elements_of(field, lookup.mesh_index, cx);
         let mesh = &lookup.mesh_index.mesh;
@@ -360,7 +362,7 @@ impl Rigid {
         self.add_part(RigidPart::Elements(name.clone()), &name, nodes);
     }
 
-    /// Adds rigid lines: the surfaces made of them, and their nodes.
+    /// Adds rigid lines with their nodes, and the surfaces that are made of them.
     fn add_lines(
         &mut self,
         field: Text,
@@ -437,7 +439,7 @@ impl Rigid {
     }
 }
 
-/// The body that some of these nodes ride on.
+/// The first body on which one of these nodes rides.
 pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<&'a Rigid> {
     let rides = |rigid: &&Rigid| {
         nodes
@@ -447,7 +449,7 @@ pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<
     rigid_bodies.iter().find(rides)
 }
 
-/// Dof of the angle of the rigid body with this number, among all, in a mesh.
+/// Dof of the angle of the rigid body with this number among all bodies of a mesh.
 pub(super) fn angle_dof(number: usize, mesh: &Mesh) -> usize {
     2 * (mesh.node_count() + 2 * number + 1)
 }
@@ -460,7 +462,7 @@ pub(crate) fn angle_at(node: usize, rigid_bodies: &[Rigid], mesh: &Mesh) -> Opti
     Some(angle_dof(number, mesh))
 }
 
-/// The dof in the words of the deck.
+/// Name of a dof in the words of the deck.
 pub(crate) fn dof_name(dof: usize, rigid_bodies: &[Rigid], mesh_index: &MeshIndex) -> String {
     let Some(number) = dof.checked_sub(angle_dof(0, &mesh_index.mesh)) else {
         let name = mesh_index.node_name(dof / 2);
@@ -472,7 +474,7 @@ pub(crate) fn dof_name(dof: usize, rigid_bodies: &[Rigid], mesh_index: &MeshInde
     format!("direction 6 of node {label}")
 }
 
-/// Finds the bodies whose nodes belong to elements that deform.
+/// Finds the nodes of bodies that belong to deformable elements.
 pub(super) fn find_carried(all: &mut [Rigid], mesh: &Mesh) {
     let mut is_rigid = vec![false; mesh.elements.len()];
     for &element in all.iter().flat_map(|rigid| &rigid.elements) {

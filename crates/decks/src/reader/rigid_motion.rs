@@ -1,5 +1,5 @@
-//! How rigid bodies move in the steps of a model: their supports and velocities, bodies that turn, and what equations and
-//! moments at their nodes ask for. See docs/theory/bodies.md, Rigid bodies that turn.
+//! Motion of rigid bodies in the steps of a model: their supports and velocities, which bodies turn, and checks of
+//! equations and moments at their nodes. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use super::boundary::{InitialVelocity, Supports};
 use super::context::Context;
@@ -14,9 +14,9 @@ use crate::model::{
 use crate::vectors::difference;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Gives steps the motion of the rigid bodies; the bodies as the model holds them. Nodes of bodies that no step frees get the
-/// supports of their reference nodes, until [`leave_to_bodies`] takes them away. `supports` and the velocities know the places of
-/// what is prescribed and given.
+/// Adds the motion of the rigid bodies to the steps; returns the bodies of the model. Nodes of bodies that do not turn
+/// get the supports of their reference nodes, until [`leave_to_bodies`] removes them. `supports` and the velocities
+/// contain the places of their rows, for messages.
 pub(crate) fn complete(
     rigid_bodies: &[Rigid],
     (mesh_index, supports): (&MeshIndex, &Supports),
@@ -64,7 +64,8 @@ pub(crate) fn complete(
     all.zip(turn).map(body).collect()
 }
 
-/// Takes the supports away that nodes of rigid bodies have from their reference nodes: the bodies move them.
+/// Removes the supports that nodes of rigid bodies have from their reference nodes, because the bodies move these
+/// nodes.
 pub(crate) fn leave_to_bodies(model: &mut Model) {
     let nodes = model.rigid_bodies.iter().flat_map(|body| &body.nodes);
     let nodes: BTreeSet<usize> = nodes.copied().collect();
@@ -73,8 +74,8 @@ pub(crate) fn leave_to_bodies(model: &mut Model) {
     }
 }
 
-/// Reports equations at nodes of bodies that turn, and that landing return and redistributed mass leave these bodies
-/// out; bodies of revolution move along their axis alone.
+/// Reports equations at nodes of bodies that turn; warns that landing return and redistributed mass leave such bodies
+/// out. In a model of revolution, rigid bodies may only move along the axis.
 pub(crate) fn check(
     rigid_bodies: &[Rigid],
     bodies: &[RigidBody],
@@ -131,8 +132,8 @@ pub(crate) fn check(
 }
 
 impl Rigid {
-    /// Whether it moves in a step where nothing is prescribed: it has mass, its own or that of its nodes, or it is free
-    /// in a static step, which needs none.
+    /// Whether the body moves in directions that are not prescribed in a step: it has mass of its own or of its nodes,
+    /// or it is free in a static step, which needs no mass.
     fn moves_freely(&self, step: &Step) -> bool {
         let is_free = |direction: &usize| step.motion_of(2 * self.reference + direction).is_none();
         self.has_mass()
@@ -142,7 +143,8 @@ impl Rigid {
     }
 }
 
-/// Whether a body turns: its angle moves in some step, or it moves freely in some direction of some step.
+/// Whether a body turns: its angle is prescribed to move or has an initial velocity, or the body moves freely in some
+/// direction in some step.
 fn turns(rigid: &Rigid, angle: usize, steps: &[Step], velocity: &[f64]) -> bool {
     let translations = [0, 1].map(|i| 2 * rigid.reference + i);
     velocity.get(angle).is_some_and(|omega| *omega != 0.0)
@@ -155,7 +157,7 @@ fn turns(rigid: &Rigid, angle: usize, steps: &[Step], velocity: &[f64]) -> bool 
         })
 }
 
-/// Reports moments on a body that does not turn.
+/// Reports a moment on a body that does not turn.
 fn report_moments(rigid: &Rigid, angle: usize, steps: &[Step], cx: &mut Context) {
     let mut loads = steps.iter().flat_map(|step| &step.point_loads);
     if loads.any(|load| load.at.dof == angle) {
@@ -166,10 +168,10 @@ fn report_moments(rigid: &Rigid, angle: usize, steps: &[Step], cx: &mut Context)
     }
 }
 
-/// Largest difference of a node's velocity from that of its body, beside the largest velocity.
+/// Largest difference between the velocity of a node and that of its body, relative to the largest velocity.
 const SAME_VELOCITY: f64 = 1e-9;
 
-/// Reports velocities of nodes of a body that are not those of its reference node and angle.
+/// Reports velocities of nodes of a body that differ from the motion of its reference node and angle.
 fn report_own_velocities(
     rigid: &Rigid,
     angle: usize,
@@ -207,7 +209,8 @@ fn report_own_velocities(
     }
 }
 
-/// Completes the supports of a body that turns: without mass it is held where nothing is said.
+/// Completes the supports of a body that turns: if the body has no mass, its angle is held unless the deck prescribes
+/// it.
 fn complete_turning(
     rigid: &Rigid,
     angle: usize,
@@ -257,7 +260,8 @@ fn complete_turning(
     }
 }
 
-/// Whether a coupling can move freely: reports one without a node of an element, or without an arm.
+/// Whether a coupling can move freely; a coupling with no node of an element, or with all nodes at one place, is
+/// reported.
 fn report_empty_coupling(
     rigid: &Rigid,
     own: &BTreeSet<usize>,
@@ -287,15 +291,15 @@ fn report_empty_coupling(
     false
 }
 
-/// The motion of an angle that stays where it is.
+/// The motion of an angle that does not change.
 const STILL: SupportMotion = SupportMotion::Rate {
     rate: Rate::Velocity,
     value: 0.0,
     amplitude: None,
 };
 
-/// Adds to the supports of a step with its number those of the nodes and the angles of rigid bodies with their numbers: they move
-/// as their reference nodes, and do not turn.
+/// Adds supports to a step for rigid bodies that do not turn: their nodes move like the reference nodes, and their
+/// angles stay. Step and bodies are given with their numbers.
 fn follow(
     held: &[(usize, &Rigid)],
     (mesh_index, places): (&MeshIndex, &Supports),

@@ -1,5 +1,4 @@
-//! `*SOLID SECTION`: material, thickness and formulation of elements, and whether elements suit their
-//! materials.
+//! `*SOLID SECTION`: material, thickness and formulation of elements, and checks of elements against their materials.
 
 use super::context::Context;
 use super::materials::{Drafts, MaterialPlaces};
@@ -17,13 +16,13 @@ use crate::model::{Element, ElementType, Formulation, Material, NO_SECTION, Sect
 pub(crate) struct Properties {
     /// Materials in the order of their names.
     pub materials: Vec<Material>,
-    /// Their places.
+    /// Places of the materials.
     pub places: Vec<MaterialPlaces>,
     /// Sections.
     pub sections: Vec<Section>,
 }
 
-/// Reads materials and sections, and gives these to the elements.
+/// Reads materials and sections, and gives the sections to the elements.
 pub(super) fn read(
     outline: &Outline,
     mesh_index: &mut MeshIndex,
@@ -44,7 +43,7 @@ pub(super) fn read(
     properties
 }
 
-/// `*SOLID SECTION`, with `thickness` on its data line.
+/// Reads `*SOLID SECTION`, with `thickness` on its data line.
 fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> {
     let material = card.required("MATERIAL", cx.d);
     let material = material.and_then(|name| materials.find(name, cx));
@@ -63,7 +62,7 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
 }
 
 impl Properties {
-    /// Gives a section to its elements; says whether all of the card could be read.
+    /// Gives a section to its elements; returns whether all of the card could be read.
     fn assign(
         &mut self,
         section: Option<Section>,
@@ -118,7 +117,7 @@ impl Properties {
     }
 }
 
-/// Gives elements one volume strain each; all must be CPE4 or CAX4.
+/// Gives each of the elements one volume strain (mean dilatation); all elements must be CPE4 or CAX4.
 fn set_mean_dilatation(
     elements: &[usize],
     card: &Card,
@@ -140,7 +139,7 @@ fn set_mean_dilatation(
     }
 }
 
-/// Reports elements that have mean dilatation by their type where the section says otherwise.
+/// Reports elements whose type has mean dilatation in a section with FORMULATION=DISPLACEMENT.
 fn report_mean_dilatation(
     elements: &[usize],
     card: &Card,
@@ -177,18 +176,18 @@ fn report_without_section(complete: bool, mesh_index: &MeshIndex, cx: &mut Conte
     }
 }
 
-/// Poisson's ratio at small strains from which on fully integrated elements lock in plane strain:
-/// lambda / mu = 2 nu / (1 - 2 nu) is 9 there.
+/// Poisson's ratio at small strains from which on fully integrated elements lock in plane strain; there, lambda / mu =
+/// 2 nu / (1 - 2 nu) is 9.
 const LOCKING: f64 = 0.45;
 
 impl Properties {
-    /// Material (index) of an element.
+    /// Index of the material of an element.
     fn material_of(&self, element: &Element) -> Option<usize> {
         Some(self.sections.get(element.section)?.material)
     }
 
-    /// Warns about nearly incompressible materials, at their Poisson's ratios; in
-    /// plane stress the thickness gives way and nothing locks.
+    /// Warns about nearly incompressible materials, at the places of their Poisson's ratios. Elements in plane stress
+    /// do not lock, because their thickness changes.
     fn report_locking(&self, mesh_index: &MeshIndex, cx: &mut Context) {
         let mut locks = vec![false; self.materials.len()];
         for element in &mesh_index.mesh.elements {

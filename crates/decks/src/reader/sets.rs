@@ -16,13 +16,13 @@ pub(crate) struct Sets {
     pub node_names: Names,
     /// Node sets in the order of their names.
     pub nodes: Vec<Set>,
-    /// Names of node sets whose members are listed unsorted; that order is lost.
+    /// Names of node sets with UNSORTED, whose order of members is lost.
     unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
-    /// Element sets in the order of their names: their plane elements.
+    /// Plane elements of the element sets, in the order of the names.
     pub elements: Vec<Set>,
-    /// Their other elements.
+    /// Other elements of the element sets, in the order of the names.
     pub others: Vec<OtherElements>,
 }
 
@@ -34,7 +34,7 @@ impl Sets {
         others.is_some_and(|all| !all.is_empty()) && elements.is_some_and(Vec::is_empty)
     }
 
-    /// Whether the members of the node set that a field names are listed unsorted.
+    /// Whether the node set that a field names has UNSORTED.
     pub fn is_unsorted(&self, field: Text, cx: &Context) -> bool {
         let set = self.node_names.full_name(field, cx);
         self.unsorted.contains(&set)
@@ -48,8 +48,8 @@ impl Sets {
         }
     }
 
-    /// The node that a field names, or the only node of the set; reports other sets with a
-    /// code and a help. A node that is left out is none.
+    /// The node that a field names, or the only node of the set; a set with other than one node is reported with `code`
+    /// and `help`. A node that is left out gives `None`.
     pub fn single_node(
         &self,
         field: Text,
@@ -70,7 +70,7 @@ impl Sets {
         }
     }
 
-    /// The plane element, or the elements of the set, that a field names; reports others alone.
+    /// The plane element that a field names, or the plane elements of the set; a set of line elements only is reported.
     pub fn elements_of(
         &self,
         field: Text,
@@ -104,8 +104,8 @@ impl Sets {
             .clone()
     }
 
-    /// The element, or the elements of the set, that a field names, and the faces that line elements
-    /// among them name; reports springs and dashpots alone.
+    /// The plane elements that a field names, and the faces that its line elements name; a set of springs and dashpots
+    /// only is reported.
     pub fn elements_and_lines_of(
         &self,
         field: Text,
@@ -119,7 +119,7 @@ impl Sets {
         (elements, others.lines.clone())
     }
 
-    /// The plane elements that a field stands for, and the other elements.
+    /// The plane elements that a field names, and the other elements.
     fn members_of(
         &self,
         field: Text,
@@ -145,14 +145,14 @@ fn report_connectors(field: Text, cx: &mut Context) {
         .help("they have neither a section nor sides: name plane elements");
 }
 
-/// Reports line elements where plane ones are needed.
+/// Reports line elements where plane elements are needed.
 fn report_lines(field: Text, cx: &mut Context) {
     let message = format!("{} stands for line elements only", field.text);
     cx.error(Code::LineElement, field.span, message)
         .help("they name sides of plane elements, in rows of *SURFACE without a face");
 }
 
-/// Elements of a set that are no plane elements.
+/// Members of an element set that are not plane elements.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct OtherElements {
     /// Faces that line elements name.
@@ -172,7 +172,7 @@ impl OtherElements {
     }
 }
 
-/// Plane elements (indices) and others among members of a set, which are numbered one kind after the other.
+/// Splits members of a set into plane elements (indices) and other elements; indices number one kind after the other.
 fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, OtherElements) {
     let (count, lines) = (mesh_index.mesh.elements.len(), &mesh_index.lines);
     let of_points = count + lines.len();
@@ -262,14 +262,15 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     sets
 }
 
-/// When a set is first defined: in a deck that goes on from an earlier job or not, in the model or in which step.
+/// Where a set is first defined: whether in a deck that continues an earlier job, and in which step (`None` for the
+/// model).
 type Age = (bool, Option<usize>);
 
-/// A set before the sets it lists are known.
+/// A set before the sets that it lists are added.
 struct Draft {
     span: Span,
     age: Age,
-    /// In any order, some perhaps several times.
+    /// Members in any order; some may appear several times.
     members: Vec<usize>,
     children: Vec<usize>,
 }
@@ -327,7 +328,8 @@ impl<'a> SetFamily<'a> {
         }
     }
 
-    /// Registers the names of all cards; reports those that add members to a set of the earlier job, or in a step.
+    /// Registers the names of all cards; reports cards that add members to a set of the earlier job, or in a later step
+    /// than the definition.
     fn define(&mut self, outline: &Outline<'a>, keyword: &str, cx: &mut Context) {
         for block in outline.blocks(keyword) {
             let card = block.head;
@@ -390,7 +392,7 @@ impl<'a> SetFamily<'a> {
         }
     }
 
-    /// `first, last[, increment]`
+    /// Reads a row `first, last[, increment]`.
     fn range(&mut self, index: usize, row: Line, cx: &mut Context) {
         row.at_most(3, cx.d);
         let first = row.required(0, "the first number", cx.d);
@@ -453,7 +455,7 @@ impl<'a> SetFamily<'a> {
     }
 }
 
-/// Adds to each set the members of the sets it lists, innermost first.
+/// Adds the members of listed sets to each set, innermost sets first.
 fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> {
     let mut parents: Vec<Vec<usize>> = vec![Vec::new(); drafts.len()];
     let mut open: Vec<usize> = drafts.iter().map(|draft| draft.children.len()).collect();
@@ -494,7 +496,7 @@ fn resolve(names: &Names, mut drafts: Vec<Draft>, cx: &mut Context) -> Vec<Set> 
         .collect()
 }
 
-/// Sorts members and leaves out those that appear again.
+/// Sorts members and removes duplicates.
 fn sort(members: &mut Vec<usize>) {
     if !members.is_sorted_by(|a, b| a < b) {
         members.sort_unstable();

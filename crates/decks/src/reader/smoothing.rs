@@ -1,4 +1,5 @@
-//! The shape of faces in contact: `GEOMETRIC CORRECTION` of pairs and general contact, and `*SURFACE SMOOTHING`.
+//! Shape of faces in contact (straight, curved or circular): `GEOMETRIC CORRECTION` of pairs and general contact, and
+//! `*SURFACE SMOOTHING`.
 
 use super::context::Context;
 use super::names::Named;
@@ -8,7 +9,7 @@ use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
 use crate::model::{Circle, Smoothing};
 
-/// The `*SURFACE SMOOTHING` of a deck.
+/// The circles of every `*SURFACE SMOOTHING` of a deck.
 pub(super) fn read(outline: &Outline, surfaces: &Surfaces, cx: &mut Context) -> Named<Vec<Circle>> {
     let mut all = Named::new("surface smoothing");
     for card in outline.model_cards("SURFACE SMOOTHING") {
@@ -21,7 +22,7 @@ pub(super) fn read(outline: &Outline, surfaces: &Surfaces, cx: &mut Context) -> 
     all
 }
 
-/// `slave, master, CIRCUMFERENTIAL, x, y`: the circles of the surfaces that are named.
+/// Reads a row `slave, master, CIRCUMFERENTIAL, x, y`; returns the circles of the surfaces that it names.
 fn circles(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<Vec<Circle>> {
     row.at_most(5, cx.d);
     let named = (0..2).filter_map(|i| row.get(i));
@@ -35,7 +36,7 @@ fn circles(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<Vec<Circl
     Some(found.into_iter().map(circle).collect())
 }
 
-/// `CIRCUMFERENTIAL, x, y` from the given field on.
+/// Reads `CIRCUMFERENTIAL, x, y` from field `method` on.
 fn centre(row: Line, method: usize, cx: &mut Context) -> Option<[f64; 2]> {
     let name = row.required(method, "how the surface is smoothed", cx.d)?;
     if name.name_key() != "CIRCUMFERENTIAL" {
@@ -50,7 +51,7 @@ fn centre(row: Line, method: usize, cx: &mut Context) -> Option<[f64; 2]> {
     Some([x?, y?])
 }
 
-/// What a `*CONTACT PAIR` says.
+/// Shape of the faces of a `*CONTACT PAIR`.
 pub(super) fn of_pair(
     card: &Card,
     all: &Named<Vec<Circle>>,
@@ -64,8 +65,8 @@ pub(super) fn of_pair(
     }
 }
 
-/// What the rows `surface, CIRCUMFERENTIAL, x, y`, `, CURVED` and `, NONE` of `*SURFACE PROPERTY ASSIGNMENT` in the block of general contact
-/// say; an error is reported.
+/// Shape of the faces of general contact, from the rows `surface, CIRCUMFERENTIAL, x, y`, `, CURVED` and `, NONE` of
+/// `*SURFACE PROPERTY ASSIGNMENT`; `Err` after a reported error.
 pub(super) fn of_general(
     block: &CardBlock,
     surfaces: &Surfaces,

@@ -18,16 +18,16 @@ use crate::model::{
     Support,
 };
 
-/// Most increments of a step: at a microsecond each they would take eleven days.
+/// Largest number of increments of a step: computing them would last eleven days at a microsecond each.
 const MOST_INCREMENTS: f64 = 1e12;
 
-/// Everything the steps of a deck say.
+/// Everything that the steps of a deck define.
 pub(crate) struct Steps {
     /// Steps in order.
     pub all: Vec<Step>,
-    /// What the histories and the status file show.
+    /// Requests for histories and the status file.
     pub histories: Histories,
-    /// Requests of checkpoints.
+    /// Requests for checkpoints.
     pub restarts: Vec<RestartOutput>,
     /// Supports of the first step.
     pub at_start: Vec<Support>,
@@ -91,7 +91,7 @@ pub(crate) fn read(
     }
 }
 
-/// The state of a deck between its steps.
+/// State of the model between the steps of the deck.
 struct StepReader<'a> {
     targets: Targets<'a>,
     surfaces: &'a Surfaces,
@@ -194,7 +194,7 @@ impl StepReader<'_> {
         }
     }
 
-    /// Reads the procedure of a step; reports a missing or second one.
+    /// Reads the procedure of a step; a missing or second procedure is reported.
     fn procedure(
         &mut self,
         cards: &StepCards,
@@ -271,7 +271,8 @@ impl StepReader<'_> {
     }
 }
 
-/// Times of impacts are those at which surfaces meet as they are.
+/// Reports overlaps to be pressed out in a step with IMPACT TIME=EVENT: events are found for surfaces without an
+/// allowed overlap.
 fn check_fit(step: &Step, cards: &StepCards, cx: &mut Context) {
     let has_events =
         step.procedure == Procedure::Dynamic && step.settings.impact_time == ImpactTime::Event;
@@ -287,22 +288,23 @@ fn named<'a>(cards: &StepCards<'a>, keyword: &str) -> Vec<&'a Card> {
     all.filter(|card| card.keyword.name == keyword).collect()
 }
 
-/// Largest truncation error of an increment, beside the displacements of the step so far.
+/// Largest truncation error of an increment, relative to the displacements of the step so far.
 pub(crate) const TRUNCATION_ERROR: f64 = 1e-4;
 
-/// Parts of a dynamic step without DIRECT: of the first increment and of the duration, the lesser of which increments are
-/// not cut below by default, and of the duration, the largest increment by default.
+/// Default bounds of the increments of a dynamic step without DIRECT. The smallest increment is the lesser of
+/// [`LEAST_PART`] of the first increment and [`LEAST_DYNAMIC`] of the duration; the largest is the first increment or,
+/// if longer, [`LARGEST_DYNAMIC`] of the duration.
 const LEAST_PART: f64 = 1.0 / 1024.0;
 const LEAST_DYNAMIC: f64 = 1e-5;
 const LARGEST_DYNAMIC: f64 = 0.1;
 
-/// Tolerance of the truncation error for HALFINC SCALE FACTOR=1: its default, 10000 with contacts and 1000 without,
-/// stands for [`TRUNCATION_ERROR`].
+/// Tolerance of the truncation error for HALFINC SCALE FACTOR=1. The default of this factor (10000 with contacts, 1000
+/// without) corresponds to [`TRUNCATION_ERROR`].
 pub(crate) fn tolerance_of_factor(has_contacts: bool) -> f64 {
     TRUNCATION_ERROR / if has_contacts { 1e4 } else { 1e3 }
 }
 
-/// `dt, T[, smallest dt[, largest dt]]`
+/// Reads a row `dt, T[, smallest dt[, largest dt]]`.
 fn increments(
     card: &Card,
     procedure: Procedure,
@@ -417,10 +419,10 @@ fn truncation_error(
     Some(tolerance)
 }
 
-/// Part of the duration of a static step that its increments are not cut below by default.
+/// Default of the smallest increment of a static step, relative to its duration.
 const LEAST_STATIC: f64 = 1e-5;
 
-/// `[dt[, T[, smallest dt[, largest dt]]]]` of a static step: T is 1 by default, dt the whole.
+/// Reads a row `[dt[, T[, smallest dt[, largest dt]]]]` of a static step; the default of T is 1, that of dt is T.
 fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
     let direct = is_direct(card);
     let incrementation = match direct {
@@ -468,8 +470,8 @@ fn time_or(row: Line, index: usize, default: f64, cx: &mut Context) -> Option<f6
     Some(if time == 0.0 { default } else { time })
 }
 
-/// The first increment of a dynamic step. Where none is given and it may change, it is `guide`, the time of a wave through the
-/// shortest side of an element, within parts of the duration.
+/// The first increment of a dynamic step. If it is not given and increments are automatic, it is `guide`, the time of a
+/// wave through the shortest side of an element, within bounds relative to the duration.
 fn first_increment(
     row: Line,
     (direct, period): (bool, f64),
@@ -549,7 +551,7 @@ fn note_short_end(row: Line, dt: f64, period: f64, cx: &mut Context) {
     }
 }
 
-/// A setting of `*STICKSLIP` that a word chooses: its parameter, and what the words stand for.
+/// A setting of `*STICKSLIP` that a word chooses: its parameter, and the meaning of each word.
 pub(crate) struct Choice<T: 'static>(&'static str, [(&'static str, T); 2]);
 
 pub(crate) const IMPACT: Choice<Impact> = Choice(
@@ -594,7 +596,7 @@ pub(crate) const SOLVER: Choice<SolverChoice> = Choice(
 );
 
 impl<T: Copy + PartialEq> Choice<T> {
-    /// Sets what a card chooses, if it does.
+    /// Changes a setting to the word on a card, if the card has this parameter.
     fn set(&self, card: &Card, setting: &mut T) {
         let typed = card.choice(self.0);
         if let Some((_, chosen)) = self.1.iter().find(|(word, _)| Some(*word) == typed) {
@@ -602,14 +604,14 @@ impl<T: Copy + PartialEq> Choice<T> {
         }
     }
 
-    /// The parameter with the word for a setting.
+    /// The parameter of `*STICKSLIP` with the word that means this setting.
     pub fn written(&self, setting: T) -> String {
         let word = self.1.iter().find(|(_, known)| *known == setting);
         format!("{}={}", self.0, word.map_or("", |(word, _)| word))
     }
 }
 
-/// Changes settings as a card says.
+/// Changes settings as a card `*STICKSLIP` says.
 pub(crate) fn apply_settings(card: &Card, settings: &mut Settings, cx: &mut Context) {
     settings.scheme = scheme(card, settings.scheme, cx);
     IMPACT.set(card, &mut settings.impact);
@@ -628,8 +630,9 @@ pub(crate) fn apply_settings(card: &Card, settings: &mut Settings, cx: &mut Cont
     check_scheme(card, settings, cx);
 }
 
-/// The landing return needs the energy-momentum scheme, whose contact force takes Pn g0 at a landing and
-/// nothing else, as do nodes without mass, for which end rows and impulses are not made.
+/// Reports LANDING=RETURN and CONTACT MASS=REDISTRIBUTED without the energy-momentum scheme. Landing return needs this
+/// scheme because its contact force loses exactly Pn g0 at a landing; nodes without mass need it because they have
+/// neither end rows nor impulses.
 fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
     if settings.scheme == Scheme::EnergyMomentum {
         return;
@@ -649,7 +652,7 @@ fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
     }
 }
 
-/// The scheme, whose weights must make it stable: theta2 >= theta1 >= 1/2.
+/// Reads the scheme, whose weights must make it stable: theta2 >= theta1 >= 1/2.
 fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
     let (old1, old2) = match (card.choice("SCHEME"), before) {
         (Some("SS22"), Scheme::EnergyMomentum) => (1.0, 1.0),
@@ -672,7 +675,7 @@ fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
     Scheme::Ss22 { theta1, theta2 }
 }
 
-/// The first step says what the mass of contact surfaces is.
+/// Reports a step that changes CONTACT MASS: the first step decides for all.
 pub(crate) fn check_contact_mass(
     card: &Card,
     [before, now]: [ContactMass; 2],

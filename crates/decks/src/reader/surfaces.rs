@@ -13,15 +13,15 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// All surfaces.
 pub(crate) struct Surfaces {
-    /// Their names.
+    /// Names of the surfaces.
     pub names: Names,
     /// Surfaces in the order of their names.
     pub all: Vec<Surface>,
     /// Rigid surfaces and their places.
     pub rigid: Vec<(usize, Span)>,
-    /// Rigid surfaces (indices) that are made of rigid lines, and these.
+    /// Rigid surfaces (indices) that are made of rigid lines, with the indices of these lines.
     pub of_lines: Vec<(usize, Vec<usize>)>,
-    /// Points of the rigid surfaces: nodes that follow those of the mesh.
+    /// Points of the rigid surfaces, which become nodes after those of the mesh.
     pub rigid_points: Vec<[f64; 2]>,
 }
 
@@ -90,8 +90,8 @@ pub(crate) fn read(
     surfaces
 }
 
-/// Rigid lines that the rows of a card name, with their ends in the direction on whose right the rigid body lies: from the
-/// first node to the second for SPOS. Reports rows of other elements beside them.
+/// Rigid lines that the rows of a card name, with their ends. The rigid body lies on the right of the direction from
+/// end to end, which for SPOS runs from the first node to the second. Reports rows of other elements on the same card.
 fn rigid_lines(
     card: &Card,
     mesh_index: &MeshIndex,
@@ -145,7 +145,7 @@ fn report_empty(kind: &SurfaceKind, card: &Card, cx: &mut Context) {
     }
 }
 
-/// `node or node set[, area]`
+/// Reads rows `node or node set[, area]`.
 fn nodes(card: &Card, mesh_index: &MeshIndex, sets: &Sets, cx: &mut Context) -> Vec<usize> {
     let mut nodes = Vec::new();
     let mut seen = HashSet::new();
@@ -165,7 +165,7 @@ fn nodes(card: &Card, mesh_index: &MeshIndex, sets: &Sets, cx: &mut Context) -> 
     nodes
 }
 
-/// `element or element set[, face]`
+/// Reads rows `element or element set[, face]`.
 fn faces(
     card: &Card,
     mesh_index: &MeshIndex,
@@ -198,7 +198,7 @@ fn faces(
     faces
 }
 
-/// Faces of elements that a card `*SURFACE` names, what is wrong with it being reported elsewhere.
+/// Faces of elements that a card `*SURFACE` names; faults of the card are reported elsewhere.
 pub(super) fn named_faces_of(
     card: &Card,
     mesh_index: &MeshIndex,
@@ -266,7 +266,7 @@ fn no_such_face(element: usize, face: Text, mesh_index: &MeshIndex, cx: &mut Con
 /// Names of the sides of an element.
 const SIDES: [&str; 4] = ["S1", "S2", "S3", "S4"];
 
-/// Side, from 0, of a face name S1 to S4.
+/// Number of the side, from 0, that a face name S1 to S4 means.
 fn side_number(face: Text, cx: &mut Context) -> Option<usize> {
     let key = face.name_key();
     let side = SIDES.iter().position(|side| *side == key);
@@ -285,7 +285,7 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
     mesh.elements.get(element).map_or(0, |e| e.side_count())
 }
 
-/// Exterior sides of these elements, in order; none on the axis of bodies of revolution.
+/// Exterior sides of these elements, in order; sides on the axis of bodies of revolution are not among them.
 fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -> Vec<Face> {
     let sides =
         |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });
@@ -323,8 +323,8 @@ pub(crate) type Found<'a> = (usize, &'a Surface, Span);
 
 /// Largest angle that a chord of an arc subtends.
 const CHORD: f64 = std::f64::consts::PI / 180.0;
-/// Largest relative difference of an arc's radii at its ends; smallest difference of its angle from
-/// 180 degrees, in radians.
+/// Largest relative difference of an arc's radii at its ends, and smallest difference of its angle from 180 degrees
+/// (rad).
 const ARC_ROUND_OFF: f64 = 1e-4;
 
 /// A rigid profile: points and the sides between them, with the rigid body on the right of each
@@ -335,16 +335,16 @@ pub(crate) struct Profile {
     pub points: Vec<[f64; 2]>,
     /// Chords [from, to] between the points.
     sides: Vec<[usize; 2]>,
-    /// Arcs, which some of the sides are chords of.
+    /// Arcs; each is a range of sides, which are its chords.
     arcs: Vec<CircleArc>,
-    /// First point of the chain that is read.
+    /// First point of the chain that is being read.
     start: usize,
     /// Last point so far.
     end: usize,
 }
 
 impl Profile {
-    /// Reads the rows of a card up to the first that has an error.
+    /// Reads the rows of a card up to the first row with an error.
     pub fn read(card: &Card, cx: &mut Context) -> Profile {
         let mut profile = Profile::default();
         for row in card.rows.iter() {
@@ -364,7 +364,7 @@ impl Profile {
         profile
     }
 
-    /// The profile of rigid lines, end to end.
+    /// The profile of rigid lines that follow each other end to end.
     pub fn of_lines(
         lines: &[(usize, [usize; 2])],
         card: &Card,
@@ -398,8 +398,8 @@ impl Profile {
         profile
     }
 
-    /// The profile between nodes of which the first point is number `first`: the body lies on the
-    /// left of the direction from a to b, so that segments run from the last row to the first.
+    /// The profile as segments between nodes, with node number `first` for its first point. Bodies lie on the left of
+    /// segments, so the segments run from the last row to the first.
     pub fn in_mesh(self, first: usize) -> RigidProfile {
         let centre = self.centre().map(|_| first + self.points.len());
         let (sides, count) = (self.sides.iter().rev(), self.sides.len());
@@ -414,8 +414,8 @@ impl Profile {
         }
     }
 
-    /// The centre, if the profile is the outline of a round body: arcs about one centre with one radius, each from the end of
-    /// the one before, the last one to the start, the body on the right of their sides inside.
+    /// The centre, if the profile is the outline of a disc: a closed chain of arcs about one centre with one radius,
+    /// with the body inside, on the right of the sides.
     pub fn centre(&self) -> Option<[f64; 2]> {
         let first = self.arcs.first()?;
         let chords: usize = self.arcs.iter().map(|arc| arc.segments.len()).sum();
@@ -472,7 +472,7 @@ impl Profile {
         self.points.push(at);
     }
 
-    /// Drops the last point if no side begins or ends there: a START without a LINE or CIRCL.
+    /// Drops the last point if no side begins or ends there, as after a START without a LINE or CIRCL.
     fn drop_lone_point(&mut self) {
         let is_last = |end: &usize| end + 1 == self.points.len();
         if !self.sides.iter().rev().take(1).flatten().any(is_last) {
@@ -480,7 +480,7 @@ impl Profile {
         }
     }
 
-    /// A chord to the next point, which may be the first of the chain again.
+    /// Adds a chord to a point, which is a new one or the first point of the chain again.
     fn side_to(&mut self, to: [f64; 2]) {
         let closes = self.points.get(self.start) == Some(&to);
         let next = if closes {
@@ -495,7 +495,7 @@ impl Profile {
         self.end = next;
     }
 
-    /// Equal chords of at most [`CHORD`] on the shorter arc about a centre.
+    /// Adds equal chords of at most [`CHORD`] on the shorter arc about a centre.
     fn arc(&mut self, to: [f64; 2], centre: [f64; 2], row: Line, cx: &mut Context) -> Option<()> {
         let from = *self.points.get(self.end)?;
         let [p, q] = [from, to].map(|x| difference(centre, x));
@@ -536,7 +536,8 @@ impl Profile {
     }
 }
 
-/// The point in the fields `index` and the next, of `count` fields, where the instance of the row has it.
+/// Reads the point in the fields `index` and `index + 1` of a row with at most `count` fields, and places it with the
+/// instance of the row.
 fn point(row: Line, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
     if index == 1 {
         row.at_most(count, cx.d);

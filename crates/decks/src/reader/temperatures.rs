@@ -11,7 +11,7 @@ use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
 use crate::model::{Amplitude, Load, Material, Model, NodeTemperature, Variation};
 
-/// Reads initial temperatures, one of every node; none where the deck gives none.
+/// Reads initial temperatures, one for every node; empty if the deck gives none.
 pub(super) fn initial(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec<f64> {
     let mut all = Vec::new();
     for card in outline.model_cards("INITIAL CONDITIONS") {
@@ -31,10 +31,10 @@ pub(super) fn initial(outline: &Outline, targets: Targets, cx: &mut Context) -> 
     all
 }
 
-/// Gradients that a row of shells and beams may have behind its temperature.
+/// Number of gradients that may follow the temperature in a row of shells and beams.
 const GRADIENTS: usize = 4;
 
-/// `node or node set, temperature`; gradients, which shells and beams have, must be zero.
+/// Reads a row `node or node set, temperature`; further fields, which are gradients of shells and beams, must be zero.
 fn row_of_nodes(row: Line, targets: Targets, cx: &mut Context) -> Option<(Vec<usize>, f64)> {
     let Targets {
         mesh_index, sets, ..
@@ -53,7 +53,7 @@ fn row_of_nodes(row: Line, targets: Targets, cx: &mut Context) -> Option<(Vec<us
     Some((nodes?, value?))
 }
 
-/// Temperatures that differ from those of the start of the analysis, by their nodes.
+/// Temperatures that differ from the initial ones, by their nodes.
 #[derive(Default)]
 pub(super) struct TemperatureHistory {
     initial: Vec<f64>,
@@ -62,7 +62,7 @@ pub(super) struct TemperatureHistory {
 }
 
 impl TemperatureHistory {
-    /// Those of a model at the start of the analysis.
+    /// The temperatures at the start of the analysis.
     pub fn new(initial: Vec<f64>) -> Self {
         TemperatureHistory {
             initial,
@@ -98,7 +98,7 @@ impl TemperatureHistory {
         }
     }
 
-    /// Lets all nodes return to their temperatures of the start: over the step where it ramps, else at once.
+    /// Lets all nodes return to their initial temperatures: over the step if temperatures ramp, else at once.
     fn clear(&mut self, context: StepContext) {
         if !context.ramp {
             return self.all.clear();
@@ -119,7 +119,7 @@ impl TemperatureHistory {
         self.all.values().map(simple).collect()
     }
 
-    /// Ends a step: temperatures stay as they are, unless they follow the total time.
+    /// Ends a step: temperatures keep their last values, unless they follow an amplitude in total time.
     pub fn end_step(&mut self, period: f64, total: f64, amplitudes: &[Amplitude]) {
         for load in self.all.values_mut() {
             load.end_step(period, total, amplitudes);
@@ -133,7 +133,7 @@ impl TemperatureHistory {
     }
 }
 
-/// The temperatures that a step leaves to the next one.
+/// The temperatures that a step hands on to the next one.
 pub(crate) fn carried_temperatures(
     loads: &[Load<NodeTemperature>],
     initial: &[f64],
@@ -149,7 +149,7 @@ pub(crate) fn carried_temperatures(
     history.list()
 }
 
-/// Checks that temperatures leave something of every material, and that there is one that expands.
+/// Checks that thermal strains stay above -1 in every material, and that at least one material in use expands.
 pub(super) fn check(model: &Model, places: &[MaterialPlaces], outline: &Outline, cx: &mut Context) {
     let first = (outline.model_cards("INITIAL CONDITIONS").iter())
         .find(|card| card.choice("TYPE") == Some("TEMPERATURE"))
@@ -190,7 +190,7 @@ pub(super) fn check(model: &Model, places: &[MaterialPlaces], outline: &Outline,
     }
 }
 
-/// Least thermal strain that a material may have in a model, and its temperature.
+/// Smallest thermal strain that a material may reach in a model, and the temperature of this strain.
 fn least_strain(material: &Material, model: &Model) -> Option<(f64, f64)> {
     let expansion = material.expansion.as_ref()?;
     let mut least: Option<(f64, f64)> = None;

@@ -1,26 +1,27 @@
-//! `*TIE, TYPE=SURFACE TO SURFACE`: what the points of the sides of a slave surface follow. See docs/theory/contact.md,
-//! Ties from surface to surface.
+//! `*TIE, TYPE=SURFACE TO SURFACE`: the nodes of the master that the sides of a slave surface follow, with their
+//! weights. See docs/theory/contact.md, Ties from surface to surface.
 
 use super::nearest::NearestLines;
 use crate::model::{Follows, Mesh, SideNodes, Surface, SurfaceKind, TiedLine, TiedSide, beside};
 use crate::vectors::{difference, distance, dot};
 use smallvec::SmallVec;
 
-/// Gauss points of a cell, -1 <= r <= 1, of weight 1: exact for the products of two linear functions and the radius.
+/// Gauss points of a cell, -1 <= r <= 1, of weight 1. These points integrate products of two linear functions and the
+/// radius exactly.
 const GAUSS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
-/// Distance of two ends of cells, in lengths of the line, below which they are one.
+/// Distance of two ends of cells, relative to the length of the line, below which they are one end.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Cosine of the largest angle between a slave line and the line of the master that it follows: 45 degrees.
 const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// A vertex of the straight lines that a surface is made of: a node, or what takes the place of the node between the
-/// corners of a side, eq. (3.21).
+/// A vertex of the straight lines that a surface is made of: a node, or the point of eq. (3.21) that replaces the node
+/// between the corners of a side.
 #[derive(Clone)]
 struct Vertex {
     place: [f64; 2],
-    /// Its nodes and their parts in the position.
+    /// Nodes that determine the vertex, and their weights in its position.
     nodes: SmallVec<[(usize, f64); 3]>,
 }
 
@@ -78,7 +79,8 @@ impl Master {
         }
     }
 
-    /// Ends of the cells of a slave line, 0 and 1 with the projections of the vertices of the master in between.
+    /// Ends of the cells of a slave line (as parts of its length): 0, the projections of the vertices of the master,
+    /// and 1.
     fn cuts(&self, [p, q]: [[f64; 2]; 2]) -> Vec<f64> {
         let e = difference(p, q);
         let middle = [0, 1].map(|i| p[i] + e[i] / 2.0);
@@ -100,7 +102,7 @@ fn places(line: &[Vertex; 2]) -> [[f64; 2]; 2] {
     [line[0].place, line[1].place]
 }
 
-/// The sides of a slave surface whose nodes are all tied, or of the master as well, and face the master.
+/// The sides of a slave surface that face the master and whose nodes are all tied or belong to the master, too.
 pub(super) fn read(
     [slave, master]: [&Surface; 2],
     mesh: &Mesh,
@@ -126,7 +128,7 @@ pub(super) fn read(
     sides.filter_map(tied).collect()
 }
 
-/// What the ends of a slave line follow; `None` for a line that does not face the master, or has no area.
+/// The nodes that the ends of a slave line follow; `None` for a line that does not face the master or has no area.
 fn tied_line([p, q]: [[f64; 2]; 2], master: &Master, is_ring: bool) -> Option<TiedLine> {
     let e = difference(p, q);
     let mut sums = Sums::default();
@@ -149,14 +151,14 @@ fn tied_line([p, q]: [[f64; 2]; 2], master: &Master, is_ring: bool) -> Option<Ti
     sums.dual()
 }
 
-/// Sums over the points q of a slave line.
+/// Sums over the points q of a slave line, for its ends j and k.
 #[derive(Default)]
 struct Sums {
-    /// M_jk = sum_q w_q N_j N_k
+    /// Mass matrix of the hats, M_jk = sum_q w_q N_j N_k.
     m: [[f64; 2]; 2],
-    /// D_j = sum_q w_q N_j
+    /// Weights of the ends, D_j = sum_q w_q N_j.
     d: [f64; 2],
-    /// sum_q w_q N_j (alpha_l I + beta_l J)
+    /// Nodes of the master with the coefficients sum_q w_q N_j (alpha_l I + beta_l J).
     hats: [Follows; 2],
 }
 
@@ -177,7 +179,7 @@ impl Sums {
         }
     }
 
-    /// With the dual functions in place of the hats, sum_q w_q psi_j N_k = delta_jk D_j:
+    /// Replaces the hats N by the dual functions psi, for which sum_q w_q psi_j N_k = delta_jk D_j:
     ///
     /// ```text
     /// psi = D M^-1 N      eq. (3.33)

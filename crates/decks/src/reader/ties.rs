@@ -1,5 +1,6 @@
-//! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place
-//! beside them, and follow these or the master below their faces at all times. See docs/theory/contact.md, Ties.
+//! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place beside
+//! them. Tied nodes follow these segments, or the master below the slave faces, at all times. See
+//! docs/theory/contact.md, Ties.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
@@ -18,34 +19,35 @@ use crate::model::{
 use crate::vectors::distance;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// Most nodes that a message names.
+/// Largest number of nodes that a message names.
 const MOST_NAMES: usize = 10;
 
 /// The ties of a deck.
 pub(crate) struct Ties {
-    /// All of them.
+    /// All ties of the deck.
     pub all: Vec<Tie>,
-    /// Their places.
+    /// Places of the ties.
     pub spans: Vec<Span>,
-    /// Nodes of both surfaces with the segments that they are tied to, or lie at: contact leaves them out.
+    /// Nodes of both surfaces with the segments that they are tied to or lie at; contact between such a node and
+    /// segment is left out.
     bonds: Vec<(usize, Segment)>,
 }
 
-/// A row of `*TIE` with what the card says of it.
+/// A row of `*TIE` with the parameters of its card.
 struct TieRow {
     name: String,
     slave: usize,
     master: usize,
     reach: TieReach,
-    /// Members of the set that the reach names, increasing.
+    /// Members of the set that the reach names, in increasing order.
     members: Vec<usize>,
     formulation: ContactFormulation,
     adjusts: bool,
     span: Span,
 }
 
-/// Reads all ties and moves their slave nodes, in the order of the deck; then their nodes stay where they are and
-/// all are tied.
+/// Reads all ties and moves their slave nodes, in the order of the deck; after all moves the nodes are tied at their
+/// new places.
 pub(super) fn read(
     outline: &Outline,
     mesh_index: &mut MeshIndex,
@@ -140,7 +142,7 @@ fn rows_of(
     rows
 }
 
-/// Which nodes a card ties; `None` with an error.
+/// Which nodes a card ties; `None` after a reported error.
 fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     if let Some(field) = card.value("TIED NSET") {
         if card.has("POSITION TOLERANCE") {
@@ -160,8 +162,8 @@ fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     Some(TieReach::Within(tolerance))
 }
 
-/// What of a slave surface follows the master: nodes each by itself, or the points of its faces unless one of the two is
-/// made of nodes.
+/// Formulation of a tie: node to surface if one of the surfaces is made of nodes or the card asks for it, else surface
+/// to surface.
 fn formulation(card: &Card, both: [&Surface; 2], cx: &mut Context) -> ContactFormulation {
     let typed = card.choice("TYPE");
     let has_nodes = both
@@ -207,11 +209,11 @@ fn pair(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<(usize, usiz
     None
 }
 
-/// The slave nodes of a row beside the master surface.
+/// The slave nodes of a row, sorted by whether the row ties them.
 struct Faced {
-    /// Those that are tied, with the segments nearest to them, in the order of the surface.
+    /// Slave nodes that are tied, with their nearest segments, in the order of the surface.
     near: Vec<(usize, Segment)>,
-    /// Those that are not.
+    /// Slave nodes that are not tied.
     far: Vec<usize>,
 }
 
@@ -238,7 +240,7 @@ impl Faced {
     }
 }
 
-/// The sides of a slave surface that follow as wholes: those between nodes that are tied, by this tie or an earlier one, or
+/// The sides of a slave surface that are tied as a whole: all their nodes are tied, by this tie or an earlier one, or
 /// belong to the master.
 fn sides(
     row: &TieRow,
@@ -273,7 +275,7 @@ impl NearestSegment {
     }
 }
 
-/// The segments of a surface; of one that is made of nodes each node is a segment without length.
+/// The segments of a surface; in a surface made of nodes each node is a segment without length.
 fn lines(surface: &Surface, mesh: &Mesh) -> Vec<Segment> {
     match surface.kind {
         SurfaceKind::Nodes(_) => surface
@@ -285,7 +287,7 @@ fn lines(surface: &Surface, mesh: &Mesh) -> Vec<Segment> {
     }
 }
 
-/// Shortest side of the elements at every node that a segment without length has.
+/// Shortest element side at every node that is a segment without length.
 fn shortest_sides(segments: &[Segment], mesh: &Mesh) -> HashMap<usize, f64> {
     let alone = segments.iter().filter(|[a, b]| a == b);
     let mut shortest: HashMap<usize, f64> = alone.map(|[a, _]| (*a, f64::INFINITY)).collect();
@@ -307,7 +309,7 @@ fn shortest_sides(segments: &[Segment], mesh: &Mesh) -> HashMap<usize, f64> {
     shortest
 }
 
-/// Segments by their places.
+/// Segments with a tree for finding the nearest one.
 struct Nearest<'a> {
     segments: &'a [Segment],
     x: &'a [[f64; 2]],
@@ -328,7 +330,7 @@ impl<'a> Nearest<'a> {
         }
     }
 
-    /// The segment nearest to a node, of several the first.
+    /// The segment nearest to a node; of equally near segments, the first one.
     fn of(&self, node: usize) -> Option<NearestSegment> {
         let (k, off) = self.lines.of(self.x[node])?;
         let segment = self.segments[k];
@@ -344,7 +346,7 @@ impl<'a> Nearest<'a> {
     }
 }
 
-/// Moves the slave nodes of a row onto the master, free of strain.
+/// Moves the slave nodes of a row onto the master without straining the elements.
 fn adjust(row: &TieRow, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Context) {
     let mesh = &mut mesh_index.mesh;
     let before = mesh.coordinates.clone();
@@ -462,7 +464,7 @@ fn covered(
 }
 
 impl Ties {
-    /// Leaves tied nodes out of the contacts with what they are tied to.
+    /// Leaves tied nodes out of the contacts with the segments that they are tied to.
     pub fn leave_out(
         &self,
         contacts: &mut [Contact],

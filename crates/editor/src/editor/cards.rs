@@ -1,5 +1,5 @@
-//! The cards of a deck as they stand in its files, whether they are right or not: keyword lines with their pieces, data lines
-//! that hold words, and the part or instance that each belongs to.
+//! The cards of a deck as they stand in its files, with or without errors: keyword lines with their pieces, data lines
+//! that hold words, and the part or instance of each card.
 
 use super::document::{Document, Mark, Spot, as_line};
 use super::files::Files;
@@ -10,46 +10,46 @@ use crate::diagnostics::{Span, whole_path};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Deepest nesting of included files, and most files of a deck.
+/// Deepest nesting of included files, and largest number of files of a deck.
 const MOST: (usize, usize) = (20, 1000);
 
-/// Where the names of a card belong.
+/// The part, the instance or the deck that the names of a card belong to.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Scope {
     /// The whole deck.
     Deck,
-    /// The part with this key.
+    /// The part whose name has this key.
     Part(Arc<str>),
-    /// The instance with this key.
+    /// The instance whose name has this key.
     Instance(Arc<str>),
 }
 
 /// A piece of a keyword line: `NAME` or `NAME=value`.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
-    /// The whole piece.
+    /// Place of the whole piece.
     pub spot: Spot,
-    /// The parameter that is meant.
+    /// The parameter that the piece means.
     pub parameter: Option<&'static Parameter>,
-    /// The value and its place.
+    /// The value of the parameter, and its place.
     pub value: Option<(String, Spot)>,
 }
 
 /// A keyword line with the lines that continue it.
 #[derive(Debug, Clone)]
 pub(super) struct Head {
-    /// The keyword with its star.
+    /// Place of the keyword with its star.
     pub spot: Spot,
-    /// The keyword that is meant.
+    /// The keyword that the line means.
     pub keyword: Option<&'static Keyword>,
-    /// Its other pieces.
+    /// The pieces behind the keyword.
     pub pieces: Vec<Piece>,
     /// Last line.
     pub last: usize,
 }
 
 impl Head {
-    /// The keyword line at a line of a document.
+    /// The keyword line that begins at a line of a document.
     pub fn new(document: &Document, line: usize) -> Head {
         let mut head = Head {
             spot: Spot {
@@ -84,7 +84,7 @@ impl Head {
         }
     }
 
-    /// The value of a parameter, empty where it has none.
+    /// The value of a parameter; empty for a parameter without value.
     pub fn value(&self, name: &str) -> Option<&str> {
         let piece = self.piece(name)?;
         Some(piece.value.as_ref().map_or("", |(value, _)| value))
@@ -96,17 +96,17 @@ impl Head {
         self.pieces.iter().find(is_meant)
     }
 
-    /// Name of the keyword; empty where it is unknown.
+    /// Name of the keyword; empty if the keyword is unknown.
     pub fn name(&self) -> &'static str {
         self.keyword.map_or("", |keyword| keyword.name)
     }
 
-    /// What becomes of its data lines.
+    /// Kind of data lines of the keyword; data lines of an unknown keyword are skipped.
     pub fn data(&self) -> Data {
         self.keyword.map_or(Data::Skipped, |keyword| keyword.data)
     }
 
-    /// The name that the card defines, and its parameter.
+    /// The piece with the name that the card defines.
     pub fn defined(&self) -> Option<&Piece> {
         let (parameter, _) = self.keyword?.definition()?;
         self.piece(parameter.name)
@@ -124,7 +124,7 @@ impl Piece {
     }
 }
 
-/// Characters of a text of a line.
+/// Place of a text, which is a part of a line.
 pub(super) fn spot(line: usize, text: Text) -> Spot {
     let start = text.span.column as usize - 1;
     Spot {
@@ -143,39 +143,39 @@ fn next_said(document: &Document, line: usize) -> Option<usize> {
 /// A card.
 #[derive(Debug, Clone)]
 pub(super) struct Card {
-    /// Its file, by its number in the deck.
+    /// Number of the file of the card in the deck.
     pub file: usize,
-    /// Its keyword line.
+    /// Keyword line of the card.
     pub head: Head,
-    /// Where its names belong.
+    /// Scope of the names of the card.
     pub scope: Scope,
-    /// Its data lines that hold words, with their files.
+    /// Data lines of the card that hold words: file and line of each.
     pub rows: Vec<(usize, usize)>,
-    /// Line behind its last one in its file.
+    /// Line behind the last line of the card in its file.
     pub end: usize,
 }
 
 /// A file of a deck.
 #[derive(Debug, Clone)]
 pub(super) struct DeckFile {
-    /// Its whole path.
+    /// Whole path of the file.
     pub path: PathBuf,
-    /// What it was read as.
+    /// Revision of the file that was read.
     revision: u64,
-    /// The card that its first data lines belong to.
+    /// The earlier card that the first data lines of the file belong to.
     pub continues: Option<usize>,
 }
 
 /// An instance of a part.
 #[derive(Debug, Clone)]
 pub(super) struct Instance {
-    /// Its name.
+    /// Name of the instance.
     pub name: Name,
-    /// Key of its part.
+    /// Key of the name of the part.
     pub part: Arc<str>,
 }
 
-/// All cards of a deck, included files in their places.
+/// All cards of a deck; the cards of an included file stand in its place.
 #[derive(Debug, Clone)]
 pub(super) struct Cards {
     /// The main deck and the files that it includes.
@@ -203,7 +203,7 @@ impl Cards {
         cards
     }
 
-    /// Whether they are those of the files as they are.
+    /// Whether these cards are up to date with the files.
     pub fn are_of(&self, files: &Files) -> bool {
         let is_same = |file: &DeckFile| {
             let known = files.get(&file.path);
@@ -234,12 +234,12 @@ impl Cards {
         self.all.get(index)
     }
 
-    /// Cards of a file, in order.
+    /// The cards of a file, in order.
     pub fn of_file(&self, file: usize) -> impl Iterator<Item = &Card> {
         self.all.iter().filter(move |card| card.file == file)
     }
 
-    /// Reads a file, seen from the folders of the main deck and of the files that include it.
+    /// Reads a file; `open` holds the main deck and the files that include this one, whose folders are searched.
     fn read(&mut self, path: &Path, files: &mut Files, open: &mut Vec<PathBuf>) {
         let whole = whole_path(path);
         let is_open = open.iter().any(|open| whole_path(open) == whole);
@@ -287,7 +287,7 @@ impl Cards {
         }
     }
 
-    /// Adds a card, and the file that it names.
+    /// Adds a card, and the cards of the file that it names.
     fn add(&mut self, file: usize, head: Head, files: &mut Files, open: &mut Vec<PathBuf>) {
         let key = |name: &str| key(head.value(name).unwrap_or_default());
         let outside = match head.name() {
@@ -337,7 +337,7 @@ impl Cards {
         }
     }
 
-    /// The card that data lines belong to now.
+    /// The card to which data lines belong at this point.
     fn owner(&self) -> Option<usize> {
         let is_owner = |card: &Card| card.head.name() != "INCLUDE";
         self.all.iter().rposition(is_owner)
@@ -359,7 +359,7 @@ pub(super) fn key(text: &str) -> Arc<str> {
     Text { text, span }.name_key().into()
 }
 
-/// The fields of a data line of a card that may hold something known, by their places, with what they are.
+/// The fields of a data line of a card with their places, and what each field holds where this is known.
 pub(super) fn fields_of<'t>(
     card: &Card,
     text: &'t str,
@@ -376,7 +376,7 @@ pub(super) fn fields_of<'t>(
         .collect()
 }
 
-/// The word that a parameter of a keyword line has as its value, empty where it has none.
+/// The full word that a parameter of a keyword line has as its value; empty for a parameter without value.
 pub(super) fn given<'h>(head: &'h Head, name: &str) -> Option<&'h str> {
     let piece = head.piece(name)?;
     let value = piece.value.as_ref().map_or("", |(value, _)| value);

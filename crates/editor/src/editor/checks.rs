@@ -1,5 +1,5 @@
-//! Diagnostics of decks as `stickslip check` finds them, in a thread of their own: the texts of the editor stand for files
-//! that are not saved, and a check that nobody waits for any longer ends early.
+//! Diagnostics of decks as `stickslip check` finds them, computed in a thread of their own. Texts of the editor replace
+//! files that are not saved, and a check that has become obsolete ends early.
 
 use super::document::position;
 use super::files::path_of;
@@ -18,42 +18,42 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::thread;
 
-/// Reads a deck and adds what `check` says about it.
+/// Function that reads a deck and returns the diagnostics of `stickslip check`.
 pub type Check = fn(&Path, &mut Sources) -> Diagnostics;
 
-/// Most diagnostics of a file that the editor gets.
+/// Largest number of diagnostics of a file that the editor gets.
 const MOST: usize = 1000;
 
 /// A deck that is to be checked.
 pub(super) struct Job {
-    /// Its main file.
+    /// Main file of the deck.
     pub root: PathBuf,
-    /// Texts of the editor by the whole paths of their files.
+    /// Texts of files that are open in the editor, by their whole paths.
     pub unsaved: BTreeMap<PathBuf, Rope>,
-    /// What the editor calls these files.
+    /// Addresses (URIs) that the editor uses for these files.
     pub addresses: BTreeMap<PathBuf, Url>,
-    /// Ends the check.
+    /// Signal that ends the check early.
     pub interrupt: Interrupt,
 }
 
-/// What a check has found.
+/// Outcome of a check.
 pub(super) struct Outcome {
     /// Main file of the deck.
     pub root: PathBuf,
-    /// Diagnostics by file; every file of the deck has an entry. None where the check was ended early.
+    /// Diagnostics by file; every file of the deck has an entry. `None` if the check was ended early.
     pub found: Option<BTreeMap<PathBuf, Vec<Diagnostic>>>,
 }
 
-/// What a quick fix has to know of a diagnostic.
+/// Data of a diagnostic that a quick fix needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Fix {
-    /// What the text of its range was.
+    /// Text at the range of the diagnostic.
     pub found: String,
-    /// What was probably meant.
+    /// Text that was probably meant.
     pub meant: String,
 }
 
-/// A thread that checks one deck after the other.
+/// Starts a thread that checks one deck after the other.
 pub(super) fn start(check: Check) -> (Sender<Job>, Receiver<Outcome>) {
     let (to_do, jobs) = bounded::<Job>(1);
     let (done, outcomes) = unbounded();
@@ -74,7 +74,7 @@ pub(super) fn start(check: Check) -> (Sender<Job>, Receiver<Outcome>) {
     (to_do, outcomes)
 }
 
-/// What the editor is told of a check that has a fault itself.
+/// The diagnostic that the editor gets if a check itself fails.
 fn broken() -> Diagnostic {
     let message = "stickslip has a fault: this deck could not be checked".to_owned();
     Diagnostic {
@@ -111,7 +111,7 @@ fn run(check: Check, job: Job) -> Option<BTreeMap<PathBuf, Vec<Diagnostic>>> {
     Some(found)
 }
 
-/// Cuts a list that is too long for an editor, and says so.
+/// Cuts a list of diagnostics that is too long for an editor, and states the number left out.
 fn shorten(all: &mut Vec<Diagnostic>) {
     let more = all.len().saturating_sub(MOST);
     all.truncate(MOST);
@@ -122,7 +122,7 @@ fn shorten(all: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The texts that diagnostics are about.
+/// The texts that diagnostics refer to.
 struct Texts<'s> {
     sources: &'s Sources,
     addresses: &'s BTreeMap<PathBuf, Url>,
@@ -154,7 +154,7 @@ impl Texts<'_> {
         }
     }
 
-    /// Where the file is included and the instance is placed, and the other card.
+    /// Places related to a diagnostic: where the file is included, where the instance is placed, and the other card.
     fn related(&self, item: &Finding) -> Vec<DiagnosticRelatedInformation> {
         let chain = item.span.map(|span| self.sources.include_chain(span));
         let chain = chain.into_iter().flatten();
@@ -199,7 +199,7 @@ impl Texts<'_> {
     }
 }
 
-/// The path of a file by what the editor calls it, for the diagnostics of a deck.
+/// Whole paths of files by the addresses that the editor uses, for the diagnostics of a deck.
 pub(super) fn addresses<'u>(open: impl Iterator<Item = &'u Url>) -> BTreeMap<PathBuf, Url> {
     open.map(|uri| (path_of(uri), uri.clone())).collect()
 }

@@ -1,4 +1,4 @@
-//! What may be typed at a place: keywords, parameters, their values, names, files, and words of data lines.
+//! Completion of what is typed at a place: keywords, parameters, their values, names, files, and words of data lines.
 
 use super::cards::{Card, Scope, given, is_first_row, key};
 use super::document::{Document, as_line};
@@ -12,15 +12,15 @@ use lsp_types::{
 };
 use std::path::Path;
 
-/// Most entries of a folder that are shown.
+/// Largest number of entries of a folder that are shown.
 const MOST_FILES: usize = 500;
 
-/// Something that may be typed.
+/// A text that may be typed.
 struct Choice {
     label: String,
     kind: CompletionItemKind,
     detail: String,
-    /// What is inserted, where it is not the label.
+    /// The inserted text, if it differs from the label.
     insert: Option<String>,
 }
 
@@ -35,7 +35,7 @@ impl Choice {
     }
 }
 
-/// What may be typed at a place.
+/// The completions at a place.
 pub(super) fn completion(workspace: &Workspace, place: &Place) -> Vec<CompletionItem> {
     let Some(document) = workspace.document(&place.view, place.file) else {
         return Vec::new();
@@ -70,7 +70,7 @@ fn item(choice: Choice, range: Range) -> CompletionItem {
     }
 }
 
-/// The text of an item that has been chosen from the list: what is said about its keyword.
+/// Adds documentation to an item that the user has selected in the list: the explanation of its keyword.
 pub(super) fn with_documentation(mut item: CompletionItem) -> CompletionItem {
     let name = item.label.strip_prefix('*');
     let keyword = name.and_then(find_keyword);
@@ -79,7 +79,7 @@ pub(super) fn with_documentation(mut item: CompletionItem) -> CompletionItem {
     item
 }
 
-/// What may follow what stands before the cursor, and the part of it that is completed.
+/// The completions of the text before the cursor, and the part of this text that they replace.
 fn choices<'t>(
     workspace: &Workspace,
     place: &Place,
@@ -136,7 +136,7 @@ fn last_field(text: &str) -> &str {
     text.get(start..).unwrap_or_default().trim_start()
 }
 
-/// Keywords that are read, those that may stand behind a card first.
+/// Keywords that the program reads; those that may stand behind `card` come first.
 fn all_keywords(card: Option<&Card>) -> Vec<Choice> {
     let block = card.map_or("", |card| card.head.name());
     let read = keywords().filter(|keyword| keyword.status == Status::Read);
@@ -155,7 +155,7 @@ fn all_keywords(card: Option<&Card>) -> Vec<Choice> {
     all.iter().map(choice).collect()
 }
 
-/// Parameters of a keyword that are read and not given yet.
+/// Parameters of a keyword that the program reads and the card does not have yet.
 fn parameters(card: &Card) -> Vec<Choice> {
     let all = card
         .head
@@ -175,7 +175,7 @@ fn parameters(card: &Card) -> Vec<Choice> {
     all.iter().filter(is_new).map(choice).collect()
 }
 
-/// Values of a parameter.
+/// Completions of the value of a parameter.
 fn values(
     workspace: &Workspace,
     place: &Place,
@@ -200,7 +200,7 @@ fn values(
     all
 }
 
-/// Names of a kind as they are written in a scope.
+/// Names of objects of a kind, as they are written in a scope.
 fn names(view: &View, kind: Kind, scope: &Scope) -> Vec<Choice> {
     let mut all = Vec::new();
     let instances = &view.cards.instances;
@@ -238,7 +238,7 @@ fn names(view: &View, kind: Kind, scope: &Scope) -> Vec<Choice> {
     all.iter().map(choice).collect()
 }
 
-/// Files below the folder of a file.
+/// Files and folders for a typed path, relative to the folder of a file.
 fn files(workspace: &Workspace, place: &Place, typed: &str) -> Vec<Choice> {
     let file = place.view.cards.files.get(place.file);
     let folder = file.and_then(|file| file.path.parent());
@@ -272,7 +272,7 @@ fn files(workspace: &Workspace, place: &Place, typed: &str) -> Vec<Choice> {
     all
 }
 
-/// Names and words of a field of a data line.
+/// Names and words for a field of a data line.
 fn of_row(place: &Place, document: &Document, card: &Card, before: &str) -> Vec<Choice> {
     if matches!(card.head.data(), Data::None | Data::Text) {
         return Vec::new();

@@ -1,5 +1,6 @@
-//! The text of a file that is being changed. A change costs as much as the lines that it touches: pieces of the text
-//! remember which of their lines are keyword lines or hold words, and only pieces that have changed are looked at anew.
+//! The text of a file that is being edited. The time of a change depends only on the number of lines that it touches:
+//! pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces are
+//! examined again.
 
 use crate::deck::{Line, LineKind};
 use crate::diagnostics::FileId;
@@ -7,7 +8,7 @@ use lsp_types::{Position, Range};
 use ropey::Rope;
 use std::borrow::Cow;
 
-/// Most lines of a piece.
+/// Largest number of lines of a piece.
 const PIECE: usize = 256;
 
 /// A text in pieces.
@@ -17,37 +18,37 @@ pub(super) struct Document {
     pieces: Vec<Piece>,
 }
 
-/// Lines one after the other.
+/// A piece of the text: consecutive lines.
 #[derive(Debug, Clone, PartialEq)]
 struct Piece {
-    /// How many.
+    /// Number of lines of the piece.
     lines: usize,
-    /// Those that matter, from 0, in order.
+    /// The marked lines of the piece, counted from 0, in order.
     marked: Vec<(u32, Mark)>,
 }
 
-/// What matters of a line.
+/// Kinds of lines that are marked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Mark {
-    /// It is a keyword line.
+    /// A keyword line.
     Keyword,
-    /// It is a data line of other than numbers.
+    /// A data line that holds something other than numbers.
     Words,
 }
 
-/// Characters of a line, from `start` to before `end`, counted from 0.
+/// A range of characters of a line, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Spot {
-    /// The line, from 0.
+    /// Number of the line, from 0.
     pub line: usize,
     /// First character.
     pub start: usize,
-    /// Behind the last character.
+    /// The character behind the last one.
     pub end: usize,
 }
 
 impl Document {
-    /// A whole text.
+    /// A document with this text.
     pub fn new(text: &str) -> Document {
         let rope = Rope::from_str(text);
         let lines = text.split('\n').map(Cow::from);
@@ -57,7 +58,7 @@ impl Document {
         }
     }
 
-    /// The text, which is shared.
+    /// A copy of the text, which shares its memory with the document.
     pub fn rope(&self) -> Rope {
         self.rope.clone()
     }
@@ -67,19 +68,19 @@ impl Document {
         self.rope.len_lines()
     }
 
-    /// A line without its end; empty where there is none.
+    /// A line without its line end; empty if there is no such line.
     pub fn line(&self, line: usize) -> Cow<'_, str> {
         self.rope
             .get_line(line)
             .map_or(Cow::from(""), |line| without_end(line.into()))
     }
 
-    /// A line as the reader of decks sees it.
+    /// Kind of a line, as the reader of decks sees it.
     pub fn kind(&self, line: usize) -> LineKind {
         as_line(&self.line(line)).kind()
     }
 
-    /// Lines that matter, in order.
+    /// The marked lines, in order.
     pub fn marks(&self) -> impl Iterator<Item = (usize, Mark)> {
         let starts = self.pieces.iter().scan(0, |before, piece| {
             let start = *before;
@@ -92,7 +93,7 @@ impl Document {
         })
     }
 
-    /// Changes a range of the text, or all of it.
+    /// Replaces a range of the text, or the whole text.
     pub fn change(&mut self, range: Option<Range>, text: &str) {
         let Some(range) = range else {
             *self = Document::new(text);
@@ -107,7 +108,7 @@ impl Document {
         self.renew(first, last, new_last);
     }
 
-    /// Looks at the pieces with the lines from `first` to `last` anew, which end with the line `new_last` now.
+    /// Renews the pieces of the lines from `first` to `last` after a change that makes `new_last` of the line `last`.
     fn renew(&mut self, first: usize, last: usize, new_last: usize) {
         let mut start = 0;
         let mut from = 0;
@@ -130,7 +131,7 @@ impl Document {
         self.pieces.splice(from..to, anew);
     }
 
-    /// Number of the character at a position, which lies in the text and not behind its line.
+    /// Number of the character at a position; a position beyond the end of its line or of the text counts as that end.
     fn character(&self, position: Position) -> usize {
         let line = position.line as usize;
         if line >= self.rope.len_lines() {
@@ -139,7 +140,7 @@ impl Document {
         self.rope.line_to_char(line) + self.column(position)
     }
 
-    /// Character of its line at a position.
+    /// Number of the character within its line at a position, from 0.
     pub fn column(&self, position: Position) -> usize {
         let text = self.line(position.line as usize);
         let mut units = position.character as usize;
@@ -151,25 +152,25 @@ impl Document {
         text.chars().take_while(is_before).count()
     }
 
-    /// The position of a character of a line.
+    /// The position of a character of a line, in UTF-16 units.
     pub fn position(&self, line: usize, column: usize) -> Position {
         position(&self.line(line), line, column)
     }
 
-    /// The range of some characters.
+    /// The range of the characters of a spot, in UTF-16 units.
     pub fn range(&self, spot: Spot) -> Range {
         let [start, end] = [spot.start, spot.end].map(|at| self.position(spot.line, at));
         Range { start, end }
     }
 }
 
-/// The position of a character of a line with this text.
+/// The position of a character of a line that has this text.
 pub(super) fn position(text: &str, line: usize, column: usize) -> Position {
     let units = text.chars().take(column).map(char::len_utf16);
     Position::new(line as u32, units.sum::<usize>() as u32)
 }
 
-/// A text as a line of a deck.
+/// A text in the form of a line of a deck.
 pub(super) fn as_line(text: &str) -> Line<'_> {
     Line {
         file: FileId(0),
@@ -179,7 +180,7 @@ pub(super) fn as_line(text: &str) -> Line<'_> {
     }
 }
 
-/// Lines in pieces.
+/// Divides lines into pieces.
 fn pieces<'t>(lines: impl Iterator<Item = Cow<'t, str>>) -> Vec<Piece> {
     let mut all: Vec<Piece> = Vec::new();
     for line in lines {
@@ -212,7 +213,8 @@ fn mark(text: &str) -> Option<Mark> {
     }
 }
 
-/// Whether a data line has anything but numbers: a name such as `1E5`, which is written like a number, is none.
+/// Whether a data line has anything but numbers; a name that is written like a number, such as `1E5`, counts as a
+/// number.
 fn has_words(text: &str) -> bool {
     let mut before = b' ';
     !text.bytes().all(|byte| {

@@ -1,4 +1,5 @@
-//! The files that are known: those open in the editor, and those of the disk that they include or that include them.
+//! The files that the server knows: files that are open in the editor, and files of the disk that they include or that
+//! include them.
 
 use super::document::Document;
 use crate::deck::open_regular;
@@ -10,25 +11,25 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Most files of a folder that are looked at for one that includes another.
+/// Largest number of files of a folder that are searched for a deck that includes a file.
 const MOST_NEIGHBOURS: usize = 200;
 
-/// Most bytes that are read to find a file that includes another.
+/// Largest number of bytes that are read to find a deck that includes a file.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// Folders above a file in which one that includes it may lie.
+/// Number of folders above a file that are searched for a deck that includes it.
 const FOLDERS_ABOVE: usize = 2;
 
 /// A file.
 #[derive(Debug)]
 pub(super) struct File {
-    /// Its text.
+    /// Text of the file.
     pub document: Document,
-    /// What the editor calls it, where it is open.
+    /// Address (URI) of the file in the editor, if it is open there.
     pub open: Option<Url>,
-    /// Increases with every change.
+    /// A number that increases with every change of the file.
     pub revision: u64,
-    /// Time and length of the file when it was read from the disk.
+    /// Time and length that the file had when it was read from the disk.
     stamp: Option<(SystemTime, u64)>,
 }
 
@@ -41,12 +42,12 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// A file that is known.
+    /// A file, if the server knows it.
     pub fn get(&self, path: &Path) -> Option<&File> {
         self.all.get(path)
     }
 
-    /// A file, which is read from the disk if it is not known; none where it cannot be read.
+    /// A file, which is read from the disk if it is not known; `None` if it cannot be read.
     pub fn load(&mut self, path: &Path) -> Option<&File> {
         if !self.all.contains_key(path) {
             let (text, stamp) = read(path)?;
@@ -72,19 +73,19 @@ impl Files {
         self.all.insert(path.to_owned(), file);
     }
 
-    /// Takes the text of a file that the editor has opened.
+    /// Stores the text of a file that the editor has opened, and returns the path of the file.
     pub fn open(&mut self, uri: &Url, text: &str) -> PathBuf {
         let path = path_of(uri);
         self.put(&path, text, Some(uri.clone()), None);
         path
     }
 
-    /// Gives a file back to the disk.
+    /// Forgets a file that the editor has closed; afterwards the text on the disk is used.
     pub fn close(&mut self, path: &Path) {
         self.all.remove(path);
     }
 
-    /// The document of an open file, which is about to change.
+    /// The document of an open file, for a change; the revision of the file increases.
     pub fn changing(&mut self, path: &Path) -> Option<&mut Document> {
         let file = self.all.get_mut(path).filter(|file| file.open.is_some())?;
         self.changes += 1;
@@ -92,7 +93,7 @@ impl Files {
         Some(&mut file.document)
     }
 
-    /// Forgets files of the disk that have changed there.
+    /// Forgets files that were read from the disk and have changed there.
     pub fn forget_changed(&mut self) {
         self.all
             .retain(|path, file| file.open.is_some() || file.stamp == stamp(path));
@@ -113,14 +114,14 @@ impl Files {
             .collect()
     }
 
-    /// What the editor calls a file.
+    /// Address (URI) of a file.
     pub fn uri(&self, path: &Path) -> Option<Url> {
         let open = self.get(path).and_then(|file| file.open.clone());
         open.or_else(|| Url::from_file_path(path).ok())
     }
 }
 
-/// The whole path of a file of the editor; one that is not on the disk has the address as its path.
+/// The whole path of a file of the editor; a file that is not on the disk has its address as path.
 pub(super) fn path_of(uri: &Url) -> PathBuf {
     match uri.to_file_path() {
         Ok(path) => whole_path(&path),
@@ -143,7 +144,7 @@ fn read(path: &Path) -> Option<(String, Option<(SystemTime, u64)>)> {
     Some((text, stamp))
 }
 
-/// Decks near a file whose text has the name of the file: one of them may include it.
+/// Decks near a file whose text contains the name of the file, so that one of them may include it.
 pub(super) fn neighbours(path: &Path) -> Vec<PathBuf> {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! What is said about a place: its keyword, parameter, field or name.
+//! Explanations of the keyword, parameter, field or name at a place.
 
 use super::cards::{Card, fields_of, is_first_row, spot};
 use super::document::Spot;
@@ -6,7 +6,7 @@ use super::symbols::Occurrence;
 use super::workspace::{Place, Workspace};
 use lsp_types::Range;
 
-/// Text about a place, and the characters that it is about.
+/// Explanation of a place, and the range of characters that it explains.
 pub(super) fn hover(workspace: &Workspace, place: &Place) -> Option<(String, Range)> {
     let document = workspace.document(&place.view, place.file)?;
     let of_name = place
@@ -25,7 +25,7 @@ pub(super) fn hover(workspace: &Workspace, place: &Place) -> Option<(String, Ran
     Some((text.trim_end().to_owned(), document.range(spot)))
 }
 
-/// What a name stands for, where it is defined, and how often it is used.
+/// Kind of the object that a name means, the lines that define it, and the number of its uses.
 fn about(workspace: &Workspace, place: &Place, one: &Occurrence) -> String {
     let symbols = &place.view.symbols;
     let what = one.symbol.what.name();

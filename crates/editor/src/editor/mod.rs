@@ -1,9 +1,9 @@
 //! A language server for decks: diagnostics while typing, completion, explanations, definitions and uses of names, outline,
 //! change of names and quick fixes.
 //!
-//! The texts of the editor are `document`s, which change in place. What they say about cards and names is made anew from
-//! their keyword lines and lines of words after every change, without the reader: `cards`, `symbols`. Whole decks are read
-//! by the reader in a thread of its own when the typing pauses: `checks`.
+//! The texts of the editor are `document`s, which change in place. After every change, `cards` and `symbols` find cards
+//! and names again from the keyword lines and the data lines with words, without the reader. When the typing pauses,
+//! `checks` lets the reader check whole decks in a thread of its own.
 
 mod cards;
 mod checks;

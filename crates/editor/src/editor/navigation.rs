@@ -1,4 +1,4 @@
-//! From a name to its definition and to all of its uses, and its change in all places.
+//! Definitions and uses of names, and renaming.
 
 use super::cards::included;
 use super::symbols::{Occurrence, What};
@@ -8,7 +8,7 @@ use crate::diagnostics::{Diagnostics, Span};
 use lsp_types::{Location, Range, TextEdit, Url, WorkspaceEdit};
 use std::collections::HashMap;
 
-/// Where what stands at a place is defined: a name, a file, or the beginning of what ends there.
+/// Place of the definition of a name, beginning of a block that ends here, or file that is named here.
 pub(super) fn definitions(workspace: &Workspace, place: &Place) -> Vec<Location> {
     let view = &place.view;
     let location = |one: &Occurrence| workspace.location(view, one.file, one.spot);
@@ -42,7 +42,7 @@ pub(super) fn definitions(workspace: &Workspace, place: &Place) -> Vec<Location>
     location.into_iter().collect()
 }
 
-/// A path without what leads up.
+/// A path without its leading `./` and `../`.
 fn clean(path: &str) -> &str {
     let mut path = path;
     while let Some(rest) = path.strip_prefix("../").or_else(|| path.strip_prefix("./")) {
@@ -51,7 +51,7 @@ fn clean(path: &str) -> &str {
     path
 }
 
-/// All places of the name at a place, with its definitions or without.
+/// All uses of the name at a place, with or without its definitions.
 pub(super) fn references(
     workspace: &Workspace,
     place: &Place,
@@ -66,17 +66,17 @@ pub(super) fn references(
         .collect()
 }
 
-/// The name at a place that can be changed.
+/// Range of the name at a place, if it can be renamed.
 pub(super) fn changeable(workspace: &Workspace, place: &Place) -> Option<Range> {
     let found = place.occurrence().filter(|one| one.is_known)?;
     let location = workspace.location(&place.view, found.file, found.spot)?;
     Some(location.range)
 }
 
-/// Gives the name at a place another one in all places.
+/// Renames the name at a place everywhere in the deck.
 ///
 /// # Errors
-/// There is no name, the other one cannot be a name, or something of its kind has it.
+/// There is no name at the place, the new name is not allowed, or another object of the same kind has it.
 pub(super) fn rename(
     workspace: &Workspace,
     place: &Place,
@@ -107,7 +107,7 @@ pub(super) fn rename(
     Ok(WorkspaceEdit::new(changes))
 }
 
-/// The key of a new name; it is checked as the reader of decks does.
+/// The key of a new name, which is checked with the rules of the reader.
 fn new_key(what: What, new: &str, is_quoted: bool) -> Result<String, String> {
     let refused = |why: &str| Err(format!("`{new}` cannot be a name: {why}"));
     if new.contains(['\n', '\r', ',']) {

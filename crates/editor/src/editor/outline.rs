@@ -5,12 +5,12 @@ use super::document::{Document, Spot};
 use crate::deck::{Kind, Scope};
 use lsp_types::{DocumentSymbol, Position, Range, SymbolKind};
 
-/// Keywords that hold what follows up to their end.
+/// Keywords of blocks that end with an `END` keyword.
 const WITH_END: [&str; 4] = ["PART", "ASSEMBLY", "INSTANCE", "STEP"];
 
 /// An entry whose end is not known yet.
 struct Open {
-    /// Name of the keyword; the file itself has none.
+    /// Name of the keyword; empty for the file itself.
     name: &'static str,
     entry: Option<DocumentSymbol>,
     children: Vec<DocumentSymbol>,
@@ -46,7 +46,7 @@ pub(super) fn outline(cards: &Cards, file: usize, document: &Document) -> Vec<Do
     open.into_iter().flat_map(|one| one.children).collect()
 }
 
-/// Whether a card may lie in what a keyword begins; a file, without a name, holds all.
+/// Whether a card may stand in the block of a keyword; the empty name means the file, which holds all cards.
 fn holds(name: &str, card: &Card) -> bool {
     let own = card.head.name();
     match card.head.keyword.map(|keyword| keyword.scope) {
@@ -64,7 +64,7 @@ fn close_until(open: &mut Vec<Open>, is_last: impl Fn(&Open) -> bool) {
     }
 }
 
-/// Closes the last entry, which ends here or with what it holds.
+/// Closes the last entry; it ends at `end` or with its last child, whichever is later.
 fn close(open: &mut Vec<Open>, end: Option<Position>) {
     let Some(last) = open.pop() else { return };
     let (Some(mut entry), Some(outer)) = (last.entry, open.last_mut()) else {

@@ -1,4 +1,4 @@
-//! The server: messages of the editor in their order, and diagnostics when the typing pauses.
+//! The language server: it answers messages of the editor in their order, and sends diagnostics when the typing pauses.
 
 use super::checks::{self, Check, Fix, Job, Outcome};
 use super::completion::{completion, with_documentation};
@@ -31,21 +31,22 @@ use std::time::{Duration, Instant};
 /// Pause of the typing after which a deck is checked.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// What the server takes from the program.
+/// Functions and data of the program that the server uses.
 #[derive(Debug, Clone, Copy)]
 pub struct Program {
-    /// Reads a deck as `stickslip check` does.
+    /// Function that reads a deck as `stickslip check` does.
     pub check: Check,
-    /// What `stickslip explain` says about a code.
+    /// Function that returns the text of `stickslip explain` about a code.
     pub explain: fn(Code) -> String,
-    /// Its version.
+    /// Version of the program.
     pub version: &'static str,
 }
 
-/// Serves an editor on standard input and output until it ends; whether it has ended in order.
+/// Serves an editor on standard input and output until the session ends; returns whether it ended with a shutdown
+/// request.
 ///
 /// # Errors
-/// The connection is broken, or what comes is not the protocol.
+/// The connection is broken, or a message breaks the protocol.
 pub fn serve(program: Program) -> Result<bool, String> {
     let (connection, threads) = Connection::stdio();
     let served = connected(program, &connection);
@@ -122,9 +123,9 @@ struct Server {
     out: Sender<Message>,
     workspace: Workspace,
     jobs: Sender<Job>,
-    /// The deck that is being checked.
+    /// Main file of the deck that is being checked, and the signal that ends the check.
     running: Option<(PathBuf, Interrupt)>,
-    /// Decks that are to be checked, and when.
+    /// Decks that wait for a check, with the time at which it is due.
     waiting: BTreeMap<PathBuf, Instant>,
     /// Diagnostics that the editor has, by deck and file.
     shown: HashMap<PathBuf, BTreeMap<PathBuf, Vec<Diagnostic>>>,
@@ -175,7 +176,7 @@ impl Server {
         let _ = self.out.send(message);
     }
 
-    /// Checks the deck that has waited longest, if its pause is over and no other is being checked.
+    /// Starts the check of the deck that has waited longest, if its check is due and no other deck is being checked.
     fn start_check(&mut self) {
         let now = Instant::now();
         let due = self.waiting.iter().filter(|(_, when)| **when <= now);
@@ -202,7 +203,7 @@ impl Server {
         }
     }
 
-    /// Has a deck checked after a pause; a check of it that runs is ended.
+    /// Lets a deck be checked after a pause; a running check of this deck is ended.
     fn plan(&mut self, root: PathBuf, pause: Duration) {
         if let Some((running, interrupt)) = &self.running
             && *running == root
@@ -212,7 +213,7 @@ impl Server {
         self.waiting.insert(root, Instant::now() + pause);
     }
 
-    /// Has all decks checked that open files belong to.
+    /// Lets all decks be checked that have open files.
     fn plan_all(&mut self) {
         let open = self.workspace.files.open_paths();
         let roots = open.iter().map(|path| self.workspace.root_of(path));
@@ -222,7 +223,7 @@ impl Server {
         }
     }
 
-    /// Gives the editor the diagnostics of a deck, and takes back those of files that it no longer has.
+    /// Sends the diagnostics of a deck to the editor, and removes those of files that the deck no longer has.
     fn show(&mut self, outcome: Outcome) {
         let Some(found) = outcome.found else { return };
         let old = self.shown.insert(outcome.root.clone(), found);
@@ -232,7 +233,7 @@ impl Server {
         paths.iter().for_each(|path| self.publish(path));
     }
 
-    /// Gives the editor the diagnostics of a file, of all decks that have it.
+    /// Sends the diagnostics of a file to the editor: those of all decks that have it.
     fn publish(&self, path: &Path) {
         let Some(uri) = self.workspace.files.uri(path) else {
             return;
@@ -296,7 +297,7 @@ impl Server {
         }
     }
 
-    /// Takes back the diagnostics of a deck.
+    /// Removes the diagnostics of a deck from the editor.
     fn forget(&mut self, root: &Path) {
         let old = self.shown.remove(root).unwrap_or_default();
         old.keys().for_each(|path| self.publish(path));
@@ -365,7 +366,7 @@ impl Server {
         self.workspace.place(&path, at.position)
     }
 
-    /// What is said about a place: its keyword, parameter or name, and the codes of its diagnostics.
+    /// Explanations of a place: its keyword, parameter or name, and the codes of its diagnostics.
     fn hover(&mut self, at: &TextDocumentPositionParams) -> Option<Hover> {
         let place = self.place(at);
         let found = place.and_then(|place| hover(&self.workspace, &place));
@@ -396,7 +397,7 @@ impl Server {
         })
     }
 
-    /// Words that were probably meant, in place of those that diagnostics are about.
+    /// Quick fixes: words that were probably meant replace the texts of diagnostics.
     fn fixes(&self, params: &CodeActionParams) -> Vec<CodeActionOrCommand> {
         let uri = &params.text_document.uri;
         let path = path_of(uri);
@@ -442,7 +443,7 @@ impl Server {
     }
 }
 
-/// The parameters of a notification; none where they are not what they should be.
+/// The parameters of a notification; `None` if they do not have the expected form.
 fn params<N: notification::Notification>(one: Notification) -> Option<N::Params>
 where
     N::Params: DeserializeOwned,

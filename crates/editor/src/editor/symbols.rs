@@ -1,5 +1,5 @@
-//! Names of a deck: where each is defined and used. They are resolved as the reader does: in a part, what it defines, and else
-//! what the whole deck does; outside a part the name of its instance stands before.
+//! Names of a deck: where each is defined and used. Names are resolved as in the reader: in a part, a name means an
+//! object of the part, or else of the whole deck; outside a part, the name of the instance stands before it.
 
 use super::cards::{Card, Cards, Instance, Scope, fields_of, is_first_row, key, spot};
 use super::document::{Document, Spot};
@@ -9,20 +9,20 @@ use crate::diagnostics::Span;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// The constant of expressions, which is no parameter.
+/// The constant `pi` of expressions, which is not a parameter.
 const PI: &str = "pi";
 
-/// What a name stands for.
+/// Kind of the object that a name means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum What {
-    /// A thing of a kind.
+    /// An object of this kind.
     Thing(Kind),
     /// A parameter of `*PARAMETER`.
     Parameter,
 }
 
 impl What {
-    /// Words for it.
+    /// Words for this kind of object.
     pub fn name(self) -> &'static str {
         match self {
             What::Thing(kind) => kind.name(),
@@ -31,14 +31,14 @@ impl What {
     }
 }
 
-/// Something that has a name.
+/// An object that has a name.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Symbol {
-    /// What it is.
+    /// Kind of the object.
     pub what: What,
-    /// Where it belongs.
+    /// Scope that the object belongs to.
     pub scope: Scope,
-    /// The name as it is compared.
+    /// Key by which the name is compared.
     pub key: Arc<str>,
 }
 
@@ -47,17 +47,17 @@ pub(super) struct Symbol {
 pub(super) struct Occurrence {
     /// Number of the file in the deck.
     pub file: usize,
-    /// The name, without quotation marks and without that of its instance.
+    /// Place of the name, without quotation marks and without the name of its instance.
     pub spot: Spot,
-    /// The name as typed there.
+    /// The name as typed at this place.
     pub typed: String,
-    /// What it stands for.
+    /// The object that the name means.
     pub symbol: Symbol,
-    /// Whether it is defined here.
+    /// Whether this place defines the name.
     pub defines: bool,
-    /// Whether it is defined anywhere.
+    /// Whether the name is defined anywhere.
     pub is_known: bool,
-    /// Whether quotation marks are around it.
+    /// Whether the name stands between quotation marks here.
     pub is_quoted: bool,
 }
 
@@ -73,12 +73,12 @@ struct Use {
 /// All names of a deck.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Symbols {
-    /// Where names stand, by file and place.
+    /// Occurrences of names, sorted by file and place.
     pub all: Vec<Occurrence>,
 }
 
 impl Symbols {
-    /// The names of some cards.
+    /// Finds the names in the cards of a deck.
     pub fn new(cards: &Cards, files: &Files) -> Symbols {
         let mut collector = Collector {
             instances: &cards.instances,
@@ -103,14 +103,14 @@ impl Symbols {
         Symbols { all }
     }
 
-    /// What stands at a character of a file.
+    /// The name at a character of a file.
     pub fn at(&self, file: usize, line: usize, column: usize) -> Option<&Occurrence> {
         let here = self.of_line(file, line).iter();
         let mut here = here.filter(|one| (one.spot.start..=one.spot.end).contains(&column));
         here.next()
     }
 
-    /// What stands in a line.
+    /// The names in a line.
     fn of_line(&self, file: usize, line: usize) -> &[Occurrence] {
         let place = |one: &Occurrence| (one.file, one.spot.line);
         let start = self.all.partition_point(|one| place(one) < (file, line));
@@ -123,7 +123,7 @@ impl Symbols {
         self.all.iter().filter(move |one| one.symbol == *symbol)
     }
 
-    /// Definitions, one of each symbol, the first one.
+    /// The first definition of each symbol.
     pub fn defined(&self) -> impl Iterator<Item = &Occurrence> {
         let mut known = HashSet::new();
         let definitions = self.all.iter().filter(|one| one.defines);
@@ -204,7 +204,7 @@ impl Collector<'_> {
         }
     }
 
-    /// The row `name = expression  # note` of a parameter.
+    /// Reads a row `name = expression # note` of a parameter.
     fn expression(&mut self, card: &Card, file: usize, line: usize, text: &str) {
         let said = text.split('#').next().unwrap_or_default();
         let Some((left, right)) = said.split_once('=') else {
@@ -355,7 +355,7 @@ impl Collector<'_> {
         });
     }
 
-    /// Where a name may belong that stands in a scope, the nearest first.
+    /// The scopes in which a name is looked up that stands in `scope`, the nearest first.
     fn scopes(&self, scope: &Scope) -> Vec<Scope> {
         let mut all = match scope {
             Scope::Deck => Vec::new(),
@@ -370,7 +370,7 @@ impl Collector<'_> {
         all
     }
 
-    /// The name of an instance and what stands behind it, in all ways.
+    /// All ways to split a name into the name of an instance and the name behind its dot.
     fn split(&self, one: &Use) -> Vec<Split> {
         let is_whole = one.typed.len() > 1
             && one.typed.starts_with('"')
@@ -415,7 +415,7 @@ impl Collector<'_> {
     }
 }
 
-/// A name with that of its instance before it.
+/// A name, split into the name of its instance and its own name.
 struct Split {
     instance: Arc<str>,
     before: Spot,
@@ -425,7 +425,7 @@ struct Split {
     typed_own: String,
 }
 
-/// A text without quotation marks around it, its place, and whether it had them.
+/// A text without quotation marks around it, its place, and whether it had quotation marks.
 fn unquoted(spot: Spot, text: &str) -> (Spot, String, bool) {
     let inner = text
         .strip_prefix('"')
@@ -443,7 +443,7 @@ fn unquoted(spot: Spot, text: &str) -> (Spot, String, bool) {
     }
 }
 
-/// Parameters are compared letter by letter.
+/// Key of a name; the names of parameters are compared letter by letter.
 fn key_of(what: What, text: &str) -> Arc<str> {
     match what {
         What::Thing(_) => key(text),
@@ -464,7 +464,7 @@ fn is_number(text: &str) -> bool {
     text.as_integer().is_some() || text.as_real().is_some()
 }
 
-/// Names of parameters in an expression, with their characters.
+/// Names of parameters in an expression, each with the number of its first character.
 fn words(expression: &str) -> Vec<(usize, String)> {
     let characters: Vec<char> = expression.chars().collect();
     let mut found = Vec::new();

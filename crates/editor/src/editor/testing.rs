@@ -1,5 +1,5 @@
-//! Tests over all decks of the repository: names resolve as the reader resolves them, changed names leave a deck as it was, and
-//! no text and no change of it ends the server.
+//! Tests over all decks of the repository: names resolve as the reader resolves them, changed names leave a deck as it
+//! was, and no text and no edit stops the server.
 
 use super::completion::completion;
 use super::hover::hover;
@@ -37,7 +37,7 @@ fn decks() -> Vec<PathBuf> {
     all
 }
 
-/// What the reader says about a deck whose files have these texts: codes and lines.
+/// The messages of the reader about a deck whose files have these texts: whether there is a model, and codes and lines.
 fn said(deck: &Path, texts: BTreeMap<PathBuf, String>) -> (bool, Vec<(&'static str, u32)>) {
     let mut sources = Sources::with_unsaved(texts, Interrupt::default());
     let mut d = Diagnostics::new();
@@ -47,7 +47,7 @@ fn said(deck: &Path, texts: BTreeMap<PathBuf, String>) -> (bool, Vec<(&'static s
     (model.is_some(), places.collect())
 }
 
-/// A deck as the editor has it.
+/// A workspace with one deck open.
 fn opened(deck: &Path) -> Workspace {
     let text = std::fs::read(deck).expect("a deck");
     let mut workspace = Workspace::default();
@@ -56,7 +56,7 @@ fn opened(deck: &Path) -> Workspace {
     workspace
 }
 
-/// Surfaces that the reader makes, and words in place of names.
+/// Names of surfaces that the reader makes, and words that replace names.
 const MADE: [&str; 3] = ["ALL_EXTERIOR", "CURVED", "NONE"];
 
 fn is_unknown(one: &&Occurrence) -> bool {
@@ -137,7 +137,7 @@ fn a_name_that_is_not_defined_is_the_one_that_the_reader_reports() {
     assert_eq!(unknown, expected);
 }
 
-/// What the deck holds, as text.
+/// Cards and names of a deck, as text.
 fn shown(workspace: &mut Workspace, path: &Path) -> String {
     let view = workspace.view(path);
     let cards = view.cards.all.iter();
@@ -147,7 +147,7 @@ fn shown(workspace: &mut Workspace, path: &Path) -> String {
     format!("{cards:?} {:?}", view.symbols.all)
 }
 
-/// Asks everything about a place.
+/// Asks for everything that the server can answer about a place.
 fn ask(workspace: &mut Workspace, path: &Path, at: Position) {
     let Some(place) = workspace.place(path, at) else {
         return;

@@ -1,4 +1,4 @@
-//! The decks of the editor: which file belongs to which deck, and what each deck holds.
+//! The decks of the editor: which file belongs to which deck, and the cards and names of each deck.
 
 use super::cards::Cards;
 use super::document::{Document, Spot};
@@ -12,12 +12,12 @@ use std::sync::Arc;
 /// Deepest chain of files that include each other.
 const DEEPEST: usize = 20;
 
-/// What a deck holds.
+/// Cards and names of a deck.
 #[derive(Debug)]
 pub(super) struct View {
-    /// Its cards.
+    /// Cards of the deck.
     pub cards: Cards,
-    /// Its names.
+    /// Names of the deck.
     pub symbols: Symbols,
 }
 
@@ -31,12 +31,12 @@ pub(super) struct Workspace {
     parents: BTreeSet<PathBuf>,
 }
 
-/// A character of a file of a deck.
+/// A place: a character of a file of a deck.
 #[derive(Debug)]
 pub(super) struct Place {
     /// The deck.
     pub view: Arc<View>,
-    /// Number of the file in it.
+    /// Number of the file in the deck.
     pub file: usize,
     /// Line, from 0.
     pub line: usize,
@@ -45,14 +45,14 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The name that stands there.
+    /// The name at this place.
     pub fn occurrence(&self) -> Option<&Occurrence> {
         self.view.symbols.at(self.file, self.line, self.column)
     }
 }
 
 impl Workspace {
-    /// Takes a file that the editor has opened, and looks for a deck that includes it.
+    /// Stores a file that the editor has opened, and searches for a deck that includes it.
     pub fn open(&mut self, uri: &Url, text: &str) -> PathBuf {
         let path = self.files.open(uri, text);
         if self.root_of(&path) == path {
@@ -66,13 +66,13 @@ impl Workspace {
         path
     }
 
-    /// Gives a file back to the disk.
+    /// Forgets a file that the editor has closed; afterwards the text on the disk is used.
     pub fn close(&mut self, path: &Path) {
         self.files.close(path);
         self.views.remove(path);
     }
 
-    /// What the deck with this main file holds.
+    /// Cards and names of the deck with this main file.
     pub fn view(&mut self, root: &Path) -> Arc<View> {
         let known = self.views.get(root);
         if let Some(view) = known.filter(|view| view.cards.are_of(&self.files)) {
@@ -85,7 +85,7 @@ impl Workspace {
         view
     }
 
-    /// The main file of the deck that a file belongs to: itself where no deck includes it.
+    /// The main file of the deck that a file belongs to; the file itself if no deck includes it.
     pub fn root_of(&mut self, path: &Path) -> PathBuf {
         let mut root = path.to_owned();
         for _ in 0..DEEPEST {
@@ -101,7 +101,7 @@ impl Workspace {
         root
     }
 
-    /// A position of a file.
+    /// The place at a position of a file.
     pub fn place(&mut self, path: &Path, position: Position) -> Option<Place> {
         let root = self.root_of(path);
         let view = self.view(&root);
@@ -121,7 +121,7 @@ impl Workspace {
         Some(&self.files.get(path)?.document)
     }
 
-    /// Characters of a file of a deck, as the editor calls them.
+    /// A range of characters of a file of a deck, in the form of the protocol.
     pub fn location(&self, view: &View, file: usize, spot: Spot) -> Option<Location> {
         let path = &view.cards.files.get(file)?.path;
         let uri = self.files.uri(path)?;

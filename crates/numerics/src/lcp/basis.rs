@@ -1,14 +1,14 @@
-//! The revised basis of Lemke's method, an explicit inverse of its kernel only, and the lexicographic ratio test.
+//! The revised basis of Lemke's method, of which only the inverse of the kernel is formed, and the lexicographic ratio
+//! test.
 //!
 //! In the system  w - M z - d z0 = q  let beta be the rows whose w is not basic, alpha the columns
 //! whose z is. The basic z and z0 solve the small system K y = b_beta with the kernel
 //! K = -[M_beta,alpha  d_beta]; the basic w follow from their rows: w = b + M_alpha y + d y0. Every
 //! exchange changes K by a column, a row, or both, and its inverse by one outer product.
 //!
-//! The right-hand side is perturbed to q + eps p + eps^2 e_1 + eps^3 e_2 + ..., p > 0, with eps
-//! smaller than anything that occurs: ratios that tie on q are compared on p, then on the columns
-//! of the inverse basis. The entries of p follow the golden ratio, so that the second comparison
-//! almost always decides.
+//! The right-hand side is perturbed to q + eps p + eps^2 e_1 + eps^3 e_2 + ..., p > 0, with an infinitesimal eps:
+//! ratios that tie on q are compared on p, then on the columns of the inverse basis. The entries of p are made with the
+//! golden ratio, so the comparison on p almost always decides.
 
 use super::dense::{Factors, axpy, dot, max_abs};
 
@@ -19,7 +19,7 @@ const NONE: usize = usize::MAX;
 pub(crate) trait PivotMatrix {
     /// Number of rows and columns.
     fn size(&self) -> usize;
-    /// out += M z for the z given as (column, value) pairs.
+    /// out += M z, where z is given as pairs (column, value).
     fn add_product(&self, z: &[(usize, f64)], out: &mut [f64]);
     /// M_ij.
     fn entry(&self, i: usize, j: usize) -> f64;
@@ -36,7 +36,7 @@ pub(crate) enum Variable {
     Z0,
 }
 
-/// Values of the basic variables; zero elsewhere.
+/// Values of the variables; those that are not basic are zero.
 pub(crate) struct Values {
     /// z, followed by z0.
     pub z: Vec<f64>,
@@ -54,7 +54,7 @@ impl Values {
         }
     }
 
-    /// The value of a variable, to be changed.
+    /// Mutable value of a variable.
     pub fn at(&mut self, variable: Variable) -> &mut f64 {
         match variable {
             Variable::W(i) => &mut self.w[i],
@@ -72,16 +72,16 @@ pub(crate) struct Basis<'a, M> {
     rows: Vec<usize>,
     /// Columns of the kernel (`size` stands for z0), in the order of the rows of its inverse.
     columns: Vec<usize>,
-    /// Inverse of the kernel, by columns.
+    /// Inverse of the kernel, stored by columns.
     inverse: Vec<Vec<f64>>,
-    /// Place of each row in `rows`.
+    /// Position of each row in `rows`.
     row_place: Vec<usize>,
-    /// Place of each column in `columns`.
+    /// Position of each column in `columns`.
     column_place: Vec<usize>,
 }
 
 impl<'a, M: PivotMatrix> Basis<'a, M> {
-    /// The basis of all w except row `s`, which z0 has taken.
+    /// The basis of all w except row `s`, where z0 is basic.
     pub fn new(matrix: &'a M, d: &'a [f64], s: usize) -> Self {
         let size = matrix.size();
         let mut basis = Self {
@@ -145,8 +145,7 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         self.complete(b, &self.kernel_solve(|i| b[i])).0
     }
 
-    /// B^-1 b with one correction by the residual; also the largest residual before the correction
-    /// and after it.
+    /// B^-1 b with one correction by the residual, and the largest residual before and after the correction.
     pub fn solve_refined(&self, b: &[f64]) -> (Values, f64, f64) {
         let mut y = self.kernel_solve(|i| b[i]);
         let (_, residual) = self.complete(b, &y);
@@ -222,8 +221,8 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         self.columns.iter().map(|j| -entry(j)).collect()
     }
 
-    /// Adds column j and row r. With u = k_r K^-1 and the pivot p = a_r - u a:
-    /// K^-1 becomes [K^-1 + y u / p, -y / p; -u / p, 1 / p].
+    /// Adds column j and row r. With u = k_r K^-1 and the pivot p = a_r - u a, the inverse K^-1 becomes [K^-1 + y u /
+    /// p, -y / p; -u / p, 1 / p].
     fn grow(&mut self, j: usize, r: usize, y: &[f64], pivot: f64) {
         let row = self.kernel_row(r);
         for column in &mut self.inverse {
@@ -253,8 +252,8 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         self.columns[place] = j;
     }
 
-    /// Puts row r in the place of row s, whose column of the inverse is y:
-    /// v - y (k_r v) / (k_r y) for every other column v, y / (k_r y) for itself.
+    /// Puts row r in the place of row s, whose column of the inverse is y. Every other column v becomes v - y (k_r v) /
+    /// (k_r y), and y becomes y / (k_r y).
     fn replace_row(&mut self, s: usize, r: usize, y: &[f64], w_r: f64) {
         let place = self.row_place[s];
         let row = self.kernel_row(r);
@@ -271,8 +270,8 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         self.rows[place] = r;
     }
 
-    /// Removes row s and column j: with v the column of the inverse for row s,
-    /// x - v x_j / v_j for every other column x, without its entry j.
+    /// Removes row s and column j. With v, the column of the inverse for row s, every other column x becomes x - v x_j
+    /// / v_j and loses its entry j.
     fn shrink(&mut self, s: usize, j: usize) {
         let (row, place) = (self.row_place[s], self.column_place[j]);
         let removed = self.inverse.swap_remove(row);
@@ -292,8 +291,7 @@ impl<'a, M: PivotMatrix> Basis<'a, M> {
         }
     }
 
-    /// Recomputes the inverse of the kernel. Returns false, and keeps the old one, when the kernel
-    /// is singular.
+    /// Recomputes the inverse of the kernel. If the kernel is singular, the old inverse stays and the result is false.
     pub fn reinvert(&mut self) -> bool {
         let size = self.columns.len();
         let mut kernel = vec![0.0; size * size];
@@ -320,14 +318,15 @@ pub(crate) fn perturbation(n: usize) -> Vec<f64> {
     (1..=n).map(|i| 1.0 + (i as f64 * GOLDEN).fract()).collect()
 }
 
-/// Candidates of a ratio test, with the column entry that divides their value.
+/// Candidates of a ratio test, each with the column entry that divides its value.
 pub(crate) struct Candidates {
     rows: Vec<(Variable, f64)>,
     tolerance: f64,
 }
 
 impl Candidates {
-    /// Rows that may leave, with positive divisors; ratios within `tolerance` are tied.
+    /// Variables that may leave the basis, with positive divisors; ratios that differ by less than `tolerance` are
+    /// tied.
     pub fn new(rows: Vec<(Variable, f64)>, tolerance: f64) -> Self {
         Self { rows, tolerance }
     }
@@ -352,8 +351,8 @@ impl Candidates {
         self.rows.first().map(|(v, _)| *v)
     }
 
-    /// The candidate that remains when ties are broken by the values of p and then by the columns
-    /// of the inverse basis.
+    /// The candidate that remains after ties have been broken, first by the values for p and then by the columns of the
+    /// inverse basis.
     pub fn break_ties<M: PivotMatrix>(
         mut self,
         basis: &Basis<M>,

@@ -1,8 +1,9 @@
-//! Frictional problems of many contacts by blocks: each block is solved exactly with the forces of the others held,
-//! until the motion that it expects is that under the forces of all; accelerated by the last steps. docs/numerics.md, Blocks.
+//! Solves frictional problems of many contacts by blocks. Each block is solved exactly with the forces of the others
+//! held, until the motion that it expects agrees with the motion under all forces; the last steps accelerate this
+//! iteration. See docs/numerics.md, Blocks.
 //!
-//! Ten bodies with 2000 pairs on one strip take 0.4 s per increment with it. As one problem the first increment took
-//! 420 s, nearly all of them for the compliance between the bodies through the strip (docs/numerics.md).
+//! With blocks, ten bodies with 2000 pairs on one strip need 0.4 s per increment. Solved as one problem, the first
+//! increment took 420 s, nearly all for the compliance between the bodies through the strip (docs/numerics.md).
 
 use super::anderson::{Acceleration, IterationStep};
 use super::dense::{add_sizes, max_abs};
@@ -13,45 +14,46 @@ use super::problems::{ContactState, Counters, FrictionalLcp, LcpError};
 use super::residual::{ROUNDING, TOLERANCE, law_residual};
 use crate::linear::largest;
 
-/// Difference between motion and expected motion that is round-off, relative to the terms of either.
+/// Largest difference between motion and expected motion that counts as round-off, relative to the terms of both.
 const CONVERGED: f64 = 1e-14;
 
-/// Iterations at most.
+/// Largest number of iterations.
 const MOST: usize = 60;
 
-/// Number of iterations in which the difference must fall to [`FALLEN`] of the first; otherwise the coupling of the blocks
-/// is too strong.
+/// Number of iterations within which the difference must fall to [`FALLEN`] times the first difference; otherwise the
+/// coupling of the blocks is too strong.
 const TRIAL: usize = 15;
 
-/// Number of iterations after which the difference must fall fast enough for that.
+/// Number of iterations from which on the rate of this fall is checked.
 const FIRST_TRIAL: usize = 6;
 
-/// See [`TRIAL`].
+/// Fall of the difference that is required within [`TRIAL`] iterations.
 const FALLEN: f64 = 1e-2;
 
-/// Iterations without a smaller difference after which it is taken for round-off.
+/// Number of iterations without a smaller difference after which the difference counts as round-off.
 const STAGNANT: usize = 4;
 
-/// Growth of the difference beyond the smallest one that ends the acceleration by the steps before.
+/// Ratio of the difference to the smallest difference so far above which earlier steps are forgotten.
 const GROWTH: f64 = 10.0;
 
-/// Changes from step to step that are remembered.
+/// Number of changes from step to step that are remembered.
 const MEMORY: usize = 20;
 
-/// Part of a change of the residual, beside what is along those before, below which it is round-off.
+/// Relative size of the part of a change of the residual that is orthogonal to earlier changes, below which this change
+/// counts as round-off.
 const DEPENDENT: f64 = 1e-8;
 
 /// A block of the contacts of a larger problem.
 pub struct LcpBlock {
-    /// Positions of its contacts in the larger problem.
+    /// Positions of the contacts of the block in the larger problem.
     pub contacts: Vec<usize>,
-    /// Its part of Q and its friction; the iteration sets gaps and slips.
+    /// The part of Q and the friction of the block; the iteration sets its gaps and slips.
     pub problem: FrictionalLcp,
-    /// Factors of a similar problem before.
+    /// Factors that are kept from an earlier, similar problem.
     pub kept: KeptFactors,
 }
 
-/// What a block iteration starts from, for all contacts.
+/// Start of a block iteration, for all contacts.
 pub struct BlockStart {
     /// States.
     pub states: Vec<ContactState>,
@@ -76,29 +78,29 @@ pub struct BlockSolution {
     pub counters: Counters,
 }
 
-/// Where an iteration stands.
+/// State of an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
-    /// The forces are those of the answer.
+    /// The last forces are the answer.
     Solved,
-    /// It goes on.
+    /// The iteration goes on.
     GoesOn,
-    /// It does not converge.
+    /// The iteration does not converge.
     Fails,
 }
 
-/// How the difference of motion and expected motion falls.
+/// Course of the difference between motion and expected motion.
 #[derive(Debug, Clone, Copy, Default)]
 struct Fall {
     first: f64,
     least: f64,
     iterations: usize,
-    /// Iterations since it was half the least before.
+    /// Number of iterations since the difference last fell below half of the smallest one before.
     since_least: usize,
 }
 
 impl Fall {
-    /// Takes in the difference of an iteration.
+    /// Enters the difference of an iteration.
     fn take_in(&mut self, difference: f64) -> Self {
         if self.iterations == 0 {
             (self.first, self.least) = (difference, difference);
@@ -117,8 +119,8 @@ impl Fall {
     }
 }
 
-/// Iteration over the blocks of a problem, all at once, accelerated by its last steps. It knows Q within
-/// the blocks only; what all forces do to all contacts it is told:
+/// Iteration over the blocks of a problem, which are solved independently of each other; its last steps accelerate it.
+/// The iteration knows Q within the blocks only; its caller computes the motion of all contacts under all forces:
 ///
 /// ```text
 /// P <- forces(P):   block c solved with g + Q P - Q_cc P_c as gaps and slips without its forces
@@ -129,9 +131,9 @@ pub struct BlockIteration {
     free: f64,
     length: f64,
     states: Vec<ContactState>,
-    /// Forces that the blocks are solved at, by contact, and the motion under them.
+    /// Forces at which the blocks are solved, by contact, and the motion under these forces.
     at: [Vec<f64>; 2],
-    /// Forces of the blocks, and the motion that each expects.
+    /// Forces that the blocks find, and the motion that each block expects under them.
     answer: [Vec<f64>; 2],
     /// Largest sum of the sizes of the terms of Q P within the blocks.
     terms: f64,
@@ -142,7 +144,7 @@ pub struct BlockIteration {
 }
 
 impl BlockIteration {
-    /// Starts an iteration over blocks that have each contact once.
+    /// Starts an iteration over blocks that contain each contact once.
     pub fn new(blocks: Vec<LcpBlock>, start: BlockStart, method: LcpMethod) -> Self {
         let free = start.free.as_flattened();
         let deepest = start.free.iter().fold(0.0_f64, |l, [gap, _]| l.max(-gap));
@@ -162,10 +164,11 @@ impl BlockIteration {
         }
     }
 
-    /// Solves all blocks: the forces Pn and Pt of all contacts whose motion [`Self::take_in`] wants.
+    /// Solves all blocks; returns the forces Pn and Pt of all contacts, whose motion must be passed to
+    /// [`Self::take_in`].
     ///
     /// # Errors
-    /// A block without solution.
+    /// A block has no solution.
     pub fn forces(&mut self) -> Result<&[[f64; 2]], LcpError> {
         let Self { at, answer, .. } = self;
         self.terms = 0.0;
@@ -189,7 +192,7 @@ impl BlockIteration {
         Ok(pairs(&self.answer[0]))
     }
 
-    /// Takes in gaps and slips under the last forces.
+    /// Enters gaps and slips under the last forces; returns whether the iteration goes on.
     pub fn take_in(&mut self, motion: &[[f64; 2]]) -> Progress {
         let motion = motion.as_flattened();
         let differences = motion.iter().zip(&self.answer[1]).map(|(v, e)| v - e);
@@ -212,7 +215,7 @@ impl BlockIteration {
         Progress::GoesOn
     }
 
-    /// The forces that the blocks are solved at next, and the motion under them.
+    /// Sets the forces at which the blocks are solved next, and the motion under these forces.
     fn go_on(&mut self, motion: &[f64]) {
         let [forces, _] = &self.answer;
         let residual = forces.iter().zip(&self.at[0]).map(|(f, x)| f - x);
@@ -222,7 +225,7 @@ impl BlockIteration {
         });
     }
 
-    /// Residual of the contact law under the last forces, whose motion is given.
+    /// Residual of the contact law for the last forces and the motion under them.
     fn law_residual(&self, motion: &[f64]) -> f64 {
         let (mut mu, mut compliance) = (vec![0.0; self.states.len()], 0.0);
         for LcpBlock {
@@ -240,7 +243,7 @@ impl BlockIteration {
         law_residual(contacts, compliance, length)
     }
 
-    /// The answer, once it is solved, and the blocks with their factors.
+    /// The answer of a solved problem, and the blocks with their factors.
     pub fn end(self) -> (BlockSolution, Vec<LcpBlock>) {
         let solution = BlockSolution {
             forces: pairs(&self.answer[0]).to_vec(),
@@ -253,8 +256,7 @@ impl BlockIteration {
 }
 
 impl LcpBlock {
-    /// Sets gaps and slips without the forces of the block, under those of all others:
-    /// v_c - Q_cc P_c.
+    /// Sets gaps and slips under the forces of all other blocks, without those of this block: v_c - Q_cc P_c.
     fn set_motion(&mut self, [forces, motion]: &[Vec<f64>; 2]) {
         let LcpBlock {
             contacts, problem, ..
@@ -280,7 +282,7 @@ impl LcpBlock {
     }
 }
 
-/// Values of a normal and a tangential direction.
+/// Values as pairs of a normal and a tangential one.
 fn pairs(values: &[f64]) -> &[[f64; 2]] {
     values.as_chunks().0
 }

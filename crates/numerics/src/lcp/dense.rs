@@ -1,6 +1,6 @@
 //! Dense arithmetic of the solvers on one core, with the same operations in the same order on all processors: vector
-//! kernels, factorisations, and lists that lie one behind the other in an arena, which the next solve uses again, so that
-//! the solves of the passes take no memory from the system.
+//! kernels, factorisations, and lists in an arena. The next solve uses the arena again, so the solves of the passes
+//! allocate no memory.
 
 use std::array::from_fn;
 
@@ -46,7 +46,7 @@ pub(crate) fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// y += M p, with the columns of M one after the other; those with p = 0 are left out.
+/// y += M p, where M is stored by columns; columns with p = 0 are left out.
 pub(crate) fn add_product(columns: &[f64], p: &[f64], y: &mut [f64]) {
     Arch::new().dispatch(MatrixProduct {
         columns,
@@ -56,7 +56,7 @@ pub(crate) fn add_product(columns: &[f64], p: &[f64], y: &mut [f64]) {
     });
 }
 
-/// y += M p and sizes += |M| |p|, with the columns of M one after the other.
+/// y += M p and sizes += |M| |p|, where M is stored by columns.
 pub(crate) fn add_product_and_sizes(columns: &[f64], p: &[f64], y: &mut [f64], sizes: &mut [f64]) {
     let sizes = Some(sizes);
     Arch::new().dispatch(MatrixProduct {
@@ -103,7 +103,7 @@ pub(crate) fn combine<S: Simd>(simd: S, x: [&[f64]; 4], a: [f64; 4], y: &mut [f6
     combine_terms::<S, false>(simd, x, a, y);
 }
 
-/// y += the terms a_k x_k, or their sizes.
+/// Adds the terms a_k x_k, or their absolute values, to y.
 #[inline(always)]
 fn combine_terms<S: Simd, const SIZES: bool>(simd: S, x: [&[f64]; 4], a: [f64; 4], y: &mut [f64]) {
     let length = y.len();
@@ -133,7 +133,7 @@ fn combine_terms<S: Simd, const SIZES: bool>(simd: S, x: [&[f64]; 4], a: [f64; 4
     }
 }
 
-/// sum + a_0 x_0 + ... + a_3 x_3, or the sizes of these terms.
+/// sum + a_0 x_0 + ... + a_3 x_3, or the same sum with the absolute values of these terms.
 #[inline(always)]
 fn add_terms<S: Simd, const SIZES: bool>(
     simd: S,
@@ -178,13 +178,13 @@ pub(crate) fn max_abs(values: &[f64]) -> f64 {
         .fold(0.0, |largest: f64, v| largest.max(v.abs()))
 }
 
-/// A diagonal entry of a factor below this part of the largest one: the matrix counts as singular.
+/// Smallest ratio of a pivot to the largest one; with a smaller ratio, the matrix counts as singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Columns that a substitution takes at a time.
+/// Number of columns that a substitution treats together.
 const TOGETHER: usize = 4;
 
-/// Factors of a square matrix held by columns.
+/// Factors of a square matrix, stored by columns.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Factors {
     values: Vec<f64>,
@@ -194,15 +194,15 @@ pub(crate) struct Factors {
 
 #[derive(serde::Serialize, serde::Deserialize)]
 enum FactorKind {
-    /// L L^T, the lower triangle holds L.
+    /// L L^T; the lower triangle holds L.
     Cholesky,
-    /// P A = L U with the permutation.
+    /// P A = L U with this permutation P.
     Lu(Vec<usize>),
 }
 
 impl Factors {
-    /// Factorises a symmetric matrix of which the lower triangle is read. None unless it is
-    /// positive definite beyond round-off.
+    /// Factorises a symmetric matrix, given by its lower triangle; `None` unless the matrix is positive definite beyond
+    /// round-off.
     pub fn cholesky(mut values: Vec<f64>, size: usize) -> Option<Self> {
         let mut buffer = MemBuffer::new(llt::cholesky_in_place_scratch::<f64>(
             size,
@@ -225,7 +225,7 @@ impl Factors {
         })
     }
 
-    /// Factorises any square matrix. None when it is singular to round-off.
+    /// Factorises any square matrix. `None` if the matrix is singular to round-off.
     pub fn lu(mut values: Vec<f64>, size: usize) -> Option<Self> {
         let mut buffer = MemBuffer::new(lu::lu_in_place_scratch::<usize, f64>(
             size,
@@ -258,7 +258,7 @@ impl Factors {
         Arch::new().dispatch(DenseSubstitution { factors: self, b });
     }
 
-    /// Part of column k from row `from` on.
+    /// The part of column k from row `from` on.
     #[inline(always)]
     fn column(&self, k: usize, from: usize) -> &[f64] {
         &self.values[k * self.size + from..(k + 1) * self.size]
@@ -291,7 +291,7 @@ impl WithSimd for DenseSubstitution<'_> {
 }
 
 impl Factors {
-    /// b <- L^-1 b, with the diagonal 1 or that of the values.
+    /// b <- L^-1 b, where the diagonal of L is 1 or that of `values`.
     #[inline(always)]
     fn forward<S: Simd>(&self, simd: S, b: &mut [f64], has_unit_diagonal: bool) {
         for first in (0..self.size).step_by(TOGETHER) {
@@ -334,7 +334,7 @@ impl Factors {
         }
     }
 
-    /// Subtracts the columns from `first` to `end`, from row `from` on, times their entries of b.
+    /// Subtracts the columns `first` to `end`, each times its entry of b, from `others`, which begins with row `from`.
     #[inline(always)]
     fn subtract<S: Simd>(
         &self,
@@ -350,7 +350,7 @@ impl Factors {
     }
 }
 
-/// Whether all pivots are finite and none is negligible against the largest.
+/// Whether all pivots are finite and no pivot is negligible against the largest one.
 fn regular(pivots: impl Iterator<Item = f64>) -> bool {
     let (mut smallest, mut largest, mut finite) = (f64::INFINITY, 0.0_f64, true);
     for pivot in pivots {
@@ -364,19 +364,19 @@ fn regular(pivots: impl Iterator<Item = f64>) -> bool {
 /// A list in an arena.
 pub(crate) type List<'a, T> = bumpalo::collections::Vec<'a, T>;
 
-/// A list of all that comes.
+/// A list of the values of an iterator.
 pub(crate) fn list<T>(arena: &Bump, values: impl IntoIterator<Item = T>) -> List<'_, T> {
     List::from_iter_in(values, arena)
 }
 
-/// A list of the same values.
+/// A list with a copy of these values.
 pub(crate) fn copy<'a, T: Copy>(arena: &'a Bump, values: &[T]) -> List<'a, T> {
     let mut list = List::with_capacity_in(values.len(), arena);
     list.extend_from_slice_copy(values);
     list
 }
 
-/// A list of so many times the same value.
+/// A list that holds the same value `length` times.
 pub(crate) fn filled<T: Copy>(arena: &Bump, value: T, length: usize) -> List<'_, T> {
     bumpalo::vec![in arena; value; length]
 }

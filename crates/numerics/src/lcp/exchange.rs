@@ -15,7 +15,7 @@ use super::hybrid::{LcpMethod, solve_frictional};
 use super::lemke::{LemkeSettings, covering_vector, lemke};
 use super::problems::{FrictionalLcp, FrictionalSolution, Lcp, LcpError, LcpSolution, Method};
 
-/// A number, or the text of one that JSON cannot hold.
+/// A number, or the text of a number that JSON cannot represent.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum PivotNumber {
@@ -23,7 +23,7 @@ enum PivotNumber {
     Text(String),
 }
 
-/// One friction coefficient for all contacts, or one for each.
+/// One friction coefficient for all contacts, or one coefficient for each contact.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum Coefficients {
@@ -64,8 +64,7 @@ pub struct JsonAnswer {
     pub solved: bool,
 }
 
-/// Solves a problem given as JSON. A text that does not state a problem has the answer
-/// `invalid`.
+/// Solves a problem given as JSON. The answer to a text that states no problem has the status `invalid`.
 pub fn solve_json(text: &str) -> JsonAnswer {
     let answer = match read(text) {
         Ok((lcp, None)) => match lemke(&lcp, &covering_vector(&lcp), &LemkeSettings::default()) {
@@ -99,7 +98,7 @@ impl FrictionalLcp {
         serde_json::to_string(&problem).unwrap_or_default()
     }
 
-    /// The frictional problem stated by a JSON text, or the reason why it states none.
+    /// The frictional problem that a JSON text states, or the reason why the text states no such problem.
     pub fn from_json(text: &str) -> Result<Self, String> {
         read(text)?
             .1
@@ -107,7 +106,7 @@ impl FrictionalLcp {
     }
 }
 
-/// The general problem of a text, and the frictional one if it is one.
+/// The general problem that a text states, and its frictional form if it has one.
 fn read(text: &str) -> Result<(Lcp, Option<FrictionalLcp>), String> {
     let problem: Problem = serde_json::from_str(text).map_err(|e| e.to_string())?;
     let size = problem.q.len();
@@ -181,7 +180,7 @@ fn general(solution: LcpSolution) -> Answer {
     }
 }
 
-/// z = (Pn, T+, Dt-) and w = (g, Dt+, T-) of a frictional solution.
+/// The answer with z = (Pn, T+, Dt-) and w = (g, Dt+, T-) of a frictional solution.
 fn frictional(problem: &FrictionalLcp, solution: &FrictionalSolution) -> Answer {
     let FrictionalSolution {
         pn, pt, gap, slip, ..

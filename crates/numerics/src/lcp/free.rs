@@ -1,19 +1,19 @@
-//! What contacts do against the free unknowns of a frictional problem, and the problem without these.
-//! See docs/theory/complementarity.md, Free unknowns.
+//! Stiffness of contacts against the free unknowns of a frictional problem, and elimination of these unknowns. See
+//! docs/theory/complementarity.md, Free unknowns.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, FrictionalSolution};
 use crate::linear::largest;
 
-/// Shift of the diagonal, relative to its largest entry, that shares the load among contacts that are one.
+/// Increase of the diagonal, relative to its largest entry: contacts with identical conditions then share the load.
 const SHIFT: f64 = 1e-10;
 
-/// Negative stiffness, in units of E, that is none.
+/// Negative stiffness, in units of E, that counts as none.
 const COVERED: f64 = 10.0;
 
 impl FrictionalLcp {
-    /// The problem with a part of E in place of E, from which x counts as `from`.
+    /// The problem with `part` times E in place of E; this stiffness resists motion away from x = `from`.
     ///
     /// ```text
     /// (S + part E) x = L^T P + h + part E x_from    eq. (8.9)
@@ -52,8 +52,8 @@ impl FrictionalLcp {
         eliminated
     }
 
-    /// The motion of the free unknowns with the most negative stiffness (8.10). `None` if no stiffness is more negative than
-    /// E makes up for. Contacts have the given states; closed ones with friction stick.
+    /// The motion of the free unknowns with the most negative stiffness (8.10). `None` if E, times a factor, makes up
+    /// for any negative stiffness. Contacts have the given states; closed ones with friction stick.
     pub(crate) fn unstable_motion(&self, states: &[ContactState]) -> Option<DVector<f64>> {
         if self.free.is_empty() {
             return None;
@@ -74,8 +74,8 @@ impl FrictionalLcp {
         Some(eigen.eigenvectors.column(least).into_owned())
     }
 
-    /// States in which a body that a solution leaves unstable has tipped over along the motion n of the free unknowns until the
-    /// first open contact closes.
+    /// States after an unstable body has tipped over: it moves along the motion n of the free unknowns until the first
+    /// open contact closes.
     pub(crate) fn tipped(
         &self,
         solution: &FrictionalSolution,
@@ -105,8 +105,8 @@ impl FrictionalLcp {
     /// S + L_a^T Q_aa^-1 D_a    eq. (8.10)
     /// ```
     ///
-    /// a being the gaps of closed and the slips of sticking contacts; the normal force of one that slides comes with its
-    /// friction.
+    /// Here a are the gaps of closed contacts and the slips of sticking ones; the normal force of a sliding contact
+    /// includes its friction.
     pub fn stiffness_under_contact(&self, states: &[ContactState]) -> DMatrix<f64> {
         let (n, free) = (self.len(), &self.free);
         let closed = (0..n).filter(|&i| states[i].is_closed());
@@ -148,9 +148,9 @@ mod tests {
 
     const WEIGHT: f64 = 3.0;
 
-    /// A block on two elastic points at the distances -1 and 1 of its middle, that may move up and along the ground and turn;
-    /// its weight acts at `x`, with the part `slope` of it along the ground. A contact yields by 1 under the force 1 and is open by
-    /// `gap` at first.
+    /// A block on two elastic points at -1 and 1 from its middle, which may move up, along the ground, and turn. The
+    /// weight of the block acts at `x`; the part `slope` of the weight acts along the ground. Each point yields by 1
+    /// under a force of 1; its initial gap is `gap`.
     fn block(x: f64, slope: f64, gap: f64, mu: f64) -> FrictionalLcp {
         // gaps: y - x_i turn; slips: those of the motion along the ground
         let motions = DMatrix::from_row_slice(

@@ -1,5 +1,5 @@
-//! Solutions of frictional problems with free unknowns where the warm active set finds none, or one whose free unknowns are
-//! unstable. See docs/theory/complementarity.md, Free unknowns.
+//! Solves frictional problems with free unknowns for which the warm active set finds no solution, or a solution with
+//! unstable free unknowns. See docs/theory/complementarity.md, Free unknowns.
 
 use nalgebra::DVector;
 
@@ -7,36 +7,37 @@ use super::known::Known;
 use super::problems::{ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError};
 use super::scaled::Scaled;
 
-/// Stiffness that resists free unknowns in proximal steps, beside that of the contacts in the mean.
+/// Stiffness that resists free unknowns in proximal steps, relative to the mean stiffness of the contacts.
 const RESISTED: f64 = 1e-2;
-/// Steps with that part, after which each goes so many times as far as the last one, and all of them.
+/// Number of proximal steps with this stiffness. After these steps each step goes [`FARTHER`] times as far as the last
+/// one; [`STEPS`] is the total number.
 const STEADY_STEPS: usize = 20;
 const FARTHER: f64 = 4.0;
 const STEPS: usize = 30;
-/// Contacts that an unstable body tips over to at most.
+/// Largest number of contacts to which an unstable body tips over, one after the other.
 const TIPS: usize = 4;
 
-/// Solves a problem without free unknowns, of which something is known.
+/// Function that solves a problem without free unknowns, from data known about it.
 type SolveResisted = fn(&FrictionalLcp, Option<Known>) -> Result<FrictionalSolution, LcpError>;
 
-/// The answer of the active set from some states.
+/// Function that returns the answer of the active set from some states.
 type FromStates =
     fn(&FrictionalLcp, &Scaled, &[ContactState], &mut Counters) -> Option<FrictionalSolution>;
 
-/// What solves the problems on the way.
+/// Functions that solve the intermediate problems.
 pub(super) struct Solvers {
     pub resisted: SolveResisted,
     pub from_states: FromStates,
 }
 
-/// The active set from the states of problems in which a part of E resists the free unknowns, whose answer moves on by
-/// proximal steps until it serves:
+/// Solves problems in which `part` times E resists the free unknowns, by proximal steps, until the active set finds a
+/// solution from the states of their answers:
 ///
 /// ```text
 /// (S + part E) x = L^T P + h + part E x_last    eq. (8.9)
 /// ```
 ///
-/// The error is that of the first of these problems without an answer.
+/// The error is that of the first of these problems that has no answer.
 pub(super) fn search(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -80,7 +81,7 @@ pub(super) fn search(
     Err(error.unwrap_or(LcpError::Ray { pivots, members }))
 }
 
-/// The answer of a problem whose free unknowns are resisted, and eliminated.
+/// The answer of a problem whose free unknowns are resisted; these unknowns are eliminated.
 fn solve_resisted(
     problem: &FrictionalLcp,
     known: Option<Known>,
@@ -93,7 +94,8 @@ fn solve_resisted(
     Ok(FrictionalSolution { free, ..found })
 }
 
-/// The solution whose free unknowns are stable that an unstable one tips over to along a motion of them, if there is any.
+/// The stable solution to which an unstable one tips over along a motion of its free unknowns; `None` if there is no
+/// such solution.
 pub(super) fn tip_over(
     problem: &FrictionalLcp,
     scaled: &Scaled,

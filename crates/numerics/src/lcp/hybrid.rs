@@ -1,6 +1,6 @@
-//! Solves a frictional problem: the order of the methods, and the check of each answer. Primal-dual active set on the
-//! contact states, which is Newton's method on the contact law; non-smooth Gauss-Seidel, in which each contact in turn is
-//! solved exactly with the forces of all others fixed. See docs/theory/complementarity.md.
+//! Solves a frictional problem by several methods and checks each answer. One method is the primal-dual active set on
+//! the contact states, which is Newton's method on the contact law. The other is non-smooth Gauss-Seidel, which solves
+//! each contact in turn exactly with the forces of all others fixed. See docs/theory/complementarity.md.
 
 use bumpalo::Bump;
 use nalgebra::DVector;
@@ -20,26 +20,28 @@ use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
 use super::scaled::Scaled;
 
-/// Gauss-Seidel sweeps between two calls of the active set.
+/// Numbers of Gauss-Seidel sweeps before the first, second and third restart of the active set.
 const SWEEPS: [usize; 3] = [10, 40, 160];
 
-/// Largest arena that is kept for the next problem: what a larger one holds takes longer than its memory.
+/// Size of the largest arena that is kept for the next problem (bytes): with a larger one, allocating memory costs
+/// little compared with the solve.
 const KEPT_BYTES: usize = 1 << 24;
 
-/// Paths of Lemke's method that are tried.
+/// Largest number of paths of Lemke's method that are tried.
 const PATHS: usize = 4;
 
-/// The method a caller asks for.
+/// The method that a caller asks for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LcpMethod {
-    /// Warm active set, Gauss-Seidel sweeps, Lemke: the first that succeeds.
+    /// The first of these methods that succeeds: active set from warm states, active set after Gauss-Seidel sweeps,
+    /// Lemke's method.
     #[default]
     Hybrid,
     /// Lemke's method from the start.
     Lemke,
 }
 
-/// Solves a frictional problem, from the states of a similar one when `warm` is given.
+/// Solves a frictional problem, starting from the states of a similar problem if `warm` is given.
 pub fn solve_frictional(
     problem: &FrictionalLcp,
     warm: Option<&[ContactState]>,
@@ -49,7 +51,7 @@ pub fn solve_frictional(
     solve_similar(problem, known, method, &mut KeptFactors::default())
 }
 
-/// Solves a frictional problem of a row of similar ones, between which factors are kept.
+/// Solves one of several similar frictional problems; factors are kept from one to the next.
 pub fn solve_similar(
     problem: &FrictionalLcp,
     known: Option<Known>,
@@ -69,7 +71,7 @@ pub fn solve_similar(
     solved
 }
 
-/// Solves a frictional problem with its lists in an arena.
+/// Solves a frictional problem; its lists lie in an arena.
 fn solve_in(
     problem: &FrictionalLcp,
     known: Option<Known>,
@@ -117,7 +119,7 @@ const SOLVERS: Solvers = Solvers {
     from_states,
 };
 
-/// The answer of the active set from some states, with factors of its own.
+/// The answer of the active set from some states, without kept factors.
 fn from_states(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -143,9 +145,9 @@ fn from_states(
     }
 }
 
-/// The active set from the warm states, contact by contact; where that does not end soon, from the same states with joints, and
-/// again with factors of its own where it fails with kept ones, whose round-off moves contacts that are nearly one; then
-/// from the states after ever more Gauss-Seidel sweeps, which break its cycles.
+/// Calls the active set from the warm states, contact by contact, until a call succeeds. If it does not end soon,
+/// joints are used. If it still fails with kept factors, whose round-off may move nearly identical contacts, these
+/// factors are dropped. Then it starts from the states after more and more Gauss-Seidel sweeps, which break its cycles.
 fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -191,7 +193,7 @@ fn iterate(
     }
 }
 
-/// Warm states, in which frictionless contacts have one closed state only.
+/// The warm states, in which frictionless contacts have only one closed state.
 fn closed_alike<'a>(scaled: &Scaled<'a>, warm: &[ContactState]) -> List<'a, ContactState> {
     let state = |(state, tangent): (&ContactState, &Option<usize>)| match tangent {
         None if state.is_closed() => ContactState::SlipPlus,
@@ -200,7 +202,7 @@ fn closed_alike<'a>(scaled: &Scaled<'a>, warm: &[ContactState]) -> List<'a, Cont
     list(scaled.arena, warm.iter().zip(&scaled.tangents).map(state))
 }
 
-/// Brings forces into the friction cone.
+/// Projects forces into the friction cone.
 fn project(scaled: &Scaled, p: &mut [f64]) {
     for i in 0..scaled.contacts {
         p[i] = p[i].max(0.0);
@@ -210,8 +212,8 @@ fn project(scaled: &Scaled, p: &mut [f64]) {
     }
 }
 
-/// Lemke's method, along up to [`PATHS`] paths with different covering vectors: where round-off
-/// ends one path on a ray, another reaches a solution. The error is that of the first path.
+/// Lemke's method, along up to [`PATHS`] paths with different covering vectors: if round-off ends one path on a ray,
+/// another path may reach a solution. The error is that of the first path.
 fn lemke(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -233,9 +235,9 @@ fn lemke(
     first
 }
 
-/// One path of Lemke's method. The forces of its states are then solved for directly, which
-/// is more accurate than the exchanges, and states that are wrong because of ties within the
-/// tolerance are corrected; redundant contacts may need the forces of the path itself.
+/// Follows one path of Lemke's method. The forces of its states are then computed directly, which is more accurate, and
+/// states that are wrong because of ties within the tolerance are corrected. With redundant contacts the forces of the
+/// path itself may be needed.
 fn follow(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -296,7 +298,7 @@ fn accept(
     })
 }
 
-/// Forces moved into the friction cone where round-off left them outside: Pn >= 0, |Pt| <= mu Pn.
+/// Forces moved into the friction cone if round-off left them outside: Pn >= 0, |Pt| <= mu Pn.
 fn admissible<'a>(scaled: &Scaled<'a>, states: &[ContactState], p: &[f64]) -> List<'a, f64> {
     let mut p = copy(scaled.arena, p);
     for i in 0..scaled.contacts {
@@ -316,7 +318,7 @@ fn admissible<'a>(scaled: &Scaled<'a>, states: &[ContactState], p: &[f64]) -> Li
     p
 }
 
-/// The solution with motion and residual recomputed from the problem.
+/// The solution; its motion and residual are recomputed from the problem.
 fn finish(
     problem: &FrictionalLcp,
     (states, [pn, pt], x): (&[ContactState], [List<f64>; 2], List<f64>),
@@ -347,42 +349,42 @@ fn finish(
     }
 }
 
-/// Solves allowed in one call.
+/// Largest number of solves in one call of the active set.
 const ACTIVE_SET_ITERATIONS: usize = 25;
 
-/// The answer of a joint's problem.
+/// The answer of the problem of a joint.
 fn solve_joint(problem: &FrictionalLcp, states: &[ContactState]) -> Option<FrictionalSolution> {
     solve_frictional(problem, Some(states), LcpMethod::Hybrid).ok()
 }
 
-/// Iterations of single contacts before joints are tried: most problems end there, and at less cost.
+/// Number of iterations of single contacts before joints are tried: most problems are solved by then, at less cost.
 const ALONE: usize = 5;
 
-/// A condition violated by less than this, relative to the largest force, does not change a state:
-/// round-off would otherwise change degenerate contacts for ever.
+/// Violation of a condition, relative to the largest force, up to which a state does not change: otherwise round-off
+/// would change degenerate contacts for ever.
 const ACTIVE_SET_TOLERANCE: f64 = 1e-12;
 
-/// Round-off of gaps that free unknowns make, beside the largest of these.
+/// Round-off of gaps that depend on free unknowns, relative to the largest of these unknowns.
 const FREE_ROUND_OFF: f64 = 1e-14;
 
-/// Result of a call.
+/// Result of a call of the active set.
 pub(crate) enum Outcome<'a> {
     /// The states and their forces satisfy every condition.
     Converged(List<'a, ContactState>, List<'a, f64>),
-    /// The states repeat or have no forces; the last forces found.
+    /// The states repeat, or no forces belong to them; the value holds the last forces found.
     Failed(List<'a, f64>),
 }
 
 /// Which contacts change their states together.
 #[derive(Clone, Copy)]
 pub(crate) enum Changes<'j, 'k> {
-    /// None; where joints could, the iteration ends early.
+    /// Every contact changes its state alone; if there are joints, the iteration ends early.
     Alone(&'j Joints<'k>),
-    /// The contacts of a joint.
+    /// The contacts of a joint change their states together.
     Together(&'j Joints<'k>),
 }
 
-/// Solves for the forces of the states and changes the states that forces and motion contradict until none changes.
+/// Computes the forces of the states, and changes states that contradict forces and motion, until no state changes.
 /// Repeated states mean failure.
 pub(crate) fn active_set<'a>(
     scaled: &Scaled<'a>,
@@ -422,7 +424,7 @@ pub(crate) fn active_set<'a>(
     Outcome::Failed(last)
 }
 
-/// The states that follow from the forces p of `states` and their motion v.
+/// The states that follow from the forces p of `states` and the motion v.
 fn next_states<'a>(
     scaled: &Scaled<'a>,
     states: &[ContactState],
@@ -483,8 +485,8 @@ fn next_state(
     }
 }
 
-/// State of contact i that closes with motion v: it sticks when the force that would stop its slip
-/// is within the limit of the force that would stop its penetration.
+/// State of contact i that closes with motion v: it sticks if the force that would stop its slip does not exceed mu
+/// times the force that would stop its penetration.
 fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
     let normal = -v[i] / scaled.q()[(i, i)];
     let tangential = -v[t] / scaled.q()[(t, t)];
@@ -495,17 +497,17 @@ fn landing(scaled: &Scaled, i: usize, t: usize, v: &[f64]) -> ContactState {
     }
 }
 
-/// Initial states when none are known: those that follow from the motion without forces.
+/// Initial states if no states are known: they follow from the motion without forces.
 pub(crate) fn first_states<'a>(scaled: &Scaled<'a>) -> List<'a, ContactState> {
     let open = filled(scaled.arena, ContactState::Open, scaled.contacts);
     let none = filled(scaled.arena, 0.0, scaled.size());
     next_states(scaled, &open, &none, &scaled.b)
 }
 
-/// A sweep that changes no force by more than this part of the largest ends the iteration.
+/// Largest change of a force, relative to the largest force, in a sweep that ends the iteration.
 const GAUSS_SEIDEL_TOLERANCE: f64 = 1e-13;
 
-/// At most `sweeps` sweeps from forces `p`, which they improve; returns the states they arrive at.
+/// Improves the forces `p` by at most `sweeps` sweeps; returns the states of the last sweep.
 pub(crate) fn gauss_seidel<'a>(
     scaled: &Scaled<'a>,
     p: &mut [f64],
@@ -578,7 +580,7 @@ fn local(scaled: &Scaled, i: usize, p: &[f64], v: &[f64]) -> (ContactState, f64,
     closed_or_open(ContactState::sliding(pt), -b_n / a, 0.0)
 }
 
-/// No force unless pn is positive and finite.
+/// State and forces if pn is positive and finite; else the open state without forces.
 fn closed_or_open(state: ContactState, pn: f64, pt: f64) -> (ContactState, f64, f64) {
     if pn > 0.0 && pn.is_finite() {
         (state, pn, pt)
@@ -625,7 +627,7 @@ mod gauss_seidel_tests {
     use super::*;
     use crate::lcp::FreeUnknowns;
 
-    /// Uncoupled contacts: one is open, one slides, one sticks.
+    /// Three uncoupled contacts: one is open, one slides, and one sticks.
     #[test]
     fn contacts_alone_are_solved_in_one_sweep() {
         let problem = FrictionalLcp {

@@ -1,5 +1,5 @@
-//! Contacts that change their states together: those between the same two bodies. See docs/theory/complementarity.md,
-//! The hybrid.
+//! Joints: contacts between the same two bodies, which change their states together. See
+//! docs/theory/complementarity.md, The hybrid.
 
 use std::cell::OnceCell;
 
@@ -7,28 +7,28 @@ use super::dense::List;
 use super::problems::{ContactState, FrictionalLcp, FrictionalSolution};
 use super::scaled::Scaled;
 
-/// Contacts of a joint at most. The problems of larger ones cost what they spare.
+/// Largest number of contacts of a joint: larger joints cost as much time as they save.
 const MOST: usize = 32;
 
-/// Solves the problem of a joint from some states; `None` where it has no answer.
+/// Function that solves the problem of a joint from some states; `None` if it finds no answer.
 pub(crate) type SolveJoint = fn(&FrictionalLcp, &[ContactState]) -> Option<FrictionalSolution>;
 
-/// The joints of a problem: contacts that act at the same place, whose conditions say nearly the same. What the state
-/// of one of them has to be, depends on the states of the others first of all.
+/// The joints of a problem: a joint has several contacts between the same two bodies, whose conditions depend strongly
+/// on each other. The state of one contact of a joint depends mainly on the states of the others.
 pub(crate) struct Joints<'k> {
-    /// The number of the joint of every contact.
+    /// Function that returns the number of the joint of every contact.
     numbers: &'k dyn Fn() -> Vec<usize>,
-    /// The contacts of every joint that has several, increasing; found when they are asked for.
+    /// The contacts of every joint of several contacts, in increasing order; found when they are first needed.
     members: OnceCell<Vec<Vec<usize>>>,
 }
 
 impl<'k> Joints<'k> {
-    /// Every contact by itself.
+    /// No joints: every contact stands by itself.
     pub fn none() -> Self {
         Joints::of(&Vec::new)
     }
 
-    /// Contacts with equal `numbers` form a joint.
+    /// Joints of contacts with equal `numbers`.
     pub const fn of(numbers: &'k dyn Fn() -> Vec<usize>) -> Self {
         Joints {
             numbers,
@@ -36,7 +36,8 @@ impl<'k> Joints<'k> {
         }
     }
 
-    /// The joints of several contacts, but not of all: the problem of such a joint is the problem itself.
+    /// The joints of more than one contact. A joint of all contacts is left out, because its problem is the whole
+    /// problem.
     fn members(&self, contacts: usize) -> &[Vec<usize>] {
         self.members.get_or_init(|| {
             let numbers = (self.numbers)();
@@ -48,20 +49,21 @@ impl<'k> Joints<'k> {
         })
     }
 
-    /// Whether there are any among so many contacts.
+    /// Whether there are joints among `contacts` contacts.
     pub fn are_some(&self, contacts: usize) -> bool {
         !self.members(contacts).is_empty()
     }
 
-    /// Replaces the `next` states of joints with a change by those that solve the problem of the joint alone, the forces
-    /// of all other contacts held.
+    /// Replaces the `next` states of every joint with a changed state by states that solve the problem of this joint
+    /// alone, with the forces of all other contacts held.
     ///
     /// ```text
     /// P_j = S_j(v_j - Q_jj P_j)    eq. (8.7)
     /// ```
     ///
-    /// p are the forces of the `states` of all contacts, v = Q p + b is their motion, and S_j, `solve`, finds the answer of the
-    /// contact law of the joint from its present states. The states stay those of single contacts where the joint has no answer, or one without a change.
+    /// Here p are the forces of the `states` of all contacts, v = Q p + b is the motion, and S_j (`solve`) finds the
+    /// answer of the contact law of the joint from its present states. If the joint has no answer, or an answer without
+    /// a change, the states of the single contacts stay.
     pub fn change(
         &self,
         scaled: &Scaled,

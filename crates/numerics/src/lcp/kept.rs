@@ -1,5 +1,5 @@
-//! What a frictional problem leaves to the next of a row of similar ones: the factors of its last system, and the memory
-//! of its solves. docs/numerics.md, Kept factors of a complementarity problem.
+//! Data that one frictional problem leaves to the next, similar one: the factors of its last system, and the memory of
+//! its solves. See docs/numerics.md, Kept factors of a complementarity problem.
 
 use bumpalo::Bump;
 
@@ -12,12 +12,12 @@ use crate::archive::{Archive, ArchiveError};
 #[derive(Default)]
 pub struct KeptFactors {
     kept: Option<Kept>,
-    /// Where the lists of a solve lie.
+    /// Arena in which the lists of a solve lie.
     pub(super) arena: Bump,
     pub(super) spare: Spare,
 }
 
-/// Factors with the system that they are of: the states, and the units of its entries.
+/// Factors with a description of their system: the states, and the units of its entries.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Kept {
     states: Vec<ContactState>,
@@ -32,12 +32,12 @@ impl KeptFactors {
     /// Transfers the factors.
     ///
     /// # Errors
-    /// What is read are no factors.
+    /// The archive does not hold factors.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer(&mut self.kept)
     }
 
-    /// Takes the memory of a solution that is not needed any more.
+    /// Keeps the memory of a solution that is not needed any more, for the next one.
     pub fn take(&mut self, solution: FrictionalSolution) {
         self.spare.take(solution);
     }
@@ -52,7 +52,7 @@ impl KeptFactors {
         self.kept = None;
     }
 
-    /// The factors, if they are of a system of the same states in the same units.
+    /// The factors, if they belong to a system of the same states in the same units.
     pub(super) fn serving(&self, scaled: &Scaled, states: &[ContactState]) -> Option<&Factors> {
         let kept = self.kept.as_ref()?;
         let are_same = kept.states == states

@@ -1,19 +1,20 @@
-//! What is known of a frictional problem before its solution. See docs/theory/complementarity.md, The hybrid.
+//! Data known about a frictional problem before its solution. See docs/theory/complementarity.md, The hybrid.
 
 use super::problems::ContactState;
 
-/// What is known of a problem before its solution.
+/// Data known about a problem before its solution.
 #[derive(Clone, Copy)]
 pub struct Known<'k> {
-    /// States of a similar problem, from which the search begins.
+    /// States of a similar problem, with which the search begins.
     pub states: &'k [ContactState],
-    /// The number of the joint of every contact: contacts between the same bodies, which change their states together. An
-    /// empty list leaves every contact by itself. It is asked for only where single contacts come to no end.
+    /// Function that returns the number of the joint of every contact (contacts between the same bodies change their
+    /// states together), or an empty list if there are no joints. The function is called only if changing single
+    /// contacts does not end.
     pub joints: &'k dyn Fn() -> Vec<usize>,
 }
 
 impl<'k> Known<'k> {
-    /// States alone.
+    /// Only states are known.
     pub fn of_states(states: &'k [ContactState]) -> Self {
         let joints = &Vec::new;
         Known { states, joints }

@@ -1,5 +1,6 @@
-//! Lemke's method: the almost complementary path; the general problem after equilibration by powers of two; the
-//! frictional problem with the blocks of its matrix instead of the matrix itself. See docs/theory/complementarity.md.
+//! Lemke's method: the almost complementary path, for the general problem after equilibration by powers of two, and for
+//! the frictional problem with the blocks of its matrix instead of the matrix itself. See
+//! docs/theory/complementarity.md.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,7 +29,7 @@ impl PivotMatrix for DMatrix<f64> {
     }
 }
 
-/// A covering vector for any problem: ones after the rows of M are scaled to entries near 1.
+/// A covering vector for any problem: it has entries of 1 after the rows of M have been scaled to entries near 1.
 pub fn covering_vector(lcp: &Lcp) -> DVector<f64> {
     let rows = Equilibration::of(&lcp.m).rows;
     DVector::from_iterator(rows.len(), rows.iter().map(|r| 1.0 / r))
@@ -87,13 +88,13 @@ pub fn lemke(
     })
 }
 
-/// Exchanges between two checks of the accumulated round-off.
+/// Number of exchanges between two checks of the accumulated round-off.
 const CHECK_INTERVAL: usize = 50;
 
 /// Largest error of the kernel rows, relative to the values, that a correction removes safely.
 const DRIFT: f64 = 1e-9;
 
-/// Column entries below this part of the largest one do not take part in a ratio test.
+/// Size of column entries, relative to the largest one, below which they do not take part in a ratio test.
 const PIVOT_TOLERANCE: f64 = 1e-9;
 
 /// The end of a path: a complementary basis.
@@ -102,7 +103,7 @@ pub(crate) struct LemkeVertex {
     pub z: Vec<f64>,
     /// Whether z_i is basic.
     pub basic: Vec<bool>,
-    /// Basis exchanges.
+    /// Number of basis exchanges.
     pub pivots: usize,
 }
 
@@ -163,8 +164,8 @@ pub(crate) fn follow_path<M: PivotMatrix>(
     })
 }
 
-/// The row that z0 takes first: the one that needs the largest z0 for q + d z0 >= 0, and among
-/// equals the first one the perturbation p selects. None when q >= 0.
+/// The row in which z0 becomes basic first: the row that needs the largest z0 for q + d z0 >= 0, where ties are broken
+/// by the perturbation p. `None` if q >= 0.
 fn first_row(q: &[f64], d: &[f64], p: &[f64], tolerance: f64) -> Option<usize> {
     let needy = (0..q.len())
         .filter(|i| q[*i] < 0.0)
@@ -183,8 +184,8 @@ fn first_row(q: &[f64], d: &[f64], p: &[f64], tolerance: f64) -> Option<usize> {
     }
 }
 
-/// The basic variable that blocks the entering one, whose column is y. z0 leaves when it is among
-/// the first to reach zero. None on a ray.
+/// The basic variable that blocks the entering variable, whose column is y. z0 leaves if it is among the first
+/// variables to reach zero. `None` on a ray.
 fn leaving<M: PivotMatrix>(
     basis: &Basis<M>,
     x: &Values,
@@ -243,7 +244,7 @@ fn growing<M: PivotMatrix>(basis: &Basis<M>, entering: Variable, y: &Values) -> 
     (0..size).filter(grows).collect()
 }
 
-/// What Lemke's method found.
+/// Result of Lemke's method.
 pub(crate) struct LemkeForces {
     /// Forces p of the scaled problem.
     pub p: Vec<f64>,
@@ -253,7 +254,7 @@ pub(crate) struct LemkeForces {
     pub pivots: usize,
 }
 
-/// M of the frictional problem, z = (Pn, T+, Dt-), without being formed.
+/// Matrix M of the frictional problem, z = (Pn, T+, Dt-), which is applied without being formed.
 ///
 /// The tangent of a contact that would slip in the negative direction is reversed (`signs`), so
 /// that q is negative at penetrations only and open contacts need no pivots.
@@ -261,12 +262,12 @@ struct FrictionalMatrix<'a> {
     scaled: &'a Scaled<'a>,
     /// 1 or -1 for each tangential unknown.
     signs: Vec<f64>,
-    /// Transposed Q: its rows one after the other.
+    /// Transposed Q, so that the rows of Q are contiguous.
     rows: DMatrix<f64>,
 }
 
-/// Solves a scaled problem by Lemke's method with covering vector d = (1, 1/(1 + mu), 0), both
-/// entries of a contact times its entry of `covering` > 0.
+/// Solves a scaled problem by Lemke's method with covering vector d = (1, 1/(1 + mu), 0), where both entries of a
+/// contact are multiplied by its entry of `covering` > 0.
 pub(crate) fn lemke_forces(
     scaled: &Scaled,
     covering: &[f64],
@@ -318,7 +319,7 @@ impl<'a> FrictionalMatrix<'a> {
         }
     }
 
-    /// p = (Pn, Pt) of z: Pt = sign (2 T+ - mu Pn).
+    /// Forces p = (Pn, Pt) for z, with Pt = sign (2 T+ - mu Pn).
     fn forces(&self, z: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
         let n = self.scaled.contacts;
         let mut p = vec![0.0; self.scaled.size()];
@@ -335,7 +336,7 @@ impl<'a> FrictionalMatrix<'a> {
         p
     }
 
-    /// State of contact i by its basic variables; with T+ and T- both zero it has no force.
+    /// State of contact i from its basic variables; if T+ and T- are both zero, the contact has no force.
     fn state(&self, i: usize, basic: &[bool]) -> ContactState {
         let Some(t) = self.scaled.tangents[i] else {
             return if basic[i] {
@@ -416,9 +417,9 @@ impl PivotMatrix for FrictionalMatrix<'_> {
 /// Settings of Lemke's method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LemkeSettings {
-    /// Basis exchanges allowed; None for 100 + 50 per unknown.
+    /// Largest number of basis exchanges; `None` means 100 + 50 per unknown.
     pub max_pivots: Option<usize>,
-    /// Ratios closer than this, relative to the larger of the ratio and 1, are tied.
+    /// Difference of two ratios, relative to the larger of the ratio and 1, below which they are tied.
     pub tie_tolerance: f64,
     /// Largest residual of a solution.
     pub residual_tolerance: f64,
@@ -435,7 +436,7 @@ impl Default for LemkeSettings {
 }
 
 impl LemkeSettings {
-    /// Exchanges allowed for a problem of that size.
+    /// Largest number of exchanges for a problem of this size.
     pub(crate) fn pivot_limit(&self, size: usize) -> usize {
         self.max_pivots.unwrap_or(100 + 50 * size)
     }
@@ -448,7 +449,7 @@ mod tests {
     use super::*;
     use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
-    /// Three contacts with a Q that is not symmetric, the second without friction, the third slipping
+    /// Three contacts with a Q that is not symmetric; the second contact has no friction, and the third slips
     /// backwards.
     #[test]
     fn entries_are_those_of_the_product() {

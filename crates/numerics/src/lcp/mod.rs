@@ -1,13 +1,13 @@
-//! Linear complementarity problems, general and frictional. Knows no mechanics.
+//! Linear complementarity problems, general and frictional. This module knows no mechanics.
 //!
-//! The general problem ([`Lcp`]): find z >= 0 with w = M z + q >= 0 and z.w = 0; solved by
-//! [`lemke()`], Lemke's method with a lexicographic ratio test on a revised basis.
+//! The general problem ([`Lcp`]) is to find z >= 0 with w = M z + q >= 0 and z.w = 0. [`lemke()`] solves the general
+//! problem by Lemke's method, with a lexicographic ratio test on a revised basis.
 //!
-//! The frictional problem ([`FrictionalLcp`]): unilateral contacts with Coulomb friction, coupled
-//! by a symmetric matrix Q; solved by [`solve_frictional`] on the states open, stick, slip+ and
-//! slip-: a warm active set first, Gauss-Seidel sweeps when it cycles, Lemke when nothing else
-//! succeeds. Many contacts are solved by blocks ([`BlockIteration`]), whose iteration its last steps accelerate
-//! ([`Acceleration`]). Every answer is checked by a residual that shares nothing with the method.
+//! The frictional problem ([`FrictionalLcp`]) has unilateral contacts with Coulomb friction, coupled by a symmetric
+//! matrix Q. [`solve_frictional`] finds the states open, stick, slip+ and slip- of the contacts: with a warm active set
+//! first, with Gauss-Seidel sweeps if the active set cycles, and with Lemke's method if nothing else succeeds. Problems
+//! of many contacts are solved by blocks ([`BlockIteration`]); the last steps of this iteration accelerate it
+//! ([`Acceleration`]). Every answer is checked by a residual whose computation shares nothing with the method.
 //!
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.

@@ -23,7 +23,7 @@ pub struct Lcp {
 pub struct LcpSolution {
     /// The non-negative unknowns.
     pub z: DVector<f64>,
-    /// w = M z + q, recomputed from M, q and z.
+    /// w = M z + q, recomputed from the data.
     pub w: DVector<f64>,
     /// Scaled residual of (z, w), see [`residual`](super::residual::residual()).
     pub residual: f64,
@@ -31,22 +31,22 @@ pub struct LcpSolution {
     pub pivots: usize,
 }
 
-/// Why a problem was not solved.
+/// Reason why a problem was not solved.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LcpError {
-    /// The path of Lemke's method ended on a secondary ray.
+    /// The path of Lemke's method ends on a secondary ray.
     #[error("ray after {pivots} pivots{}", list(.members))]
     Ray {
-        /// Basis exchanges until then.
+        /// Number of basis exchanges until then.
         pivots: usize,
-        /// Unknowns that grow without bound along the ray: positions in z, or contacts of a
-        /// frictional problem (those that press against each other).
+        /// Unknowns that grow without bound along the ray: positions in z, or contacts of a frictional problem, which
+        /// press against each other.
         members: Vec<usize>,
     },
-    /// The path did not end within the allowed number of exchanges.
+    /// The path does not end within the allowed number of exchanges.
     #[error("no solution within {pivots} pivots")]
     PivotLimit {
-        /// Basis exchanges until then.
+        /// Number of basis exchanges until then.
         pivots: usize,
     },
     /// The point found does not satisfy the conditions.
@@ -54,16 +54,16 @@ pub enum LcpError {
     Residual {
         /// Residual of the point found.
         value: f64,
-        /// Largest residual accepted.
+        /// Largest residual that is accepted.
         tolerance: f64,
     },
-    /// The data, or the data after scaling, contain an infinite number or one that is not a number.
+    /// The data, or the scaled data, contain a number that is infinite or NaN.
     #[error("the problem contains a number that is not finite")]
     NotFinite,
     /// The sizes of the data do not agree.
     #[error("{what}: expected size {expected}, found {found}")]
     Size {
-        /// The item of the wrong size.
+        /// Name of the item with the wrong size.
         what: &'static str,
         /// Size required by the rest of the data.
         expected: usize,
@@ -73,16 +73,16 @@ pub enum LcpError {
     /// A number lies outside its range.
     #[error("{what} must not be {value:e} (entry {index})")]
     Range {
-        /// The item out of range.
+        /// Name of the item that is out of range.
         what: &'static str,
-        /// Its position.
+        /// Position of the number.
         index: usize,
-        /// Its value.
+        /// Value of the number.
         value: f64,
     },
 }
 
-/// Text for the members of a ray: nothing when there are none.
+/// Text for the members of a ray; empty if there are none.
 fn list(members: &[usize]) -> String {
     let shown: Vec<String> = members.iter().take(20).map(usize::to_string).collect();
     match (members.len(), shown.len()) {
@@ -154,11 +154,11 @@ pub(crate) fn expect_non_negative(what: &'static str, values: &[f64]) -> Result<
 ///                                Dt opposes Pt where |Pt| = mu Pn
 /// ```
 ///
-/// Q is a compliance (length/force), positive definite or semidefinite. The proof that a
-/// solution is found requires a symmetric Q; the methods take others too.
+/// Q is a compliance (length/force), positive definite or semidefinite. The proof that a solution is found requires a
+/// symmetric Q; the methods also solve problems with other Q.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionalLcp {
-    /// Q (2n x 2n): n normal, then n tangential rows and columns.
+    /// Q (2n x 2n): n rows and columns of normal directions, then n of tangential directions.
     pub q: DMatrix<f64>,
     /// Gaps without contact forces (length n), positive when open.
     pub gap: DVector<f64>,
@@ -166,11 +166,12 @@ pub struct FrictionalLcp {
     pub slip: DVector<f64>,
     /// Friction coefficients (length n), zero or positive.
     pub mu: DVector<f64>,
-    /// Unknowns without a sign that gaps and slips depend on as well.
+    /// Unknowns without a sign, on which gaps and slips depend as well.
     pub free: FreeUnknowns,
 }
 
-/// Unknowns x without a sign, eq. (8.8), which add to gaps and slips and are in balance with the contact forces.
+/// Unknowns x without a sign, eq. (8.8), which add to gaps and slips; their forces are in balance with the contact
+/// forces.
 ///
 /// ```text
 /// (g, Dt) = Q P + D x + (gap, slip),   (S + E) x = L^T P + h
@@ -179,20 +180,20 @@ pub struct FrictionalLcp {
 /// S may be singular; E bounds motions that no contact sees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeUnknowns {
-    /// D (2n x m): gaps, then slips, that they make (dimensionless).
+    /// D (2n x m): gaps, then slips, per unit of each unknown (dimensionless).
     pub motions: DMatrix<f64>,
-    /// L (2n x m): parts of the normal, then of the tangential forces in their balance (dimensionless).
+    /// L (2n x m): weights of the normal, then of the tangential forces in the balance of each unknown (dimensionless).
     pub works: DMatrix<f64>,
     /// S (m x m): stiffness without contact (force/length).
     pub stiffness: DMatrix<f64>,
-    /// E (m x m): stiffness that is small beside that of contacts (force/length).
+    /// E (m x m): stiffness that is small compared with that of the contacts (force/length).
     pub regular: DMatrix<f64>,
     /// h: forces without contact (length m, force).
     pub force: DVector<f64>,
 }
 
 impl Default for FreeUnknowns {
-    /// None.
+    /// A problem without free unknowns.
     fn default() -> Self {
         let none = || DMatrix::zeros(0, 0);
         FreeUnknowns {
@@ -211,12 +212,12 @@ impl FreeUnknowns {
         self.force.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no free unknowns.
     pub fn is_empty(&self) -> bool {
         self.force.is_empty()
     }
 
-    /// Largest force that the balance (S + E) x = L^T P + h leaves over.
+    /// Largest residual force of the balance (S + E) x = L^T P + h.
     pub(crate) fn left_over(&self, x: &[f64], p: &[f64]) -> f64 {
         if self.is_empty() {
             return 0.0;
@@ -226,14 +227,14 @@ impl FreeUnknowns {
         largest(left.as_slice())
     }
 
-    /// x in balance with forces P.
+    /// The unknowns x that are in balance with forces P.
     pub(crate) fn balanced(&self, p: &[f64]) -> DVector<f64> {
         let force = self.works.tr_mul(&DVector::from_column_slice(p)) + &self.force;
         let x = (&self.stiffness + &self.regular).lu().solve(&force);
         x.unwrap_or_else(|| DVector::zeros(self.len()))
     }
 
-    /// Refuses wrong sizes, for n contacts, and numbers that are not finite.
+    /// Refuses sizes that do not fit to n contacts, and numbers that are not finite.
     pub(crate) fn check(&self, n: usize) -> Result<(), LcpError> {
         let m = self.len();
         if m == 0 {
@@ -264,14 +265,14 @@ impl FrictionalLcp {
         self.gap.is_empty()
     }
 
-    /// Whether a contact penetrates. What is so small that the force which stops it would have lost digits, or
-    /// vanish, is no penetration.
+    /// Whether a contact penetrates. An overlap is no penetration if it is so small that the force against it would
+    /// lose digits or vanish.
     pub(crate) fn penetrates(&self) -> bool {
         let least = self.smallest_length();
         self.gap.iter().any(|gap| *gap <= -least)
     }
 
-    /// Mean compliance of the contacts, mean Qnn_ii, 1 where there is none.
+    /// Mean compliance of the contacts, the mean of Qnn_ii; 1 without contacts.
     pub(crate) fn compliance(&self) -> f64 {
         let n = self.len();
         let mean = (0..n).map(|i| self.q[(i, i)]).sum::<f64>() / n as f64;
@@ -281,7 +282,7 @@ impl FrictionalLcp {
         }
     }
 
-    /// Smallest length whose force has all its digits.
+    /// Smallest length for which the contact force still has all its digits.
     pub(crate) fn smallest_length(&self) -> f64 {
         SMALLEST * larger(self.compliance(), 1.0)
     }
@@ -301,7 +302,7 @@ impl FrictionalLcp {
         expect_non_negative("mu", self.mu.as_slice())
     }
 
-    /// Gaps and slips under the forces (pn, pt), the free unknowns being zero.
+    /// Gaps and slips under the forces (pn, pt), with zero free unknowns.
     pub fn motion(&self, pn: &DVector<f64>, pt: &DVector<f64>) -> (DVector<f64>, DVector<f64>) {
         let n = self.len();
         let mut motion: Vec<f64> = self.gap.iter().chain(&self.slip).copied().collect();
@@ -343,8 +344,8 @@ impl FrictionalLcp {
         Lcp { m, q }
     }
 
-    /// The problem whose general form is `lcp` with friction coefficients `mu`; None when `lcp`
-    /// does not have the blocks of [`to_lcp`](Self::to_lcp) to 1e-9 of its largest entry of Q.
+    /// The problem whose general form is `lcp` with friction coefficients `mu`; `None` if `lcp` does not have the
+    /// blocks of [`to_lcp`](Self::to_lcp) to 1e-9 of its largest entry of Q.
     pub fn from_lcp(lcp: &Lcp, mu: &DVector<f64>) -> Option<Self> {
         let n = mu.len();
         if lcp.check().is_err() || lcp.q.len() != 3 * n {
@@ -393,7 +394,7 @@ impl ContactState {
         self != Self::Open
     }
 
-    /// Sign of the slip: 1, -1, or 0 where the state does not slide.
+    /// Sign of the slip: 1 or -1, and 0 for a state that does not slide.
     pub fn slip_sign(self) -> f64 {
         match self {
             Self::SlipPlus => 1.0,
@@ -402,7 +403,7 @@ impl ContactState {
         }
     }
 
-    /// The sliding state for a slip of that sign, stick for zero.
+    /// The sliding state for a slip of this sign; stick for zero slip.
     pub(crate) fn sliding(slip: f64) -> Self {
         if slip > 0.0 {
             Self::SlipPlus
@@ -419,11 +420,11 @@ impl ContactState {
 pub struct Counters {
     /// Basis exchanges of Lemke's method.
     pub pivots: usize,
-    /// Solves of the active set, one factorisation each.
+    /// Number of solves of the active set, with one factorisation each.
     pub active_set_iterations: usize,
-    /// Sweeps over all contacts of the Gauss-Seidel iteration.
+    /// Number of sweeps of the Gauss-Seidel iteration over all contacts.
     pub gauss_seidel_sweeps: usize,
-    /// Problems given to Lemke's method.
+    /// Number of problems given to Lemke's method.
     pub lemke_calls: usize,
 }
 
@@ -439,7 +440,7 @@ impl AddAssign for Counters {
 /// The method that produced a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
-    /// No contact penetrates: no forces.
+    /// No contact penetrates, so there are no forces.
     Trivial,
     /// Active set on the contact states.
     ActiveSet,
@@ -450,9 +451,9 @@ pub enum Method {
 /// Solution of a [`FrictionalLcp`](crate::lcp::FrictionalLcp).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrictionalSolution {
-    /// Normal forces, zero where open.
+    /// Normal forces, zero in open contacts.
     pub pn: DVector<f64>,
-    /// Tangential forces, exactly -+mu Pn where sliding.
+    /// Tangential forces, exactly -+mu Pn in sliding contacts.
     pub pt: DVector<f64>,
     /// Gaps under these forces.
     pub gap: DVector<f64>,
@@ -462,29 +463,29 @@ pub struct FrictionalSolution {
     pub state: Vec<ContactState>,
     /// Free unknowns x.
     pub free: DVector<f64>,
-    /// What contacts do against the free unknowns.
+    /// Whether the contacts hold the free unknowns stable.
     pub stability: Stability,
     /// Scaled residual of the contact conditions.
     pub residual: f64,
     /// The method that found the states.
     pub method: Method,
-    /// Work done, by all methods tried.
+    /// Work done by all methods that were tried.
     pub counters: Counters,
 }
 
-/// What contacts do against the free unknowns in a solution.
+/// Whether the contacts of a solution hold its free unknowns stable.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Stability {
-    /// They resist all motions that are resisted at all.
+    /// No motion of the free unknowns is unstable.
     #[default]
     Stable,
-    /// They resist since a body has tipped over to another contact.
+    /// No motion is unstable, after a body has tipped over to another contact.
     Tipped,
-    /// A motion is unstable, and tips over to no contact that would hold it.
+    /// A motion is unstable, and no contact was found to which the body tips over.
     Unstable,
 }
 
-/// Memory of a solution that is not needed any more, for the next one.
+/// Memory of a solution that is not needed any more, to be used by the next solution.
 #[derive(Default)]
 pub(super) struct Spare {
     vectors: [Vec<f64>; 4],
@@ -492,7 +493,7 @@ pub(super) struct Spare {
 }
 
 impl Spare {
-    /// Takes the memory of a solution.
+    /// Keeps the memory of a solution.
     pub fn take(&mut self, solution: FrictionalSolution) {
         let FrictionalSolution {
             pn,
@@ -506,7 +507,7 @@ impl Spare {
         self.states = state;
     }
 
-    /// A vector of a solution, the i-th.
+    /// A copy of `values` in the i-th kept vector.
     pub fn vector(&mut self, i: usize, values: &[f64]) -> DVector<f64> {
         let mut vector = std::mem::take(&mut self.vectors[i]);
         vector.clear();

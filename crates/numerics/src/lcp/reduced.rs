@@ -1,5 +1,5 @@
-//! The forces of given contact states: a linear system, solved directly, or with the factors of the same states with
-//! another Q.
+//! Forces of given contact states. The forces follow from a linear system, which is solved directly or with kept
+//! factors of the same states with another Q.
 
 use super::dense::{Factors, List, copy, filled, list, max_abs};
 use super::kept::KeptFactors;
@@ -9,42 +9,42 @@ use super::scaled::Scaled;
 /// Shift of the diagonal, relative to its entries, that makes a singular system solvable.
 const SHIFT: f64 = 1e-10;
 
-/// Difference of mirrored entries, relative to their diagonal entries, of a symmetric matrix.
+/// Largest difference of mirrored entries of a symmetric matrix, relative to its diagonal entries.
 const ASYMMETRY: f64 = 1e-9;
 
-/// Residual of forces that are as good as they can be, in units of the sum of the terms of its rows.
+/// Largest residual of forces that count as accurate, relative to the sum of the terms of its rows.
 const ACCURATE: f64 = 4.0 * f64::EPSILON;
 
-/// Residual that no correction makes smaller, in the same units.
+/// Residual below which corrections end as they cannot improve it, relative to the sum of the terms of its rows.
 const ROUND_OFF: f64 = 0.5 * f64::EPSILON;
 
-/// How forces are corrected by the residual.
+/// Limits of the corrections of forces by the residual.
 struct Corrections {
-    /// Solves at least and at most.
+    /// Smallest and largest number of solves.
     solves: [usize; 2],
-    /// Fall of the residual, from correction to correction, at least.
+    /// Ratio of successive residuals above which the corrections end.
     rate: f64,
 }
 
-/// With the factors of the system itself: the first correction makes the gaps exact to round-off, more are
-/// needed only by the shifted system.
+/// Limits with the factors of the system itself. The first correction makes the gaps exact to round-off; only the
+/// shifted system needs more.
 const OWN: Corrections = Corrections {
     solves: [2, 7],
     rate: 0.1,
 };
 
-/// Solves with the factors of another Q in place of factors of the own one: so many, or, of a large system, that
-/// take a part of the operations of these.
+/// Number of solves with the factors of another Q that replace a factorisation of the system; large systems get more,
+/// one for every [`UNKNOWNS_PER_SOLVE`] unknowns.
 const KEPT_SOLVES: usize = 6;
 
-/// Unknowns for one such solve.
+/// Number of unknowns for each solve with the factors of another Q.
 const UNKNOWNS_PER_SOLVE: usize = 24;
 
 /// Forces p and their motion v.
 type Solution<'a> = (List<'a, f64>, List<'a, f64>);
 
 impl Corrections {
-    /// Corrections with the factors of another Q, of which a system of the given size takes more before it gives up.
+    /// Limits with the factors of another Q; larger systems allow more solves.
     fn kept(size: usize) -> Self {
         let most = KEPT_SOLVES.max(size / UNKNOWNS_PER_SOLVE);
         Corrections {
@@ -54,10 +54,9 @@ impl Corrections {
     }
 }
 
-/// Solves for the forces p of the given states, and their motion v = Q p + b:
-/// gap = 0 where closed, slip = 0 where sticking, Pt = -+mu Pn where sliding, no force where open.
-/// None when no solution is finite. Where redundant contacts leave the forces undetermined they
-/// share the load.
+/// Solves for the forces p of the given states, and their motion v = Q p + b: closed contacts have gap = 0, sticking
+/// ones slip = 0, sliding ones Pt = -+mu Pn, and open ones no force. `None` if no solution is finite. Redundant
+/// contacts, whose forces are undetermined, share the load.
 pub(crate) fn forces<'a>(
     scaled: &Scaled<'a>,
     states: &[ContactState],
@@ -95,7 +94,7 @@ pub(crate) fn forces<'a>(
     }
 }
 
-/// Forces from kept factors, if they are as good as those from the own ones.
+/// Forces from kept factors, if they are as accurate as forces from the factors of the system itself.
 fn from_kept<'a>(
     scaled: &Scaled<'a>,
     states: &[ContactState],
@@ -109,7 +108,7 @@ fn from_kept<'a>(
     (error <= ACCURATE * terms(scaled, &p)).then_some((p, v))
 }
 
-/// Sum of the sizes of the diagonal terms of Q p, and of what free unknowns add to gaps.
+/// Sum of the absolute values of the diagonal terms of Q p and of the free unknowns.
 fn terms(scaled: &Scaled, p: &[f64]) -> f64 {
     let q = scaled.q();
     let own = |k: usize| (q[(k, k)] * p[k]).abs();
@@ -118,7 +117,7 @@ fn terms(scaled: &Scaled, p: &[f64]) -> f64 {
     of_forces + free.map(|k| p[k].abs()).sum::<f64>()
 }
 
-/// Positions in p of the unknowns, the free ones last, which are also the rows that must vanish.
+/// Positions in p of the unknowns, free unknowns last; they are also the rows that must vanish.
 fn unknowns<'a>(scaled: &Scaled<'a>, states: &[ContactState]) -> List<'a, usize> {
     let closed = (0..scaled.contacts).filter(|i| states[*i].is_closed());
     let tangents = scaled.owners.iter().zip(scaled.contacts..);
@@ -131,8 +130,8 @@ fn unknowns<'a>(scaled: &Scaled<'a>, states: &[ContactState]) -> List<'a, usize>
     )
 }
 
-/// The matrix of the system by columns: Q on the unknowns; the column of a sliding Pn is
-/// Q e_n - slip sign mu Q e_t.
+/// The matrix of the system by columns: the part of Q at the unknowns, where the column of a sliding Pn is Q e_n - slip
+/// sign mu Q e_t.
 fn matrix(scaled: &Scaled, states: &[ContactState], unknowns: &[usize]) -> Vec<f64> {
     let mut values = Vec::with_capacity(unknowns.len() * unknowns.len());
     for k in unknowns {
@@ -157,7 +156,7 @@ fn sliding(scaled: &Scaled, states: &[ContactState], k: usize) -> Option<(usize,
     scaled.tangents[k].map(|t| (t, slide(scaled, states, k)))
 }
 
-/// The factor in Pt = factor Pn of contact i, zero where it does not slide.
+/// The factor in Pt = factor Pn of contact i; zero if the contact does not slide.
 fn slide(scaled: &Scaled, states: &[ContactState], i: usize) -> f64 {
     -states[i].slip_sign() * scaled.mu[i]
 }
@@ -180,8 +179,8 @@ fn shifted(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
     matrix
 }
 
-/// p and v from solves with some factors, corrected by the residual of the system itself as long as that falls and is
-/// not yet round-off, and the largest residual.
+/// Computes p and v from solves with some factors. Both are corrected by the residual of the system itself, as long as
+/// this residual falls and is not yet round-off. The last value is the largest residual.
 fn refine<'a>(
     scaled: &Scaled<'a>,
     states: &[ContactState],
@@ -234,7 +233,7 @@ mod tests {
 
     const CONTACTS: usize = 40;
 
-    /// Contacts at the given places of an elastic surface; all penetrate.
+    /// A problem of contacts at the given places of an elastic surface; all of them penetrate.
     fn problem(places: &[f64], compliance: f64) -> FrictionalLcp {
         let n = places.len();
         let entry = |i: usize, j: usize| {
@@ -261,7 +260,7 @@ mod tests {
         }
     }
 
-    /// Places of contacts with a given distance.
+    /// Places of contacts with a given distance from each other.
     fn places(distance: f64) -> Vec<f64> {
         (0..CONTACTS).map(|i| distance * i as f64).collect()
     }

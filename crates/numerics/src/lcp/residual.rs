@@ -1,4 +1,4 @@
-//! The check of a solution: recomputed from the data, independent of every method.
+//! The check of a solution, computed from the data and independent of every method.
 
 use bumpalo::Bump;
 use nalgebra::DVector;
@@ -11,12 +11,12 @@ use crate::linear::{SMALLEST, larger, largest};
 /// Largest residual of a point that counts as a solution.
 pub(crate) const TOLERANCE: f64 = 1e-9;
 
-/// Part of the terms |M_ij z_j| that enters the scale of a residual. Evaluating w rounds by about
-/// 1e-16 of the largest term, so that 1e-9 of the scale is never below round-off.
+/// Factor with which the terms |M_ij z_j| enter the scale of a residual. Evaluating w has a round-off of about 1e-16 of
+/// the largest term, so 1e-9 of the scale is never below round-off.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// Residual of z, zero for a solution, infinite when a number is not finite or a size is wrong. What is so small
-/// that it has lost digits is no error.
+/// Residual of z: zero for a solution, infinite if a number is not finite or a size is wrong. Errors so small that they
+/// have lost digits count as zero.
 ///
 /// r = max_i |z_i - max(0, z_i - w_i)| / s,  w = M z + q,  s = max |q| + 1e-6 max |M| |z|,
 /// after rows and columns of M are scaled to entries near 1 (which makes the residual independent
@@ -39,13 +39,13 @@ pub fn residual(lcp: &Lcp, z: &DVector<f64>) -> f64 {
     relative(error, scale)
 }
 
-/// Residual of the forces (pn, pt) and free unknowns x of a frictional problem, zero for a solution, and gaps and slips under
-/// them.
+/// Residual of the forces (pn, pt) and free unknowns x of a frictional problem, which is zero for a solution, and the
+/// gaps and slips under these forces.
 ///
-/// The law of eq. (3.6) as r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)|
-/// with T+- = (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip; lengths in units
-/// of the deepest penetration, or what forces on free unknowns make of it, plus 1e-6 of the terms of Q P, forces in that unit over mean diag
-/// Qnn, those that the balance of free unknowns leaves over too.
+/// The law of eq. (3.6) is written as r = max over contacts of |min(Pn, g)|, |min(T+, Dt+)|, |min(T-, Dt-)| with T+- =
+/// (mu Pn +- Pt)/2 and Dt+- the positive and negative part of the slip. The unit of length is the deepest penetration,
+/// or the penetration that forces on free unknowns would make if it is larger, plus 1e-6 of the terms of Q P. The unit
+/// of force is this length over the mean of diag Qnn; it holds for the residual of the balance of free unknowns, too.
 pub(crate) fn frictional_residual<'a>(
     problem: &FrictionalLcp,
     ([pn, pt], x): ([&[f64]; 2], &[f64]),
@@ -76,8 +76,8 @@ pub(crate) fn frictional_residual<'a>(
     }
 }
 
-/// Residual of the contact law, eq. (3.6), given gap and slip, Pn and Pt, and mu of every contact, in units of
-/// `length` and that over `compliance`.
+/// Residual of the contact law, eq. (3.6), for the gap and slip, Pn and Pt, and mu of every contact. The unit of length
+/// is `length`, and the unit of force is `length` over `compliance`.
 pub(crate) fn law_residual(
     contacts: impl Iterator<Item = ([f64; 2], [f64; 2], f64)>,
     compliance: f64,
@@ -112,7 +112,7 @@ fn part(slip: f64) -> f64 {
     if slip < 0.0 { 0.0 } else { slip }
 }
 
-/// error / scale, never NaN: no error is 0 at any scale; a scale that overflows proves nothing.
+/// error / scale, but never NaN: a zero error gives 0 at any scale, and a scale that overflows gives infinity.
 fn relative(error: f64, scale: f64) -> f64 {
     if error == 0.0 {
         0.0

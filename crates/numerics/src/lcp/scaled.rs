@@ -9,31 +9,33 @@ use nalgebra::{DMatrix, DMatrixView};
 use super::dense::{List, add_product, copy, extend_scaled, filled, list};
 use super::problems::{ContactState, FreeUnknowns, FrictionalLcp, LcpError, expect_finite};
 
-/// States, (Pn, Pt) and free unknowns in the units of a problem.
+/// States, forces (Pn, Pt) and free unknowns in the units of a problem.
 pub(crate) type Found<'s, 'a> = (&'s [ContactState], [List<'a, f64>; 2], List<'a, f64>);
 
-/// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0, the f free unknowns x); the last rows of v are
-/// what the balance of the free unknowns lacks, (S + E) x - L^T P - h.
+/// v = Q p + b with p = (Pn of all n contacts, Pt of the m contacts with mu > 0, the f free unknowns x); the last rows
+/// of v are the residual of the balance of the free unknowns, (S + E) x - L^T P - h.
 ///
-/// With the weights w_i = root of Qnn_ii over its mean, the unit of length of contact i is
-/// w_i times the deepest penetration (over its weight), the unit of force is that length over
-/// Qnn_ii; both are rounded to powers of two. One weight for normal and tangent keeps the friction
-/// law. The penetration drives the forces: a gap or a slip many orders larger must not make a
-/// closed contact inaccurate. Free unknowns have the unit of length, and what forces without contact make of it counts too.
+/// The weight w_i of contact i is the square root of Qnn_ii over the mean of these values. The unit of length of
+/// contact i is w_i times the deepest penetration, each measured over its weight; the unit of force is this length over
+/// Qnn_ii. All units are rounded to powers of two. Normal and tangent of a contact have the same weight, so the
+/// friction law does not change. Units follow the penetration, because it drives the forces: a much larger gap or slip
+/// must not make a closed contact inaccurate. Free unknowns have the unit of length; a displacement by forces without
+/// contact counts as a penetration.
 pub(crate) struct Scaled<'a> {
-    /// Where its lists lie, and those of its solution.
+    /// Arena in which the lists of the problem and of its solution lie.
     pub arena: &'a Bump,
     /// Number of contacts n.
     pub contacts: usize,
-    /// Contact of each tangential unknown (length m).
+    /// Contact (index) of each tangential unknown (length m).
     pub owners: List<'a, usize>,
-    /// Position in p of the tangential unknown of each contact, None without friction (length n).
+    /// Position in p of the tangential unknown of each contact; `None` without friction (length n).
     pub tangents: List<'a, Option<usize>>,
     /// Number of free unknowns f.
     pub free: usize,
     /// Q, (n + m + f) x (n + m + f), column by column.
     entries: List<'a, f64>,
-    /// Gaps and slips without forces, and what the balance of the free unknowns lacks then (length n + m + f).
+    /// Gaps and slips without forces, and the residual of the balance of the free unknowns without forces (length n + m
+    /// + f).
     pub b: List<'a, f64>,
     /// Friction coefficients (length n).
     pub mu: List<'a, f64>,
@@ -48,7 +50,7 @@ pub(crate) struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    /// Scales a problem with at least one penetration, or free unknowns.
+    /// Scales a problem that has at least one penetration or free unknowns.
     pub fn new(problem: &FrictionalLcp, arena: &'a Bump) -> Result<Self, LcpError> {
         let n = problem.len();
         let owners = list(arena, (0..n).filter(|i| problem.mu[*i] > 0.0));
@@ -144,8 +146,8 @@ impl<'a> Scaled<'a> {
         v
     }
 
-    /// The problem of some contacts alone in these units, the forces p of all others held. v = Q p + b is the motion
-    /// under all forces, and v_c - Q_cc P_c the motion without those of these contacts.
+    /// The problem of some contacts alone, in the same units, with the forces p of all other contacts held. v = Q p + b
+    /// is the motion under all forces, and v_c - Q_cc P_c the motion without the forces of these contacts.
     pub fn alone(&self, contacts: &[usize], [p, v]: [&[f64]; 2]) -> FrictionalLcp {
         let n = contacts.len();
         let normal = contacts.iter().map(|&i| Some(i));
@@ -186,7 +188,7 @@ impl<'a> Scaled<'a> {
         list(self.arena, of_p.map(|x| x * self.length))
     }
 
-    /// What p and the states of contacts are in the units of the problem.
+    /// The states of contacts with the forces and free unknowns of p, in the units of the problem.
     pub fn found<'s>(&self, states: &'s [ContactState], p: &[f64]) -> Found<'s, 'a> {
         (states, self.forces(p), self.free_of(p))
     }
@@ -200,7 +202,7 @@ impl<'a> Scaled<'a> {
     }
 }
 
-/// Sweeps over rows and columns when a matrix is equilibrated.
+/// Number of sweeps over rows and columns when a matrix is equilibrated.
 const SWEEPS: usize = 4;
 
 /// Largest power of two <= |x|; 1 for zero.

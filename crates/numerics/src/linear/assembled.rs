@@ -1,6 +1,6 @@
-//! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through positions computed once;
-//! symmetric blocks that are added beyond that pattern, for unknowns that no element connects.
-//! See docs/theory/time.md.
+//! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through positions that are
+//! computed once. Symmetric blocks may be added outside that pattern, for unknowns that no element connects. See
+//! docs/theory/time.md.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,10 +14,10 @@ use crate::archive::{Archive, ArchiveError};
 /// Marks an entry of an element matrix that equations distribute over several entries.
 const DISTRIBUTED: u32 = u32::MAX;
 
-/// Rows of a column for each element that its unknown is of, in a mesh of quadrilaterals or triangles.
+/// Estimated number of rows of a column for each element of its unknown, in a mesh of quadrilaterals or triangles.
 const ROWS: usize = 5;
 
-/// Dofs of an element whose places need no memory of their own.
+/// Number of dofs of an element up to which a list of them needs no allocated memory.
 const DOFS: usize = 16;
 
 /// A symmetric sparse matrix over unknowns, assembled from element matrices over dofs. Both
@@ -26,39 +26,39 @@ const DOFS: usize = 16;
 pub struct Assembled {
     matrix: SymmetricMatrix,
     positions: Arc<EntryPositions>,
-    /// Coefficients of the terms of T that couplings take.
+    /// Coefficients of the terms of T, which the couplings use.
     coefficients: Vec<f64>,
 }
 
-/// Where the entries of the element matrices are added.
+/// Positions at which the entries of the element matrices are added.
 #[derive(Debug)]
 struct EntryPositions {
-    /// Position in the values of the entries of every element matrix, column by column: of every
-    /// entry, or of every other one where the next is added to the next value.
+    /// Position in the values of the entries of every element matrix, column by column: for every entry, or for every
+    /// second one if the next entry always goes to the next value.
     positions: Vec<u32>,
-    /// Start of each element in `positions`, and their end.
+    /// Start of each element in `positions`, and the end of the last one.
     starts: Vec<usize>,
     /// Position of every entry of the diagonal.
     diagonal: Vec<u32>,
-    /// Terms of the entries whose dofs follow others, element by element.
+    /// Terms of the entries at dofs that follow others, element by element.
     couplings: Vec<Coupling>,
     /// Connected group of every unknown.
     groups: OnceLock<Vec<usize>>,
 }
 
-/// A term of T_e^T K_e T_e where a row of T is not one of the identity.
+/// A term of T_e^T K_e T_e for a dof whose row of T is not a row of the identity.
 #[derive(Debug, Clone, Copy)]
 struct Coupling {
     element: usize,
     /// Entry of the element matrix.
     entry: usize,
-    /// Its position in the values.
+    /// Position of the term among the values.
     position: u32,
-    /// Terms of its row and its column, whose coefficients are multiplied.
+    /// Terms of T in its row and its column, whose coefficients are multiplied.
     terms: [u32; 2],
 }
 
-/// The pattern over the unknowns of `map` of elements with the given dofs, and of the diagonal.
+/// The pattern of elements with the given dofs and of the diagonal, over the unknowns of `map`.
 fn pattern(map: &Transformation, elements: &[Vec<usize>]) -> Pattern {
     let unknowns = |element: usize| {
         let terms = elements[element].iter().flat_map(|&dof| map.row(dof));
@@ -99,8 +99,8 @@ fn pattern(map: &Transformation, elements: &[Vec<usize>]) -> Pattern {
     Pattern::new(column_starts, rows)
 }
 
-/// Elements of every unknown, one list after the other, and the starts of the lists; `pairs` has
-/// unknowns with their elements.
+/// The starts of the lists of elements of every unknown, and these lists one after the other; `pairs` gives unknowns
+/// with their elements.
 fn elements_of<I: Iterator<Item = (usize, usize)>>(
     unknowns: usize,
     pairs: impl Fn() -> I,
@@ -135,7 +135,7 @@ impl EntryPositions {
         self.starts.push(self.positions.len());
     }
 
-    /// The same where every dof is an unknown.
+    /// Finds the positions for an element whose dofs are all unknowns.
     fn place_unknowns(&mut self, pattern: &Pattern, unknowns: &[usize]) {
         let twos = unknowns.as_chunks::<2>();
         let are_twos = twos.1.is_empty() && twos.0.iter().all(|[p, q]| p + 1 == *q);
@@ -159,7 +159,7 @@ impl EntryPositions {
         }
     }
 
-    /// The same where some dofs are prescribed or follow others.
+    /// Finds the positions for an element with dofs that are prescribed or follow others.
     fn place_dofs(&mut self, pattern: &Pattern, map: &Transformation, dofs: &[usize]) {
         let element = self.starts.len() - 1;
         let pairs = dofs
@@ -195,7 +195,7 @@ impl EntryPositions {
 }
 
 impl Assembled {
-    /// Zero matrix over the unknowns of `map`, with the pattern of elements with the given dofs.
+    /// A zero matrix over the unknowns of `map`, with the pattern of elements with the given dofs.
     pub fn new(map: &Transformation, elements: &[Vec<usize>]) -> Self {
         let (n, pattern) = (map.unknowns(), pattern(map, elements));
         let entries: usize = elements.iter().map(|dofs| dofs.len().pow(2)).sum();
@@ -222,7 +222,7 @@ impl Assembled {
         }
     }
 
-    /// Takes the coefficients of the terms of T; its pattern is that of the map that this was made with.
+    /// Copies the coefficients of the terms of T from `map`, which must have the pattern of the map at construction.
     pub fn set_coefficients(&mut self, map: &Transformation) {
         if !self.coefficients.is_empty() {
             self.coefficients.clear();
@@ -291,7 +291,7 @@ impl Assembled {
         &self.matrix
     }
 
-    /// The pattern with all values zero.
+    /// A matrix of the same pattern with all values zero.
     pub fn zeros(&self) -> Assembled {
         Assembled {
             matrix: SymmetricMatrix::zeros(self.matrix.pattern.clone()),
@@ -311,7 +311,7 @@ impl Assembled {
         self.positions.groups.get_or_init(groups)
     }
 
-    /// The entries of the diagonal.
+    /// Values of the diagonal.
     pub fn diagonal(&self) -> impl Iterator<Item = f64> {
         let (diagonal, values) = (&self.positions.diagonal, &self.matrix.values);
         diagonal.iter().map(|&position| values[position as usize])
@@ -341,7 +341,7 @@ fn groups(pattern: &Pattern) -> Vec<usize> {
     group
 }
 
-/// The groups after entries at some places (column, row) have connected them.
+/// The connected groups after entries at some places (column, row) have been added.
 pub(super) fn united(groups: &[usize], places: &[(usize, usize)]) -> Vec<usize> {
     let count = groups.iter().max().map_or(0, |last| last + 1);
     let mut first: Vec<usize> = (0..count).collect();
@@ -366,18 +366,18 @@ pub(super) fn united(groups: &[usize], places: &[(usize, usize)]) -> Vec<usize> 
     groups.iter().map(|&group| number[group]).collect()
 }
 
-/// Places of earlier blocks for each entry at hand.
+/// Ratio of places of earlier blocks to present entries above which the earlier places are forgotten.
 const MOST_PLACES: usize = 3;
 
 /// Sum of blocks T_e^T K_e T_e over the unknowns.
 #[derive(Debug, Clone, Default)]
 pub struct AddedBlocks {
-    /// Column, row and value of every entry, in any order; entries of one place add up.
+    /// Column, row and value of every entry, in any order; entries at the same place are added.
     entries: Vec<(usize, usize, f64)>,
 }
 
 impl AddedBlocks {
-    /// Adds T_e^T K_e T_e of a symmetric matrix `k` over some dofs; its zeros enlarge no pattern.
+    /// Adds T_e^T K_e T_e of a symmetric matrix `k` over some dofs; zeros of `k` do not enlarge the pattern.
     pub fn add(&mut self, map: &Transformation, dofs: &[usize], k: &DMatrix<f64>) {
         for (j, &column_dof) in dofs.iter().enumerate() {
             for (i, &row_dof) in dofs.iter().enumerate().filter(|&(i, _)| k[(i, j)] != 0.0) {
@@ -395,8 +395,9 @@ impl AddedBlocks {
         self.entries.is_empty()
     }
 
-    /// Places (column, row) of these blocks and of earlier ones, increasing: the pattern of the sum stays the same as
-    /// long as it can, and with it its symbolic analysis. Many more places than entries are forgotten.
+    /// Places (column, row) of these blocks and of earlier ones, in increasing order. Keeping earlier places keeps the
+    /// pattern of the sum, and with it its symbolic analysis. Earlier places are forgotten if there are many more of
+    /// them than entries.
     pub(super) fn places(&self, earlier: &[(usize, usize)]) -> Vec<(usize, usize)> {
         let forgets = earlier.len() > MOST_PLACES * self.entries.len();
         let mut places = if forgets {
@@ -411,30 +412,30 @@ impl AddedBlocks {
     }
 }
 
-/// The sum of a matrix and added blocks, with the union of their patterns; by columns. It takes new values as long as
-/// the pattern of the matrix and the places of the blocks stay.
+/// The sum of a matrix and added blocks, with the union of their patterns, stored by columns. The sum can be filled
+/// with new values as long as the pattern of the matrix and the places of the blocks stay the same.
 #[derive(Debug)]
 pub(super) struct BlockSum {
     sum: SymmetricMatrix,
-    /// Places (column, row) of the blocks, increasing.
+    /// Places (column, row) of the entries of the blocks, in increasing order.
     places: Vec<(usize, usize)>,
-    /// Their positions among the values.
+    /// Positions of these places among the values.
     positions: Vec<usize>,
-    /// Values of the matrix that are next to each other in the sum, too.
+    /// Runs of values of the matrix that are contiguous in the sum, too.
     runs: Vec<ConsecutiveValues>,
 }
 
-/// Consecutive values of a matrix in a sum.
+/// Consecutive values of a matrix that are also consecutive in a sum.
 #[derive(Debug)]
 struct ConsecutiveValues {
-    /// The first of them in the matrix, and in the sum.
+    /// Position of the first value in the matrix; `to` is its position in the sum.
     from: usize,
     to: usize,
     length: usize,
 }
 
 impl BlockSum {
-    /// Room for the sum of a matrix and blocks with entries at some places (column, row), increasing.
+    /// A zero sum of a matrix and blocks with entries at some places (column, row), in increasing order.
     pub fn new(matrix: &SymmetricMatrix, places: Vec<(usize, usize)>) -> Self {
         let (ends, all_rows) = (matrix.pattern.starts(), matrix.pattern.all_rows());
         let mut starts = Vec::with_capacity(ends.len());
@@ -484,7 +485,7 @@ impl BlockSum {
         }
     }
 
-    /// Places (column, row) of the blocks, increasing.
+    /// Places (column, row) of the entries of the blocks, in increasing order.
     pub fn places(&self) -> &[(usize, usize)] {
         &self.places
     }
@@ -518,7 +519,8 @@ impl BlockSum {
 mod tests {
     use super::*;
 
-    /// Elements of three dofs each, the second dof of the first and the third of the second prescribed.
+    /// Two elements of three dofs each; the second dof of the first element and the third dof of the second are
+    /// prescribed.
     fn two_elements(map: &Transformation) -> Assembled {
         let mut a = Assembled::new(map, &[vec![0, 1, 2], vec![2, 3, 4]]);
         let k: Vec<f64> = (0..9).map(f64::from).collect();

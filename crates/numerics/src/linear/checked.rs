@@ -1,5 +1,5 @@
-//! Direct solves with an a posteriori check: the residual relative to the terms of b and A x; parts of the inverse
-//! by their row sums.
+//! Direct solves with a check of each result: a solution by its residual relative to the terms of b and A x, a part of
+//! the inverse by its row sums.
 
 use rayon::prelude::*;
 
@@ -8,8 +8,8 @@ use super::symmetric::SymmetricMatrix;
 use super::{AddedBlocks, Assembled, LinearError, LinearSolver, SMALLEST, larger, largest};
 use crate::archive::{Archive, ArchiveError};
 
-/// Largest residual of a solve, relative to the terms it is made of. A backward stable solve stays
-/// near the round-off unit.
+/// Largest residual of a solve, relative to the terms of the residual. The residual of a backward stable solve is near
+/// the unit round-off.
 const RESIDUAL: f64 = 1e-9;
 
 /// A matrix with its solver and blocks that are added to it; every solve is checked for finiteness and residual.
@@ -21,11 +21,11 @@ pub struct CheckedSolver {
     /// Whether the blocks of `sum` are part of the matrix at present.
     has_blocks: bool,
     factorized: bool,
-    /// Right-hand side that the last solve began with.
+    /// Right-hand side with which the last solve began.
     b: Vec<f64>,
-    /// What was added to it (unknown, value).
+    /// Additions to this right-hand side (unknown, value).
     added: Vec<(usize, f64)>,
-    /// Its solution.
+    /// Solution of the last solve.
     x: Vec<f64>,
     is_under_way: bool,
 }
@@ -46,13 +46,13 @@ impl CheckedSolver {
         }
     }
 
-    /// The matrix, to set new values; solves use them after [`Self::factorize`].
+    /// The matrix, for setting new values, which solves use after [`Self::factorize`].
     pub fn matrix_mut(&mut self) -> &mut Assembled {
         (self.factorized, self.has_blocks) = (false, false);
         &mut self.matrix
     }
 
-    /// Adds blocks to the matrix in place of those added before, until it gets new values.
+    /// Adds blocks to the matrix in place of earlier blocks; the blocks stay until the matrix gets new values.
     pub fn add_blocks(&mut self, blocks: AddedBlocks) {
         (self.factorized, self.has_blocks) = (false, !blocks.is_empty());
         let sum = self.sum.take().filter(|_| self.has_blocks);
@@ -66,10 +66,10 @@ impl CheckedSolver {
         }
     }
 
-    /// Transfers the matrix with its blocks; factors that are read are made anew, the same bits.
+    /// Transfers the matrix with its blocks. After reading, the matrix is factorised again, which gives the same bits.
     ///
     /// # Errors
-    /// What is read is of another matrix.
+    /// The archive holds another matrix.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         self.matrix.transfer(archive)?;
         let mut places = self.sum.as_ref().map(|sum| sum.places().to_vec());
@@ -99,7 +99,7 @@ impl CheckedSolver {
     /// Factorises the matrix with the added blocks.
     ///
     /// # Errors
-    /// Those of [`LinearSolver::factorize`], or values that are not finite.
+    /// [`LinearSolver::factorize`] fails, or a value is not finite.
     pub fn factorize(&mut self) -> Result<(), LinearError> {
         let Self {
             solver,
@@ -118,13 +118,13 @@ impl CheckedSolver {
         Ok(())
     }
 
-    /// Gives up the factors.
+    /// Frees the factors.
     pub fn give_up_factors(&mut self) {
         self.factorized = false;
         self.solver.give_up_factors();
     }
 
-    /// Whether the factors are those of the matrix.
+    /// Whether the factors belong to the present matrix.
     pub fn is_factorized(&self) -> bool {
         self.factorized
     }
@@ -155,7 +155,7 @@ impl CheckedSolver {
     /// The solution for the right-hand side `b`.
     ///
     /// # Errors
-    /// A solution that is not finite or fails the residual check; a matrix without factors.
+    /// The solution is not finite or fails the residual check, or the matrix has no factors.
     pub fn solve(&mut self, b: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.begin(|own| b.clone_into(own))?;
         let x = self.end()?.to_vec();
@@ -163,11 +163,10 @@ impl CheckedSolver {
         Ok(x)
     }
 
-    /// Begins a solve in parts with a right-hand side that `write` puts in place of the last one, see
-    /// [`LinearSolver`].
+    /// Begins a solve in parts (see [`LinearSolver`]) with the right-hand side that `write` writes.
     ///
     /// # Errors
-    /// A matrix without factors.
+    /// The matrix has no factors.
     pub fn begin(&mut self, write: impl FnOnce(&mut Vec<f64>)) -> Result<(), LinearError> {
         if !self.factorized {
             return Err(LinearError::NotFactorized);
@@ -191,7 +190,7 @@ impl CheckedSolver {
         self.solver.add(b);
     }
 
-    /// The right-hand side with what was added to it.
+    /// The right-hand side with its additions.
     fn right_hand_side(&self) -> Vec<f64> {
         let mut b = self.b.clone();
         self.added
@@ -200,10 +199,10 @@ impl CheckedSolver {
         b
     }
 
-    /// Ends a solve and gives the solution, whose residual [`Self::check`] checks.
+    /// Ends a solve and returns the solution, whose residual [`Self::check`] checks.
     ///
     /// # Errors
-    /// A solution that is not finite.
+    /// The solution is not finite.
     pub fn end(&mut self) -> Result<&[f64], LinearError> {
         self.x.resize(self.b.len(), 0.0);
         self.solver.end(&mut self.x);
@@ -214,10 +213,10 @@ impl CheckedSolver {
         }
     }
 
-    /// Checks the residual of the last solution, relative to the terms it is made of.
+    /// Checks the residual of the last solution, relative to the terms of the residual.
     ///
     /// # Errors
-    /// A residual that is too large.
+    /// The residual is too large.
     pub fn check(&self) -> Result<(), LinearError> {
         let b = self.right_hand_side();
         let residual = relative_residual(self.whole(), &self.x, [&b, &self.b]);
@@ -227,12 +226,11 @@ impl CheckedSolver {
         }
     }
 
-    /// The inverse at the rows and columns of each list of `unknowns` (distinct, of other connected groups
-    /// than those of the other lists), m x m column by column. A solve in parts may go on afterwards.
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct; different lists have different
+    /// connected groups), as m x m matrices by columns. A solve in parts may continue afterwards.
     ///
     /// # Errors
-    /// Values that are not finite, or row sums that disagree with a solve; a matrix without
-    /// factors.
+    /// A value is not finite, row sums disagree with a solve, or the matrix has no factors.
     pub fn inverse_at(&mut self, unknowns: &[&[usize]]) -> Result<Vec<Vec<f64>>, LinearError> {
         let mut b = vec![0.0; self.matrix.size()];
         unknowns
@@ -251,8 +249,8 @@ impl CheckedSolver {
         Ok(inverses)
     }
 
-    /// The inverse at the rows and columns of each list of `unknowns` (distinct), m x m column by column, of a
-    /// factorised matrix. A solve in parts may go on afterwards.
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct) of a factorised matrix, as m x m
+    /// matrices by columns. A solve in parts may continue afterwards.
     pub fn unchecked_inverse_at(&mut self, unknowns: &[&[usize]]) -> Vec<Vec<f64>> {
         let inverses = self.solver.inverse_at(unknowns, self.matrix.size());
         if self.is_under_way {
@@ -262,7 +260,7 @@ impl CheckedSolver {
     }
 }
 
-/// The row sums of an inverse at some unknowns must be those of the solution `x`.
+/// Checks that the row sums of an inverse at some unknowns agree with the solution `x`.
 fn check_row_sums(inverse: &[f64], unknowns: &[usize], x: &[f64]) -> Result<(), LinearError> {
     let sums = sum(inverse, unknowns.len());
     let difference = |(sum, &unknown): (&f64, &usize)| (sum - x[unknown]).abs();
@@ -290,11 +288,11 @@ fn sum(columns: &[f64], n: usize) -> Vec<f64> {
     sum
 }
 
-/// Rows whose residual is one piece of work for a thread.
+/// Number of rows whose residual is one task for a thread.
 const ROWS: usize = 16_384;
 
-/// max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, b0 being what the solve began with, 0 where numbers are so small
-/// that they have lost digits; the rows of the symmetric A are its columns.
+/// The ratio max_i |b - A x|_i / max_i (|b0| + |A| |x|)_i, where b0 is the right-hand side at the start of the solve; 0
+/// if the numbers are so small that they have lost digits. The matrix A is symmetric, so its columns are used as rows.
 fn relative_residual(a: &SymmetricMatrix, x: &[f64], [b, b0]: [&[f64]; 2]) -> f64 {
     let of_rows =
         |(k, (b, b0)): (usize, (&[f64], &[f64]))| residual_and_size(a, x, (k * ROWS, b, b0));
@@ -308,7 +306,7 @@ fn relative_residual(a: &SymmetricMatrix, x: &[f64], [b, b0]: [&[f64]; 2]) -> f6
     if scale < SMALLEST { 0.0 } else { error / scale }
 }
 
-/// The largest |b - A x| and |b0| + |A| |x| in the rows from `first` on, which `b` and `b0` are of.
+/// The largest |b - A x| and |b0| + |A| |x| in the rows of `b` and `b0`, which begin with row `first`.
 fn residual_and_size(
     a: &SymmetricMatrix,
     x: &[f64],
@@ -344,7 +342,7 @@ mod tests {
     use crate::linear::SolverChoice;
     use crate::linear::{Transformation, linear_solver};
 
-    /// Five-point stencil on an n x n grid with shifted diagonal.
+    /// Matrix of the five-point stencil on an n x n grid, with shifted diagonal.
     fn grid(n: usize, shift: f64) -> Assembled {
         let index = |i: usize, j: usize| i * n + j;
         let mut edges = Vec::new();

@@ -1,15 +1,15 @@
-//! Largest values, NaN where one of the values is.
+//! Largest absolute values; the result is NaN if one of the values is NaN.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// Values that are one piece of work for a thread.
+/// Number of values that are one task for a thread.
 const PIECE: usize = 32_768;
 
-/// Smallest number that a relative error of it can be told of: its round-off is a normal number.
+/// Smallest number with a meaningful relative error: its round-off is still a normal number.
 pub const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
-/// Largest absolute value, 0 without values; NaN when one is.
+/// Largest absolute value; 0 without values, NaN if one of them is NaN.
 pub fn largest(values: &[f64]) -> f64 {
     match values.len() > PIECE && rayon::current_num_threads() > 1 {
         true => (values.par_chunks(PIECE).map(largest_of)).reduce(|| 0.0, larger),
@@ -17,7 +17,7 @@ pub fn largest(values: &[f64]) -> f64 {
     }
 }
 
-/// The same on one thread.
+/// Largest absolute value, computed on one thread.
 fn largest_of(values: &[f64]) -> f64 {
     Arch::new().dispatch(Largest(values)).unwrap_or_else(|| {
         let larger = |most, value: &f64| larger(most, value.abs());
@@ -25,7 +25,7 @@ fn largest_of(values: &[f64]) -> f64 {
     })
 }
 
-/// Largest absolute value, none where a value is not finite.
+/// Largest absolute value; `None` if a value is not finite.
 struct Largest<'a>(&'a [f64]);
 
 impl WithSimd for Largest<'_> {
@@ -49,7 +49,7 @@ impl WithSimd for Largest<'_> {
     }
 }
 
-/// The larger of two values; NaN when one is.
+/// The larger of two values; NaN if one of them is NaN.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }

@@ -1,5 +1,5 @@
-//! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if
-//! need be, further blocks, their factorisations, and parts of their inverses.
+//! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if needed, further
+//! blocks; their factorisations, and parts of their inverses.
 
 mod assembled;
 mod checked;
@@ -24,13 +24,13 @@ pub use transformation::{Rotation, Transformation};
 /// Sparse factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolverChoice {
-    /// Multifrontal LDL^T in faer's order.
+    /// Multifrontal LDL^T with the order that faer finds.
     Faer,
-    /// sprs-ldl with an AMD permutation.
+    /// LDL^T of the library sprs-ldl with an AMD permutation.
     Sprs,
 }
 
-/// The solver that the deck chooses.
+/// A solver of the kind that the deck chooses.
 pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
     match choice {
         SolverChoice::Faer => Box::new(MultifrontalLdl::default()),
@@ -38,7 +38,7 @@ pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
     }
 }
 
-/// Two of them, for matrices whose patterns may be the same: one takes over the analysis of the other.
+/// Two solvers for matrices whose patterns may be the same: one solver takes over the analysis of the other.
 pub fn two_linear_solvers(choice: SolverChoice) -> [Box<dyn LinearSolver>; 2] {
     match choice {
         SolverChoice::Faer => MultifrontalLdl::two().map(|solver| Box::new(solver) as _),

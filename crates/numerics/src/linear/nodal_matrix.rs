@@ -1,36 +1,36 @@
-//! Matrices over the nodes that are the same in both directions, stored for products with vectors over all
-//! dofs. See docs/theory/elements.md.
+//! Matrices over the nodes that are the same for both directions of displacement, stored for products with vectors over
+//! all dofs. See docs/theory/elements.md.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::symmetric::SymmetricMatrix;
 
-/// Rows side by side.
+/// Number of rows that are stored together.
 const ROWS: usize = 2;
 
-/// Nodes of a run: where a mesh has its nodes in rows, quadrilaterals connect two of them to four in each
-/// row.
+/// Number of nodes of a run: in a mesh with numbered rows of nodes, quadrilaterals connect two neighbouring nodes to
+/// four nodes in each row.
 const RUN: usize = 4;
 
-/// Nodes whose part of a product is one piece of work for a thread.
+/// Number of nodes whose part of a product is one task for a thread.
 const NODES: usize = 8192;
 
-/// Values of two rows at consecutive nodes.
+/// Values of two rows of the matrix at consecutive nodes.
 struct ConsecutiveNodes {
     first: u32,
     values: [[f64; ROWS]; RUN],
 }
 
-/// A symmetric matrix over the nodes, two rows after two in runs of consecutive nodes.
+/// A symmetric matrix over the nodes, stored in pairs of rows, each as runs of consecutive nodes.
 pub struct NodalMatrix {
-    /// Start of every two rows in `runs`, and their end.
+    /// Start of every pair of rows in `runs`, and the end of the last one.
     starts: Vec<usize>,
     runs: Vec<ConsecutiveNodes>,
 }
 
 impl NodalMatrix {
-    /// A symmetric matrix.
+    /// A nodal matrix with the values of a symmetric matrix.
     pub fn new(matrix: &SymmetricMatrix) -> Self {
         let (mut starts, mut runs) = (vec![0], Vec::<ConsecutiveNodes>::new());
         let mut entries = Vec::new();
@@ -78,7 +78,7 @@ impl NodalMatrix {
     }
 }
 
-/// The product of the matrix with v; `part` holds its rows from node `first` on.
+/// Writes the product of the matrix with v; `part` holds the values of the product from node `first` on.
 struct Product<'a> {
     matrix: &'a NodalMatrix,
     v: &'a [[f64; 2]],
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::linear::{Assembled, Transformation};
 
-    /// A matrix of some elements over `n` nodes, with any values.
+    /// A matrix of random elements over `n` nodes, with random values.
     fn matrix(n: usize, elements: &[Vec<usize>]) -> Assembled {
         let mut matrix = Assembled::new(&Transformation::identity(n), elements);
         for (element, nodes) in elements.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::symmetric::SymmetricMatrix;
 
-/// Why a factorisation or a solve failed.
+/// Reason why a factorisation or a solve failed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinearError {
     /// A pivot of the factorisation is not positive.
@@ -19,43 +19,43 @@ pub enum LinearError {
     /// The residual of a solve exceeds its bound.
     #[error("relative residual {residual:.1e} of a solve")]
     Residual {
-        /// Residual relative to the terms it is made of.
+        /// Residual relative to the terms of the residual.
         residual: f64,
     },
-    /// A bilateral constraint that follows from others.
+    /// A bilateral constraint follows from others.
     #[error("the hinges ask for more than the bodies between them can do")]
     Dependent {
-        /// Its number.
+        /// Number of the constraint.
         number: usize,
     },
-    /// A solve without factors.
+    /// A solve was asked for without factors.
     #[error("the matrix is not factorised")]
     NotFactorized,
-    /// The library failed.
+    /// The solver library failed.
     #[error("{0}")]
     Library(String),
 }
 
 /// A direct solver for symmetric positive definite matrices.
 ///
-/// A solve has parts, so that the solution at some unknowns is known before it ends, and may change its
-/// right-hand side there.
+/// A solve can be done in parts: the solution at some unknowns is known before the solve ends, and the right-hand side
+/// at these unknowns may still change.
 ///
-/// A matrix with the pattern of the last one needs no symbolic analysis.
+/// A matrix with the pattern of the last matrix needs no symbolic analysis.
 pub trait LinearSolver: Send {
     /// Factorises `a`.
     ///
     /// # Errors
-    /// A pivot that is not positive, or a failure of the library.
+    /// A pivot is not positive, or the library fails.
     fn factorize(&mut self, a: &SymmetricMatrix) -> Result<(), LinearError>;
 
-    /// Gives up the factors with their memory.
+    /// Frees the factors and their memory.
     fn give_up_factors(&mut self);
 
-    /// Begins a solve with the right-hand side `b`. Must follow a successful `factorize`.
+    /// Begins a solve with the right-hand side `b`. A successful `factorize` must come before a solve.
     fn begin(&mut self, b: &[f64]);
 
-    /// The unknowns that the following are about, until the next factorisation.
+    /// Sets the watched unknowns for `watched` and `add`, until the next factorisation.
     fn watch(&mut self, unknowns: &[usize]);
 
     /// Writes the solution for the right-hand side so far, at the watched unknowns, to `values`, in
@@ -74,8 +74,8 @@ pub trait LinearSolver: Send {
         self.end(b);
     }
 
-    /// The inverse at the rows and columns of each list of `unknowns` (distinct), m x m column by column. Must
-    /// follow a successful `factorize` of a matrix of size `n`.
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct), as m x m matrices by columns. A
+    /// successful `factorize` of a matrix of size `n` must come before.
     fn inverse_at(&mut self, unknowns: &[&[usize]], n: usize) -> Vec<Vec<f64>> {
         let mut column = |&column: &usize| {
             let mut x = vec![0.0; n];
@@ -92,7 +92,7 @@ pub trait LinearSolver: Send {
     }
 }
 
-/// Position and value of the first pivot that is not positive (NaN included).
+/// Returns an error with the position and value of the first pivot that is not positive (NaN included).
 pub(super) fn check_pivots(pivots: impl Iterator<Item = (usize, f64)>) -> Result<(), LinearError> {
     for (unknown, pivot) in pivots {
         if pivot.is_nan() || pivot <= 0.0 {

@@ -1,5 +1,5 @@
-//! Binding of the sprs-ldl library, a simplicial factorisation that shares nothing with the multifrontal one; parts of
-//! the inverse come from unit right-hand sides.
+//! Binding of the library sprs-ldl, a simplicial factorisation that shares no code with the multifrontal one. Parts of
+//! the inverse come from solves with unit right-hand sides.
 
 use sprs::{CsMat, PermOwned, SymmetryCheck};
 use sprs_ldl::{LdlNumeric, LdlSymbolic};
@@ -8,14 +8,14 @@ use super::multifrontal::minimum_degree;
 use super::solver::{LinearError, LinearSolver, check_pivots};
 use super::symmetric::{Pattern, SymmetricMatrix};
 
-/// Up-looking LDL^T of sprs-ldl with an approximate minimum degree order: the reference
-/// implementation beside the multifrontal one.
+/// Up-looking LDL^T of sprs-ldl with an approximate minimum degree order: the reference for the multifrontal
+/// implementation.
 #[derive(Default)]
 pub struct SprsLdl {
     order: Vec<usize>,
     /// Pattern of the order and the factor.
     pattern: Pattern,
-    /// The library needs at least two unknowns; the pivot of a single one.
+    /// The pivot of a matrix of one unknown: the library needs at least two unknowns.
     single: Option<f64>,
     factor: Option<LdlNumeric<f64, usize>>,
     /// Right-hand side of a solve.

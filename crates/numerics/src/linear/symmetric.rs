@@ -1,16 +1,16 @@
-//! Symmetric sparse matrices by columns, both triangles, whose copies share their pattern; where two of them have the
-//! same pattern. `sprs` stores them with indices of 8 bytes and does not hand out the storage of its pattern, so that each
-//! solver had a copy of it.
+//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. These matrices are own
+//! code, because `sprs` stores indices of 8 bytes and does not share the storage of its pattern, so each solver would
+//! need a copy.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Where a symmetric matrix has entries; copies share it.
+/// Pattern of a symmetric matrix: the places of its entries. Copies share its memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pattern {
-    /// First entry of every column, and the number of entries.
+    /// First entry of every column, and the number of entries at the end.
     starts: Arc<[u32]>,
-    /// Rows of the entries, column after column, increasing.
+    /// Rows of the entries, column after column, in increasing order.
     rows: Arc<[u32]>,
 }
 
@@ -21,7 +21,8 @@ impl Default for Pattern {
 }
 
 impl Pattern {
-    /// A pattern, given the first entry of every column with the number of entries, and the rows of the entries.
+    /// A pattern, made from the first entry of every column (with the number of entries at the end) and the rows of the
+    /// entries.
     pub fn new(starts: Vec<u32>, rows: Vec<u32>) -> Self {
         Pattern {
             starts: starts.into(),
@@ -50,7 +51,7 @@ impl Pattern {
         self.rows.len()
     }
 
-    /// Entries of a column.
+    /// Range of the entries of a column.
     pub fn column(&self, k: usize) -> Range<usize> {
         self.starts[k] as usize..self.starts[k + 1] as usize
     }
@@ -60,7 +61,7 @@ impl Pattern {
         &self.rows[self.column(column)]
     }
 
-    /// Starts of the columns, and the number of entries.
+    /// First entry of every column, and the number of entries at the end.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
@@ -70,16 +71,16 @@ impl Pattern {
         &self.rows
     }
 
-    /// The entry at a row of a column.
+    /// Number of the entry at a row of a column.
     pub fn position(&self, row: usize, column: usize) -> usize {
         self.column(column).start + self.rows(column).partition_point(|&r| (r as usize) < row)
     }
 }
 
-/// The number of an entry.
+/// The number of an entry as an index of four bytes.
 ///
 /// # Panics
-/// There are as many as no memory holds.
+/// The number does not fit into `u32`.
 pub fn index(entry: usize) -> u32 {
     assert!(entry < u32::MAX as usize, "matrices fit into memory");
     entry as u32
@@ -88,9 +89,9 @@ pub fn index(entry: usize) -> u32 {
 /// A symmetric matrix; copies share its pattern.
 #[derive(Debug, Clone)]
 pub struct SymmetricMatrix {
-    /// Where it has entries.
+    /// Pattern of the matrix.
     pub pattern: Pattern,
-    /// The entries, column after column.
+    /// Values of the entries, column after column.
     pub values: Vec<f64>,
 }
 
@@ -108,7 +109,7 @@ impl SymmetricMatrix {
         self.pattern.size()
     }
 
-    /// Entries of a column: row and value.
+    /// Entries of a column, each as row and value.
     pub fn column(&self, k: usize) -> impl Iterator<Item = (usize, f64)> {
         let values = &self.values[self.pattern.column(k)];
         let rows = self.pattern.rows(k).iter().map(|&row| row as usize);

@@ -11,32 +11,32 @@ use crate::archive::{Archive, ArchiveError};
 
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
-/// A free dof has a row of the identity, a prescribed one an empty row, one that follows others by
-/// an equation a row with their coefficients. A dof of a body that turns follows its angle too, by a
-/// coefficient that changes with the iterate: the one that forces act by takes the difference of start
-/// and iterate exactly, the other is the derivative at the iterate (docs/theory/bodies.md).
+/// A free dof has a row of the identity, a prescribed dof an empty row, and a dof that follows others by an equation
+/// has a row with their coefficients. A dof of a body that turns also follows the angle of the body, by two
+/// coefficients that change with the iterate. Forces act by the first coefficient, which represents the difference
+/// between start and iterate exactly. The second coefficient is the derivative at the iterate (docs/theory/bodies.md).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,
-    /// Start of each row in `terms`; copies share it.
+    /// Start of each row in `terms`; copies share this list.
     starts: Arc<[usize]>,
     /// Unknown and coefficient of every term, row by row; copies share them until they change.
     terms: Arc<[(usize, f64)]>,
-    /// Coefficients of the derivatives, where they are others than those of the terms.
+    /// Coefficients of the derivatives, if they differ from those of the terms.
     derivatives: Option<Vec<f64>>,
-    /// Dofs of the unknowns one after the other, where all rows are empty or of the identity.
+    /// Ranges of the dofs of the unknowns, if all rows are empty or rows of the identity.
     selected: Option<Vec<Range<usize>>>,
 }
 
 impl Transformation {
-    /// T q of the derivatives: a motion of all dofs.
+    /// T q with the coefficients of the derivatives: a motion of all dofs.
     pub fn motion(&self, q: &[f64]) -> Vec<f64> {
         let mut motion = vec![0.0; self.starts.len() - 1];
         self.add(q, &mut motion);
         motion
     }
 
-    /// T q of the coefficients by which forces act: what forces at all dofs do.
+    /// T q with the coefficients by which forces act: the motion with which forces at all dofs do work.
     pub fn work(&self, q: &[f64]) -> Vec<f64> {
         let of_row = |row: &[(usize, f64)]| row.iter().map(|&(at, c)| c * q[at]).sum();
         self.rows().map(of_row).collect()
@@ -60,7 +60,7 @@ impl Transformation {
         map
     }
 
-    /// Dofs of the unknowns in ranges, if each unknown is that of one dof, in their order.
+    /// Ranges of the dofs of the unknowns, if each unknown belongs to one dof, in the same order.
     fn selection(&self) -> Option<Vec<Range<usize>>> {
         let (mut selected, mut count) = (Vec::<Range<usize>>::new(), 0);
         for (dof, row) in self.rows().enumerate() {
@@ -87,28 +87,28 @@ impl Transformation {
         self.unknowns
     }
 
-    /// Terms (unknown, coefficient) of a dof.
+    /// Terms (unknown, coefficient) of the row of a dof.
     pub fn row(&self, dof: usize) -> &[(usize, f64)] {
         &self.terms[self.starts[dof]..self.starts[dof + 1]]
     }
 
-    /// Derivatives (unknown, coefficient) of a dof.
+    /// Terms (unknown, coefficient of the derivative) of the row of a dof.
     pub fn derivative_row(&self, dof: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.derivatives_in(self.starts[dof]..self.starts[dof + 1])
     }
 
-    /// Whether forces act by other coefficients than the derivatives: T W T^T is not symmetric then.
+    /// Whether the coefficients by which forces act differ from the derivatives; then T W T^T is not symmetric.
     pub fn has_own_derivatives(&self) -> bool {
         self.derivatives.is_some()
     }
 
-    /// Derivatives in a range of the terms.
+    /// Terms of the derivatives in a range of the terms.
     fn derivatives_in(&self, range: Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
         let of = self.derivatives.as_deref();
         range.map(move |i| (self.terms[i].0, of.map_or(self.terms[i].1, |of| of[i])))
     }
 
-    /// Sets the coefficients of the last term of a dof: that by which forces act, and the derivative.
+    /// Sets the coefficients of the last term of a dof: the one by which forces act, and the derivative.
     pub fn set_last(&mut self, dof: usize, [force, derivative]: [f64; 2]) {
         let Some(last) = self.starts[dof + 1].checked_sub(1) else {
             return;
@@ -118,10 +118,10 @@ impl Transformation {
         Arc::make_mut(&mut self.terms)[last].1 = force;
     }
 
-    /// Transfers the coefficients, which bodies that turn change.
+    /// Transfers the coefficients, which change when bodies turn.
     ///
     /// # Errors
-    /// What is read is of another map.
+    /// The archive belongs to another map.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer(&mut self.derivatives)?;
         match &self.derivatives {
@@ -141,7 +141,7 @@ impl Transformation {
         self.starts[dof]
     }
 
-    /// Terms of all dofs.
+    /// Terms of the rows of all dofs.
     pub fn rows(&self) -> impl Iterator<Item = &[(usize, f64)]> {
         let starts = self.starts.windows(2);
         starts.map(|ends| &self.terms[ends[0]..ends[1]])
@@ -154,7 +154,7 @@ impl Transformation {
         restricted
     }
 
-    /// T^T v over the unknowns, T of the derivatives.
+    /// T^T v over the unknowns, where T has the derivatives as coefficients.
     pub fn restrict_derivatives(&self, v: &[f64]) -> Vec<f64> {
         let mut restricted = vec![0.0; self.unknowns];
         for (dof, value) in v.iter().enumerate() {
@@ -184,7 +184,8 @@ impl Transformation {
         }
     }
 
-    /// Writes [`Self::restrict`] of the vector whose values at some dofs `extend` adds to a list.
+    /// Writes [`Self::restrict`] of a vector that is given by the function `extend`, which appends its values at some
+    /// dofs to a list.
     pub fn write_restricted_by(
         &self,
         extend: impl Fn(Range<usize>, &mut Vec<f64>),
@@ -202,7 +203,7 @@ impl Transformation {
         self.write_restricted(&all, restricted);
     }
 
-    /// The largest absolute value of T^T v, NaN where one is.
+    /// The largest absolute value of T^T v; NaN if one of the values is NaN.
     pub fn largest_restricted(&self, v: &[f64]) -> f64 {
         match &self.selected {
             Some(selected) => {
@@ -213,7 +214,7 @@ impl Transformation {
         }
     }
 
-    /// Writes v + T q, v over all dofs, T of the derivatives.
+    /// Writes v + T q for v over all dofs, where T has the derivatives as coefficients.
     pub fn write_sum(&self, v: &[f64], q: &[f64], sum: &mut Vec<f64>) {
         sum.clear();
         let Some(selected) = &self.selected else {
@@ -232,7 +233,7 @@ impl Transformation {
         sum.extend_from_slice(&v[sum.len()..]);
     }
 
-    /// Adds T q to a vector v over all dofs, T of the derivatives.
+    /// Adds T q to a vector v over all dofs, where T has the derivatives as coefficients.
     pub fn add(&self, q: &[f64], v: &mut [f64]) {
         if let Some(selected) = &self.selected {
             let mut rest = q;
@@ -251,23 +252,23 @@ impl Transformation {
     }
 }
 
-/// R: turns x and y of every node by the angle of its body. W is the inverse of a matrix, R W R^T
-/// that of the matrix turned with the bodies.
+/// Rotation R, which turns x and y of every node by the angle of its body. If W is the inverse of a matrix, R W R^T is
+/// the inverse of this matrix turned with the bodies.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rotation {
-    /// Cosine and sine of the angle of every node; none where no body is turned, so that it costs nothing.
+    /// Cosine and sine of the angle of every node; empty if no body is turned, which makes R cost nothing.
     nodes: Vec<[f64; 2]>,
 }
 
 impl Rotation {
-    /// The rotation of bodies by the given angles (rad); `body_of` of every node.
+    /// The rotation of bodies by the given angles (rad); `body_of` gives the body of every node.
     pub fn new(angles: &[f64], body_of: &[usize]) -> Self {
         let mut rotation = Rotation::default();
         rotation.set(angles, body_of);
         rotation
     }
 
-    /// Becomes another one, in the same memory.
+    /// Sets other angles, in the same memory.
     pub fn set(&mut self, angles: &[f64], body_of: &[usize]) {
         self.nodes.clear();
         if angles.iter().all(|&angle| angle == 0.0) {
@@ -312,7 +313,7 @@ impl Rotation {
         }
     }
 
-    /// row <- row R, `row` over the given dofs: x and y of one node after the other.
+    /// row <- row R, where `row` is over the given dofs: x and y of each node after the other.
     pub fn turn_row(&self, dofs: &[usize], row: &mut [f64]) {
         for (dofs, entries) in dofs.chunks_exact(2).zip(row.chunks_exact_mut(2)) {
             if let Some(&[cos, sin]) = self.nodes.get(dofs[0] / 2) {
@@ -339,7 +340,7 @@ mod tests {
     }
 
     proptest! {
-        /// v.(T q) = (T^T v).q
+        /// The identity v.(T q) = (T^T v).q holds.
         #[test]
         fn restriction_is_the_adjoint_of_expansion(rows in rows(7), seed in 1_u32..1000) {
             let value = |i: usize| ((i * 37 + seed as usize) % 19) as f64 - 9.0;

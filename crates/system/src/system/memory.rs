@@ -1,4 +1,4 @@
-//! Memory, as far as the system tells of it in `/proc`: the most that this process has used, and what is free.
+//! Memory as reported by the system in `/proc`: the peak of this process, and the free memory.
 
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
@@ -8,13 +8,14 @@ use super::portable::memory_limits;
 #[cfg(unix)]
 use super::unix::memory_limits;
 
-/// Most bytes resident at a time in this process so far; none where the system does not tell.
+/// Largest number of bytes of this process that were resident so far; `None` if the system does not report it.
 pub fn peak_memory() -> Option<u64> {
     kilobytes(&read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Bytes that are free: on the machine, with what swaps, in the groups of this process that have a
-/// limit, and below the limits of the process itself (`ulimit -v`, `ulimit -d`); none where the system does not tell.
+/// Number of free bytes: the smallest of those on the machine (with swap), in the control groups of this process that
+/// have a limit, and below the limits of the process itself (`ulimit -v`, `ulimit -d`). `None` if the system does not
+/// report it.
 pub fn free_memory() -> Option<u64> {
     let machine = read_to_string("/proc/meminfo").ok()?;
     let swap = kilobytes(&machine, "SwapFree:").unwrap_or(0);
@@ -25,14 +26,14 @@ pub fn free_memory() -> Option<u64> {
     Some(limits.chain(free_in_process()).fold(free, u64::min))
 }
 
-/// Bytes free below the limits of this process: of its addresses and of its data.
+/// Numbers of bytes free below the limits of this process: for its addresses and for its data.
 fn free_in_process() -> impl Iterator<Item = u64> {
     let status = read_to_string("/proc/self/status").unwrap_or_default();
     let limits = memory_limits().into_iter().zip(["VmSize:", "VmData:"]);
     limits.filter_map(move |(limit, used)| Some(limit?.saturating_sub(kilobytes(&status, used)?)))
 }
 
-/// Folders of the control group of a line of /proc/self/cgroup (of version 2) and of those around it.
+/// Folders of the control group in a line of /proc/self/cgroup (version 2), and of the groups around it.
 fn group_folders(line: &str) -> Vec<PathBuf> {
     let path = line.strip_prefix("0::/").map(Path::new);
     let root = Path::new("/sys/fs/cgroup");
@@ -41,7 +42,7 @@ fn group_folders(line: &str) -> Vec<PathBuf> {
     })
 }
 
-/// Bytes free below the limit of a control group, where it has one; cached files count as free.
+/// Number of bytes free below the limit of a control group, if it has a limit; cached files count as free.
 fn free_in_group(folder: &Path) -> Option<u64> {
     let number = |name: &str| read_to_string(folder.join(name)).ok()?.trim().parse().ok();
     let limit: u64 = number("memory.max")?;
@@ -54,7 +55,7 @@ fn free_in_group(folder: &Path) -> Option<u64> {
     Some(limit.saturating_sub(used.saturating_sub(cached)))
 }
 
-/// Bytes of a line `NAME   123 kB`.
+/// Number of bytes in a line `NAME 123 kB`.
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
     let value = text.lines().find_map(|line| line.strip_prefix(name))?;
     let number: u64 = value.trim().strip_suffix("kB")?.trim().parse().ok()?;

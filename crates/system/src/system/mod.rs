@@ -1,8 +1,8 @@
-//! What only some operating systems have. Everything above this module is the same on all of them.
+//! Functions that differ between operating systems. Everything above this module is the same on all operating systems.
 //!
 //! | functions | Linux | other Unix, macOS | others |
 //! |---|---|---|---|
-//! | [`on_signals`], [`exit_now`] | HUP, INT, TERM but those ignored at the start | HUP, INT, TERM | INT, TERM |
+//! | [`on_signals`], [`exit_now`] | HUP, INT, TERM, except signals ignored at the start | HUP, INT, TERM | INT, TERM |
 //! | [`without_waiting`], [`without_links`] | flags of `open` | the same | no flags |
 //! | [`is_at`] | device and inode | the same | crate same-file |
 //! | [`reserve`] | `fallocate` | unsupported | unsupported |
@@ -34,11 +34,11 @@ pub use memory::{free_memory, peak_memory};
 pub use signals::{HANG_UP, INTERRUPT, TERMINATE};
 
 /// Calls `handle` with the number of each signal [`HANG_UP`], [`INTERRUPT`] or [`TERMINATE`], in a thread of its own.
-/// Signals stay ignored that the program was started to ignore (as by `nohup`). A file beyond the limit of its size
-/// becomes an error where it is written.
+/// Signals that were ignored when the program started (as by `nohup`) stay ignored. A file that exceeds the limit of
+/// its size becomes an error of the write.
 ///
 /// # Errors
-/// Those of the system.
+/// The system refuses the handlers.
 pub fn on_signals(handle: impl FnMut(i32) + Send + 'static) -> io::Result<()> {
     here::on_signals(handle)
 }
@@ -48,48 +48,48 @@ pub fn exit_now(code: i32) -> ! {
     signal_hook::low_level::exit(code)
 }
 
-/// Opening a fifo or a device does not wait for its other end.
+/// Sets options so that opening a fifo or a device does not wait for its other end.
 pub fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     here::without_waiting(options)
 }
 
-/// Opening a link is an error.
+/// Sets options so that opening a link is an error.
 pub fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     here::without_links(options)
 }
 
-/// Whether an open file still has that name. A link to it does not count.
+/// Whether an open file still has this name; a link to the file does not count.
 pub fn is_at(file: &File, path: &Path) -> bool {
     here::is_at(file, path)
 }
 
-/// Reserves disk space for `length` bytes of a file behind its first `from`; its size stays.
+/// Reserves disk space for `length` bytes of a file behind its first `from` bytes; the size of the file stays the same.
 ///
 /// # Errors
-/// `StorageFull`, `QuotaExceeded` and `FileTooLarge` where there is no such space; any other where the system or the
-/// file system reserves none.
+/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that there is no such space; any other error means that the
+/// system or the file system cannot reserve space.
 pub fn reserve(file: &File, from: u64, length: u64) -> io::Result<()> {
     here::reserve(file, from, length)
 }
 
-/// Bytes that are free where a file is; none where the system does not tell.
+/// Number of free bytes on the disk of a file; `None` if the system does not report it.
 pub fn free_space(file: &File) -> Option<u64> {
     here::free_space(file)
 }
 
-/// Bytes that a file may have at most; none where there is no limit.
+/// Largest size of a file (bytes); `None` if there is no limit.
 pub fn largest_file() -> Option<u64> {
     here::largest_file()
 }
 
-/// Asks for large pages: without them all is as it was.
+/// Asks the system for large pages; a refusal changes nothing.
 pub fn in_large_pages(memory: MmapMut) -> MmapMut {
     #[cfg(target_os = "linux")]
     let _ = memory.advise(memmap2::Advice::HugePage);
     memory
 }
 
-/// Runs another program in place of this one. It returns only where that cannot be started.
+/// Runs another program in place of this one. The function returns only if the other program cannot be started.
 pub fn hand_over(command: &mut Command) -> io::Error {
     here::hand_over(command)
 }

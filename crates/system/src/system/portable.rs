@@ -1,4 +1,4 @@
-//! Systems other than Unix: what the standard library and the crates signal-hook and same-file have for all.
+//! Implementation for systems other than Unix, with the standard library and the crates signal-hook and same-file.
 
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -14,7 +14,7 @@ use signal_hook::flag;
 
 use super::signals::{INTERRUPT, TERMINATE};
 
-/// Time between two looks whether a signal has come.
+/// Time between two checks for a signal.
 const POLL: Duration = Duration::from_millis(50);
 
 pub fn on_signals(mut handle: impl FnMut(i32) + Send + 'static) -> io::Result<()> {

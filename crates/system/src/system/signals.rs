@@ -3,8 +3,8 @@
 /// The terminal was closed.
 pub const HANG_UP: i32 = 1;
 
-/// The user interrupts.
+/// The user has interrupted the program.
 pub const INTERRUPT: i32 = 2;
 
-/// Somebody asks for the end.
+/// Another process has asked the program to end.
 pub const TERMINATE: i32 = 15;

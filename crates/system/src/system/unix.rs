@@ -29,8 +29,8 @@ pub fn on_signals(mut handle: impl FnMut(i32) + Send + 'static) -> io::Result<()
     Ok(())
 }
 
-/// The signals that the program was started to ignore, signal n as bit n - 1; 0 on systems
-/// other than Linux, which do not report them.
+/// The signals that were ignored when the program started, signal n as bit n - 1; 0 on systems other than Linux, which
+/// do not report these signals.
 fn ignored_signals() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -74,7 +74,7 @@ pub fn largest_file() -> Option<u64> {
     limit(Resource::Fsize)
 }
 
-/// Bytes of addresses and of data that this process may have; none where there is no limit.
+/// Largest number of bytes of addresses and of data that this process may have; `None` if there is no limit.
 pub fn memory_limits() -> [Option<u64>; 2] {
     [Resource::As, Resource::Data].map(limit)
 }

@@ -1,4 +1,4 @@
-//! The keyword table in words: the reference of all keywords, what is known of one keyword, and the
+//! Documents made from the keyword table: the reference of all keywords, the text of `stickslip explain`, and the
 //! dimensions as JSON for programs that change the units of a deck.
 
 use super::keywords;
@@ -9,8 +9,8 @@ use crate::diagnostics::wrapped;
 use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
 
-/// Markdown text of the keyword reference: tables of what is read by task, an index by name, each keyword by itself, and
-/// tables of what is not read.
+/// Markdown text of the keyword reference: tables by task of the keywords that are read, an index by name, a section
+/// for each of these keywords, and tables of the keywords that are not read.
 pub fn keyword_reference() -> String {
     let read: Vec<&Keyword> = keywords().filter(|k| k.status == Status::Read).collect();
     let mut text = String::from(HEAD);
@@ -36,7 +36,7 @@ pub fn keyword_reference() -> String {
     text
 }
 
-/// Titles of the keywords that are not read.
+/// Titles of the tables of keywords that are not read.
 const OTHERS: [(Status, &str); 3] = [
     (Status::Refused, "Keywords that stop with an error"),
     (Status::Warned, "Keywords that are left out with a warning"),
@@ -51,7 +51,7 @@ fn anchor(heading: &str) -> String {
     heading.to_lowercase().replace(' ', "-")
 }
 
-/// All keywords in the order of the alphabet, each with a link to what stands about it.
+/// All keywords in alphabetical order, each with a link to its section or table.
 fn push_names(text: &mut String) {
     let mut all: Vec<&Keyword> = keywords().collect();
     all.sort_unstable_by_key(|keyword| keyword.name);
@@ -110,7 +110,7 @@ An error stops the run before it begins. These are errors:
 
 ";
 
-/// A keyword that is read, in the table at the beginning: its levels and its first sentence.
+/// The row of a keyword in the tables at the beginning of the reference: its levels and its first sentence.
 fn push_entry(text: &mut String, keyword: &Keyword) {
     let sentence = keyword
         .text
@@ -154,7 +154,7 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
     let _ = write!(text, "\n```\n{}\n```\n", keyword.example);
 }
 
-/// A parameter with its values: what is read, and what is not.
+/// The rows of a parameter and its values: those that are read go to `read`, all others to `other`.
 fn push_parameter(read: &mut String, other: &mut String, parameter: &Parameter) {
     let (form, text) = (written(parameter), plain(&meaning(parameter)));
     if parameter.status != Status::Read {
@@ -195,7 +195,7 @@ fn plain(sentence: &str) -> String {
 }
 
 impl Keyword {
-    /// Text for the screen: treatment, meaning, data lines, parameters and an example.
+    /// Text of a keyword for the screen: treatment, meaning, data lines, parameters and an example.
     pub fn explanation(&self) -> String {
         let head = format!("*{}: {}", self.name, treatment(self));
         let mut text = format!("{}\n{}", wrapped(&head, 0), wrapped(self.text, 0));
@@ -219,20 +219,20 @@ impl Keyword {
 }
 
 impl Parameter {
-    /// Text for the screen: treatment, meaning and values.
+    /// Text of a parameter for the screen: treatment, meaning and values.
     pub fn explanation(&self) -> String {
         parameter(self)
     }
 }
 
 impl DataLineForm {
-    /// The fields as the reference writes them, with the lines that are of this kind.
+    /// The fields of a kind of data line as the reference writes them, with the condition for this kind.
     pub fn explanation(&self) -> String {
         form(self).replace('`', "")
     }
 }
 
-/// What becomes of the keyword.
+/// What the program does with a keyword, in words.
 fn treatment(keyword: &Keyword) -> String {
     match keyword.status {
         Status::Read => {
@@ -245,7 +245,7 @@ fn treatment(keyword: &Keyword) -> String {
     }
 }
 
-/// Adds a titled part, if there is one.
+/// Adds a part with its title; an empty part is left out.
 pub(super) fn push(text: &mut String, title: &str, part: &str) {
     if !part.is_empty() {
         let _ = write!(text, "\n{title}\n{part}");
@@ -263,7 +263,7 @@ fn parameter(parameter: &Parameter) -> String {
     wrapped(&(head + &meaning(parameter)), 4) + &values.collect::<String>()
 }
 
-/// Where a keyword stands.
+/// Words for the place of a keyword in a deck.
 pub(super) fn place(keyword: &Keyword) -> String {
     match keyword.scope {
         Scope::At(_) if keyword.name == "STEP" => "after the keywords of the model".to_string(),
@@ -275,7 +275,7 @@ pub(super) fn place(keyword: &Keyword) -> String {
     }
 }
 
-/// Where a keyword stands in a deck without parts, and in one with them.
+/// Words for the place of a keyword in a deck without parts, and in a deck with parts.
 fn place_by_levels(levels: Levels) -> String {
     let in_steps = [Level::FirstStep, Level::LaterStep].map(|level| levels.has(level));
     let flat = match (levels.are_of_model(), in_steps) {
@@ -313,7 +313,7 @@ fn levels(keyword: &Keyword) -> Vec<&'static str> {
     words.map(|(_, word)| word).chain(steps).collect()
 }
 
-/// The data lines of a keyword.
+/// Words for the data lines that a keyword has.
 pub(super) fn data(data: Data) -> &'static str {
     match data {
         Data::None => "no data lines",
@@ -324,7 +324,7 @@ pub(super) fn data(data: Data) -> &'static str {
     }
 }
 
-/// The same in a word or two.
+/// The data lines of a keyword in one or two words.
 fn data_lines(data: Data) -> &'static str {
     match data {
         Data::None => "none",
@@ -335,7 +335,7 @@ fn data_lines(data: Data) -> &'static str {
     }
 }
 
-/// What the program does with a parameter or value.
+/// The word for the treatment of a parameter or value by the program.
 pub(super) fn status(status: Status) -> &'static str {
     match status {
         Status::Read => "read",
@@ -345,7 +345,7 @@ pub(super) fn status(status: Status) -> &'static str {
     }
 }
 
-/// A parameter as it is written.
+/// A parameter in the spelling of decks.
 pub(super) fn written(parameter: &Parameter) -> String {
     let name = match parameter.other {
         "" => parameter.name.to_string(),
@@ -358,7 +358,7 @@ pub(super) fn written(parameter: &Parameter) -> String {
     }
 }
 
-/// What a parameter means, with its dimension.
+/// Meaning of a parameter, with its dimension.
 pub(super) fn meaning(parameter: &Parameter) -> String {
     match parameter.holds.dimension() {
         Some(dimension) => format!("{} ({dimension})", parameter.text),
@@ -366,7 +366,7 @@ pub(super) fn meaning(parameter: &Parameter) -> String {
     }
 }
 
-/// A kind of data lines: which ones, their fields, and the dimensions of those that have one.
+/// Text of a kind of data line: its condition, its fields, and the dimensions of fields that have one.
 pub(super) fn form(form: &DataLineForm) -> String {
     let names: Vec<&str> = form.fields().map(|field| field.name).collect();
     let over = if form.repeating > 0 { ", ..." } else { "" };
@@ -384,7 +384,7 @@ fn dimension(field: Field) -> Option<String> {
     Some(format!("{}: {dimension}", field.name))
 }
 
-/// Which lines are of a kind.
+/// Words for the condition under which a line is of a kind.
 fn condition(form: &DataLineForm) -> String {
     let under = form.parameter.map(|parameter| match parameter {
         (name, "") => format!("with `{name}`"),
@@ -398,14 +398,13 @@ fn condition(form: &DataLineForm) -> String {
     }
 }
 
-/// What the numbers of accepted keywords measure, as JSON: an object with an entry for every
-/// keyword, each on a line.
+/// Dimensions of the numbers of accepted keywords, as JSON: an object with an entry for every keyword, each on a line.
 pub fn dimensions_json() -> String {
     let entries: Vec<String> = keywords().filter_map(entry).collect();
     format!("{{\n{}\n}}\n", entries.join(",\n"))
 }
 
-/// The entry of a keyword; `None` if what it holds is not known.
+/// The entry of a keyword; `None` if the contents of its fields are not known.
 fn entry(keyword: &Keyword) -> Option<String> {
     let taken = |status: Status| status != Status::Refused;
     let parameters = keyword.parameters.iter().filter(|p| taken(p.status));

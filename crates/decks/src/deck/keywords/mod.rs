@@ -1,5 +1,5 @@
-//! The table of all keywords, joined from its families, with the dimensions of their fields; look-up
-//! by name, and the documents made from it. Words that are no keywords, with what to use.
+//! The table of all keywords, joined from its families, with the dimensions of their fields; look-up by name, and the
+//! documents made from it. Words that are no keywords, with the cards to use in their place.
 
 mod documents;
 mod table;
@@ -17,7 +17,7 @@ use super::text::fold;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// The families of keywords: what they are for, and their texts.
+/// The families of keywords: the title of each, and the text of its part of the table.
 const FAMILIES: [(&str, &str); 6] = [
     (
         "Bodies: nodes, elements, sets, surfaces, parts",

@@ -1,5 +1,4 @@
-//! The keyword table from its texts, `mesh.txt` and the others beside this file, one for each family of
-//! keywords:
+//! The keyword table from its texts, `mesh.txt` and further files in this folder, one for each family of keywords:
 //!
 //! ```text
 //! *AMPLITUDE @ model step, required           its levels, and its data lines
@@ -17,15 +16,16 @@
 //! *FILTER, *PRINT @ warned                    keywords that are not read
 //! ```
 //!
-//! Levels are `part`, which stands for instances too, `assembly`, `model`, `step` and `first-step`; `anywhere` stands for
-//! all. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of parts that
-//! stands in a step, or one of the model in the first step, belongs to the model. `under *X` are places in the block of
-//! another keyword, `structure` is that of the assembly itself.
+//! The levels are `part` (which means instances too), `assembly`, `model`, `step` and `first-step`; `anywhere` means
+//! all of them. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of the
+//! level `part` that stands in a step belongs to the model, and so does a card of the level `model` in the first step.
+//! `under *X` means the block of another keyword; `structure` is the place of the keywords that make up parts and the
+//! assembly.
 //!
-//! A field that is called as a kind of things, alone or behind `or`, holds the name of one: `surface`, `node or node set`.
-//! Another field says so in brackets, as a parameter does: `slave [surface]`.
+//! A field whose own name is a kind of object, alone or behind `or`, holds the name of such an object: `surface`, `node
+//! or node set`. A field with another name has the kind in brackets, as parameters have: `slave [surface]`.
 //!
-//! A line that begins with four blanks continues the one before; lines with two stars are comments.
+//! A line that begins with four blanks continues the line before; a line that begins with two stars is a comment.
 
 use std::collections::HashMap;
 
@@ -75,7 +75,7 @@ pub(super) fn read(text: &'static str) -> Vec<Keyword> {
     all
 }
 
-/// The keywords with their levels, those of a block being the levels of what begins it.
+/// The keywords with their levels; a keyword of a block has the levels of the keyword that begins the block.
 pub(super) fn with_levels(mut all: Vec<Keyword>) -> Vec<Keyword> {
     let scopes: HashMap<&str, Scope> = all.iter().map(|k| (k.name, k.scope)).collect();
     let of = |name: &str| match scopes.get(name) {
@@ -94,7 +94,7 @@ pub(super) fn with_levels(mut all: Vec<Keyword>) -> Vec<Keyword> {
     all
 }
 
-/// The lines with those that continue them, without comments.
+/// The lines without comments, each joined with the lines that continue it.
 pub(super) fn lines(text: &'static str) -> Vec<&'static str> {
     let mut lines: Vec<String> = Vec::new();
     let is_said = |line: &&str| !line.is_empty() && !line.starts_with("**");
@@ -107,7 +107,7 @@ pub(super) fn lines(text: &'static str) -> Vec<&'static str> {
     lines.into_iter().map(|line| &*line.leak()).collect()
 }
 
-/// What is done with a keyword, where it stands, and its data lines.
+/// Treatment of a keyword, the place where it may stand, and its data lines.
 fn treatment(what: &'static str) -> (Status, Scope, &'static str) {
     let (place, data) = what.split_once(", ").unwrap_or((what, "skipped"));
     if let ("", status @ (Status::Ignored | Status::Warned | Status::Refused)) = with_status(place)
@@ -128,7 +128,7 @@ fn treatment(what: &'static str) -> (Status, Scope, &'static str) {
     (Status::Read, scope, data)
 }
 
-/// The levels that words stand for.
+/// The levels that words of the table mean.
 fn levels(words: &str) -> Levels {
     let of_word = |word: &str| match word {
         "part" => Levels::of(&[Level::Part, Level::Instance]),
@@ -145,7 +145,7 @@ fn levels(words: &str) -> Levels {
         .fold(Levels::default(), Levels::and)
 }
 
-/// What stands before the status at the end of a text, and the status.
+/// Splits a text into its beginning and the status at its end.
 fn with_status(text: &'static str) -> (&'static str, Status) {
     let all = [
         ("ignored", Status::Ignored),
@@ -159,7 +159,7 @@ fn with_status(text: &'static str) -> (&'static str, Status) {
     found.unwrap_or((text, Status::Read))
 }
 
-/// The parameters of an entry; `known` are the keywords before.
+/// The parameters of an entry; `known` are the keywords of the entries before it.
 fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter] {
     let mut all: Vec<Parameter> = Vec::new();
     for (index, line) in lines.iter().enumerate() {
@@ -217,14 +217,14 @@ fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter]
     all.leak()
 }
 
-/// `WORD status: text`
+/// A value of a parameter, written `WORD status: text`.
 fn value(line: &'static str) -> Value {
     let (head, text) = line.split_once(": ").unwrap_or((line, ""));
     let (name, status) = with_status(head);
     Value { name, status, text }
 }
 
-/// `condition | condition | fields`
+/// A kind of data line, written `condition | condition | fields`.
 fn form(line: &'static str) -> DataLineForm {
     let (conditions, fields) = line.rsplit_once(" | ").unwrap_or(("", line));
     let mut form = DataLineForm {

@@ -1,9 +1,9 @@
-//! Types of the keyword table: keywords with their place, data lines, sentence and example; their
-//! parameters and values; the fields of data lines, and what numbers measure.
+//! Types of the keyword table: keywords with place, data lines, sentence and example; parameters and values; fields of
+//! data lines, and dimensions of numbers.
 
 use crate::deck::text::{Match, find_known, fold};
 
-/// A level of a deck. Parts, instances and the assembly are levels of decks that have them; in a flat deck their cards
+/// A level of a deck. In a flat deck, without parts and assembly, the cards of the levels part, instance and assembly
 /// stand at the level of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
@@ -11,9 +11,9 @@ pub enum Level {
     Part,
     /// An instance.
     Instance,
-    /// The assembly, outside its instances.
+    /// The assembly outside its instances.
     Assembly,
-    /// Outside parts, the assembly and steps.
+    /// The model: outside parts, the assembly and steps.
     Model,
     /// The first step.
     FirstStep,
@@ -44,17 +44,18 @@ impl Levels {
         Levels(bits.fold(0, |all, bit| all | bit))
     }
 
-    /// The levels of both.
+    /// The union of these levels and `other`.
     pub fn and(self, other: Levels) -> Levels {
         Levels(self.0 | other.0)
     }
 
-    /// Whether a level is among them.
+    /// Whether a level is among these levels.
     pub fn has(self, level: Level) -> bool {
         self.0 & Levels::of(&[level]).0 != 0
     }
 
-    /// Whether cards belong to the mesh and what joins it: they define something that steps refer to.
+    /// Whether cards of these levels belong to the mesh or join its parts: such cards define something that steps refer
+    /// to.
     pub fn are_of_mesh(self) -> bool {
         self.has(Level::Part) || self.has(Level::Assembly)
     }
@@ -64,7 +65,7 @@ impl Levels {
         self.are_of_mesh() || self.has(Level::Model)
     }
 
-    /// Whether what a card in a step says holds from the start: it belongs to the model.
+    /// Whether a card that stands in a step belongs to the model, with effect from the start.
     pub fn hold_from_the_start(self) -> bool {
         self.are_of_mesh() || !self.has(Level::LaterStep)
     }
@@ -73,37 +74,38 @@ impl Levels {
 /// Where a keyword may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// By itself at these levels.
+    /// The keyword stands by itself, at these levels.
     At(Levels),
-    /// In the block of the keyword of this name.
+    /// The keyword stands in the block of the keyword with this name.
     Block(&'static str),
-    /// In the block of the first, a model keyword, or right after the second, a keyword of steps.
+    /// The keyword stands in the block of the first keyword, which is of the model, or right after the second, which is
+    /// of steps.
     BlockOrAfter(&'static str, &'static str),
-    /// In such a block, or by itself at the level of the model.
+    /// The keyword stands in the block of the keyword with this name, or by itself at the level of the model.
     BlockOrModel(&'static str),
-    /// Around parts, instances and the assembly.
+    /// The keyword begins or ends a part, an instance or the assembly.
     Structure,
 }
 
 /// Data lines of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Data {
-    /// It takes none.
+    /// The keyword has no data lines.
     None,
-    /// Any number of rows; the first form that fits a row holds.
+    /// Any number of rows is allowed; of the forms, the first one that fits a row holds.
     Rows(&'static [DataLineForm]),
-    /// At least one row.
+    /// The keyword needs at least one row; of the forms, the first one that fits a row holds.
     Required(&'static [DataLineForm]),
     /// Free text.
     Text,
-    /// Words that are not looked at.
+    /// The data lines are words that the program does not read.
     Words,
-    /// Anything, which is not looked at.
+    /// The data lines may hold anything; the program does not read them.
     Skipped,
 }
 
 impl Data {
-    /// The kinds of data lines.
+    /// Forms of the data lines.
     pub fn forms(self) -> &'static [DataLineForm] {
         match self {
             Data::Rows(forms) | Data::Required(forms) => forms,
@@ -112,7 +114,7 @@ impl Data {
     }
 }
 
-/// A kind of things that have names.
+/// A kind of object with a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Nodes.
@@ -137,7 +139,7 @@ pub enum Kind {
     Instance,
     /// Axes.
     Orientation,
-    /// Circles on which faces lie.
+    /// Circles on which faces of a surface lie.
     SurfaceSmoothing,
     /// How nodes of general contact are moved at the start.
     ContactInitialization,
@@ -167,7 +169,7 @@ impl Kind {
         Kind::Coupling,
     ];
 
-    /// What the table and messages call a thing of this kind.
+    /// Name of the kind in the table and in messages.
     pub fn name(self) -> &'static str {
         match self {
             Kind::NodeSet => "node set",
@@ -193,7 +195,7 @@ impl Kind {
         Kind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The kind that a text names alone, or behind ` or `.
+    /// The kind that a text names, alone or behind ` or `.
     fn at_end_of(text: &str) -> Option<Kind> {
         let last = text.rsplit_once(" or ").map_or(text, |(_, last)| last);
         Kind::named(last)
@@ -205,41 +207,42 @@ impl Kind {
 pub struct Keyword {
     /// The keyword without its star, with blanks.
     pub name: &'static str,
-    /// What the program does with it.
+    /// What the program does with the keyword.
     pub status: Status,
-    /// Where it may stand.
+    /// Where the keyword may stand.
     pub scope: Scope,
-    /// The levels at which it may stand, with the block that it belongs to.
+    /// The levels at which the keyword may stand; a keyword of a block has the levels of the block.
     pub levels: Levels,
-    /// Its data lines.
+    /// Data lines of the keyword.
     pub data: Data,
-    /// Its parameters.
+    /// Parameters of the keyword.
     pub parameters: &'static [Parameter],
-    /// What it says.
+    /// Sentences that say what the keyword does.
     pub text: &'static str,
-    /// Lines of a deck that use it, or what is read in its place; empty if there is nothing.
+    /// Lines of a deck that use the keyword, or that replace it if it is not read; empty if there are none.
     pub example: &'static str,
-    /// Whether it asks for output: what is not known of it is left out, as the answer does not depend on it.
+    /// Whether the keyword asks for output: unknown parts of such a card are left out, because they do not change the
+    /// results.
     pub is_output: bool,
-    /// What it is for: the title of its family.
+    /// Task of the keyword: the title of its family.
     pub task: &'static str,
 }
 
 impl Keyword {
-    /// The words for its parameters.
+    /// Names of all parameters of the keyword, second names included.
     pub fn parameter_names(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
         let both = self.parameters.iter().flat_map(|p| [p.name, p.other]);
         both.filter(|name| !name.is_empty())
     }
 
-    /// The parameter with this name, blanks and case aside.
+    /// The parameter with this name; blanks and case do not matter.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         let folded = fold(name);
         let is_meant = |p: &&Parameter| [p.name, p.other].map(fold).contains(&folded);
         self.parameters.iter().find(is_meant)
     }
 
-    /// The parameter that a typed word is read as: its name or a beginning of it.
+    /// The parameter that a typed word means: the word is its name or an abbreviation of it.
     pub fn parameter_read_as(&self, typed: &str) -> Option<&'static Parameter> {
         match find_known(typed, self.parameter_names()) {
             Match::Exact(name) | Match::Abbreviation(name) => {
@@ -250,7 +253,7 @@ impl Keyword {
         }
     }
 
-    /// Kind of the thing that a card of this keyword defines or adds to, and the parameter with its name.
+    /// Kind of the object that a card of this keyword defines or extends, and the parameter that names the object.
     pub fn definition(&self) -> Option<(&'static Parameter, Kind)> {
         let mut parameters = self.parameters.iter();
         parameters.find_map(|parameter| match parameter.holds {
@@ -263,28 +266,28 @@ impl Keyword {
 /// What the program does with a keyword, a parameter or a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Read and honoured.
+    /// The program reads and obeys the keyword, parameter or value.
     Read,
-    /// Left out silently: it does not affect the results.
+    /// The program leaves it out silently, because it does not affect the results.
     Ignored,
-    /// Left out or replaced with a warning.
+    /// The program leaves it out or replaces it, with a warning.
     Warned,
-    /// Stops with an error: leaving it out would change the results.
+    /// The program stops with an error, because leaving it out would change the results.
     Refused,
 }
 
 /// Values of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Takes {
-    /// It takes no value.
+    /// The parameter has no value.
     Nothing,
-    /// A name, number or path.
+    /// The value is a name, a number or a path.
     Value,
-    /// A value that may be left out.
+    /// The value may be left out.
     Optional,
-    /// One of these words.
+    /// The value is one of these words.
     Choice(&'static [Value]),
-    /// One of these words, or nothing.
+    /// The value is one of these words, or it is left out.
     OptionalChoice(&'static [Value]),
 }
 
@@ -293,14 +296,14 @@ pub enum Takes {
 pub struct Value {
     /// The word, with blanks.
     pub name: &'static str,
-    /// What the program does with it.
+    /// What the program does with the word.
     pub status: Status,
-    /// One sentence; empty where the word explains itself.
+    /// One sentence about the word; empty where the word explains itself.
     pub text: &'static str,
 }
 
 impl Value {
-    /// Whether it is the default, or another word for it.
+    /// Whether the word is the default of its parameter, or another word for the default.
     pub fn is_default(&self) -> bool {
         self.text.ends_with("(default)") || self.text.starts_with("the same")
     }
@@ -311,20 +314,20 @@ impl Value {
 pub struct Parameter {
     /// The word before the equals sign, with blanks.
     pub name: &'static str,
-    /// Another word for it; empty if there is none.
+    /// A second name of the parameter; empty if there is none.
     pub other: &'static str,
-    /// Its values.
+    /// Values of the parameter.
     pub takes: Takes,
-    /// What a value holds.
+    /// Quantity that a value of the parameter holds.
     pub holds: Quantity,
-    /// What the program does with it.
+    /// What the program does with the parameter.
     pub status: Status,
     /// One sentence.
     pub text: &'static str,
 }
 
 impl Parameter {
-    /// The words this parameter can take; empty if it takes anything.
+    /// The words that are allowed as the value of the parameter; empty if any value is allowed.
     pub fn values(&self) -> &'static [Value] {
         match self.takes {
             Takes::Choice(values) | Takes::OptionalChoice(values) => values,
@@ -332,7 +335,7 @@ impl Parameter {
         }
     }
 
-    /// The word of its list that a typed value is read as.
+    /// The allowed value that a typed word means.
     pub fn value_read_as(&self, typed: &str) -> Option<&'static str> {
         match find_known(typed, self.values().iter().map(|value| value.name)) {
             Match::Exact(name) | Match::Abbreviation(name) => Some(name),
@@ -341,7 +344,7 @@ impl Parameter {
     }
 }
 
-/// What a field or a parameter's value holds.
+/// What the value of a field or of a parameter holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A word, a label, or a number that is the same in all units.
@@ -350,21 +353,21 @@ pub enum Quantity {
     Of(&'static str),
     /// A number of the given dimension, and its default.
     OfOr(&'static str, &'static str),
-    /// A number of this dimension, or the name of a thing of this kind.
+    /// A number of this dimension, or the name of an object of this kind.
     OrName(&'static str, Kind),
-    /// The name of a thing of this kind, where a word or a label does not stand in its place.
+    /// The name of an object of this kind; a word or a label may stand in its place.
     Name(Kind),
-    /// The name of a thing of this kind that the card defines or adds to.
+    /// The name of an object of this kind that the card defines or extends.
     New(Kind),
-    /// The path of a file that is read in this place.
+    /// The path of a file; the card reads the file.
     File,
     /// A number whose dimension is not known: other codes disagree on it.
     Unknown,
 }
 
 impl Quantity {
-    /// The quantity that the table writes as `length`, `length = 1` with its default, `length or node set`,
-    /// `node set`, `new node set`, `file`, or `?`.
+    /// Reads a quantity as it stands in the table: `length`, `length = 1` (with a default), `length or node set`, `node
+    /// set`, `new node set`, `file`, or `?`.
     pub(super) fn written(text: &'static str) -> Quantity {
         if text == "?" {
             Quantity::Unknown
@@ -385,7 +388,7 @@ impl Quantity {
         }
     }
 
-    /// The dimension, if it has a known one.
+    /// Dimension of the quantity, if it is a number of known dimension.
     pub fn dimension(self) -> Option<&'static str> {
         match self {
             Quantity::Of(dimension)
@@ -395,7 +398,7 @@ impl Quantity {
         }
     }
 
-    /// The kind of the thing whose name it is or may be.
+    /// Kind of the object whose name the quantity is or may be.
     pub fn kind(self) -> Option<Kind> {
         match self {
             Quantity::Name(kind) | Quantity::New(kind) | Quantity::OrName(_, kind) => Some(kind),
@@ -407,14 +410,14 @@ impl Quantity {
 /// A field of a data line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// What it is called in the reference.
+    /// Name of the field in the reference.
     pub name: &'static str,
-    /// What it holds.
+    /// Quantity that the field holds.
     pub holds: Quantity,
 }
 
 impl Field {
-    /// The field that the table writes as `node` or `x [length]`.
+    /// Reads a field as it stands in the table: `node` or `x [length]`.
     pub(super) fn written(text: &'static str) -> Field {
         let measured = text.strip_suffix(']');
         let (name, holds) = match measured {
@@ -431,19 +434,19 @@ impl Field {
     }
 }
 
-/// The fields of a kind of data line; the conditions say which lines are of this kind.
+/// The fields of one form of data line, and the conditions under which a line has this form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataLineForm {
     /// Parameter and value of the keyword line that these lines belong to; an empty value stands
     /// for a parameter without value.
     pub parameter: Option<(&'static str, &'static str)>,
-    /// Number of a field, from 0, and the words that it says on these lines.
+    /// Number of a field, from 0, and the words that may stand in this field in lines of this form.
     pub word: Option<(usize, &'static [&'static str])>,
-    /// Whether it is the first data line only.
+    /// Whether only the first data line has this form.
     pub first: bool,
     /// The fields between commas.
     pub fields: &'static [Field],
-    /// Number of the last fields that repeat along the line.
+    /// Number of fields at the end of the form that repeat along the line.
     pub repeating: usize,
 }
 
@@ -464,8 +467,8 @@ impl DataLineForm {
         self.fields.get(index).copied()
     }
 
-    /// Whether a line is of this kind: the words of its fields, whether it is the first of its card, and the word that a
-    /// parameter of the card has as its value, empty where it has none and the parameter is given.
+    /// Whether a line with these `fields` has this form. `is_first` says whether the line is the first of its card;
+    /// `given` is the value of a parameter of the card: empty for a parameter without value, `None` for an absent one.
     pub fn fits<'w>(
         &self,
         fields: &[&str],

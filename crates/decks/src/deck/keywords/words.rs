@@ -1,4 +1,5 @@
-//! Words of engineers and of other programs that are no keywords, from `words.txt`: what stands in their place.
+//! Words of engineers and of other programs that are no keywords, and the cards to use in their place, from
+//! `words.txt`.
 //!
 //! ```text
 //! - bolt, preload                       the words, in small letters
@@ -14,14 +15,14 @@ use crate::deck::text::fold;
 use crate::diagnostics::wrapped;
 use std::sync::LazyLock;
 
-/// Words for one thing, which is done by other means or not at all.
+/// Words for one thing that other cards do, or that the program does not do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Word {
-    /// All words for it.
+    /// All words for the thing.
     pub names: Vec<&'static str>,
-    /// Whether it is done, and what to use.
+    /// Sentence that says whether the program does it, and which cards to use.
     pub text: &'static str,
-    /// Lines of a deck, or nothing.
+    /// Lines of a deck that do the thing; empty if there are none.
     pub example: String,
 }
 
@@ -31,24 +32,24 @@ static ALL: LazyLock<Vec<Word>> = LazyLock::new(|| {
     entries.map(entry).collect()
 });
 
-/// All of them.
+/// All entries.
 pub fn words() -> impl Iterator<Item = &'static Word> {
     ALL.iter()
 }
 
-/// The entry of a word, blanks, hyphens and case aside; an `s` at its end may be too much.
+/// The entry of a word. Blanks, hyphens and case do not matter; neither does an `s` at the end of the word.
 pub fn find_word(typed: &str) -> Option<&'static Word> {
     let typed = folded(typed);
     let has = |typed: &str| words().find(|word| word.names.iter().any(|n| folded(n) == typed));
     has(&typed).or_else(|| has(typed.strip_suffix('S')?))
 }
 
-/// A word without blanks and hyphens, in capitals.
+/// A word in capitals, with blanks in place of hyphens and underscores, in the form in which words are compared.
 fn folded(word: &str) -> String {
     fold(&word.replace(['-', '_'], " "))
 }
 
-/// The lines of one entry.
+/// Makes an entry from its lines.
 fn entry(lines: &[&'static str]) -> Word {
     let with = |mark: &'static str| lines.iter().filter_map(move |line| line.strip_prefix(mark));
     let is_sentence = |line: &&&str| !line.starts_with(['-', '>']);
@@ -60,7 +61,7 @@ fn entry(lines: &[&'static str]) -> Word {
 }
 
 impl Word {
-    /// Text for the screen: the words, what is said about them, and an example.
+    /// Text of an entry for the screen: the words, the sentence about them, and an example.
     pub fn explanation(&self) -> String {
         let names = wrapped(&self.names.join(", "), 2);
         let mut text = format!("{names}\n{}", wrapped(self.text, 0));

@@ -9,22 +9,22 @@ use crate::reader::context::Context;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{LN_2, PI};
 
-/// Height of a feature, relative to the range of the amplitude in the step, below which it is noise.
+/// Height of a feature, relative to the range of the amplitude in the step, below which the feature counts as noise.
 const NOISE: f64 = 0.05;
 
-/// Jump of a displacement, relative to the largest displacement of the amplitude, that is round-off.
+/// Largest jump of a displacement that counts as round-off, relative to the largest displacement of the amplitude.
 const ROUND_OFF: f64 = 1e-9;
 
-/// A rise and a fall of a curve, or a fall and a rise.
+/// A feature of a curve: a rise followed by a fall, or a fall followed by a rise.
 struct Feature {
-    /// Time of its top, in the time of the amplitude.
+    /// Time of the top of the feature, in the time of the amplitude.
     time: f64,
-    /// Time for which the curve is beyond half of its height.
+    /// Duration for which the curve is beyond half of the height of the feature.
     width: f64,
 }
 
-/// Warns about features of amplitudes that are shorter than the increment of a step, each amplitude once, and
-/// about prescribed displacements that jump at the start of a step. `spans` are the places of the amplitudes.
+/// Warns about features of amplitudes that are shorter than the increment of a step, and about prescribed displacements
+/// that jump at the start of a step; each amplitude is named once. `spans` are the places of the amplitudes.
 pub(crate) fn amplitudes(model: &Model, spans: &[Span], cx: &mut Context) {
     let (mut warned, mut start) = (BTreeSet::new(), 0.0);
     let mut before = Displacements::of_rest();
@@ -64,7 +64,8 @@ fn window(amplitude: &Amplitude, step: &Step, start: f64) -> [f64; 2] {
     [from, from + step.increments.period]
 }
 
-/// Amplitudes (indices) that loads and prescribed displacements of a step follow. Rates are integrated exactly.
+/// Indices of the amplitudes that loads and prescribed displacements of a step follow. Amplitudes of prescribed rates
+/// are not among them, because rates are integrated exactly.
 fn followed(step: &Step) -> BTreeSet<usize> {
     fn of_loads<T>(loads: &[Load<T>]) -> impl Iterator<Item = usize> + '_ {
         let acting = loads.iter().filter(|load| load.magnitude != 0.0);
@@ -88,7 +89,7 @@ fn followed(step: &Step) -> BTreeSet<usize> {
         .collect()
 }
 
-/// The shortest feature of an amplitude between two times; before the analysis it is zero.
+/// The shortest feature of an amplitude between two times; before the analysis the amplitude is zero.
 fn shortest_feature(amplitude: &Amplitude, window: [f64; 2], is_first: bool) -> Option<Feature> {
     match &amplitude.curve {
         Curve::Linear(table) | Curve::SmoothStep(table) => {
@@ -104,7 +105,7 @@ fn shortest_feature(amplitude: &Amplitude, window: [f64; 2], is_first: bool) -> 
     }
 }
 
-/// The features of a curve that is linear between points.
+/// The features of a curve that is linear between its points.
 fn features(points: &[(f64, f64)]) -> impl Iterator<Item = Feature> + '_ {
     let values = || points.iter().map(|point| point.1);
     let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
@@ -128,7 +129,8 @@ fn features(points: &[(f64, f64)]) -> impl Iterator<Item = Feature> + '_ {
     })
 }
 
-/// First and last point (indices) of every place between the ends where a curve turns.
+/// First and last point (indices) of every stretch, away from the ends, where a curve changes between rising and
+/// falling.
 fn tops(points: &[(f64, f64)]) -> Vec<[usize; 2]> {
     let (mut tops, mut rises, mut first) = (Vec::new(), None, 0);
     for (index, pair) in points.windows(2).enumerate() {
@@ -144,7 +146,7 @@ fn tops(points: &[(f64, f64)]) -> Vec<[usize; 2]> {
     tops
 }
 
-/// Time at which a curve meets a value within the first of some intervals that holds it.
+/// Time at which a curve meets a value, in the first of some intervals in which it does.
 fn crossing(
     points: &[(f64, f64)],
     mut intervals: impl Iterator<Item = usize>,
@@ -159,7 +161,7 @@ fn crossing(
     })
 }
 
-/// The shortest feature of a signal that begins at `start`: half of its fastest wave, or its decay.
+/// The shortest feature of a signal that begins at `start`: half a period of its highest frequency, or its half-life.
 fn feature_of(signal: &Signal, start: f64, [from, to]: [f64; 2]) -> Option<Feature> {
     let wave = |frequency: f64| Feature {
         time: start.max(from),
@@ -192,12 +194,13 @@ fn feature_of(signal: &Signal, start: f64, [from, to]: [f64; 2]) -> Option<Featu
 
 /// Displacements that are known at the start of a step.
 struct Displacements {
-    /// Those of supports of the step before; none before the first step, where all are zero.
+    /// Displacements of the supports of the step before; `None` before the first step, where all displacements are
+    /// zero.
     prescribed: Option<BTreeMap<usize, f64>>,
 }
 
 impl Displacements {
-    /// All are zero.
+    /// Displacements before the first step, which are all zero.
     fn of_rest() -> Self {
         Displacements { prescribed: None }
     }
@@ -209,7 +212,7 @@ impl Displacements {
         }
     }
 
-    /// Those at the end of a step that starts at this time.
+    /// Displacements at the end of a step that starts at this time.
     fn after(&self, model: &Model, step: &Step, start: f64) -> Self {
         let end = |&Support { dof, motion }: &Support| {
             let u = match motion {
@@ -247,7 +250,7 @@ impl Displacements {
     }
 }
 
-/// Warns about displacements that jump at the start of a step, each amplitude once.
+/// Warns about displacements that jump at the start of a step; each amplitude is named once.
 fn report_jumps(
     model: &Model,
     (step, index, start): (&Step, usize, f64),
@@ -287,7 +290,7 @@ fn report_jumps(
     }
 }
 
-/// A bound of the values of a curve.
+/// An upper bound of the absolute values of a curve.
 fn size(curve: &Curve) -> f64 {
     match curve {
         Curve::Linear(points) | Curve::SmoothStep(points) => points

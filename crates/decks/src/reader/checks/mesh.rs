@@ -1,5 +1,5 @@
-//! The mesh: shapes of the elements, quantities that overflow or vanish, nodes at the same place that
-//! nothing joins.
+//! Checks of the mesh: shapes of elements, quantities that overflow or vanish, and nodes at the same place that nothing
+//! joins.
 
 use crate::diagnostics::{Code, Span};
 use crate::model::{ElementsAtNodes, Equation, Mesh, Model, Plane, sides};
@@ -46,7 +46,7 @@ fn same_nodes(index: usize, mesh: &Mesh, at_nodes: &ElementsAtNodes) -> Option<u
     before.filter(is_same).last()
 }
 
-/// Whether an element surely turns left at all of its corners.
+/// Whether an element certainly turns left at all of its corners.
 fn is_convex(index: usize, mesh: &Mesh) -> bool {
     let at = |node: usize| mesh.coordinates[node];
     match *mesh.elements[index].corners() {
@@ -121,12 +121,12 @@ fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     cx.error(Code::BadShape, span, fault).help(help);
 }
 
-/// Part of a side at whose ends a node between the corners must not lie: det(dX/dr) vanishes at a corner where the
-/// node is at a quarter of a straight side.
+/// Smallest distance of a node between two corners from either corner, relative to the length of the side: if the node
+/// lies at a quarter of a straight side, det(dX/dr) vanishes at the corner.
 const NEAR_CORNER: f64 = 0.25;
 
-/// Reports a node between two corners that is not in the middle half of its side, and sides so curved that
-/// det(dX/dr) is not positive at a corner.
+/// Reports nodes between two corners that are not in the middle half of their side, and sides so curved that det(dX/dr)
+/// is not positive at a corner.
 fn nodes_between_corners(index: usize, mesh_index: &MeshIndex, cx: &mut Context) {
     let mesh = &mesh_index.mesh;
     let element = &mesh.elements[index];
@@ -166,8 +166,8 @@ fn nodes_between_corners(index: usize, mesh_index: &MeshIndex, cx: &mut Context)
     }
 }
 
-/// Reports materials in use and elements whose wave speed, area, stiffness or mass overflows or vanishes:
-/// nothing can be computed with them.
+/// Reports materials in use and elements whose wave speed, area, stiffness or mass overflows or vanishes, because
+/// nothing can be computed with such values.
 pub(crate) fn magnitudes(mesh_index: &MeshIndex, properties: &Properties, cx: &mut Context) {
     if cx.d.has_errors() {
         return;
@@ -223,14 +223,14 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
         .help("choose units in which the numbers of the deck are not so extreme");
 }
 
-/// Distance below which nodes lie at the same place, in lengths of the shortest element side: the
-/// digits that mesh generators write.
+/// Distance, relative to the shortest element side, below which two nodes lie at the same place: mesh generators write
+/// about as many digits.
 const SAME_PLACE: f64 = 1e-6;
 
-/// Numbers up to which whole ones keep their value as integers.
+/// Largest absolute value up to which a whole number keeps its value as an integer.
 const MOST_WHOLE: f64 = (1_u64 << 52) as f64;
 
-/// Cells along a square of cells.
+/// Number of cells along the side of a square of cells.
 const SQUARE: u64 = 8;
 
 /// Warns about nodes of elements that lie at the same place although nothing acts between
@@ -260,8 +260,8 @@ pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &[Span], cx
         .help("the elements part there: merge the nodes, or define contact between the surfaces");
 }
 
-/// The largest whole number up to x. The processors that the program is built for have no
-/// instruction for it, but one that cuts off what stands behind the point.
+/// The largest whole number up to x. The processors that the program is built for have no instruction for it, only an
+/// instruction that cuts off the digits behind the point.
 fn floor(x: f64) -> f64 {
     if x.abs() > MOST_WHOLE {
         return x.floor();
@@ -270,8 +270,8 @@ fn floor(x: f64) -> f64 {
     if cut > x { cut - 1.0 } else { cut }
 }
 
-/// Pairs of node sets whose nodes are joined: slave and master of a contact, and each with itself the nodes of all
-/// equations, of a hinge and of a rigid body.
+/// Pairs of node sets whose nodes are joined: slave and master of a contact; for equations, a hinge or a rigid body,
+/// the set of their nodes paired with itself.
 struct Joined(Vec<[BTreeSet<usize>; 2]>);
 
 impl Joined {
@@ -301,8 +301,8 @@ impl Joined {
     }
 }
 
-/// Pairs of nodes of elements at the same place, the smaller index first; `cell` is the length of the
-/// shortest side.
+/// Pairs of nodes of elements at the same place, the smaller index first; `cell` is the length of the shortest element
+/// side.
 fn coincident(mesh: &Mesh, cell: f64) -> Vec<[usize; 2]> {
     let mut used = vec![false; mesh.node_count()];
     for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
@@ -325,13 +325,13 @@ fn coincident(mesh: &Mesh, cell: f64) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// Nodes in the cells of a grid.
+/// Nodes, sorted into the cells of a grid.
 struct Grid {
-    /// Length of a cell's side.
+    /// Length of the side of a cell.
     cell: f64,
-    /// Last node in the cells of every key; cells may share one.
+    /// Last node in the cells of every key; several cells may share a key.
     last: Vec<u32>,
-    /// For every node the one before it in its cell.
+    /// For every node, the node that was added before it under the same key.
     before: Vec<u32>,
 }
 
@@ -348,13 +348,13 @@ impl Grid {
         }
     }
 
-    /// Adds a node to the first of these cells.
+    /// Adds a node to the cell with the first of these columns and rows.
     fn add(&mut self, node: usize, [[i, _], [j, _]]: [[u64; 2]; 2]) {
         let key = self.key(i, j);
         self.before[node] = std::mem::replace(&mut self.last[key], node as u32);
     }
 
-    /// Visits the nodes in cells of these columns and rows.
+    /// Visits the nodes in the cells with these columns and rows.
     fn visit(&self, [columns, rows]: [[u64; 2]; 2], mut visit: impl FnMut(usize)) {
         let count = |[first, other]: [u64; 2]| if first == other { 1 } else { 2 };
         for &i in &columns[..count(columns)] {
@@ -368,8 +368,8 @@ impl Grid {
         }
     }
 
-    /// Numbers of the column or row of cells that holds a coordinate, and of the one beside it where
-    /// the line between them is near.
+    /// Numbers of the column or row of cells that holds a coordinate, and of the neighbouring column or row if the line
+    /// between the two is near.
     fn cells(&self, x: f64) -> [u64; 2] {
         // The grid is shifted so that the nodes of regular meshes lie off its lines.
         let at = x / self.cell + 0.37;

@@ -1,5 +1,4 @@
-//! Checks across keywords: the quality of the mesh, magnitudes, contacts, and whether the steps make
-//! sense with the material.
+//! Checks across keywords: the quality of the mesh, magnitudes, contacts, and whether the steps suit the material.
 
 mod amplitudes;
 mod hinges;

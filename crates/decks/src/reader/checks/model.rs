@@ -1,6 +1,6 @@
-//! Whether the model makes sense as a whole: increments and duration against the time that waves take,
-//! something that moves, densities, damping of bodies in free flight, slaves that contact cannot move, and the
-//! thickness of both sides of a contact.
+//! Checks whether the model makes sense as a whole: increments and duration against the time that waves take, something
+//! that moves, densities, damping of bodies in free flight, slaves that contact cannot move, and the thickness of both
+//! sides of a contact.
 
 use crate::diagnostics::Code;
 use crate::model::{
@@ -13,12 +13,12 @@ use crate::reader::outline::StepCards;
 use crate::reader::sections::Properties;
 use std::collections::BTreeSet;
 
-/// Sides that waves cross in one increment, above which the increment cannot be meant: implicit
+/// Number of element sides that waves cross in one increment above which the increment must be a mistake: implicit
 /// increments of slow motions reach some thousands.
 const MOST_SIDES: f64 = 1e6;
 
-/// Warns about steps that end before a wave has crossed the shortest side of an element, and about
-/// increments in which it crosses more than a million of them; `guide` is the shortest time.
+/// Warns about steps that end before a wave has crossed the shortest side of an element, and about increments in which
+/// a wave crosses more than a million sides; `guide` is the shortest time in which a wave crosses a side.
 pub(crate) fn proportion(
     steps: &[Step],
     cards: &[StepCards],
@@ -97,7 +97,8 @@ fn acts<T>(loads: &[Load<T>]) -> bool {
     loads.iter().any(|load| load.magnitude != 0.0)
 }
 
-/// Reports materials in use without density: an error where a step moves masses or weighs them, a note in static steps.
+/// Reports materials in use without density. A missing density is an error if a step moves or weighs masses, and a note
+/// in static steps.
 pub(crate) fn density(properties: &Properties, mesh: &Mesh, steps: &[Step], cx: &mut Context) {
     if cx.may_lack_cards() {
         return;
@@ -189,7 +190,7 @@ pub(crate) fn braked_flight(model: &Model, places: &[MaterialPlaces], cx: &mut C
     }
 }
 
-/// Whether every body has a node with a support, or an equation, in all steps.
+/// For every body, whether it has a node with a support or an equation in all steps.
 fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
     let mut is_held = vec![true; bodies.count];
     let tied: Vec<usize> = model.equations.iter().flat_map(Equation::dofs).collect();
@@ -209,8 +210,8 @@ fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
     is_held
 }
 
-/// Warns about contact pairs of which more than half of the slave nodes are prescribed in both
-/// directions throughout. The clamped end of a surface is common, and does no harm.
+/// Warns about contact pairs of which more than half of the slave nodes are prescribed in both directions throughout. A
+/// clamped end of a surface is common and harmless.
 pub(crate) fn fixed_slaves(model: &Model, cx: &mut Context) {
     let prescribed = prescribed_throughout(&model.steps);
     let is_fixed = |node: &usize| [0, 1].iter().all(|i| prescribed.contains(&(2 * node + i)));

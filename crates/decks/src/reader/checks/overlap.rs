@@ -1,10 +1,10 @@
-//! Elements that lie over each other, within a body or of two bodies. See docs/theory/geometry.md, Overlap of
+//! Finds elements that lie over each other, within one body or of two bodies. See docs/theory/geometry.md, Overlap of
 //! elements.
 //!
-//! Where elements lie over each other, the boundary of a body meets that of another or its own, or a body
-//! lies wholly inside. At a place where boundaries meet, an element with an exterior side there and one
-//! with an exterior node have a common part. A loop of the boundary that meets no other lies inside as many
-//! elements as the loops go around it.
+//! Where elements lie over each other, the boundary of a body meets the boundary of another body or itself, or one body
+//! lies completely inside another. Where two boundaries meet, an element with an exterior side at this place overlaps
+//! an element with an exterior node. A loop of the boundary that meets no other loop lies inside as many elements as
+//! there are turns of other loops around it.
 
 use crate::diagnostics::{Code, Span};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
@@ -12,13 +12,13 @@ use crate::reader::context::Context;
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, extents};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Width of a common part, in widths of the narrower element in every direction, above which elements lie
-/// over each other; what is less is overlap of curved surfaces as meshed.
+/// Width of the common part of two elements, relative to the narrower element in every direction, above which they lie
+/// over each other. Smaller overlaps come from meshing curved surfaces.
 const OVERLAP: f64 = 0.05;
 
-/// Reports elements that lie over each other: in a body as an error; of two bodies as an error in general
-/// contact, and as a warning where the deck may mean it. Contact that moves nodes before the start
-/// resolves the overlap of its bodies.
+/// Reports elements that lie over each other. Overlap within one body is an error; overlap of two bodies is an error in
+/// general contact, else a warning, because the deck may intend it. Contact that moves nodes before the start resolves
+/// the overlap of its bodies.
 pub(crate) fn overlap(model: &Model, places: &[Span], cx: &mut Context) {
     let mesh = &model.mesh;
     let mut pairs = overlapping(mesh);
@@ -58,7 +58,7 @@ pub(crate) fn overlap(model: &Model, places: &[Span], cx: &mut Context) {
     }
 }
 
-/// `elements 3 and 8`, the first of so many pairs.
+/// Names a pair of elements for a message, `the elements 3 and 8`, as the first of `count` pairs.
 fn elements(model: &Model, pair: [usize; 2], count: usize) -> String {
     let [a, b] = pair.map(|element| model.element_name(element));
     match count {
@@ -67,11 +67,11 @@ fn elements(model: &Model, pair: [usize; 2], count: usize) -> String {
     }
 }
 
-/// Contacts between bodies.
+/// The contacts of the model as far as they act on overlapping bodies.
 struct Acting {
-    /// Whether there is general contact.
+    /// Whether the model has general contact.
     is_general: bool,
-    /// Bodies whose nodes contact moves before the start.
+    /// For each contact that moves nodes before the start, the bodies of these nodes.
     moved: Vec<BTreeSet<usize>>,
 }
 
@@ -104,8 +104,8 @@ impl Acting {
     }
 }
 
-/// Pairs of elements that lie over each other, the smaller index first: all that meet at the boundaries
-/// of bodies, and one for a body inside another.
+/// Pairs of elements that lie over each other, the smaller index first: all pairs at places where boundaries of bodies
+/// meet; if there are none, one pair for a body inside another.
 fn overlapping(mesh: &Mesh) -> Vec<[usize; 2]> {
     let at_nodes = ElementsAtNodes::new(mesh);
     let (exterior, mut pairs) = exterior(mesh, &at_nodes);
@@ -194,17 +194,18 @@ fn have_common_part(p: &[[f64; 2]], q: &[[f64; 2]]) -> bool {
     !parts(p) && !parts(q)
 }
 
-/// A loop of the boundary of a body, or several that meet at nodes.
+/// A loop of the boundary of a body, or several loops that meet at nodes.
 struct Loop {
-    /// Its faces.
+    /// Faces of the loop.
     faces: Vec<Face>,
-    /// Circle about it.
+    /// Circle around the loop.
     circle: Circle,
-    /// A place inside the element of its first face.
+    /// A place inside the element of the first face of the loop.
     place: [f64; 2],
 }
 
-/// Pairs of an element at a loop of a boundary and one that holds it, for loops that meet no others.
+/// Pairs of an element at a loop of a boundary and an element that this loop lies in, for loops that meet no other
+/// loop.
 fn inside(mesh: &Mesh, exterior: &[Face]) -> Vec<[usize; 2]> {
     let loops = loops(mesh, exterior);
     if loops.len() < 2 {
@@ -241,7 +242,7 @@ fn inside(mesh: &Mesh, exterior: &[Face]) -> Vec<[usize; 2]> {
     covered.take(1).filter_map(holder).collect()
 }
 
-/// The loops of the boundaries, those that meet at a node as one.
+/// The loops of the boundaries; loops that meet at a node count as one.
 fn loops(mesh: &Mesh, exterior: &[Face]) -> Vec<Loop> {
     let mut joined: Vec<usize> = (0..mesh.node_count()).collect();
     let root = |joined: &mut Vec<usize>, mut node: usize| {
@@ -273,7 +274,8 @@ fn loops(mesh: &Mesh, exterior: &[Face]) -> Vec<Loop> {
     all.into_values().map(of_faces).collect()
 }
 
-/// How often the faces of a loop go around a place, to the left positive: crossings of the ray to the right.
+/// Number of turns of the faces of a loop around a place, positive to the left, counted as crossings of the ray to the
+/// right.
 fn turns_about(mesh: &Mesh, faces: &[Face], place: [f64; 2]) -> i64 {
     let crossing = |segment: [usize; 2]| {
         let [a, b] = segment.map(|node| difference(place, mesh.coordinates[node]));
@@ -295,7 +297,7 @@ fn holds(mesh: &Mesh, element: usize, place: [f64; 2]) -> bool {
     })
 }
 
-/// A circle about some places.
+/// A circle around some places.
 fn about(places: &[[f64; 2]]) -> Circle {
     let [low, high] = extents(places.iter().copied());
     let centre = [0, 1].map(|i| low[i] + (high[i] - low[i]) / 2.0);
@@ -311,7 +313,7 @@ mod tests {
     use super::*;
     use crate::model::{Element, ElementType};
 
-    /// A mesh of elements, each given by its corners; corners at the same place are one node where `joins`.
+    /// A mesh of elements, each given by its corners; corners at the same place are one node if `joins` is true.
     fn mesh(elements: &[&[[f64; 2]]], joins: bool) -> Mesh {
         let mut mesh = Mesh::default();
         for corners in elements {

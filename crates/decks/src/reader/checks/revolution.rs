@@ -1,5 +1,5 @@
-//! Bodies of revolution: that all elements are of this kind, on one side of the axis, held on it, and that nothing asks
-//! them to turn or to move across it. See docs/theory/elements.md, Bodies of revolution.
+//! Checks of bodies of revolution: all elements must be of this kind and lie on one side of the axis, and nodes on the
+//! axis must be held on it. See docs/theory/elements.md, Bodies of revolution.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use crate::model::{Mesh, Model};
 use crate::reader::context::Context;
 use crate::reader::mesh_index::MeshIndex;
 
-/// Reports plane elements beside those of bodies of revolution, and nodes beyond the axis.
+/// Reports plane elements in a model with bodies of revolution, and nodes beyond the axis.
 pub(crate) fn half_plane(mesh_index: &MeshIndex, cx: &mut Context) {
     let elements = &mesh_index.mesh.elements;
     let is_ring = |element: usize| elements[element].element_type.is_ring();
@@ -80,7 +80,7 @@ pub(crate) fn axis(model: &Model, places: &[Span], cx: &mut Context) {
     }
 }
 
-/// Nodes on the axis that are not among the held ones, with an element of each.
+/// Nodes on the axis that are not among `held`, each with an element that has the node.
 fn free_on_axis(mesh: &Mesh, held: &BTreeSet<usize>) -> Vec<(usize, usize)> {
     let mut seen = BTreeSet::new();
     let elements = mesh.elements.iter().enumerate();

@@ -1,6 +1,6 @@
-//! Numerical factorisation, front by front from the leaves of the elimination forest to its roots (Duff & Reid 1983),
-//! branches side by side; what is added up in the fronts: entries of the matrix, and what eliminating the supernodes
-//! below has left. docs/numerics.md, Factorisation.
+//! Numerical factorisation, front by front from the leaves of the elimination forest to its roots (Duff & Reid 1983);
+//! branches are independent of each other. A front is the sum of entries of the matrix and of the update matrices of
+//! the supernodes below. docs/numerics.md, Factorisation.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -12,27 +12,27 @@ use super::front::Front;
 use super::supernodes::Layout;
 use crate::linear::symmetric::Pattern;
 
-/// A limb with its part of L.
+/// A limb (branch or trunk) with its part of L.
 type OwnFactor<'a> = (&'a mut LimbFactor, &'a mut [f64]);
 
-/// What the factorisation of matrices of one pattern goes through.
+/// The steps by which all matrices of one pattern are factorised.
 #[derive(Debug, Default)]
 pub struct Elimination {
     assemblies: Vec<Assembly>,
 }
 
-/// Memory of factorisations, one after the other.
+/// Memory that successive factorisations share.
 #[derive(Debug, Default)]
 pub struct FrontSpace {
     /// Fronts that no thread uses at present.
     fronts: Mutex<Vec<Front>>,
-    /// Of every limb what eliminating supernodes has left in the rows below, for their parents: the lower triangles,
-    /// column by column, at the places of [`UpdateStack`].
+    /// For every limb the update matrices of its supernodes, for their parents: lower triangles, column by column, at
+    /// the places of [`UpdateStack`].
     stacks: Vec<Entries>,
 }
 
 impl FrontSpace {
-    /// Does something with a front.
+    /// Calls `action` with a front, which is free again afterwards.
     fn with_front(fronts: &Mutex<Vec<Front>>, action: impl FnOnce(&mut Front)) {
         let all = || fronts.lock().unwrap_or_else(PoisonError::into_inner);
         let own = all().pop();
@@ -43,7 +43,7 @@ impl FrontSpace {
 }
 
 impl Elimination {
-    /// For a factor of matrices with a pattern.
+    /// The steps for a factor of matrices with a pattern.
     pub fn new(factor: &Factor, pattern: &Pattern) -> Self {
         let limbs = 0..factor.limbs.len();
         let stacks: Vec<UpdateStack> = factor.limbs.iter().map(UpdateStack::new).collect();
@@ -80,10 +80,10 @@ impl Elimination {
     }
 }
 
-/// What the factorisations of limbs have in common.
+/// Data that the factorisations of all limbs share.
 struct Common<'a> {
     fronts: &'a Mutex<Vec<Front>>,
-    /// Whether columns of a front may change on several threads.
+    /// Whether several threads may change columns of one front.
     on_threads: bool,
     /// Stacks of the branches, for trunks.
     below: &'a [Entries],
@@ -91,7 +91,7 @@ struct Common<'a> {
     a: &'a [f64],
 }
 
-/// Factorises some limbs, on threads if it is worth them.
+/// Factorises some limbs, on several threads if `threads` is true.
 fn eliminate(
     threads: bool,
     (limbs, assemblies, stacks): (&mut [OwnFactor], &[Assembly], &mut [Entries]),
@@ -133,7 +133,7 @@ struct OfLimb<'a> {
     assembly: &'a Assembly,
     front: &'a mut Front,
     stack: &'a mut [f64],
-    /// Stacks of the branches, for a trunk.
+    /// Stacks of the branches, which a trunk needs.
     below: &'a [Entries],
     /// Entries of the matrix.
     a: &'a [f64],
@@ -174,7 +174,7 @@ impl WithSimd for OfLimb<'_> {
 }
 
 impl Front {
-    /// Adds what eliminating a child has left.
+    /// Adds the update matrix of a child.
     #[inline(always)]
     fn add(&mut self, update: &[f64], runs: &[ConsecutiveRows]) {
         let mut rest = update;
@@ -195,7 +195,7 @@ impl Front {
         }
     }
 
-    /// Writes the rows and columns from `size` on.
+    /// Writes the rows and columns from `size` on as the update matrix.
     fn store_update(&self, size: usize, mut update: &mut [f64]) {
         for column in size..self.length {
             let own = &self.values[column * self.stride..][column..self.length];
@@ -205,27 +205,27 @@ impl Front {
     }
 }
 
-/// What goes into the fronts of the supernodes of a limb.
+/// The entries and update matrices that are added to the fronts of the supernodes of a limb.
 #[derive(Debug, Default)]
 pub struct Assembly {
-    /// Of every entry of the matrix its place there and that in the front; supernode by supernode.
+    /// For every entry of the matrix, its place in the matrix and its place in the front, supernode by supernode.
     entries: Vec<[u32; 2]>,
-    /// End of the entries of every supernode.
+    /// End of the list of entries of every supernode.
     entry_ends: Vec<usize>,
     children: Vec<Child>,
-    /// End of the children of every supernode.
+    /// End of the list of children of every supernode.
     child_ends: Vec<usize>,
     runs: Vec<ConsecutiveRows>,
     stack: UpdateStack,
 }
 
-/// Places of the update matrices (contribution blocks) that eliminating the supernodes of a limb in postorder leaves: a
-/// stack, from which a supernode takes those of its children before it leaves its own.
+/// Places of the update matrices (contribution blocks) of the supernodes of a limb in postorder. The update matrices
+/// form a stack: a supernode removes those of its children before it adds its own.
 #[derive(Debug, Default, Clone)]
 pub struct UpdateStack {
     /// First entry of the update matrix of every supernode.
     starts: Vec<usize>,
-    /// Entries of the highest stack.
+    /// Number of entries of the stack at its highest.
     height: usize,
 }
 
@@ -233,13 +233,13 @@ pub struct UpdateStack {
 #[derive(Debug, Clone, Copy)]
 pub struct Child {
     pub limb: usize,
-    /// First entry of its update matrix in the stack of the limb.
+    /// First entry of the update matrix of the child in the stack of its limb.
     pub update: usize,
-    /// End of its runs, which begin where those of the child before end.
+    /// End of the runs of the child, which begin where those of the child before end.
     end: usize,
 }
 
-/// Rows below a supernode that are next to each other in the front of its parent, too.
+/// Consecutive rows below a supernode that are also consecutive in the front of its parent.
 #[derive(Debug, Clone, Copy)]
 pub struct ConsecutiveRows {
     /// First row in the front.
@@ -249,7 +249,7 @@ pub struct ConsecutiveRows {
 }
 
 impl Assembly {
-    /// For a limb of a factor of matrices with a pattern; `stacks` are those of all limbs.
+    /// The assembly of a limb of a factor, for matrices with a pattern; `stacks` holds the stacks of all limbs.
     pub fn new(factor: &Factor, number: usize, pattern: &Pattern, stacks: &[UpdateStack]) -> Self {
         let limb = &factor.limbs[number];
         let layout = Layout::of_processor();
@@ -289,7 +289,7 @@ impl Assembly {
         assembly
     }
 
-    /// Adds a child, with its update matrix, of a supernode of limb `own` whose rows are `at` these places of the front.
+    /// Adds a child to a supernode of limb `own`; `at` gives the places of rows in the front of this supernode.
     fn push(
         &mut self,
         factor: &Factor,
@@ -317,7 +317,7 @@ impl Assembly {
         self.children.push(Child { limb, update, end });
     }
 
-    /// Entries of the matrix for a supernode: place there and in the front.
+    /// Entries of the matrix for a supernode, each with its place in the matrix and its place in the front.
     pub fn entries(&self, s: usize) -> &[[u32; 2]] {
         &self.entries[start(&self.entry_ends, s)..self.entry_ends[s]]
     }
@@ -327,7 +327,7 @@ impl Assembly {
         self.stack.starts[s]
     }
 
-    /// Entries of the highest stack of update matrices.
+    /// Number of entries of the stack of update matrices at its highest.
     pub fn stack_height(&self) -> usize {
         self.stack.height
     }
@@ -344,7 +344,7 @@ impl Assembly {
 }
 
 impl UpdateStack {
-    /// Stack of the updates of a limb.
+    /// The stack of the update matrices of a limb.
     pub fn new(limb: &LimbFactor) -> Self {
         let (mut updates, mut stack) =
             (UpdateStack::default(), Vec::<(Option<usize>, usize)>::new());
@@ -365,12 +365,12 @@ impl UpdateStack {
     }
 }
 
-/// Start of a list, given the ends of all.
+/// Start of list `k`, given the ends of all lists.
 fn start(ends: &[usize], k: usize) -> usize {
     k.checked_sub(1).map_or(0, |k| ends[k])
 }
 
-/// Children of every supernode of a limb, by limb and number.
+/// Children of every supernode of a limb, given by their limb and number.
 fn children(factor: &Factor, number: usize) -> Vec<Vec<(usize, usize)>> {
     let limb = &factor.limbs[number];
     let mut children = vec![Vec::new(); limb.supernodes()];
@@ -397,7 +397,8 @@ fn children(factor: &Factor, number: usize) -> Vec<Vec<(usize, usize)>> {
 }
 
 impl LimbFactor {
-    /// Row of the limb, whose number is given, at a place; none if it is not in it or its trunk.
+    /// Row of this limb, which has the given number, at a place; `None` if the place is neither in this limb nor in its
+    /// trunk.
     fn row(&self, number: usize, place: PivotPlace) -> Option<usize> {
         match self.trunk {
             _ if place.limb == number => Some(place.row),

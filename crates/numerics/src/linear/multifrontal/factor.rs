@@ -1,6 +1,6 @@
-//! LDL^T factors limb by limb, packed in the order in which substitutions read them, in memory with large pages where
-//! the system has them: substitutions read the entries from one end to the other, and a processor reads ahead within a
-//! page only. docs/numerics.md, Order in memory.
+//! LDL^T factors by limbs (branches and trunks of the elimination forest), packed in the order in which substitutions
+//! read them. The memory has large pages if the system has them, because substitutions read the entries from one end to
+//! the other, and a processor reads ahead only within a page. See docs/numerics.md, Order in memory.
 
 use std::ops::{Deref, DerefMut};
 
@@ -12,45 +12,47 @@ use crate::system::in_large_pages;
 
 use super::supernodes::{Layout, Limb, Supernode, Supernodes, cut};
 
-/// Least entries of L for which a factorisation and a substitution are worth threads.
+/// Smallest number of entries of L for which a factorisation uses several threads; that for a substitution follows.
 const FACTORISATION: usize = 200_000;
 const SUBSTITUTION: usize = 800_000;
 
-/// Where the unknown of a pivot is.
+/// Place of the unknown of a pivot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PivotPlace {
-    /// Its limb.
+    /// Limb (branch or trunk) of the pivot.
     pub limb: usize,
-    /// Its row there.
+    /// Row of the pivot in the limb.
     pub row: usize,
 }
 
-/// Where a supernode of a limb is.
+/// Place and shape of a supernode of a limb.
 #[derive(Debug, Clone, Copy)]
 struct Spot {
     start: u32,
     size: u32,
     is_of_twos: bool,
-    /// Its first entry in the rows of the limb.
+    /// First entry of the supernode in the rows of the limb.
     rows: usize,
-    /// Its first entry among those of the limb.
+    /// First entry of the supernode among those of the limb.
     entries: usize,
 }
 
-/// Columns of L and D of a branch or a trunk. Its rows are its own, then those of the trunk it stands on.
+/// Columns of L and D of a branch or a trunk. The rows of a branch are its own rows, followed by those of the trunk
+/// that it stands on.
 #[derive(Debug, Default)]
 pub struct LimbFactor {
-    /// Unknowns of its own rows.
+    /// Unknowns of the own rows.
     pub unknowns: Vec<usize>,
-    /// The trunk, by its number among the limbs.
+    /// The trunk of a branch, by its number among the limbs.
     pub trunk: Option<usize>,
-    /// Number of rows, own and of the trunk.
+    /// Number of rows: own rows and those of the trunk.
     pub length: usize,
-    /// Rows of its longest supernode.
+    /// Number of rows of the longest supernode.
     pub longest: usize,
     spots: Vec<Spot>,
     rows: Vec<u32>,
-    /// Number of entries of L, and the first among those of all limbs, which begins a line of the cache.
+    /// Number of entries of L; `first` is their beginning among the entries of all limbs, which begins a line of the
+    /// cache.
     entries: usize,
     first: usize,
     /// D
@@ -72,7 +74,7 @@ pub struct Factor {
     values: Entries,
 }
 
-/// Places of pivots in the limbs, in their order.
+/// Places in the limbs of all pivots, in the order of elimination.
 struct PivotPlaces {
     of_pivots: Vec<PivotPlace>,
     /// Number of own rows of every limb.
@@ -80,7 +82,8 @@ struct PivotPlaces {
 }
 
 impl Factor {
-    /// For the factors of an analysed matrix, whose memory [`Self::make_room`] takes; `unknowns` has the unknown of every pivot.
+    /// The structure of the factors of an analysed matrix, whose memory [`Self::make_room`] allocates; `unknowns` holds
+    /// the unknown of every pivot.
     pub fn new(supernodes: &Supernodes, unknowns: &[usize]) -> Self {
         let all = 0..supernodes.count();
         let work: Vec<usize> = all.map(|s| supernodes.entries(s)).collect();
@@ -111,19 +114,19 @@ impl Factor {
         factor
     }
 
-    /// Takes memory for L: that of former factors, as far as it is enough.
+    /// Makes room for L, in the memory of former factors if it is large enough.
     pub fn make_room(&mut self, memory: Entries) {
         let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
         self.values = memory;
         self.values.make_room(self.limbs.iter().map(of_limb).sum());
     }
 
-    /// The memory of L, which is then without.
+    /// Takes the memory of L away from the factor.
     pub fn take_memory(&mut self) -> Entries {
         std::mem::take(&mut self.values)
     }
 
-    /// L of all limbs, for their supernodes.
+    /// L of all limbs; supernodes refer to ranges of its entries.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -139,12 +142,12 @@ impl Factor {
         of_limbs
     }
 
-    /// Whether there are threads, and entries enough for them in a factorisation.
+    /// Whether a factorisation uses threads: there are several, and L has enough entries.
     pub fn is_factorised_on_threads(&self) -> bool {
         self.is_worth_threads(FACTORISATION)
     }
 
-    /// Whether there are threads, and entries enough for them in a substitution.
+    /// Whether a substitution uses threads: there are several, and L has enough entries.
     pub fn is_substituted_on_threads(&self) -> bool {
         self.is_worth_threads(SUBSTITUTION)
     }
@@ -153,7 +156,7 @@ impl Factor {
         self.entries >= least && self.branches > 1 && rayon::current_num_threads() > 1
     }
 
-    /// D with the unknowns it belongs to.
+    /// Entries of D, each with its unknown.
     pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> {
         self.limbs.iter().flat_map(|limb| {
             let pivots = limb.unknowns.iter().zip(&limb.pivots);
@@ -178,7 +181,7 @@ impl PivotPlaces {
         PivotPlaces { of_pivots, sizes }
     }
 
-    /// Room for the factors of a limb.
+    /// The structure of the factors of a limb.
     fn factor(
         &self,
         supernodes: &Supernodes,
@@ -207,7 +210,7 @@ impl PivotPlaces {
 }
 
 impl LimbFactor {
-    /// Room for a supernode with its number of columns and the rows below.
+    /// Adds a supernode, given by its number of columns and the rows below.
     fn push(&mut self, size: usize, rows: &[usize]) {
         let (twos, rest) = rows.as_chunks::<2>();
         let is_of_twos = rest.is_empty() && twos.iter().all(|[p, q]| p + 1 == *q);
@@ -256,7 +259,7 @@ impl LimbFactor {
             - 1
     }
 
-    /// Takes the entries of `b`, over the unknowns, to its own rows.
+    /// Copies the entries of `b`, a vector over the unknowns, to the own rows of the limb.
     pub fn take(&self, b: &[f64], rows: &mut [f64]) {
         for (row, &unknown) in rows.iter_mut().zip(&self.unknowns) {
             *row = b[unknown];
@@ -274,19 +277,19 @@ impl LimbFactor {
     }
 }
 
-/// Entries in a line of the cache.
+/// Number of entries in a line of the cache.
 pub const LINE: usize = 64 / size_of::<f64>();
 
-/// Entries that begin a line of the cache; zero at first.
+/// Memory for entries, which begins with a line of the cache and is zero at first.
 #[derive(Debug, Default)]
 pub struct Entries {
     memory: Option<MmapMut>,
-    /// Those for which the system gives no memory of whole pages; their length says so.
+    /// The entries, if the system gives no memory of whole pages; else empty.
     plain: Vec<f64>,
 }
 
 impl Entries {
-    /// So many zeros.
+    /// Memory for `count` zeros.
     pub fn zeros(count: usize) -> Self {
         match MmapMut::map_anon(count * size_of::<f64>()) {
             Ok(memory) if count > 0 => Entries {
@@ -301,12 +304,13 @@ impl Entries {
     }
 }
 
-/// Part of the entries asked for by which there is more room, so that a few more do not take other memory: the
-/// system gives memory for what is written only.
+/// Inverse of the spare part of the memory, so that slightly larger factors still fit; the system provides memory only
+/// for entries that are written.
 const SPARE: usize = 8;
 
 impl Entries {
-    /// Room for so many entries at least, in the memory at hand where it is enough; of any value.
+    /// Makes room for at least `count` entries, in the present memory if it is large enough; their values are
+    /// undefined.
     pub fn make_room(&mut self, count: usize) {
         if self.len() < count {
             *self = Entries::default();

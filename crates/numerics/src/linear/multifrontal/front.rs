@@ -9,55 +9,55 @@ use rayon::prelude::*;
 use super::factor::Entries;
 use super::supernodes::{Layout, panels};
 
-/// Panels of full width whose columns are eliminated before the columns right of them change.
+/// Number of panels of full width that are eliminated before the columns to their right change.
 const BLOCK: usize = 6;
 
-/// Columns that change side by side.
+/// Number of columns that change together.
 const SIDE: usize = 4;
 
-/// Columns whose change is one piece of work for a thread, and the least operations that are worth threads.
+/// Number of columns whose change is one task for a thread.
 const PIECE: usize = 8 * SIDE;
 const OPERATIONS: usize = 500_000;
 
-/// Rows and columns of a supernode and of those below it, which eliminating them fills: the lower triangle,
-/// column by column. Beyond its rows and columns there is room for whole registers.
+/// Dense matrix over the rows of a supernode: its own and those below it. Only the lower triangle is stored, column by
+/// column. Behind the rows and columns there is room for whole vector registers.
 #[derive(Debug, Default)]
 pub struct Front {
     pub values: Entries,
-    /// Whether its columns may change on several threads.
+    /// Whether several threads may change its columns.
     pub on_threads: bool,
-    /// Rows, and columns.
+    /// Number of rows, and of columns.
     pub length: usize,
-    /// From the start of a column to that of the next.
+    /// Distance from the start of a column to that of the next.
     pub stride: usize,
-    /// -L D of the panels of a block, tile by tile as L.
+    /// -L D of the panels of a block, in tiles like L.
     scaled: Vec<f64>,
 }
 
-/// A panel that has been eliminated, and columns that change.
+/// A panel that has been eliminated, with its factors for the columns that change.
 #[derive(Default, Clone, Copy)]
 struct Panel<'a> {
-    /// L below its columns, in tiles.
+    /// L below the columns of the panel, in tiles.
     l: &'a [f64],
-    /// First row below its columns.
+    /// First row below the columns of the panel.
     below: usize,
-    /// From the first entry on that each of the columns takes, those of -L D.
+    /// Entries of -L D for each of the changing columns, from the first factor of this column on.
     scaled: [&'a [f64]; SIDE],
 }
 
-/// Columns of a panel of a block, and where their parts are.
+/// Columns of a panel of a block, and the places of their parts.
 #[derive(Debug, Default, Clone, Copy)]
 struct PanelSpot {
     first: usize,
     width: usize,
-    /// Start of its tiles in the values of the supernode.
+    /// Start of the tiles of the panel in the values of the supernode.
     tiles: usize,
-    /// Start of its tiles in -L D.
+    /// Start of the tiles of the panel in -L D.
     scaled: usize,
 }
 
 impl PanelSpot {
-    /// The panel, of N columns, for columns from `column` on.
+    /// The panel, which has N columns, with its factors for the columns from `column` on.
     #[inline(always)]
     fn panel<'a, const N: usize>(
         self,
@@ -80,13 +80,13 @@ impl PanelSpot {
 }
 
 impl Front {
-    /// Room for fronts of so many rows.
+    /// Makes room for fronts of up to `length` rows.
     pub fn make_room(&mut self, length: usize) {
         let stride = Layout::of_processor().stride(length);
         self.values.make_room(stride * (length + SIDE));
     }
 
-    /// A front of so many rows, for which there must be room, with zeros in the lower triangle.
+    /// Makes this a front of `length` rows with zeros in the lower triangle; there must be room for it.
     pub fn clear(&mut self, layout: Layout, length: usize) {
         self.length = length;
         self.stride = layout.stride(length);
@@ -96,8 +96,8 @@ impl Front {
         }
     }
 
-    /// Eliminates the first `size` columns: their L goes to `values`, see [`Layout`], their D to `pivots`, and
-    /// what remains of the rest stays.
+    /// Eliminates the first `size` columns: writes their L to `values` (see [`Layout`]) and their D to `pivots`, and
+    /// leaves the update matrix in the other columns.
     #[inline(always)]
     pub fn eliminate<S: Simd>(
         &mut self,
@@ -140,7 +140,7 @@ impl Front {
         }
     }
 
-    /// Takes the products of eliminated panels from some columns:
+    /// Subtracts the products of eliminated panels from some columns:
     ///
     /// ```text
     /// F_ij <- F_ij - sum_k L_ik D_k L_jk,   i >= j
@@ -189,7 +189,7 @@ impl Front {
         change.take(simd, columns.start, front);
     }
 
-    /// Eliminates the columns of a panel, given what all panels before have left of them.
+    /// Eliminates the columns of a panel, after all earlier panels have changed them.
     #[inline(always)]
     fn eliminate_panel<S: Simd, const N: usize>(
         &mut self,
@@ -248,7 +248,7 @@ impl Front {
     }
 }
 
-/// What eliminated panels take from columns of a front.
+/// Products of eliminated panels that are subtracted from columns of a front.
 struct Change<'a> {
     spots: &'a [PanelSpot],
     /// L of the supernode.
@@ -258,7 +258,7 @@ struct Change<'a> {
     stride: usize,
 }
 
-/// Some columns of a front, from the `first` on, for a thread.
+/// The columns of a front, from `first` on, that one thread changes.
 struct Piece<'a> {
     change: &'a Change<'a>,
     first: usize,
@@ -275,7 +275,7 @@ impl WithSimd for Piece<'_> {
 }
 
 impl Change<'_> {
-    /// Takes the products from columns of a front, from the `first` on.
+    /// Subtracts the products from columns of a front, from `first` on.
     #[inline(always)]
     fn take<S: Simd>(&self, simd: S, first: usize, front: &mut [f64]) {
         match self.spots[0].width {
@@ -310,7 +310,7 @@ impl Change<'_> {
     }
 }
 
-/// What changes in some columns side by side.
+/// Products that change columns side by side.
 struct Products<S> {
     simd: S,
     row: usize,
@@ -318,7 +318,7 @@ struct Products<S> {
 }
 
 impl<S: Simd> Products<S> {
-    /// Takes the products of panels of N columns from T tiles of rows.
+    /// Subtracts the products of panels of N columns from T tiles of rows.
     #[inline(always)]
     fn take<const T: usize, const N: usize>(&self, side: &mut [f64], panels: &[Panel]) {
         let Self { simd, row, stride } = *self;

@@ -1,9 +1,9 @@
-//! Multifrontal LDL^T factorisation (Duff & Reid 1983), substitutions and parts of the inverse, branch by branch of
-//! the elimination forest. Approximate minimum degree order (Amestoy, Davis & Duff 1996) and symbolic analysis by
-//! faer, once for each pattern. docs/numerics.md, Factorisation.
+//! Multifrontal LDL^T factorisation (Duff & Reid 1983), substitutions and parts of the inverse, by branches of the
+//! elimination forest. The approximate minimum degree order (Amestoy, Davis & Duff 1996) and the symbolic analysis come
+//! from faer, once for each pattern. docs/numerics.md, Factorisation.
 //!
-//! It is own code for its speed: on the matrix of two blocks with 132 612 dofs a factorisation takes 86 ms, where
-//! faer's takes 152, and 45 on two threads, where faer's gains nothing; a solve takes 6.9 ms instead of 20
+//! The numerical part is own code for its speed. For the matrix of two blocks with 132 612 dofs a factorisation needs
+//! 86 ms (faer: 152 ms), and 45 ms on two threads (faer: no gain); a solve needs 6.9 ms (faer: 20 ms)
 //! (docs/numerics.md).
 
 mod elimination;
@@ -36,21 +36,21 @@ pub use partial_inverse::inverse_at;
 pub use substitution::Substitution;
 pub use supernodes::Supernodes;
 
-/// What matrices of one pattern have in common.
+/// Analysis that all matrices of one pattern share.
 #[derive(Default)]
 struct Analysis {
     pattern: Pattern,
-    /// Room for their factors.
+    /// Structure of the factors, and their memory.
     factor: Factor,
     elimination: Elimination,
 }
 
-/// What two solvers share.
+/// Data that two solvers share.
 #[derive(Default)]
 struct Shared {
-    /// Memory of their factorisations.
+    /// Memory of the factorisations.
     space: FrontSpace,
-    /// The analysis of factors that one of them has given up.
+    /// The analysis of factors that one of the solvers has freed.
     left: Option<Analysis>,
 }
 
@@ -60,7 +60,7 @@ pub struct MultifrontalLdl {
     analysis: Analysis,
     shared: Arc<Mutex<Shared>>,
     substitution: Substitution,
-    /// Unknowns of the paths of the substitution.
+    /// Unknowns whose paths the substitution follows.
     watched: Vec<usize>,
 }
 
@@ -68,16 +68,17 @@ fn library(error: impl std::fmt::Debug) -> LinearError {
     LinearError::Library(format!("{error:?}"))
 }
 
-/// Two supernodes one above the other with at most so many groups of unknowns are merged where less than this part of
-/// their entries is zero: as faer does it, with a group, which is mostly a node, for two unknowns.
+/// Rule for merging a supernode with its parent: if both have at most this many groups of unknowns, they are merged if
+/// less than this part of their entries is zero. The rule for merging supernodes is that of faer, with one group
+/// (mostly a node) in place of two unknowns.
 const MERGED: [(usize, f64); 4] = [(2, 1.0), (8, 0.8), (24, 0.1), (usize::MAX, 0.05)];
 
-/// Supernodes of the factors of a matrix, and the unknown of every pivot. Unknowns with the same entries, as those of a
-/// node, are analysed as one.
+/// Supernodes of the factors of a matrix, and the unknown of every pivot. Unknowns with the same entries, such as those
+/// of a node, are analysed as one group.
 ///
-/// Supernodal at every size: the automatic choice prefers the slower simplicial form below some
-/// ten thousand unknowns, and the library's own threshold for all still leaves it diagonal matrices,
-/// whose factorisation takes no operations.
+/// The supernodal form is forced at every size. The automatic choice of the library prefers the slower simplicial form
+/// below about ten thousand unknowns; even its threshold for the supernodal form leaves out diagonal matrices, whose
+/// factorisation needs no operations.
 fn analyse(pattern: &Pattern) -> Result<(Supernodes, Vec<usize>), LinearError> {
     if pattern.size() == 0 {
         return Ok((Supernodes::default(), Vec::new()));
@@ -110,8 +111,8 @@ fn analyse(pattern: &Pattern) -> Result<(Supernodes, Vec<usize>), LinearError> {
     }
 }
 
-/// Entries of the factor L of a matrix with one unknown per node, `neighbours` being the other nodes
-/// that each node is coupled with, in increasing order, and itself; 0 where the analysis fails.
+/// Number of entries of the factor L of a matrix with one unknown per node; 0 if the analysis fails. `neighbours`
+/// lists, for each node, the node itself and the nodes that it is coupled with, in increasing order.
 pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
     let pattern = Pattern::of_graph(neighbours);
     let entries = |supernodes: Supernodes| {
@@ -122,7 +123,7 @@ pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
 }
 
 impl Analysis {
-    /// Analyses the pattern of a matrix; the room for its factors has no memory yet.
+    /// Analyses the pattern of a matrix; no memory is allocated for its factors yet.
     fn new(pattern: &Pattern) -> Result<Self, LinearError> {
         let (supernodes, unknowns) = analyse(pattern)?;
         let factor = Factor::new(&supernodes, &unknowns);
@@ -136,8 +137,8 @@ impl Analysis {
 }
 
 impl MultifrontalLdl {
-    /// Two solvers that share memory. One takes over the analysis of the other, with the same pattern, when that gives up
-    /// its factors.
+    /// Two solvers that share memory. When one solver frees its factors, the other one takes over its analysis, if the
+    /// pattern is the same.
     pub fn two() -> [Self; 2] {
         let shared = Arc::default();
         [(); 2].map(|()| MultifrontalLdl {
@@ -160,7 +161,7 @@ impl MultifrontalLdl {
     }
 }
 
-/// What solvers share, for one of them.
+/// The shared data, locked for one solver.
 fn locked(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -236,24 +237,26 @@ impl LinearSolver for MultifrontalLdl {
     }
 }
 
-/// Groups of unknowns next to each other with the same entries, as those of a node, which are ordered as one.
+/// Groups of unknowns next to each other with the same entries, such as those of a node; a group is ordered as one
+/// unknown.
 pub(super) struct Groups {
     /// First unknown of every group, and the number of unknowns.
     starts: Vec<usize>,
-    /// The pattern between them.
+    /// The pattern between groups.
     quotient: Quotient,
 }
 
 /// A pattern between groups of unknowns, in the form of faer.
 struct Quotient {
-    /// First entry of every column, and the number of entries.
+    /// First entry of every column, and the number of entries at the end.
     starts: Vec<usize>,
-    /// Rows of the entries, column after column, increasing.
+    /// Rows of the entries, column after column, in increasing order.
     rows: Vec<usize>,
 }
 
 impl Quotient {
-    /// The pattern between groups, given by the first unknown of each, and their number.
+    /// The pattern between groups; `groups` holds the first unknown of each group, and the number of unknowns at the
+    /// end.
     fn new(pattern: &Pattern, groups: &[usize]) -> Self {
         let mut group_of = vec![0; pattern.size()];
         for (group, ends) in groups.windows(2).enumerate() {
@@ -277,7 +280,7 @@ impl Quotient {
         quotient
     }
 
-    /// The same for the library.
+    /// The pattern in the form of the library.
     fn symbolic(&self) -> SymbolicSparseColMatRef<'_, usize> {
         let n = self.starts.len() - 1;
         SymbolicSparseColMatRef::new_checked(n, n, &self.starts, None, &self.rows)
@@ -316,12 +319,12 @@ impl Groups {
         self.starts[group]..self.starts[group + 1]
     }
 
-    /// The unknowns of groups in an order.
+    /// The unknowns of the groups, in this order of the groups.
     pub fn unknowns(&self, order: &[usize]) -> impl Iterator<Item = usize> {
         order.iter().flat_map(|&group| self.unknowns_of(group))
     }
 
-    /// Place of the first unknown of every group in an order, and the number of unknowns.
+    /// Place of the first unknown of every group, in this order of the groups, and the number of unknowns at the end.
     pub fn offsets(&self, order: &[usize]) -> Vec<usize> {
         let mut offsets = vec![0];
         let mut end = 0;

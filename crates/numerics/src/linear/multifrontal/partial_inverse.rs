@@ -11,41 +11,43 @@ use rayon::prelude::*;
 
 use super::factor::{Factor, LimbFactor, PivotPlace};
 
-/// A column of L^-1 E whose entries above are all smaller than this ends there: what it would add to the
-/// inverse is below round-off, see docs/numerics.md, Compliance of the pairs. The unit vectors have no dimension.
+/// Size of entries of L^-1 E that are negligible: a column ends where all further entries are smaller, because they
+/// would change the inverse by less than its round-off. See docs/numerics.md, Compliance of the pairs. The entries of
+/// the unit vectors E are dimensionless.
 const NEGLIGIBLE: f64 = 1e-25;
 
-/// Columns that are handled together, on one thread.
+/// Number of columns that one thread handles together.
 const CHUNK: usize = 96;
 
-/// Columns of a supernode that are eliminated one by one: for few of them that is less work than in blocks.
+/// Number of columns of a supernode up to which they are eliminated one by one, which is then less work than in blocks.
 const SMALL: usize = 16;
 
-/// Contributions of the supernodes below to one above: unfinished rows of L^-1 E.
+/// Contributions of lower supernodes to a higher one: unfinished rows of L^-1 E.
 struct Contributions {
-    /// Columns (places in the list of unknowns) that are not zero, increasing, with their places in the values.
+    /// Nonzero columns (places in the list of unknowns), in increasing order, with their places in the values.
     columns: Vec<[usize; 2]>,
-    /// Rows of the limb, increasing.
+    /// Rows of the limb, in increasing order.
     rows: Vec<usize>,
     /// Values, column by column.
     values: Vec<f64>,
-    /// From the start of a column to that of the next; the rows are its last ones.
+    /// Distance from the start of a column to that of the next; the rows stand at the end of each column.
     stride: usize,
 }
 
-/// Finished rows of Y = L^-1 P E that have the same columns: supernodes one above the other, near the root.
+/// Finished rows of Y = L^-1 P E that have the same columns: they belong to supernodes one above the other, near the
+/// root.
 #[derive(Default)]
 struct Finished {
-    /// Columns that are not zero, increasing.
+    /// Nonzero columns, in increasing order.
     columns: Vec<usize>,
     /// Y^T, row by row.
     y: Vec<f64>,
-    /// D of the rows.
+    /// Entries of D in these rows.
     pivots: Vec<f64>,
 }
 
-/// Adds up fronts on the given rows: their columns, and the values column by column. `places` has room for the place of
-/// every column in a front.
+/// Adds up fronts on the given rows; returns the columns, and the values column by column. `places` is work space for
+/// the place of every column in a front.
 fn assemble(
     all: &[usize],
     fronts: Vec<Contributions>,
@@ -79,15 +81,15 @@ fn assemble(
     (columns, values)
 }
 
-/// The inverse of P^T L D L^T P at m `unknowns`, m x m column by column:
+/// The inverse of P^T L D L^T P at m `unknowns`, as an m x m matrix by columns:
 ///
 /// ```text
 /// Y = L^-1 P E,   E the unit vectors of the unknowns
 /// inverse = Y^T D^-1 Y
 /// ```
 ///
-/// Column j of Y is nonzero only on the path from its unknown to the root of the elimination tree,
-/// so that the supernodes off these paths are never visited, nor those where it has died away.
+/// Column j of Y is nonzero only on the path from its unknown to the root of the elimination tree, so supernodes off
+/// these paths are not visited, nor supernodes at which the column has become negligible.
 pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
     let m = unknowns.len();
     let (mut inverse, mut places) = (vec![0.0; m * m], vec![0; m]);
@@ -136,7 +138,8 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
     inverse
 }
 
-/// x_i <- x_i - L_ij x_j, i > j, for all columns j of a supernode of a size and length, in vectors x of that length.
+/// x_i <- x_i - L_ij x_j, i > j, for all columns j of a supernode with `size` columns and `length` rows, in vectors x
+/// of this length.
 fn eliminate(l: &[f64], [size, length]: [usize; 2], x: &mut [f64]) {
     if size <= SMALL {
         for x in x.chunks_exact_mut(length) {
@@ -174,7 +177,8 @@ fn units(factor: &Factor, unknowns: &[usize]) -> BTreeMap<(usize, usize), Vec<Co
     units
 }
 
-/// The rows below a supernode of a limb as those of the limb of the first one, and where that is; none below a root.
+/// The place of the first row below a supernode, and all rows below it as rows of the limb of that place; `None` below
+/// a root.
 fn above(
     limb: &LimbFactor,
     number: usize,
@@ -192,7 +196,7 @@ fn above(
     Some((PivotPlace { limb, row }, rows))
 }
 
-/// Does something with all chunks, on threads if there are several.
+/// Calls `action` for all chunks, on threads if there are several chunks.
 fn for_chunks<T: Send>(chunks: &mut [T], action: impl Fn(&mut T) + Sync + Send) {
     if chunks.len() > 1 && rayon::current_num_threads() > 1 {
         chunks.par_iter_mut().with_max_len(1).for_each(action);
@@ -201,18 +205,18 @@ fn for_chunks<T: Send>(chunks: &mut [T], action: impl Fn(&mut T) + Sync + Send) 
     chunks.iter_mut().for_each(action);
 }
 
-/// Columns of the inverse that are handled together.
+/// Columns of the inverse that one thread handles together.
 struct ColumnGroup<'a> {
-    /// Place of the first column among those that are not zero, and these.
+    /// Place of the first of these columns among the nonzero ones; `columns` holds all nonzero columns.
     first: usize,
     columns: &'a [usize],
-    /// The columns of the inverse from that of the part before on, and the first of them.
+    /// The columns of the inverse behind those of the group before; `start` is the first of them.
     inverse: &'a mut [f64],
     start: usize,
 }
 
 impl Finished {
-    /// Begins anew with rows of the given columns.
+    /// Removes all rows and sets the nonzero columns of the next ones.
     fn begin(&mut self, columns: &[usize]) {
         self.columns.clear();
         self.columns.extend_from_slice(columns);
@@ -220,7 +224,7 @@ impl Finished {
         self.pivots.clear();
     }
 
-    /// Adds the first rows of values in columns of the given length, and D of these.
+    /// Adds the first rows of `values`, which has columns of the given length, with their entries of D.
     fn push(&mut self, values: &[f64], length: usize, pivots: &[f64]) {
         for row in 0..pivots.len() {
             self.y
@@ -273,8 +277,8 @@ impl Finished {
     }
 }
 
-/// The columns, with their places, that are not negligible below their first `size` rows; values in columns of the
-/// given length.
+/// The columns that are not negligible below their first `size` rows, with their places in `values`, whose columns have
+/// the given length.
 fn without_negligible(
     columns: &[usize],
     values: &[f64],

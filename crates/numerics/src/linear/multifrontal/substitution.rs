@@ -1,32 +1,32 @@
-//! Forward and backward substitution with packed LDL^T factors, of all unknowns or of those on the
-//! paths of some to the root of the elimination tree. docs/numerics.md, Solves of a pass.
+//! Forward and backward substitution with packed LDL^T factors, for all unknowns or for those on the paths from some
+//! unknowns to the root of the elimination tree. docs/numerics.md, Solves of a pass.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::factor::{Factor, LimbFactor, PivotPlace};
 
-/// One right-hand side b on its way through P^T L D L^T P x = b, limb by limb.
+/// State of the solution of P^T L D L^T P x = b for one right-hand side b, limb by limb.
 #[derive(Default)]
 pub struct Substitution {
     limbs: Vec<LimbVectors>,
     has_paths: bool,
 }
 
-/// The right-hand side on a limb; vectors over its rows.
+/// The right-hand side on a limb, as vectors over the rows of the limb.
 #[derive(Default)]
 struct LimbVectors {
-    /// z = L^-1 P b in its own rows; what these take from those of the trunk.
+    /// z = L^-1 P b in the own rows; in the rows of the trunk, the sums that are added there.
     z: Vec<f64>,
-    /// L^-T D^-1 z, where it has been asked for.
+    /// L^-T D^-1 z, as far as it has been computed.
     x: Vec<f64>,
-    /// Entries in the rows of one supernode.
+    /// Work space for the rows of one supernode.
     work: Vec<f64>,
-    /// The supernodes on the paths of some unknowns, increasing: children come before their parents.
+    /// The supernodes on the paths of some unknowns, in increasing order, so children come before their parents.
     path: Vec<usize>,
 }
 
-/// Does something with all limbs, on threads if it is worth them.
+/// Calls `action` for all limbs, on several threads if `threads` is true.
 fn for_each(
     threads: bool,
     limbs: &[LimbFactor],
@@ -44,12 +44,12 @@ fn for_each(
 }
 
 impl Substitution {
-    /// Whether there are paths.
+    /// Whether paths have been set.
     pub fn has_paths(&self) -> bool {
         self.has_paths
     }
 
-    /// Makes room for right-hand sides of a factor, without paths.
+    /// Makes room for right-hand sides of a factor and removes the paths.
     pub fn adapt(&mut self, factor: &Factor) {
         self.has_paths = false;
         self.limbs
@@ -62,8 +62,8 @@ impl Substitution {
         }
     }
 
-    /// The paths of the unknowns at the given places to the root of the elimination tree: the parent of
-    /// a supernode is that of its first row below.
+    /// Sets the paths from the unknowns at the given places to the root of the elimination tree. The parent of a
+    /// supernode is the supernode of the first row below it.
     pub fn set_paths(&mut self, factor: &Factor, places: impl Iterator<Item = PivotPlace>) {
         let limbs = &factor.limbs;
         let mut is_on_path: Vec<Vec<bool>> = limbs
@@ -98,7 +98,7 @@ impl Substitution {
         self.has_paths = true;
     }
 
-    /// z = L^-1 P b
+    /// Computes z = L^-1 P b.
     pub fn begin(&mut self, factor: &Factor, b: &[f64]) {
         let (threads, branches) = (factor.is_substituted_on_threads(), factor.branches);
         let (of_branches, of_trunks) = self.limbs.split_at_mut(branches);
@@ -120,7 +120,7 @@ impl Substitution {
         });
     }
 
-    /// z <- z + L^-1 f, f having entries at places of the paths only.
+    /// z <- z + L^-1 f, where f has entries only at places on the paths.
     pub fn add(&mut self, factor: &Factor, f: impl Iterator<Item = (PivotPlace, f64)>) {
         let limbs = &factor.limbs;
         for (limb, side) in limbs.iter().zip(&mut self.limbs) {
@@ -146,7 +146,7 @@ impl Substitution {
         });
     }
 
-    /// x = L^-T D^-1 z on the paths.
+    /// Computes x = L^-T D^-1 z on the paths.
     pub fn on_paths(&mut self, factor: &Factor) {
         let (threads, branches) = (factor.is_substituted_on_threads(), factor.branches);
         let (of_branches, of_trunks) = self.limbs.split_at_mut(branches);
@@ -163,12 +163,12 @@ impl Substitution {
         });
     }
 
-    /// x at a place of the paths.
+    /// Value of x at a place on the paths.
     pub fn x(&self, place: PivotPlace) -> f64 {
         self.limbs[place.limb].x[place.row]
     }
 
-    /// x = L^-T D^-1 z everywhere; `x` over the unknowns.
+    /// Computes x = L^-T D^-1 z everywhere; `x` is a vector over the unknowns.
     pub fn end(&mut self, factor: &Factor, x: &mut [f64]) {
         let (threads, branches) = (factor.is_substituted_on_threads(), factor.branches);
         let (of_branches, of_trunks) = self.limbs.split_at_mut(branches);
@@ -221,7 +221,7 @@ impl LimbVectors {
         });
     }
 
-    /// x = L^-T D^-1 z
+    /// Computes x = L^-T D^-1 z.
     fn backward(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self { z, x, work, .. } = self;
         let supernodes = 0..limb.supernodes();
@@ -235,7 +235,7 @@ impl LimbVectors {
         });
     }
 
-    /// x = L^-T D^-1 z on the path.
+    /// Computes x = L^-T D^-1 z for the supernodes on the path.
     fn backward_on_path(&mut self, limb: &LimbFactor, values: &[f64]) {
         let Self {
             z, x, work, path, ..
@@ -251,7 +251,7 @@ impl LimbVectors {
         });
     }
 
-    /// x = 0 on the path, and in the rows of the trunk.
+    /// Sets x = 0 on the path and in the rows of the trunk.
     fn clear_path(&mut self, limb: &LimbFactor) {
         for &s in &self.path {
             self.x[limb.supernode(s).columns()].fill(0.0);
@@ -266,7 +266,7 @@ impl LimbVectors {
         }
     }
 
-    /// x in the rows of the trunk; `above` are the limbs from `first` on.
+    /// Copies x in the rows of the trunk; `above` holds the limbs from `first` on.
     fn stand_on(&mut self, limb: &LimbFactor, above: &[LimbVectors], first: usize) {
         if let Some(trunk) = limb.trunk {
             self.x[limb.unknowns.len()..].copy_from_slice(&above[trunk - first].x);
@@ -355,7 +355,7 @@ mod tests {
     use crate::linear::SolverChoice;
     use crate::linear::{Assembled, CheckedSolver, Transformation, linear_solver};
 
-    /// Grids of n x n nodes that are not connected.
+    /// A matrix of several grids of n x n nodes that are not connected to each other.
     fn grids(n: usize, count: usize) -> Assembled {
         let index = |grid: usize, i: usize, j: usize| (grid * n + i) * n + j;
         let mut edges = Vec::new();
@@ -371,7 +371,7 @@ mod tests {
         a
     }
 
-    /// A solve in parts.
+    /// A solve in parts gives the same solution as a whole solve.
     fn solution(a: &Assembled, threads: usize) -> Vec<f64> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads").install(|| {

@@ -1,6 +1,6 @@
-//! The supernodes of L: groups of unknowns that are eliminated together. Their columns are eliminated from a right-hand side,
-//! and back, in panels with vector instructions (docs/numerics.md, Solves of a pass). The elimination forest is cut into
-//! branches that do not depend on each other, and the trunks that they stand on (docs/numerics.md, Branches).
+//! The supernodes of L: groups of unknowns that are eliminated together. Forward and backward substitution treat their
+//! columns in panels, with vector instructions (docs/numerics.md, Solves of a pass). The elimination forest is cut into
+//! branches, which do not depend on each other, and the trunks on which they stand (docs/numerics.md, Branches).
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -8,20 +8,20 @@ use std::ops::Range;
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Supernodes: columns of L with the same rows below them, children before their parents.
+/// Supernodes: columns of L with the same rows below them; children come before their parents.
 #[derive(Debug, Default)]
 pub struct Supernodes {
-    /// First column of every supernode, and the number of columns.
+    /// First column of every supernode, and the number of columns at the end.
     starts: Vec<usize>,
-    /// Rows below the columns of one supernode after the other, increasing.
+    /// Rows below the columns of each supernode, in increasing order, supernode after supernode.
     rows: Vec<usize>,
-    /// Start of the rows of every supernode, and their end.
+    /// Start of the rows of every supernode, and the end of the last ones.
     row_starts: Vec<usize>,
 }
 
 impl Supernodes {
-    /// Those of the unknowns of groups, given those of the groups; `offsets` are the first pivot of every group in
-    /// the order of their elimination, and the number of pivots.
+    /// Supernodes of unknowns, made from supernodes of groups of unknowns; `offsets` holds the first pivot of every
+    /// group in the order of elimination, and the number of pivots at the end.
     pub fn of_groups(groups: &SymbolicSupernodalCholesky<usize>, offsets: &[usize]) -> Self {
         let mut supernodes = Supernodes {
             starts: vec![0],
@@ -38,7 +38,7 @@ impl Supernodes {
         supernodes
     }
 
-    /// Their number.
+    /// Number of supernodes.
     pub fn count(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
@@ -48,18 +48,18 @@ impl Supernodes {
         self.starts[s]..self.starts[s + 1]
     }
 
-    /// Rows below the columns of a supernode, increasing.
+    /// Rows below the columns of a supernode, in increasing order.
     pub fn rows(&self, s: usize) -> &[usize] {
         &self.rows[self.row_starts[s]..self.row_starts[s + 1]]
     }
 
-    /// Entries of the columns of a supernode, with those above their diagonal.
+    /// Number of entries of the columns of a supernode, including those above the diagonal.
     pub fn entries(&self, s: usize) -> usize {
         let size = self.columns(s).len();
         size * (size + self.rows(s).len())
     }
 
-    /// The supernode of the first row below each.
+    /// The parent of every supernode: the supernode of the first row below it.
     pub fn parents(&self) -> Vec<Option<usize>> {
         let of_row = |row: &usize| self.starts.partition_point(|start| start <= row) - 1;
         let parent = |s: usize| self.rows(s).first().map(of_row);
@@ -67,11 +67,11 @@ impl Supernodes {
     }
 }
 
-/// Columns of the widest panel.
+/// Number of columns of the widest panel.
 const WIDEST: usize = 8;
 
-/// Panels of a supernode of `size` columns: first column and number of columns of each, the
-/// widest that fit, one after the other.
+/// Panels of a supernode of `size` columns: first column and number of columns of each; each panel is the widest one
+/// that fits.
 #[inline(always)]
 pub fn panels(size: usize) -> impl DoubleEndedIterator<Item = (usize, usize)> {
     let whole = size / WIDEST;
@@ -89,20 +89,20 @@ pub struct Supernode<'a> {
     pub start: usize,
     /// Number of columns.
     pub size: usize,
-    /// Rows below those of its own columns; where they come in twos, one next to the other, the first of each.
+    /// Rows below those of its own columns; if rows come in pairs of neighbours, the first row of each pair.
     pub rows: &'a [u32],
-    /// Whether rows come in twos.
+    /// Whether rows come in pairs of neighbours.
     pub is_of_twos: bool,
-    /// Where its entries begin and end in L of all limbs.
+    /// Beginning and end of its entries in L of all limbs.
     pub entries: [usize; 2],
 }
 
-/// How the entries of a supernode lie: each panel has those between its own columns, column by
-/// column, then the rows below these, in tiles of as many rows as a vector register holds numbers. A tile has one column
-/// after the other. Both are filled up with zeros to whole registers.
+/// Arrangement of the entries of a supernode. Each panel has the entries between its own columns first, column by
+/// column; then the rows below them, in tiles with as many rows as a vector register holds numbers. A tile is stored
+/// column by column. Triangles and tiles are filled up with zeros to whole registers.
 #[derive(Clone, Copy)]
 pub struct Layout {
-    /// Numbers in a vector register.
+    /// Number of values that a vector register holds.
     pub lanes: usize,
 }
 
@@ -112,31 +112,31 @@ impl Layout {
         Arch::new().dispatch(OfProcessor)
     }
 
-    /// Entries between the columns of a panel.
+    /// Number of entries between the columns of a panel.
     #[inline(always)]
     pub fn triangle(self, width: usize) -> usize {
         (width * (width - 1) / 2).next_multiple_of(self.lanes)
     }
 
-    /// Tiles for rows.
+    /// Number of tiles for `rows` rows.
     #[inline(always)]
     pub fn tiles(self, rows: usize) -> usize {
         rows.div_ceil(self.lanes)
     }
 
-    /// Entries of a panel with so many rows below its own.
+    /// Number of entries of a panel of `width` columns with `rows` rows below its own.
     #[inline(always)]
     pub fn panel(self, width: usize, rows: usize) -> usize {
         self.triangle(width) + self.tiles(rows) * self.lanes * width
     }
 
-    /// Entries of a supernode with `size` columns of `length` rows.
+    /// Number of entries of a supernode with `size` columns of `length` rows.
     pub fn supernode(self, size: usize, length: usize) -> usize {
         let of_panel = |(first, width)| self.panel(width, length - first - width);
         panels(size).map(of_panel).sum()
     }
 
-    /// From a column of a front of so many rows to the next: room for a register more.
+    /// Distance between columns of a front of `length` rows, which leaves room for one more register.
     #[inline(always)]
     pub fn stride(self, length: usize) -> usize {
         length + self.lanes
@@ -155,7 +155,7 @@ impl WithSimd for OfProcessor {
 }
 
 impl Supernode<'_> {
-    /// Its columns.
+    /// Columns of the supernode.
     #[inline(always)]
     pub fn columns(self) -> Range<usize> {
         self.start..self.start + self.size
@@ -168,14 +168,14 @@ impl Supernode<'_> {
         self.size + of_rows * self.rows.len()
     }
 
-    /// Rows below those of its own columns, increasing.
+    /// Rows below those of its own columns, in increasing order.
     pub fn rows_below(&self) -> impl Iterator<Item = usize> {
         let of_each = if self.is_of_twos { 2 } else { 1 };
         let rows = self.rows.iter().map(|&row| row as usize);
         rows.flat_map(move |row| row..row + of_each)
     }
 
-    /// x_i <- x_i + w_i in the rows below.
+    /// Adds w to x in the rows below the supernode: x_i <- x_i + w_i.
     #[inline(always)]
     pub fn scatter(self, below: &[f64], x: &mut [f64]) {
         if self.is_of_twos {
@@ -191,7 +191,7 @@ impl Supernode<'_> {
         }
     }
 
-    /// w_i <- x_i in the rows below.
+    /// Copies x in the rows below the supernode to w: w_i <- x_i.
     #[inline(always)]
     pub fn gather(self, x: &[f64], below: &mut [f64]) {
         if self.is_of_twos {
@@ -207,14 +207,14 @@ impl Supernode<'_> {
         }
     }
 
-    /// Its part of L, panel by panel: see [`Layout`].
+    /// The part of L of this supernode, panel by panel (see [`Layout`]).
     #[inline(always)]
     fn own<'l>(&self, values: &'l [f64]) -> &'l [f64] {
         let [start, end] = self.entries;
         &values[start..end]
     }
 
-    /// Writes its part of L, of all its rows, to the lower triangle of `l`, column by column.
+    /// Writes the part of L of this supernode, with all its rows, to the lower triangle of `l`, column by column.
     pub fn write_to(self, values: &[f64], l: &mut Vec<f64>) {
         let layout = Layout::of_processor();
         let (lanes, length) = (layout.lanes, self.length());
@@ -239,8 +239,8 @@ impl Supernode<'_> {
         }
     }
 
-    /// w_i <- w_i - L_ij w_j, i > j, for all its columns j; w in own rows, then in those below, and a
-    /// register more.
+    /// w_i <- w_i - L_ij w_j, i > j, for all its columns j; w holds its own rows, then those below, and room for one
+    /// more register.
     #[inline(always)]
     pub fn eliminate<S: Simd>(self, simd: S, values: &[f64], w: &mut [f64]) {
         let layout = Layout {
@@ -282,7 +282,7 @@ impl Supernode<'_> {
     }
 }
 
-/// [`Supernode::eliminate`] for a panel of N columns: entries between its columns, then tiles.
+/// [`Supernode::eliminate`] for a panel of N columns, whose entries between its columns come first, then the tiles.
 #[inline(always)]
 fn eliminate_panel<S: Simd, const N: usize>(
     simd: S,
@@ -341,18 +341,19 @@ fn resolve_panel<S: Simd, const N: usize>(
     }
 }
 
-/// Where more than this part of all work is below, there is trunk: enough branches for a few threads, short trunks.
+/// Inverse of the part of all work above which a subtree does not fit into one branch, so its root belongs to a trunk:
+/// this gives enough branches for a few threads, and short trunks.
 const SHARE: usize = 8;
 
-/// Least work of a branch, in entries of L: where there is less, a thread costs more than it gains.
+/// Smallest work of a branch, in entries of L; with less, a thread would cost more time than it saves.
 const LEAST: usize = 50_000;
 
 /// A branch or a trunk.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Limb {
-    /// Supernodes of the forest, increasing.
+    /// Supernodes of the limb, in increasing order of their numbers in the forest.
     pub supernodes: Vec<usize>,
-    /// The trunk that a branch stands on, if it is not whole trees: number among the limbs.
+    /// The trunk on which a branch stands, as its number among the limbs; `None` for a branch of whole trees.
     pub trunk: Option<usize>,
 }
 
@@ -363,13 +364,13 @@ struct Forest<'a> {
     work: Vec<usize>,
     /// Root of the tree of every supernode.
     trees: Vec<usize>,
-    /// Most work of a branch.
+    /// Largest work of a branch.
     most: usize,
 }
 
-/// Cuts a forest, given by the parent and the work of every supernode: limbs, and how many of them are
-/// branches; these come first. Supernodes below which there is much work are the trunk of their tree; what
-/// remains of a tree, or small trees next to each other, are put together to branches.
+/// Cuts a forest, given by the parent and the work of every supernode, into limbs. Branches come first; their number is
+/// the second value. Supernodes with much work below them form the trunk of their tree. The rest of a tree, or
+/// neighbouring small trees, form branches.
 pub fn cut(parents: &[Option<usize>], work: &[usize]) -> (Vec<Limb>, usize) {
     let forest = Forest::new(parents, work);
     let (mut limb_of, trees) = forest.branches();
@@ -417,7 +418,7 @@ impl<'a> Forest<'a> {
         Some(self.trees[s]).filter(|&tree| self.is_trunk(tree))
     }
 
-    /// Branch of every supernode that is not in a trunk, and of every branch the tree that it is a part of.
+    /// The branch of every supernode that is not in a trunk, and the tree of every branch that stands on a trunk.
     fn branches(&self) -> (Vec<usize>, Vec<Option<usize>>) {
         let n = self.parents.len();
         let (mut branch_of, mut trees, mut work) = (vec![0; n], Vec::new(), 0);

@@ -1,5 +1,5 @@
-//! The multifrontal solver beside a dense solution: random patterns, singular and indefinite matrices, parts of the
-//! inverse, several threads.
+//! Tests of the multifrontal solver against a dense solution: random patterns, singular and indefinite matrices, parts
+//! of the inverse, and several threads.
 
 use nalgebra::DVector;
 use proptest::prelude::*;
@@ -11,7 +11,7 @@ use crate::linear::{LinearError, LinearSolver, Pattern, SymmetricMatrix};
 /// An edge between two unknowns with its stiffness.
 type Edge = (usize, usize, f64);
 
-/// sum w (e_i - e_j)(e_i - e_j)^T + diag, both triangles.
+/// The matrix sum w (e_i - e_j)(e_i - e_j)^T + diag, with both triangles.
 fn matrix(edges: &[Edge], diagonal: &[f64]) -> SymmetricMatrix {
     let mut entries = TriMat::new((diagonal.len(), diagonal.len()));
     for (i, &d) in diagonal.iter().enumerate() {
@@ -31,7 +31,7 @@ fn matrix(edges: &[Edge], diagonal: &[f64]) -> SymmetricMatrix {
     }
 }
 
-/// Some numbers between -1 and 1.
+/// Reproducible numbers between -1 and 1.
 fn numbers(n: usize, seed: usize) -> Vec<f64> {
     (0..n).map(|i| ((i * 37 + seed) as f64).sin()).collect()
 }
@@ -42,7 +42,7 @@ fn solved(solver: &mut MultifrontalLdl, b: &[f64]) -> DVector<f64> {
     x.into()
 }
 
-/// Patterns without edges, of several components and dense ones, and matrices that are positive definite.
+/// Positive definite matrices with various patterns: without edges, with several components, and dense.
 fn positive_definite() -> impl Strategy<Value = SymmetricMatrix> {
     (1..70_usize, 0..4_usize).prop_flat_map(|(n, per_unknown)| {
         let edge = (0..n, 0..n, 0.01..100.0);
@@ -149,7 +149,7 @@ fn singular_matrices_are_told_where_their_pivot_is_exact() {
     assert!(matches!(found, Err(LinearError::NotPositiveDefinite { pivot, .. }) if pivot.is_nan()));
 }
 
-/// A grid of n x n unknowns with uneven springs, and some long ones.
+/// A grid of n x n unknowns with springs of different stiffness, some of which connect distant unknowns.
 fn grid(n: usize) -> SymmetricMatrix {
     let springs = numbers(3 * n * n, 5);
     let mut edges = Vec::new();
