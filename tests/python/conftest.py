@@ -24,7 +24,7 @@ Job = Callable[..., Path]
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Options of the tests."""
-    help_ = "rescale the decks of input/ and run them to their ends, not for a few increments"
+    help_ = "run the rescaled decks of input/ to their ends, edit a deck of a million nodes"
     parser.addoption("--full", action="store_true", help=help_)
 
 

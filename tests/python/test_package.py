@@ -129,41 +129,47 @@ REJECTED = ("cycle", "faulty_include", "keyword_in_rows", "missing_include")
 
 
 @pytest.fixture(scope="module")
-def all_decks(job: Job) -> list[Result]:
+def all_decks(job: Job) -> list[Path]:
     """Results of the decks of tests/decks, and of one with what these lack."""
     paths = sorted((ROOT / "tests" / "decks").glob("*.inp"))
     decks = [Deck.read(path) for path in paths if path.stem not in SLOW + REJECTED]
-    return [Result(job(deck, "--frames", "1")) for deck in [*decks, Deck.parse(LOCAL)]]
+    return [job(deck, "--frames", "1") for deck in [*decks, Deck.parse(LOCAL)]]
 
 
-def test_every_history_and_field_of_every_deck_converts(all_decks: list[Result], tmp_path: Path) -> None:
+def converted(result: Result, netcdf: Path) -> set[str]:
+    """Kinds of members of a result of which every history and field converts."""
+    rows = result.file["history"].attrs["rows"]
+    frame = result.frames[-1]
+    table, data = result.to_dataframe(), result.to_xarray(*frame)
+    assert len(table) == len(data.time) == result.rows == rows
+    histories = {name.replace("/", ".") for name in result.histories}
+    assert set(data.data_vars) == histories - {"time"} | set(frame)
+    data.to_netcdf(netcdf, engine="h5netcdf")
+    with xarray.open_dataset(netcdf, engine="h5netcdf") as back:
+        assert back.equals(data)
+    grid = frame.to_pyvista()
+    found = {*grid.point_data, *grid.cell_data}
+    assert found == {stored for stored, _ in result.frames.stored.values()}
+    for name in set(frame) - found:  # the components across the plane stand in the tensors
+        tensor = grid[name.replace("33", "")]
+        assert np.array_equal(tensor[:, 2], frame.full(name), equal_nan=True), name
+    for name in table:
+        assert np.array_equal(table[name], result.quantity(name), equal_nan=True), name
+    for name in listed(result):
+        path = re.sub(r":1 to :\d+$", "", name)
+        if "[" not in path:  # else the name of a member is to be chosen
+            assert len(find(result, path).parts) == (1 if path == name else int(name[-1])), name
+    return {Members.of(result, path).kind for path in result.histories}
+
+
+def test_every_history_and_field_of_every_deck_converts(all_decks: list[Path], tmp_path: Path) -> None:
     """All rows are there, and every column has the name that `quantity` and plots use."""
     places = set()
-    for result in all_decks:
-        rows = result.file["history"].attrs["rows"]
-        frame = result.frames[-1]
-        table, data = result.to_dataframe(), result.to_xarray(*frame)
-        assert len(table) == len(data.time) == result.rows == rows
-        histories = {name.replace("/", ".") for name in result.histories}
-        assert set(data.data_vars) == histories - {"time"} | set(frame)
-        data.to_netcdf(tmp_path / "all.nc", engine="h5netcdf")
-        with xarray.open_dataset(tmp_path / "all.nc", engine="h5netcdf") as back:
-            assert back.equals(data)
-        grid = frame.to_pyvista()
-        found = {*grid.point_data, *grid.cell_data}
-        assert found == {stored for stored, _ in result.frames.stored.values()}
-        for name in set(frame) - found:  # the components across the plane stand in the tensors
-            tensor = grid[name.replace("33", "")]
-            assert np.array_equal(tensor[:, 2], frame.full(name), equal_nan=True), name
-        for name in table:
-            assert np.array_equal(table[name], result.quantity(name), equal_nan=True), name
-        for name in listed(result):
-            path = re.sub(r":1 to :\d+$", "", name)
-            if "[" not in path:  # else the name of a member is to be chosen
-                assert len(find(result, path).parts) == (1 if path == name else int(name[-1])), name
-        places |= {Members.of(result, path).kind for path in result.histories}
+    for path in all_decks:
+        with Result(path) as result:
+            places |= converted(result, tmp_path / "all.nc")
     assert places == {"", "body", "node", "element", "point", "hinge"}
-    local = all_decks[-1]
+    local = Result(all_decks[-1])
     assert local.rows == 21
     data = local.to_xarray()
     assert data["connectors.force"].dims == ("time", "connectors")

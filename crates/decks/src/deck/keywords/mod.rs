@@ -37,14 +37,16 @@ const FAMILIES: [(&str, &str); 6] = [
 const RESULTS: &str = "Results";
 
 static ALL: LazyLock<Vec<Keyword>> = LazyLock::new(|| {
-    let families = FAMILIES.into_iter().flat_map(|(task, text)| {
-        table::read(text).into_iter().map(move |keyword| Keyword {
-            task,
-            is_output: task == RESULTS,
-            ..keyword
-        })
-    });
-    table::with_levels(families.collect())
+    let mut all = Vec::new();
+    for (task, text) in FAMILIES {
+        let before = all.len();
+        table::read(text, &mut all);
+        for keyword in &mut all[before..] {
+            keyword.task = task;
+            keyword.is_output = task == RESULTS;
+        }
+    }
+    table::with_levels(all)
 });
 
 /// All known keywords.
@@ -57,4 +59,33 @@ pub fn find_keyword(name: &str) -> Option<&'static Keyword> {
     static INDEX: LazyLock<HashMap<String, &'static Keyword>> =
         LazyLock::new(|| keywords().map(|k| (fold(k.name), k)).collect());
     INDEX.get(&fold(name)).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_parameter_that_is_as_that_of_another_keyword_has_one() {
+        let mut count = 0;
+        for (_, text) in FAMILIES {
+            let mut names = "";
+            for line in table::lines(text) {
+                if let Some(entry) = line.strip_prefix('*') {
+                    names = entry.split(" @ ").next().unwrap_or(entry);
+                } else if let Some((name, of)) = line
+                    .strip_prefix("- ")
+                    .and_then(|line| line.split_once(" as *"))
+                {
+                    for keyword in names.split(", ") {
+                        let keyword = find_keyword(keyword.trim_start_matches('*'));
+                        let found = keyword.and_then(|keyword| keyword.parameter(name));
+                        assert!(found.is_some(), "{name} of *{names}, as of *{of}");
+                        count += 1;
+                    }
+                }
+            }
+        }
+        assert!(count > 50, "{count}");
+    }
 }

@@ -34,9 +34,8 @@ use super::types::{
     Value,
 };
 
-/// The keywords of a text, in its order.
-pub(super) fn read(text: &'static str) -> Vec<Keyword> {
-    let mut all: Vec<Keyword> = Vec::new();
+/// Adds the keywords of a text in its order to those of earlier texts, whose parameters it may name.
+pub(super) fn read(text: &'static str, all: &mut Vec<Keyword>) {
     for entry in lines(text).chunk_by(|_, line| !line.starts_with('*')) {
         let (head, of_entry) = entry.split_first().unwrap_or((&"", &[]));
         let (names, what) = head.split_once(" @ ").unwrap_or((head, ""));
@@ -61,7 +60,7 @@ pub(super) fn read(text: &'static str) -> Vec<Keyword> {
                 "skipped" => Data::Skipped,
                 _ => Data::None,
             },
-            parameters: parameters(of_entry, &all),
+            parameters: parameters(of_entry, all),
             text: of_entry.iter().find(is_sentence).unwrap_or(&""),
             example: with("> ").collect::<Vec<_>>().join("\n").leak(),
             is_output: false,
@@ -72,7 +71,6 @@ pub(super) fn read(text: &'static str) -> Vec<Keyword> {
             ..keyword
         }));
     }
-    all
 }
 
 /// The keywords with their levels; a keyword of a block has the levels of the keyword that begins the block.
