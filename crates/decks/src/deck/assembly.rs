@@ -1,5 +1,5 @@
 //! Makes decks with parts and an assembly flat: every instance gets the cards of its part, whose spans name the
-//! instance. The reader (`crate::reader`) decides what a name or a number means in an instance.
+//! instance. The reader decides what a name or a number means in an instance.
 
 use super::card::{Card, Instance, Placement};
 use super::collect::Deck;
