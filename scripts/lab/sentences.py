@@ -4,7 +4,8 @@
     scripts/lab/run sentences --count sentences.txt
 
 A line of the file is `- PLACE | SENTENCE`. The grader reads the sentence alone, without its paragraph, and writes a
-grade for the dash: A clear at once, B at the second reading, C not clear. Of a table each row is a sentence.
+grade for the dash: A clear at once, B at the second reading, C not clear. Of a table each row is a sentence, its cells
+behind the heads of their columns. `[formula]` stands for the formula that ends a sentence.
 
 Groups are drawn by their shares: the guide (README.md and docs/), the reference (keywords, messages, result file),
 READMEs of examples, cases and scripts, doc comments of the source, and `--help`. Within a group all sentences are alike.
@@ -50,17 +51,20 @@ def of_markdown(path: str, text: str) -> Sentences:
     """Sentences of paragraphs and lists, rows of tables, and what the program says in blocks of messages."""
     found: Sentences = []
     paragraph: list[str] = []
+    heads: list[str] = []
     start, in_block = 0, False
 
-    def close() -> None:
+    def close(end: str = "") -> None:
         joined = re.sub(r"^(\* |\d+\. |> )", "", " ".join(paragraph))
+        if joined and not joined.endswith((".", "!", "?", ":")):
+            joined += end
         found.extend((f"{path}:{start}", one) for one in sentences(joined))
         paragraph.clear()
 
     for number, line in enumerate(text.splitlines(), 1):
         stripped = line.strip()
         if stripped.startswith("```"):
-            close()
+            close(" [formula]")
             in_block = not in_block
             continue
         if line.startswith("    ") and not paragraph:
@@ -73,10 +77,15 @@ def of_markdown(path: str, text: str) -> Sentences:
         if re.match(r"\* |\d+\. |\|.*\|$|#|<!--|!\[", stripped) or not stripped:
             close()
         is_row = re.match(r"\|.*\|$", stripped)
-        if is_row and not re.match(r"\|[-| :]+$", stripped):
+        if not is_row:
+            heads = []
+        elif not re.match(r"\|[-| :]+$", stripped):
             cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", stripped)[1:-1]]
-            if sum(len(re.findall(r"[A-Za-z]{3,}", cell)) for cell in cells) > 4:
-                found.append((f"{path}:{number}", " | ".join(cells)))
+            if not heads:
+                heads = cells
+            elif sum(len(re.findall(r"[A-Za-z]{3,}", cell)) for cell in cells) > 4:
+                said = [f"{head}: {cell}" if head else cell for head, cell in zip(heads, cells)]
+                found.append((f"{path}:{number}", " | ".join(said)))
         elif stripped and not is_row and not re.match(r"#|<!--|!\[", stripped):
             start = start if paragraph else number
             paragraph.append(stripped)
