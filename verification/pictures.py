@@ -12,7 +12,11 @@ from stickslip.plot import style
 LARGEST = 3
 """Panels of a picture."""
 
+APART = 1.5
+"""Least ratio of two sizes whose labels stand on an axis."""
 
+
+@style.styled
 def draw(study: Study, path: Path) -> None:
     """Draws the picture of a case; none where it has nothing to compare."""
     form = study.form
@@ -58,10 +62,19 @@ def draw_curve(study: Study, curve: Curve, ax: Axes) -> None:
 
 def draw_orders(study: Study, orders: list[Order], ax: Axes) -> None:
     """Errors over sizes."""
+    every: list[float] = []
     for order in orders:
         sizes, off = errors(study, order)
         slope = observed_order(sizes, off)
         ax.loglog(sizes, off, "o-", markersize=3, linewidth=1, label=f"{order.name}: {slope:.2f}")
+        every += map(float, sizes)
+    ticks: list[float] = []
+    for size in sorted(every):
+        if not ticks or size > APART * ticks[-1]:
+            ticks.append(size)
+    ax.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
+    ax.set_xticks([], minor=True)
+    ax.set_xlabel("size", fontsize=7)
     ax.set_title("error over size, observed order", fontsize=8)
     ax.legend(fontsize=6)
 
@@ -75,6 +88,6 @@ def draw_parts(study: Study, ax: Axes) -> None:
         ax.plot(parts, [row] * len(parts), "o", color="C0", markersize=3)
     ax.axvline(1.0, color="C3", linewidth=1)
     ax.set_xscale("log")
-    ax.set_yticks(range(len(names)), [name[:40] for name in names], fontsize=5)
+    ax.set_yticks(range(len(names)), [name if len(name) <= 42 else f"{name[:40]}..." for name in names], fontsize=5)
     ax.invert_yaxis()
     ax.set_title("error / tolerance", fontsize=8)
