@@ -38,7 +38,7 @@ pub fn linear_solver(choice: SolverChoice) -> Box<dyn LinearSolver> {
     }
 }
 
-/// Two solvers for matrices whose patterns may be the same: one solver takes over the analysis of the other.
+/// Two solvers for matrices whose patterns may be the same: then both solvers share one analysis.
 pub fn two_linear_solvers(choice: SolverChoice) -> [Box<dyn LinearSolver>; 2] {
     match choice {
         SolverChoice::Faer => MultifrontalLdl::two().map(|solver| Box::new(solver) as _),

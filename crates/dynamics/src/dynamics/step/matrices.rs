@@ -241,8 +241,8 @@ fn masses(problem: &StepProblem) -> Masses {
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M with a diagonal at nodes without mass. The mass matrix is factorised for the acceleration at the start, and
-    /// again when an impulse first needs it.
+    /// M with a diagonal at nodes without mass. The mass matrix is factorised once: for the acceleration at the start,
+    /// or when an impulse first needs it.
     pub m: FactoredMatrix,
     /// Angles of the bodies in the configuration of K*.
     angles: BodyAngles,

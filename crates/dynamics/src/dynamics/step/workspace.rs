@@ -328,7 +328,9 @@ impl<'m> Workspace<'m> {
             a = acceleration;
             problem.follow_donors(&mut a);
         }
-        self.stiffness.m.solver.give_up_factors();
+        if problem.contacts.is_empty() || !problem.has_impulses() {
+            self.stiffness.m.solver.give_up_factors();
+        }
         a
     }
 

@@ -7,13 +7,13 @@ use std::sync::{Mutex, PoisonError};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::factor::{Entries, Factor, LimbFactor, PivotPlace};
+use super::factor::{Entries, Factor, FactorLayout, LimbFactor, PivotPlace};
 use super::front::Front;
 use super::supernodes::Layout;
 use crate::linear::symmetric::Pattern;
 
-/// A limb (branch or trunk) with its part of L.
-type OwnFactor<'a> = (&'a mut LimbFactor, &'a mut [f64]);
+/// A limb (branch or trunk) with its part of L and D.
+type OwnFactor<'a> = (&'a LimbFactor, &'a mut [f64]);
 
 /// The steps by which all matrices of one pattern are factorised.
 #[derive(Debug, Default)]
@@ -43,8 +43,8 @@ impl FrontSpace {
 }
 
 impl Elimination {
-    /// The steps for a factor of matrices with a pattern.
-    pub fn new(factor: &Factor, pattern: &Pattern) -> Self {
+    /// The steps for the factors of matrices with a pattern.
+    pub fn new(factor: &FactorLayout, pattern: &Pattern) -> Self {
         let limbs = 0..factor.limbs.len();
         let stacks: Vec<UpdateStack> = factor.limbs.iter().map(UpdateStack::new).collect();
         let assembly = |limb| Assembly::new(factor, limb, pattern, &stacks);
@@ -98,13 +98,13 @@ fn eliminate(
     with: &Common,
 ) {
     let of_limb = |((own, assembly), stack): ((&mut OwnFactor, &Assembly), &mut Entries)| {
-        let (limb, l) = own;
+        let (limb, values) = own;
         FrontSpace::with_front(with.fronts, |front| {
             front.make_room(limb.longest);
             front.on_threads = with.on_threads;
             Arch::new().dispatch(OfLimb {
                 limb,
-                l,
+                values,
                 assembly,
                 front,
                 stack,
@@ -127,9 +127,9 @@ fn eliminate(
 
 /// The factorisation of a limb.
 struct OfLimb<'a> {
-    limb: &'a mut LimbFactor,
-    /// L of the limb.
-    l: &'a mut [f64],
+    limb: &'a LimbFactor,
+    /// L and D of the limb.
+    values: &'a mut [f64],
     assembly: &'a Assembly,
     front: &'a mut Front,
     stack: &'a mut [f64],
@@ -146,7 +146,7 @@ impl WithSimd for OfLimb<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self {
             limb,
-            l,
+            values: own,
             assembly,
             front,
             stack,
@@ -166,7 +166,7 @@ impl WithSimd for OfLimb<'_> {
                 let stack = below.get(child.limb).map_or(&*stack, |stack| stack);
                 front.add(&stack[child.update..], runs);
             }
-            let [values, pivots] = limb.columns_mut(s, l);
+            let [values, pivots] = limb.columns_mut(s, own);
             front.eliminate(simd, size, values, pivots);
             front.store_update(size, &mut stack[assembly.update(s)..]);
         }
@@ -249,8 +249,13 @@ pub struct ConsecutiveRows {
 }
 
 impl Assembly {
-    /// The assembly of a limb of a factor, for matrices with a pattern; `stacks` holds the stacks of all limbs.
-    pub fn new(factor: &Factor, number: usize, pattern: &Pattern, stacks: &[UpdateStack]) -> Self {
+    /// The assembly of a limb of the factors, for matrices with a pattern; `stacks` holds the stacks of all limbs.
+    pub fn new(
+        factor: &FactorLayout,
+        number: usize,
+        pattern: &Pattern,
+        stacks: &[UpdateStack],
+    ) -> Self {
         let limb = &factor.limbs[number];
         let layout = Layout::of_processor();
         let mut assembly = Assembly {
@@ -292,7 +297,7 @@ impl Assembly {
     /// Adds a child to a supernode of limb `own`; `at` gives the places of rows in the front of this supernode.
     fn push(
         &mut self,
-        factor: &Factor,
+        factor: &FactorLayout,
         [own, limb, supernode]: [usize; 3],
         update: usize,
         at: &[Option<usize>],
@@ -371,7 +376,7 @@ fn start(ends: &[usize], k: usize) -> usize {
 }
 
 /// Children of every supernode of a limb, given by their limb and number.
-fn children(factor: &Factor, number: usize) -> Vec<Vec<(usize, usize)>> {
+fn children(factor: &FactorLayout, number: usize) -> Vec<Vec<(usize, usize)>> {
     let limb = &factor.limbs[number];
     let mut children = vec![Vec::new(); limb.supernodes()];
     for (below, of_child) in factor.limbs.iter().enumerate() {

@@ -3,6 +3,7 @@
 //! the other, and a processor reads ahead only within a page. See docs/numerics.md, Order in memory.
 
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
 use bytemuck::{cast_slice, cast_slice_mut};
 use memmap2::MmapMut;
@@ -37,8 +38,8 @@ struct Spot {
     entries: usize,
 }
 
-/// Columns of L and D of a branch or a trunk. The rows of a branch are its own rows, followed by those of the trunk
-/// that it stands on.
+/// Places of the columns of L and D of a branch or a trunk. The rows of a branch are its own rows, followed by those of
+/// the trunk that it stands on.
 #[derive(Debug, Default)]
 pub struct LimbFactor {
     /// Unknowns of the own rows.
@@ -51,17 +52,15 @@ pub struct LimbFactor {
     pub longest: usize,
     spots: Vec<Spot>,
     rows: Vec<u32>,
-    /// Number of entries of L; `first` is their beginning among the entries of all limbs, which begins a line of the
-    /// cache.
+    /// Number of entries of L, which the entries of D follow; `first` is the beginning of L among the entries of all
+    /// limbs, which begins a line of the cache.
     entries: usize,
     first: usize,
-    /// D
-    pub pivots: Vec<f64>,
 }
 
-/// Factors of a matrix.
+/// What the factors of all matrices of one pattern have in common.
 #[derive(Debug, Default)]
-pub struct Factor {
+pub struct FactorLayout {
     /// Branches, then trunks.
     pub limbs: Vec<LimbFactor>,
     /// Number of branches.
@@ -70,8 +69,22 @@ pub struct Factor {
     pub places: Vec<PivotPlace>,
     /// Number of entries of L.
     entries: usize,
-    /// L, limb by limb.
+}
+
+/// Factors of a matrix.
+#[derive(Debug, Default)]
+pub struct Factor {
+    layout: Arc<FactorLayout>,
+    /// L and D, limb by limb.
     values: Entries,
+}
+
+impl Deref for Factor {
+    type Target = FactorLayout;
+
+    fn deref(&self) -> &FactorLayout {
+        &self.layout
+    }
 }
 
 /// Places in the limbs of all pivots, in the order of elimination.
@@ -81,9 +94,8 @@ struct PivotPlaces {
     sizes: Vec<usize>,
 }
 
-impl Factor {
-    /// The structure of the factors of an analysed matrix, whose memory [`Self::make_room`] allocates; `unknowns` holds
-    /// the unknown of every pivot.
+impl FactorLayout {
+    /// The layout of the factors of analysed matrices; `unknowns` holds the unknown of every pivot.
     pub fn new(supernodes: &Supernodes, unknowns: &[usize]) -> Self {
         let all = 0..supernodes.count();
         let work: Vec<usize> = all.map(|s| supernodes.entries(s)).collect();
@@ -93,53 +105,24 @@ impl Factor {
         for (&unknown, place) in unknowns.iter().zip(&in_limbs.of_pivots) {
             places[unknown] = *place;
         }
-        let mut factor = Factor {
+        let mut layout = FactorLayout {
             limbs: Vec::new(),
             branches,
             places,
             entries: work.iter().sum(),
-            values: Entries::default(),
         };
         let of_limb = |number| in_limbs.factor(supernodes, unknowns, (number, &limbs));
         let all = 0..limbs.len();
-        factor.limbs = match factor.is_factorised_on_threads() {
+        layout.limbs = match layout.is_factorised_on_threads() {
             true => all.into_par_iter().map(of_limb).collect(),
             false => all.map(of_limb).collect(),
         };
         let mut entries = 0;
-        for limb in &mut factor.limbs {
+        for limb in &mut layout.limbs {
             limb.first = entries;
-            entries += limb.entries.next_multiple_of(LINE);
+            entries += limb.room();
         }
-        factor
-    }
-
-    /// Makes room for L, in the memory of former factors if it is large enough.
-    pub fn make_room(&mut self, memory: Entries) {
-        let of_limb = |limb: &LimbFactor| limb.entries.next_multiple_of(LINE);
-        self.values = memory;
-        self.values.make_room(self.limbs.iter().map(of_limb).sum());
-    }
-
-    /// Takes the memory of L away from the factor.
-    pub fn take_memory(&mut self) -> Entries {
-        std::mem::take(&mut self.values)
-    }
-
-    /// L of all limbs; supernodes refer to ranges of its entries.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// The limbs, each with its part of L.
-    pub fn limbs_mut(&mut self) -> Vec<(&mut LimbFactor, &mut [f64])> {
-        let (mut of_limbs, mut rest) = (Vec::new(), &mut *self.values);
-        for limb in &mut self.limbs {
-            let own;
-            (own, rest) = rest.split_at_mut(limb.entries.next_multiple_of(LINE));
-            of_limbs.push((limb, own));
-        }
-        of_limbs
+        layout
     }
 
     /// Whether a factorisation uses threads: there are several, and L has enough entries.
@@ -155,11 +138,43 @@ impl Factor {
     fn is_worth_threads(&self, least: usize) -> bool {
         self.entries >= least && self.branches > 1 && rayon::current_num_threads() > 1
     }
+}
+
+impl Factor {
+    /// Room for factors, in the memory of former ones as far as it is enough.
+    pub fn new(layout: Arc<FactorLayout>, mut memory: Entries) -> Self {
+        memory.make_room(layout.limbs.iter().map(LimbFactor::room).sum());
+        Factor {
+            layout,
+            values: memory,
+        }
+    }
+
+    /// The memory of factors that are given up.
+    pub fn into_memory(self) -> Entries {
+        self.values
+    }
+
+    /// L and D of all limbs, for their supernodes.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The limbs, each with its part of L and D.
+    pub fn limbs_mut(&mut self) -> Vec<(&LimbFactor, &mut [f64])> {
+        let (mut of_limbs, mut rest) = (Vec::new(), &mut *self.values);
+        for limb in &self.layout.limbs {
+            let own;
+            (own, rest) = rest.split_at_mut(limb.room());
+            of_limbs.push((limb, own));
+        }
+        of_limbs
+    }
 
     /// Entries of D, each with its unknown.
     pub fn pivots(&self) -> impl Iterator<Item = (usize, f64)> {
         self.limbs.iter().flat_map(|limb| {
-            let pivots = limb.unknowns.iter().zip(&limb.pivots);
+            let pivots = limb.unknowns.iter().zip(limb.pivots(&self.values));
             pivots.map(|(&unknown, &pivot)| (unknown, pivot))
         })
     }
@@ -181,7 +196,7 @@ impl PivotPlaces {
         PivotPlaces { of_pivots, sizes }
     }
 
-    /// The structure of the factors of a limb.
+    /// The places of the factors of a limb.
     fn factor(
         &self,
         supernodes: &Supernodes,
@@ -204,7 +219,6 @@ impl PivotPlaces {
             factor.push(columns.len(), &rows);
             factor.unknowns.extend_from_slice(&unknowns[columns]);
         }
-        factor.pivots = vec![0.0; factor.unknowns.len()];
         factor
     }
 }
@@ -266,14 +280,26 @@ impl LimbFactor {
         }
     }
 
-    /// L and D of a supernode, given L of the limb.
+    /// Entries of L and D, to the end of a line of the cache.
+    fn room(&self) -> usize {
+        (self.entries + self.unknowns.len()).next_multiple_of(LINE)
+    }
+
+    /// D of its own rows, among the values of all limbs.
     #[inline(always)]
-    pub fn columns_mut<'a>(&'a mut self, k: usize, l: &'a mut [f64]) -> [&'a mut [f64]; 2] {
+    pub fn pivots<'a>(&self, values: &'a [f64]) -> &'a [f64] {
+        &values[self.first + self.entries..][..self.unknowns.len()]
+    }
+
+    /// L and D of a supernode, given the part of the limb.
+    #[inline(always)]
+    pub fn columns_mut<'a>(&self, k: usize, own: &'a mut [f64]) -> [&'a mut [f64]; 2] {
         let (spot, next) = (self.spots[k], self.spots.get(k + 1));
         let start = spot.start as usize;
         let entries = spot.entries..next.map_or(self.entries, |next| next.entries);
         let columns = start..start + spot.size as usize;
-        [&mut l[entries], &mut self.pivots[columns]]
+        let (l, pivots) = own.split_at_mut(self.entries);
+        [&mut l[entries], &mut pivots[columns]]
     }
 }
 

@@ -31,7 +31,7 @@ use rayon::prelude::*;
 use super::solver::{LinearError, LinearSolver, check_pivots};
 use super::symmetric::{Pattern, SymmetricMatrix};
 pub use elimination::{Elimination, FrontSpace};
-pub use factor::Factor;
+pub use factor::{Factor, FactorLayout};
 pub use partial_inverse::inverse_at;
 pub use substitution::Substitution;
 pub use supernodes::Supernodes;
@@ -40,8 +40,7 @@ pub use supernodes::Supernodes;
 #[derive(Default)]
 struct Analysis {
     pattern: Pattern,
-    /// Structure of the factors, and their memory.
-    factor: Factor,
+    layout: Arc<FactorLayout>,
     elimination: Elimination,
 }
 
@@ -50,14 +49,15 @@ struct Analysis {
 struct Shared {
     /// Memory of the factorisations.
     space: FrontSpace,
-    /// The analysis of factors that one of the solvers has freed.
-    left: Option<Analysis>,
+    /// The last analysis of either solver.
+    analysis: Option<Arc<Analysis>>,
 }
 
 /// Multifrontal LDL^T with an approximate minimum degree order and the supernodes of faer's analysis.
 #[derive(Default)]
 pub struct MultifrontalLdl {
-    analysis: Analysis,
+    analysis: Arc<Analysis>,
+    factor: Factor,
     shared: Arc<Mutex<Shared>>,
     substitution: Substitution,
     /// Unknowns whose paths the substitution follows.
@@ -123,22 +123,21 @@ pub fn factor_entries(neighbours: &[Vec<usize>]) -> usize {
 }
 
 impl Analysis {
-    /// Analyses the pattern of a matrix; no memory is allocated for its factors yet.
+    /// Analyses the pattern of a matrix.
     fn new(pattern: &Pattern) -> Result<Self, LinearError> {
         let (supernodes, unknowns) = analyse(pattern)?;
-        let factor = Factor::new(&supernodes, &unknowns);
+        let layout = FactorLayout::new(&supernodes, &unknowns);
         drop(supernodes);
         Ok(Analysis {
-            elimination: Elimination::new(&factor, pattern),
-            factor,
+            elimination: Elimination::new(&layout, pattern),
+            layout: Arc::new(layout),
             pattern: pattern.clone(),
         })
     }
 }
 
 impl MultifrontalLdl {
-    /// Two solvers that share memory. When one solver frees its factors, the other one takes over its analysis, if the
-    /// pattern is the same.
+    /// Two solvers that share memory. If the pattern is the same, a solver uses the last analysis of the other one.
     pub fn two() -> [Self; 2] {
         let shared = Arc::default();
         [(); 2].map(|()| MultifrontalLdl {
@@ -147,16 +146,18 @@ impl MultifrontalLdl {
         })
     }
 
-    /// Analyses a pattern.
+    /// Analyses a pattern and makes room for its factors.
     fn analyse(&mut self, pattern: &Pattern) -> Result<(), LinearError> {
         // The factors of another pattern go first, but for their memory.
-        let memory = std::mem::take(&mut self.analysis).factor.take_memory();
-        let left = locked(&self.shared).left.take();
-        self.analysis = match left.filter(|left| left.pattern == *pattern) {
-            Some(left) => left,
-            None => Analysis::new(pattern)?,
+        let memory = std::mem::take(&mut self.factor).into_memory();
+        self.analysis = Arc::default();
+        let last = locked(&self.shared).analysis.take();
+        self.analysis = match last.filter(|last| last.pattern == *pattern) {
+            Some(last) => last,
+            None => Arc::new(Analysis::new(pattern)?),
         };
-        self.analysis.factor.make_room(memory);
+        locked(&self.shared).analysis = Some(Arc::clone(&self.analysis));
+        self.factor = Factor::new(Arc::clone(&self.analysis.layout), memory);
         Ok(())
     }
 }
@@ -171,31 +172,28 @@ impl LinearSolver for MultifrontalLdl {
         if self.analysis.pattern != a.pattern {
             self.analyse(&a.pattern)?;
         }
-        let Analysis {
+        let Self {
+            analysis,
             factor,
-            elimination,
+            shared,
             ..
-        } = &mut self.analysis;
-        elimination.eliminate(&a.values, factor, &mut locked(&self.shared).space);
-        self.substitution.adapt(factor);
-        check_pivots(factor.pivots())
+        } = self;
+        let space = &mut locked(shared).space;
+        analysis.elimination.eliminate(&a.values, factor, space);
+        self.substitution.adapt(&self.factor);
+        check_pivots(self.factor.pivots())
     }
 
     fn give_up_factors(&mut self) {
-        let Self {
-            mut analysis,
+        let shared = Arc::clone(&self.shared);
+        *self = MultifrontalLdl {
             shared,
-            ..
-        } = std::mem::take(self);
-        if Arc::strong_count(&shared) > 1 {
-            drop(analysis.factor.take_memory());
-            locked(&shared).left = Some(analysis);
-        }
-        self.shared = shared;
+            ..MultifrontalLdl::default()
+        };
     }
 
     fn begin(&mut self, b: &[f64]) {
-        self.substitution.begin(&self.analysis.factor, b);
+        self.substitution.begin(&self.factor, b);
     }
 
     fn watch(&mut self, unknowns: &[usize]) {
@@ -204,31 +202,29 @@ impl LinearSolver for MultifrontalLdl {
         }
         self.watched.clear();
         self.watched.extend_from_slice(unknowns);
-        let places = unknowns
-            .iter()
-            .map(|&unknown| self.analysis.factor.places[unknown]);
-        self.substitution.set_paths(&self.analysis.factor, places);
+        let places = unknowns.iter().map(|&unknown| self.factor.places[unknown]);
+        self.substitution.set_paths(&self.factor, places);
     }
 
     fn watched(&mut self, watched: &mut Vec<f64>) {
-        self.substitution.on_paths(&self.analysis.factor);
-        let places = self.watched.iter().map(|&u| self.analysis.factor.places[u]);
+        self.substitution.on_paths(&self.factor);
+        let places = self.watched.iter().map(|&u| self.factor.places[u]);
         watched.clear();
         watched.extend(places.map(|place| self.substitution.x(place)));
     }
 
     fn add(&mut self, b: &[(usize, f64)]) {
-        let places = &self.analysis.factor.places;
+        let places = &self.factor.places;
         let entries = b.iter().map(|&(unknown, value)| (places[unknown], value));
-        self.substitution.add(&self.analysis.factor, entries);
+        self.substitution.add(&self.factor, entries);
     }
 
     fn end(&mut self, x: &mut [f64]) {
-        self.substitution.end(&self.analysis.factor, x);
+        self.substitution.end(&self.factor, x);
     }
 
     fn inverse_at(&mut self, unknowns: &[&[usize]], _n: usize) -> Vec<Vec<f64>> {
-        let factor = &self.analysis.factor;
+        let factor = &self.factor;
         let of_list = |list: &&[usize]| inverse_at(factor, list);
         match unknowns.len() > 1 && factor.is_factorised_on_threads() {
             true => unknowns.par_iter().map(of_list).collect(),

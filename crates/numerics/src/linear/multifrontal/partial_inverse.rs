@@ -112,7 +112,7 @@ pub fn inverse_at(factor: &Factor, unknowns: &[usize]) -> Vec<f64> {
             finished.add_to(&mut inverse, m);
             finished.begin(&columns);
         }
-        let pivots = &limb.pivots[node.columns()];
+        let pivots = &limb.pivots(factor.values())[node.columns()];
         finished.push(&values, all.len(), pivots);
 
         let kept = without_negligible(&columns, &values, [node.size, all.len()]);

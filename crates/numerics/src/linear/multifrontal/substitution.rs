@@ -281,7 +281,7 @@ impl LimbVectors {
 /// ```
 struct Forward<'a, I> {
     limb: &'a LimbFactor,
-    /// L
+    /// L and D of all limbs.
     values: &'a [f64],
     supernodes: I,
     x: &'a mut [f64],
@@ -317,7 +317,7 @@ impl<I: Iterator<Item = usize>> WithSimd for Forward<'_, I> {
 /// ```
 struct Backward<'a, I> {
     limb: &'a LimbFactor,
-    /// L
+    /// L and D of all limbs.
     values: &'a [f64],
     supernodes: I,
     z: &'a [f64],
@@ -337,7 +337,7 @@ impl<I: DoubleEndedIterator<Item = usize>> WithSimd for Backward<'_, I> {
             let node = self.limb.supernode(s);
             let w = &mut work[..node.length() + S::F64_LANES];
             let (own, below) = w.split_at_mut(node.size);
-            let pivots = &self.limb.pivots[node.columns()];
+            let pivots = &self.limb.pivots(values)[node.columns()];
             for ((w, z), d) in own.iter_mut().zip(&z[node.columns()]).zip(pivots) {
                 *w = z / d;
             }

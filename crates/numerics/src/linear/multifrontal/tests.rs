@@ -210,7 +210,7 @@ fn any_number_of_threads_gives_the_same_factors_and_inverses() {
 }
 
 #[test]
-fn one_of_two_solvers_takes_over_the_analysis_that_the_other_gives_up() {
+fn one_of_two_solvers_takes_the_analysis_of_the_other() {
     for n in [12, 13] {
         let [mut first, mut second] = MultifrontalLdl::two();
         let (a, mut twice) = (grid(12), grid(n));
